@@ -20,17 +20,18 @@ READ_WAIT: Final = 0.1
 SILENCE: Final = 1.0
 """Silence after which an event is logged [s]."""
 JOIN_TIMEOUT: Final = 5.0
+"""Longest wait for the end of a reader thread [s]."""
 
 
 class SampleSink(Protocol):
     """Non-blocking receiver of samples and events of devices."""
 
     def write(self, stream: str, samples: Sequence[Sample]) -> bool:
-        """Accept samples of a stream without blocking.
+        """Queue samples of a stream without blocking; drop them where there is no room.
 
         Args:
             stream: Name of the stream.
-            samples: Its samples, in order.
+            samples: Samples of the stream, in order.
 
         Returns:
             Whether there was room for them.
@@ -38,7 +39,7 @@ class SampleSink(Protocol):
         ...
 
     def event(self, text: str, *, level: int = ...) -> None:
-        """Accept an event that happened now.
+        """Queue an event that happened now, for the log.
 
         Args:
             text: Description of the event.
@@ -49,16 +50,18 @@ class SampleSink(Protocol):
 
 @dataclass(frozen=True)
 class Device:
-    """A device that is to be recorded.
+    """A device to be recorded, with what its reader thread does besides reading.
 
     Attributes:
-        stream: Its driver, not yet entered.
-        check: Called with what every read gives, in the reading thread; raises where a limit is
-            exceeded.
-        command: Called before every read, in the same thread: set-points of a gait.
-        at_end: Called once before the driver is left: stops what `command` moved.
-        pause: Pause between two reads, for a device with its own clock: waking up for every few
-            samples costs more than reading them [s].
+        stream: Driver of the device, not yet entered.
+        check: Called in the reader thread with the samples of every read that has any; raises where
+            a limit is exceeded, which ends the reading. None checks nothing.
+        command: Called in the reader thread before every read, with the host time [s]: sends
+            set-points of a gait. None commands nothing.
+        at_end: Called once after reading has ended, before the driver is left: stops what `command`
+            moved. None does nothing.
+        pause: Pause between two reads, to save CPU time where the device sends its own time; 0
+            reads without a pause [s].
     """
 
     stream: Stream
@@ -78,16 +81,16 @@ class Acquisition:
 
     Args:
         device: The device; its driver has been entered.
-        sink: Receiver of the samples.
+        sink: Receiver of the samples and of events of the link.
         start: Host time at which the run began [s].
         clock: Host time.
 
     Attributes:
         name: Name of the stream.
         counters: Counters of the stream, as of its last read.
-        tap: The newest samples, for viewers.
+        tap: Ring buffer of the newest samples, for viewers.
         clock_watch: Comparison of the device's clock with the host's.
-        first: Host time of the first sample; None before it [s].
+        first: Host time of the first sample; None until a sample has arrived [s].
         failure: Exception that ended the reading early, or that says that the thread did not end
             in time; None where there is none.
     """
@@ -118,15 +121,18 @@ class Acquisition:
         self._thread.start()
 
     def end_at(self, until: float) -> None:
-        """Set the host time at which reading ends without a call of `stop` [s]."""
+        """Set the host time at which the thread ends by itself, without a call of `stop` [s]."""
         self._until = until
 
     def request_stop(self) -> None:
-        """Request that the thread reads once more and ends; does not wait for it."""
+        """Request the thread to end after its current read, or one more; does not wait for it."""
         self._done.set()
 
     def stop(self) -> None:
-        """Stop the thread; waits for the read in progress, which has a timeout."""
+        """Request the thread to end and wait for it, at most `JOIN_TIMEOUT`.
+
+        If it does not end in time and has not failed before, `failure` becomes a `RigTimeout`.
+        """
         self._done.set()
         if self._thread.is_alive():
             self._thread.join(JOIN_TIMEOUT)
@@ -163,7 +169,7 @@ class Acquisition:
         self._check_silence(guard, samples)
 
     def _log_link_events(self, counters: Counters) -> None:
-        """Log events of the link: losses, reconnections, restarts."""
+        """Log an event for each of these counters that has grown: reconnected, restarted, lost."""
         before, self.counters = self.counters, counters
         for what in ("reconnected", "restarted"):
             if getattr(counters, what) > getattr(before, what):
@@ -173,7 +179,7 @@ class Acquisition:
             self._sink.event(f"{self.name}: {missing} samples lost", level=WARNING)
 
     def _check_silence(self, guard: SilenceGuard, samples: Sequence[Sample]) -> None:
-        """Log one event when a silence begins and one when it ends."""
+        """Log one event when no sample came for `SILENCE`, and one when samples arrive again."""
         try:
             guard.check(samples, now=self._clock.now())
         except RigTimeout as silence:
@@ -190,16 +196,18 @@ class Acquisition:
 def acquiring(
     devices: Sequence[Device], *, sink: SampleSink, start: float, clock: Clock = SYSTEM_CLOCK
 ) -> Iterator[Mapping[str, Acquisition]]:
-    """Read devices, already entered, in threads while the body of the `with` statement runs.
+    """Read each device in a thread of its own while the body of the `with` statement runs.
+
+    After the body the threads are stopped, and then each device's `at_end` is called.
 
     Args:
-        devices: The devices.
-        sink: Receiver of the samples.
+        devices: The devices; their drivers have been entered.
+        sink: Receiver of the samples and of events of the links.
         start: Host time at which the run began [s].
         clock: Host time.
 
     Yields:
-        The reader of each device, by name.
+        The reader of each device, by the name of its stream.
 
     Raises:
         RuntimeError: The system allows no more threads.

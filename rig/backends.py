@@ -25,11 +25,11 @@ from rig.zebro.serial import PacketLegs
 LEG_DRIVERS: Final[dict[str, Any]] = {
     "packet": PacketLegs, "can": CanLegs, "dump": DumpLegs, "poll": PolledLegs,
 }  # fmt: skip
-"""Driver of each layout of a leg stream."""
+"""Class of the driver for each layout of a leg stream; the layout `table` has none."""
 
 
 def open_legs(address: str) -> Any:
-    """Return the driver of a robot's leg stream; entering it opens the port.
+    """Return the driver of a robot's leg stream; entering the driver opens the port.
 
     Args:
         address: `PROFILE@PORT`; for CAN the port is `INTERFACE:CHANNEL`.
@@ -38,7 +38,7 @@ def open_legs(address: str) -> Any:
         A `Stream` that also takes `LegCommands`.
 
     Raises:
-        ProfileError: The address or the profile is invalid.
+        ProfileError: The address or the profile is invalid, or the profile describes a table.
     """
     profile_name, port = split_address(address)
     profile = load_leg_profile(profile_name)
@@ -46,11 +46,11 @@ def open_legs(address: str) -> Any:
 
 
 def leg_link(profile: LegProfile, port: str, *, source: str = "real") -> SerialLink | CanLink:
-    """Return the serial or CAN link that a leg profile names.
+    """Return the link for a leg profile: CAN for the layout `can`, else serial; not yet open.
 
     Args:
         profile: The profile.
-        port: Port of the link.
+        port: Serial port or URL; for CAN `INTERFACE:CHANNEL`.
         source: `real`, or `sim:WHAT` where a twin serves the port.
 
     Raises:
@@ -63,7 +63,7 @@ def leg_link(profile: LegProfile, port: str, *, source: str = "real") -> SerialL
 
 
 def leg_driver(profile: LegProfile, link: Any, *, clock: Clock = SYSTEM_CLOCK) -> Any:
-    """Return the driver for the layout of a leg profile, over a given link.
+    """Return the driver for the layout of a leg profile over a given link, neither yet open.
 
     Args:
         profile: The profile.
@@ -89,7 +89,7 @@ def _require_device(profile: LegProfile) -> None:
 
 
 def open_imu(address: str, *, name: str = "imu") -> ImuStream:
-    """Return the driver of an inertial measurement unit; entering it opens the port.
+    """Return the driver of an inertial measurement unit; entering the driver opens the port.
 
     Args:
         address: `PROFILE@PORT`.
@@ -99,7 +99,7 @@ def open_imu(address: str, *, name: str = "imu") -> ImuStream:
         The driver.
 
     Raises:
-        ProfileError: The address or the profile is invalid.
+        ProfileError: The address or the profile is invalid, or the profile describes a table.
     """
     profile_name, port = split_address(address)
     profile = load_imu_profile(profile_name)
@@ -128,19 +128,19 @@ class RigDevices:
 
     @property
     def streams(self) -> tuple[Stream, ...]:
-        """All devices, as streams to be entered and read."""
+        """All devices of the rig as streams: drives and load cell, or the board."""
         return tuple(s for s in (self.drives, self.load_cell, self.board) if s is not None)
 
 
 def open_rig(address: str, *, buffered: bool = False) -> RigDevices:
-    """Return the drivers of a slip rig; entering each opens it.
+    """Return the drivers of a slip rig; entering a driver opens its link.
 
     Args:
         address: `PROFILE@PORT`; the port is the drives' `INTERFACE:CHANNEL`, or the board's.
-        buffered: Let the load cell send many records per packet, see `NetFtCell`.
+        buffered: Let the load cell send many records per datagram, see `NetFtCell`.
 
     Returns:
-        The devices.
+        The devices, not yet opened.
 
     Raises:
         ProfileError: The address or the profile is invalid, or the profile describes a table.

@@ -9,11 +9,11 @@ class Clock(Protocol):
     """Monotonic time of the host, with an arbitrary origin."""
 
     def now(self) -> float:
-        """Read the time [s]."""
+        """Return the present time [s]."""
         ...
 
     def sleep(self, duration: float) -> None:
-        """Let `duration` pass [s]."""
+        """Wait for `duration`; return at once where it is negative [s]."""
         ...
 
 
@@ -21,16 +21,16 @@ class SystemClock:
     """Monotonic clock of the system, which changes of the wall clock do not affect."""
 
     def now(self) -> float:
-        """Read the time [s]."""
+        """Return the time of the system's monotonic clock [s]."""
         return time.monotonic()
 
     def sleep(self, duration: float) -> None:
-        """Let `duration` pass [s]."""
+        """Block the calling thread for `duration`; return at once where it is negative [s]."""
         time.sleep(max(duration, 0.0))
 
 
 class ManualClock:
-    """Clock for tests that advances only by `sleep`, without waiting.
+    """Clock for tests that starts at `start` [s] and advances only by `sleep`, without waiting.
 
     >>> clock = ManualClock(5.0)
     >>> clock.sleep(0.25)
@@ -42,11 +42,11 @@ class ManualClock:
         self._now = start
 
     def now(self) -> float:
-        """Read the time [s]."""
+        """Return `start` plus all durations of `sleep` [s]."""
         return self._now
 
     def sleep(self, duration: float) -> None:
-        """Advance the time by `duration` without waiting [s]."""
+        """Advance the time by `duration` without waiting; a negative one changes nothing [s]."""
         self._now += max(duration, 0.0)
 
 

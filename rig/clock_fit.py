@@ -11,7 +11,9 @@ from rig.errors import ProtocolError
 
 Array: TypeAlias = NDArray[np.float64]
 FEWEST: Final = 10
+"""Least number of samples to fit."""
 MOST_BINS: Final = 60
+"""Largest number of bins, of which each gives one sample to the regression."""
 DRIFT_SD: Final = 2e-3
 """Prior standard deviation of the clock drift: quartz drifts far less, oscillators of bare
 micro-controllers a few times as much [-]."""
@@ -25,9 +27,9 @@ class ClockFit:
         t_{host} = offset + (1 + drift)\,t_{device}
 
     Attributes:
-        offset: Host time of the device's zero, for a message with the smallest delay [s].
-        drift: Relative excess rate of the host's clock over the device's [-].
-        delay: Median delay of messages beyond the smallest one [s].
+        offset: Host time at device time 0, for a sample that is read with the smallest delay [s].
+        drift: Host seconds per device second less 1; above 0 where the device's clock is slow [-].
+        delay: Median time by which samples are read later than the map gives [s].
     """
 
     offset: float
@@ -35,7 +37,7 @@ class ClockFit:
     delay: float
 
     def to_host(self, device_time: Array) -> Array:
-        """Compute host times of device times [s]."""
+        """Convert device times to host times by the map above, shape (n,) [s]."""
         return self.offset + (1 + self.drift) * device_time
 
 
@@ -43,19 +45,20 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
     """Estimate offset and drift of a device clock by regression of host time on device time.
 
     A sample can be read late but never early. The line is therefore fitted through the sample with
-    the smallest delay in each of many bins, so that the delays of the others do not bias it. A
+    the smallest delay in each of up to `MOST_BINS` bins of equally many samples, at least five. A
     short recording hardly determines the drift, so that it has a Gaussian prior of mean zero and
     standard deviation `DRIFT_SD`.
 
     Args:
         device_time: Device time at which each sample was taken, increasing, shape (n,) [s].
-        host_time: Host time at which it was read, shape (n,) [s].
+        host_time: Host time at which each sample was read, shape (n,) [s].
 
     Returns:
         Offset, drift and delay.
 
     Raises:
-        ProtocolError: There are fewer than ten samples, or all have the same device time.
+        ProtocolError: There are fewer than `FEWEST` samples, or the last device time is not later
+            than the first one.
 
     >>> device = np.arange(100) / 10
     >>> fit = fit_clock(device, 5.0 + 1.0001 * device)

@@ -12,13 +12,15 @@ from rig.device import Sample
 from rig.sample_columns import SampleColumns
 
 BUCKET: Final = 0.05
-"""Interval in which one comparison of the clocks is kept [s]."""
+"""Interval of host time of which one pair of device and host time is kept [s]."""
 RESTART_JUMP: Final = 1.0
-"""Jump of the clock difference between samples that means a restart of the device [s]."""
+"""Jump of host minus device time between samples that means a restart of the device [s]."""
 
 
 class ClockWatch:
-    """Collects the sample with the smallest delay in each `BUCKET`, to fit offset and drift.
+    """Collects the pair of device and host time with the smallest delay in each `BUCKET`.
+
+    The pairs give offset and drift of the device's clock.
 
     Args:
         start: Host time at which the run began [s].
@@ -30,7 +32,11 @@ class ClockWatch:
         self._host: list[float] = []
 
     def add(self, samples: Sequence[Sample]) -> None:
-        """Add the samples of a read; its last sample has the smallest delay."""
+        """Keep the times of the last sample of a read where they are the best of their `BUCKET`.
+
+        The last sample of a read waited least. In each `BUCKET` of host time the pair with the
+        smallest host minus device time is kept. A sample without device time is ignored.
+        """
         latest = samples[-1] if samples else None
         if latest is None or latest.device_time is None:
             return
@@ -44,10 +50,13 @@ class ClockWatch:
         self._host.append(host)
 
     def result(self) -> Mapping[str, float] | None:
-        """Return offset [s] and drift [-] against the time of the run, and the delay [s].
+        """Fit `offset` [s], `drift` [-] and `delay` [s] of `ClockFit`, host time from `start` on.
 
-        After a restart of the device they are those of its last clock with enough samples. None
-        where the device sends no time, or has sent too few samples.
+        After restarts of the device the pairs since the last restart with at least `FEWEST` pairs
+        after it are fitted. None where there are fewer pairs, or the device sends no time.
+
+        Raises:
+            ProtocolError: The device's clock stands still.
         """
         device, host = _last_clock(np.array(self._device), np.array(self._host))
         if len(device) < FEWEST:
@@ -57,10 +66,12 @@ class ClockWatch:
 
 
 def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:
-    """Select the comparisons since the last restart that has enough of them, shape (n,) [s].
+    """Select pairs of device and host time since the device's last restart, shapes (n,) [s].
 
-    A sample can be read late but never early. The device has therefore restarted where all later
-    comparisons are more than `RESTART_JUMP` later.
+    The lag, host minus device time, grows where a sample is read late or the device restarts. The
+    device restarted where all later lags are larger by more than `RESTART_JUMP`. A pair was read
+    late, and is left out, where a later lag is smaller by more than that. If fewer than `FEWEST`
+    pairs remain, those before the restart are searched in the same way. The result can have fewer.
     """
     while len(device) >= FEWEST:
         lag = host - device
@@ -76,10 +87,11 @@ def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:
 
 
 def sample_times(stream: SampleColumns) -> Array:
-    """Compute the times at which samples were taken, since the start of the run, shape (n,) [s].
+    """Estimate when samples were taken, in the time base of their `host_time`, shape (n,) [s].
 
-    Samples are read in batches. Where the device sends its time, its clock corrects the times of
-    reading, separately between restarts. Where it sends none, the times of reading are returned.
+    Between restarts of the device (host minus device time jumps by more than `RESTART_JUMP`), the
+    result is `fit_clock`'s map of the device times. It is the time of reading where the device
+    sends no time, or a part has fewer than `FEWEST` samples or a clock that stands still.
 
     Args:
         stream: A recorded stream.
@@ -98,7 +110,10 @@ def sample_times(stream: SampleColumns) -> Array:
 
 
 def _filled(stream: SampleColumns) -> Array | None:
-    """Return device times, missing ones interpolated by sample number; None without any."""
+    """Return device times, missing ones interpolated over the sequence number, shape (n,) [s].
+
+    None where fewer than `FEWEST` samples have a device time.
+    """
     known = np.isfinite(stream.device_time)
     if known.sum() < FEWEST:
         return None

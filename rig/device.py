@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Protocols of devices: streams of raw samples, drives, load cells; their counters and limits.
 
-Real, simulated and replayed devices satisfy the same protocols. Samples hold raw counts. Angles,
+Real, simulated and replayed devices implement the same protocols. Samples hold raw counts. Angles,
 speeds and forces are computed from the counts with the device's profile, at any later time.
 """
 
@@ -16,9 +16,9 @@ class Sample(NamedTuple):
     """One raw reading as it arrived. A named tuple: at 7 kHz a frozen dataclass is too slow.
 
     Attributes:
-        host_time: Time at which the host read it, by the clock of the stream [s].
-        device_time: Time at which the device took it, by the device's own clock, unwrapped; None
-            where the protocol carries no time [s].
+        host_time: Time at which the host read the sample, by the clock of the stream [s].
+        device_time: Time at which the device took the sample, by the device's own clock,
+            unwrapped; None where the protocol carries no time, or its frame was lost [s].
         sequence: Sequence number of the sample, unwrapped, strictly increasing; None where the
             protocol has none.
         counts: Raw values in the order of the protocol, units of the device.
@@ -38,15 +38,16 @@ class Sample(NamedTuple):
 class Counters:
     """Counters of received, lost and damaged samples of a stream so far.
 
-    Where a protocol numbers its samples and the device did not restart, received + lost is how many
-    the device sent between the first and the last one received. A damaged or refused frame counts
-    as such when it arrives, and in `lost` when the next good one shows the gap.
+    Where a protocol numbers its samples and the device did not restart, received + lost is the
+    number of samples that the device sent from the first to the last one received. A damaged or
+    refused frame is counted in `damaged` or `refused` when it arrives, and in `lost` as well when
+    the next good frame shows the gap.
 
     Attributes:
         received: Samples returned by the driver.
         lost: Samples missing according to the sequence numbers.
         damaged: Frames discarded for a wrong checksum, length or form.
-        repeated: Samples discarded as duplicates or late, because their number had passed.
+        repeated: Samples discarded because they are duplicates, or arrived after a later sample.
         refused: Whole frames discarded for impossible values, or meant for another device.
         resynchronised: Number of times that good frames followed damaged ones.
         reconnected: Number of times that the link came back after a disconnection.
@@ -64,7 +65,7 @@ class Counters:
 
     @property
     def rejected(self) -> int:
-        """Number of frames that arrived and were discarded."""
+        """Number of frames that arrived and were discarded: damaged, repeated or refused."""
         return self.damaged + self.repeated + self.refused
 
 
@@ -113,11 +114,11 @@ class Drive(Protocol):
 
     @property
     def name(self) -> str:
-        """Name of the disc that it turns."""
+        """Name of the disc that the motor turns."""
         ...
 
     def arm(self, timeout: float) -> None:
-        """Energise at standstill, waiting at most `timeout` [s].
+        """Energise with set-point 0; wait at most `timeout` until the drive confirms it [s].
 
         Raises:
             RigTimeout: The drive did not energise in time.
@@ -129,12 +130,12 @@ class Drive(Protocol):
         """Command an angular speed of the disc, positive driving [rad/s].
 
         Raises:
-            LimitExceeded: The speed is beyond the drive's limit.
+            LimitExceeded: The magnitude of the speed is above the rig's limit, or NaN.
         """
         ...
 
     def disarm(self) -> None:
-        """Command standstill and de-energise; does not raise for a disconnected drive."""
+        """Command standstill and de-energise; errors of sending are suppressed."""
         ...
 
 
@@ -147,8 +148,8 @@ class Limits:
         normal_force: Normal force [N].
         traction_force: Traction force [N].
         lateral_force: Force on the load cell's third axis; None where not limited [N].
-        torque: Torque on any axis of the load cell; None where not limited [N m].
-        temperature_celsius: Of a drive or its motor; None where not limited [degC].
+        torque: Torque about any axis of the load cell; None where not limited [N m].
+        temperature_celsius: Temperature of a drive or its motor; None where not limited [degC].
     """
 
     speed: float
@@ -162,16 +163,16 @@ class Limits:
 def iterate(
     stream: Stream, *, duration: float, clock: Clock = SYSTEM_CLOCK, wait: float = 0.1
 ) -> Iterator[Sample]:
-    """Yield a stream's samples one by one for a duration, also where the stream is silent.
+    """Yield a stream's samples one by one as they arrive, and end after `duration`.
 
     Args:
         stream: An open stream.
-        duration: How long to read [s].
+        duration: Time for which the stream is read, also where it sends nothing [s].
         clock: Host time.
-        wait: Longest single wait [s].
+        wait: Timeout of a single read [s].
 
     Yields:
-        The samples.
+        The samples, in order.
     """
     end = clock.now() + duration
     while (left := end - clock.now()) > 0:

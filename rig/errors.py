@@ -9,18 +9,18 @@ class RigError(Exception):
 
 
 class LinkError(RigError, ConnectionError):
-    """A port or bus cannot be opened, or is disconnected for good."""
+    """A port, bus or network device cannot be opened, or does not answer."""
 
 
 class InUse(LinkError):
-    """Another program uses a device or a folder that has one user at a time."""
+    """Another program has the lock of a device or folder that one program at a time can use."""
 
 
 class PartFailed(RigError, RuntimeError):
     """A part of a running experiment failed: a thread, the keyboard, the control socket.
 
     Attributes:
-        part: Its name.
+        part: Name of the part.
     """
 
     def __init__(self, part: str, error: BaseException) -> None:
@@ -32,7 +32,7 @@ class RigTimeout(RigError, TimeoutError):
     """A device did not respond, or did not do what was commanded, within its timeout.
 
     Attributes:
-        waited: Time waited [s].
+        waited: Time for which the device was waited for [s].
     """
 
     def __init__(self, problem: str, *, waited: float) -> None:
@@ -45,14 +45,14 @@ class ProtocolError(RigError, ValueError):
 
 
 class DeviceMismatch(RigError, ValueError):
-    """The device that answers at the port is not the one of the profile."""
+    """The device at the port sends packets of another kind or length than the profile describes."""
 
 
 class DeviceFault(RigError, RuntimeError):
-    """A device reports a fault of its own.
+    """A device reports a fault, or does not do what was commanded.
 
     Attributes:
-        status: Error or status word as the device sent it.
+        status: Error or status word as the device sent it; for a leg the channel, from 0.
     """
 
     def __init__(self, problem: str, *, status: int) -> None:
@@ -65,8 +65,8 @@ class LimitExceeded(RigError, ValueError):
 
     Attributes:
         value: Value that was found.
-        limit: Limit that it broke.
-        unit: Unit of both.
+        limit: Largest magnitude allowed.
+        unit: Unit of the value and the limit.
 
     >>> str(LimitExceeded("speed of the leg disc", value=31.0, limit=25.0, unit="rad/s"))
     'speed of the leg disc is 31 rad/s; its limit is 25 rad/s'
@@ -126,8 +126,8 @@ class ProfileError(RigError, ValueError):
 
     Attributes:
         problem: What was found, what was expected, what to try.
-        file: The profile.
-        key: Dotted key inside it.
+        file: Name or path of the profile; None where there is no file.
+        key: Dotted key inside the file; None for the whole file.
 
     >>> str(ProfileError("expected a number", file="mine.toml", key="legs.sign"))
     'mine.toml, legs.sign: expected a number'

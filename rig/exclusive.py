@@ -29,24 +29,24 @@ _PSEUDO_TERMINALS = "/dev/pts"
 
 @dataclass
 class _Held:
-    """A lock that this process holds."""
+    """A lock that this process holds: handle of the open lock file, and number of its holders."""
 
     handle: int
     count: int = 1
 
 
 _HELD: Final[dict[str, _Held]] = {}
-"""The locks that this process holds, by their file."""
+"""The locks that this process holds, by the path of their file."""
 _HELD_GUARD: Final = threading.Lock()
 
 
 class Exclusive:
-    """Lock of a device or folder; has `take` and `release`, and is a context manager.
+    """Lock file of a device or folder, held from `take` to `release`; a context manager.
 
     Args:
         file: The lock file; created when missing, and never removed.
-        what: Name of the locked thing, for the message.
-        shared: Whether other parts of this process can take it as well.
+        what: Name of the device or folder, for the message.
+        shared: Whether other `Exclusive` of this process can take the same lock as well.
     """
 
     def __init__(self, file: Path, *, what: str, shared: bool = False) -> None:
@@ -56,11 +56,12 @@ class Exclusive:
         self._taken = False
 
     def take(self) -> None:
-        """Acquire the lock without waiting; a second call has no effect.
+        """Acquire the lock without waiting; a second call, or one on Windows, has no effect.
 
         Raises:
-            InUse: Another process holds it; the message says which.
-            OSError: The file cannot be created.
+            InUse: Another process holds the lock, or this one does and the lock is not shared; the
+                message describes the process.
+            OSError: The file cannot be created or opened.
         """
         if self._taken or fcntl is None:
             return
@@ -73,7 +74,7 @@ class Exclusive:
         self._taken = True
 
     def release(self) -> None:
-        """Release the lock; a second call has no effect."""
+        """Release the lock; has no effect where it is not held."""
         if not self._taken:
             return
         self._taken = False
@@ -106,10 +107,10 @@ class Exclusive:
 
 
 def try_lock(handle: int) -> bool:
-    """Lock an open file without waiting; return whether this process has the lock.
+    """Lock an open file, given by its handle, without waiting; return whether it is now locked.
 
-    Also returns True where the system or the file system has no locks. Closing the file releases
-    the lock.
+    False where another open handle has the lock. Also True, without a lock, where the system or
+    the file system has none. Closing the file releases the lock.
     """
     if fcntl is None:
         return True
@@ -123,7 +124,7 @@ def try_lock(handle: int) -> bool:
 
 
 def device_lock(name: str) -> Exclusive:
-    """Return the lock of a device.
+    """Return the lock of a device, not yet taken and shared within this process.
 
     Args:
         name: A path, followed through links so that all its names are one device, or a name that
@@ -155,7 +156,7 @@ def _device_path(path: str) -> str:
 
 
 def _lock_folder() -> Path:
-    """Return the folder of device locks, which all users of the machine share."""
+    """Return the folder of device locks, created for all users of the machine where missing."""
     folder = Path(tempfile.gettempdir()) / "zebro-lab-locks"
     try:
         folder.mkdir()
@@ -166,7 +167,7 @@ def _lock_folder() -> Path:
 
 
 def _open(file: Path) -> int:
-    """Open a lock file, without O_CREAT where it exists.
+    """Open a lock file, without O_CREAT where it exists, and return its handle.
 
     Linux refuses O_CREAT for another user's file in world-writable folders
     (`fs.protected_regular`).
@@ -192,6 +193,6 @@ def _owner() -> str:
 
 
 def _readable(content: bytes) -> str:
-    """Return an owner's description as one printable line."""
+    """Decode an owner's description; other than printable characters become `?`, the end is cut."""
     text = content.decode("utf-8", "replace")
     return "".join(character if character.isprintable() else "?" for character in text)[:LONGEST]

@@ -15,7 +15,7 @@ def nearest(name: str, known: Collection[str]) -> str:
         known: All known names.
 
     Returns:
-        Text with the most similar name, if any, and the known ones.
+        Text with the most similar name, if any, and up to 15 of the known ones in their order.
 
     >>> nearest("normal_froce", ["normal_force", "t"])
     "did you mean 'normal_force'? known: 'normal_force', 't'"

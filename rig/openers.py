@@ -17,22 +17,24 @@ from rig.twins import simulated_imu, simulated_legs
 from rig.zebro.profile import load_leg_profile
 
 SIMULATED: Final = "sim"
-"""Name of a simulated twin, in place of a port or of PROFILE@PORT."""
+"""Name of a simulated twin, instead of a port or of PROFILE@PORT."""
 REPLAY: Final = "replay:"
-"""Prefix of an address that names a recorded run in place of a device."""
+"""Prefix of an address that names a recorded run instead of a device."""
 LEGS_PROFILE: Final = "zebro-100-serial"
+"""Profile of the robot's legs at the address `sim`."""
 IMU_PROFILE: Final = "imu-quaternion-serial"
+"""Profile of the inertial measurement unit at the address `sim`."""
 
 
 def resolve(address: str, *, default: str) -> tuple[str, str]:
-    """Split an address into profile and port; `sim` alone is the default profile's twin.
+    """Split an address into the profile's name and the port; `sim` alone gives (default, `sim`).
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        default: Profile of `sim` alone.
+        default: Name of the profile for `sim` alone.
 
     Returns:
-        Profile and port.
+        Name or path of the profile, and port; the port `sim` means a simulated twin.
 
     Raises:
         ProfileError: Profile or port is missing, or the address is a replay, which has no port.
@@ -50,18 +52,19 @@ def resolve(address: str, *, default: str) -> tuple[str, str]:
 
 @contextmanager
 def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> Iterator[Any]:
-    """Provide the driver of the robot's legs at an address.
+    """Provide the driver of the robot's legs at an address; the port `sim` serves a twin meanwhile.
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        gait: Gait of a twin until it is commanded.
+        gait: Gait that a twin walks until it is commanded; a real robot does not use it.
         rng: Random generator of a twin.
 
     Yields:
         A `Stream` that also takes `LegCommands`, not yet entered.
 
     Raises:
-        ProfileError: The address or the profile is invalid.
+        ProfileError: The address or the profile is invalid, or the address is a replay.
+        LinkError: The system provides no port for a twin.
     """
     name, port = resolve(address, default=LEGS_PROFILE)
     if port == SIMULATED:
@@ -73,7 +76,7 @@ def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> It
 
 @contextmanager
 def imu_at(address: str, *, name: str, rng: np.random.Generator) -> Iterator[ImuStream]:
-    """Provide the driver of the inertial measurement unit at an address.
+    """Provide the driver of an inertial measurement unit; the port `sim` serves a twin meanwhile.
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
@@ -84,7 +87,8 @@ def imu_at(address: str, *, name: str, rng: np.random.Generator) -> Iterator[Imu
         The driver, not yet entered.
 
     Raises:
-        ProfileError: The address or the profile is invalid.
+        ProfileError: The address or the profile is invalid, or the address is a replay.
+        LinkError: The system provides no port for a twin.
     """
     profile, port = resolve(address, default=IMU_PROFILE)
     if port == SIMULATED:

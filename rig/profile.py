@@ -12,6 +12,7 @@ from rig.toml_table import TomlTable
 from rig.toml_text import MOST_BYTES, parse_toml
 
 SCHEMA: Final = 1
+"""Version of the layout of profiles; a file with another one is an error."""
 
 
 def open_profile(name: str, *, device: str) -> TomlTable:
@@ -25,7 +26,7 @@ def open_profile(name: str, *, device: str) -> TomlTable:
         The whole file as a table; `schema` and `device` are already read.
 
     Raises:
-        ProfileError: There is no such profile, it is not TOML, or it is of another device.
+        ProfileError: There is no such profile, or it is not TOML or of another schema or device.
     """
     source = _find(name)
     try:
@@ -48,21 +49,21 @@ def shipped_profiles() -> tuple[str, ...]:
 
 
 def shipped_file(name: str) -> Traversable:
-    """Return a file that comes with the profiles, such as a DBC."""
+    """Return the location of a file among the shipped profiles, such as a DBC; it may not exist."""
     return resources.files("rig").joinpath("profiles", name)
 
 
 def split_address(address: str) -> tuple[str, str]:
-    """Split `PROFILE@PORT`.
+    """Split `PROFILE@PORT` at the first `@`.
 
     Args:
         address: Address as typed by a person; the port may hold any character, `@` included.
 
     Returns:
-        Profile and port.
+        Name or path of the profile, and port.
 
     Raises:
-        ProfileError: One of them is missing.
+        ProfileError: Profile or port is empty, or there is no `@`.
 
     >>> split_address("zebro-100-serial@socket://127.0.0.1:7001")
     ('zebro-100-serial', 'socket://127.0.0.1:7001')

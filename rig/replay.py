@@ -11,19 +11,19 @@ from rig.errors import ProtocolError
 
 
 class ReplayStream:
-    """Stream of recorded samples at their recorded pace; satisfies `rig.device.Stream`.
+    """Stream of recorded samples at their recorded pace; implements the protocol `Stream`.
 
-    Host times are shifted so that the first sample arrives when the stream is opened; device times,
-    sequence numbers and counts are as recorded. Samples lost in the recording count as lost again.
+    Host times are shifted so that the first sample arrives when the stream is entered; device
+    times, sequence numbers and counts are as recorded. Gaps in the sequence numbers count as lost.
 
     Args:
-        samples: The recording, in order.
+        samples: The recorded samples, in order of host time.
         name: Name of the stream.
         source: Where the samples come from, such as `replay:RUN`.
         clock: Host time.
 
     Raises:
-        ProtocolError: The host times decrease.
+        ProtocolError: A sample's host time is below the previous sample's.
     """
 
     def __init__(
@@ -55,11 +55,14 @@ class ReplayStream:
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far."""
+        """Number of samples returned so far, and of those lost; the other counters are 0."""
         return Counters(received=self._next, lost=self._lost)
 
     def read(self, timeout: float) -> list[Sample]:
-        """Return the samples that are due, waiting at most `timeout` for the first [s]."""
+        """Return the samples that are due, waiting at most `timeout` for the first [s].
+
+        Before the stream is entered, and after the last sample, there are none.
+        """
         if self._began is None or self.finished:
             self._clock.sleep(timeout)
             return []

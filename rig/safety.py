@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Limit checks before motion and on every sample, and requests to stop. Not a safety device.
+"""Limit checks before motion and on every sample, and stop requests; not a safety device.
 
 If the host fails, only the watchdogs inside the drives and a hardware emergency stop stop the rig.
 """
@@ -27,7 +27,7 @@ def require_within(value: float, limit: float, *, quantity: str, unit: str) -> N
         value: Set-point.
         limit: Largest magnitude allowed.
         quantity: Name of the quantity, for the message.
-        unit: Unit of both.
+        unit: Unit of value and limit, for the message.
 
     Raises:
         LimitExceeded: The magnitude is above the limit, or NaN.
@@ -56,10 +56,11 @@ class SampleGuard:
         self._latest: deque[bool] = deque(maxlen=2 * in_a_row - 1)
 
     def check(self, value: float) -> None:
-        """Check the next value.
+        """Check the next value; NaN and infinity count as beyond the limit.
 
         Raises:
-            LimitExceeded: `in_a_row` of the latest values are beyond the limit.
+            LimitExceeded: The value and `in_a_row` - 1 of the 2 in_a_row - 2 before it are beyond
+                the limit.
         """
         beyond = not (math.isfinite(value) and abs(value) <= self._limit)
         self._latest.append(beyond)
@@ -67,11 +68,10 @@ class SampleGuard:
             raise LimitExceeded(self._quantity, value=value, limit=self._limit, unit=self._unit)
 
     def check_all(self, values: NDArray[np.float64]) -> None:
-        """Check the next values in order, shape (n,); at 7 kHz one by one would be too slow.
+        """Check the next values, shape (n,), like `check`; faster where all are within the limit.
 
         Raises:
-            LimitExceeded: `in_a_row` of the latest values, earlier calls included, are beyond the
-                limit.
+            LimitExceeded: As `check`; the values of earlier calls count as well.
         """
         within = np.abs(values) <= self._limit  # NaN is not
         if within.all():
@@ -82,7 +82,7 @@ class SampleGuard:
 
 
 class FollowingGuard:
-    """Limit check of a disc's speed error; a short error is tolerated as acceleration.
+    """Limit check of a disc's speed error, speed less set-point; a short error is tolerated.
 
     Args:
         limit: Largest speed error allowed [rad/s].
@@ -103,10 +103,11 @@ class FollowingGuard:
             speed: Measured speed [rad/s].
             wanted: Commanded speed [rad/s].
             now: Host time [s].
-            narrower: Smaller limit that holds at present [rad/s].
+            narrower: Further limit of the error; the smaller of the two holds [rad/s].
 
         Raises:
-            LimitExceeded: The speed error was too large for too long, or the speed is NaN.
+            LimitExceeded: In every check for `longest` or more, the speed error was beyond the
+                limit or NaN.
         """
         departure, limit = speed - wanted, min(self._limit, narrower)
         if abs(departure) <= limit:
@@ -119,7 +120,7 @@ class FollowingGuard:
 
 
 class SilenceGuard:
-    """Timeout check of a stream that sends no samples.
+    """Check that a stream does not stay without samples for longer than a limit.
 
     Args:
         name: Name of the stream, for the message.
@@ -133,14 +134,14 @@ class SilenceGuard:
         self._last_arrival = now
 
     def check(self, samples: Sequence[object], *, now: float) -> None:
-        """Check the time since the last sample.
+        """Check the time since samples last arrived; a read with samples always passes.
 
         Args:
             samples: Samples of the latest read, possibly none.
             now: Host time [s].
 
         Raises:
-            RigTimeout: No sample has arrived for longer than the limit.
+            RigTimeout: The read is empty, and no sample has arrived for longer than the limit.
         """
         if samples:
             self._last_arrival = now
@@ -165,7 +166,7 @@ class Stop:
 
     Attributes:
         category: How to stop.
-        reason: Why, for the log.
+        reason: Why a stop was requested, for the log.
     """
 
     category: StopCategory
@@ -176,7 +177,7 @@ class StopRequested(RigError):
     """A stop was requested; raised to leave the run so that it is carried out.
 
     Attributes:
-        stop: Category and reason.
+        stop: The request, with category and reason.
     """
 
     def __init__(self, stop: Stop) -> None:
@@ -199,23 +200,23 @@ class StopSwitch:
 
         Args:
             category: How to stop.
-            reason: Why, for the log.
+            reason: Why the stop is requested, for the log.
         """
         self._requests.append(Stop(category, reason))
 
     @property
     def pending(self) -> Stop | None:
-        """Hardest stop requested, the first of its category; None where there is none."""
+        """Hardest stop requested, the earliest of its category; None without any request."""
         return max(self._requests, key=lambda stop: stop.category, default=None)
 
     @property
     def latched(self) -> bool:
-        """Return whether an emergency stop is latched."""
+        """Return whether an emergency stop has been requested and not been reset since."""
         stop = self.pending
         return stop is not None and stop.category is StopCategory.EMERGENCY
 
     def release(self) -> None:
-        """Clear soft stops; safe and emergency stops stay."""
+        """Clear requests of soft stops; safe and emergency stops stay."""
         self._requests[:] = [s for s in self._requests if s.category is not StopCategory.SOFT]
 
     def reset(self) -> None:

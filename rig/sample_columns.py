@@ -21,8 +21,8 @@ class SampleColumns(Sequence[Sample]):
         device_time: Time by the device's clock, NaN where it sends none, shape (n,) [s].
         sequence: Sequence number of each sample, -1 where it has none, shape (n,).
         status: Status words, shape (n,).
-        channel: Index of the device among several on the link, shape (n,).
-        counts: Raw values, shape (n, width).
+        channel: Index of the device among several on the link, 0 for a single one, shape (n,).
+        counts: Raw values of each sample, shape (n, counts of a sample).
     """
 
     host_time: NDArray[np.float64]
@@ -34,7 +34,7 @@ class SampleColumns(Sequence[Sample]):
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
-        """Concatenate samples of one stream; there must be at least one part."""
+        """Concatenate parts of one stream in the given order; there must be at least one part."""
         columns = zip(*(vars(part).values() for part in parts), strict=True)
         return parts[0] if len(parts) == 1 else cls(*map(np.concatenate, columns))
 
@@ -53,7 +53,7 @@ class SampleColumns(Sequence[Sample]):
     @overload
     def __getitem__(self, index: slice) -> Self: ...
     def __getitem__(self, index: int | slice) -> "Sample | Self":
-        """Return one sample, or some of them as columns."""
+        """Return one sample for an index, or the columns of the samples in a slice."""
         if isinstance(index, slice):
             return type(self)(*(column[index] for column in vars(self).values()))
         return _sample(*(column[index].tolist() for column in vars(self).values()))
@@ -74,8 +74,8 @@ def as_columns(samples: Sequence[Sample], dtype: DTypeLike = float) -> SampleCol
         dtype: Type of the counts.
 
     Raises:
-        ValueError: The samples differ in width.
-        OverflowError: A count does not fit the type.
+        ValueError: The samples differ in their number of counts.
+        OverflowError: A count does not fit into `dtype`.
     """
     if isinstance(samples, SampleColumns):
         return samples

@@ -27,7 +27,7 @@ class SampleQueue:
         self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> bool:
-        """Append samples, all or none; return whether there was room."""
+        """Append all samples, or none where `limit` would be exceeded; return whether they were."""
         with self._lock:
             if self._count + len(samples) > self._limit:
                 self.dropped += len(samples)
@@ -37,7 +37,7 @@ class SampleQueue:
             return True
 
     def take(self) -> Sequence[Sample]:
-        """Remove and return all queued samples, in order."""
+        """Remove and return all queued samples, in order; as columns if all were columns."""
         with self._lock:
             taken, self._waiting, self._count = self._waiting, [], 0
         columns = [samples for samples in taken if isinstance(samples, SampleColumns)]
@@ -63,7 +63,7 @@ class LossyTap:
         self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> None:
-        """Append samples; the oldest reads are discarded where there are too many."""
+        """Append the samples of a read; discard the oldest reads that `take` would not return."""
         with self._lock:
             self._newest.append(samples)
             self._count += len(samples)
@@ -71,7 +71,7 @@ class LossyTap:
                 self._count -= len(self._newest.popleft())
 
     def take(self) -> list[Sample]:
-        """Remove and return the newest samples, in order."""
+        """Remove all samples and return the newest of them, at most `limit`, in order."""
         with self._lock:
             reads, self._newest, self._count = self._newest, deque(), 0
         return [sample for samples in reads for sample in samples][-self._limit :]

@@ -13,13 +13,14 @@ from rig.errors import FrozenReading, StaleReading, UnreliableRecords
 Values: TypeAlias = NDArray[np.float64]
 
 TURNING: Final = 1.0
-"""Set-point above which a disc's sensors must change, and set-point change that they must show
-[rad/s]."""
+"""Set-point above which a disc's sensors are checked, and change of the set-point above which the
+speed must change too [rad/s]."""
 MIN_REPEATS: Final = 8
 """Least number of equal consecutive readings of a frozen sensor."""
 LARGE: Final = 3.0
 """Factor on a sensor's smallest step above which a change is more than its rounding [-]."""
 SCATTER_BATCHES: Final = 9
+"""Number of latest batches with any change, more than half of which need a large change."""
 SCATTER_TIME: Final = 1.0
 """Time over which the fraction of batches with a large change is averaged [s]."""
 SINGLE_PRECISION: Final = 2.0**-22
@@ -35,7 +36,7 @@ MIN_RECORDS: Final = 20
 
 
 class AgeGuard:
-    """Check of the age of readings, which may have waited in a buffer before they were read.
+    """Check that no reading is older than a limit, for example because it waited in a buffer.
 
     Args:
         name: Name of the stream, for the message.
@@ -47,7 +48,7 @@ class AgeGuard:
         self._limit = limit
 
     def check(self, taken: NDArray[np.float64], *, now: float) -> None:
-        """Check the age of the readings of one batch.
+        """Check the age of the oldest reading of one batch; an empty batch passes.
 
         Args:
             taken: Host time at which each reading was taken, shape (n,) [s].
@@ -90,15 +91,16 @@ class FrozenGuard:
         self._scattered = False
 
     def check(self, values: Values, *, wanted: float, now: float) -> None:
-        """Check the values of a batch, in order.
+        """Check the values of a batch; at set-points of at most `TURNING` start anew.
 
         Args:
-            values: Values of the sensor's channels, shape (n, channels).
-            wanted: Set-point of the disc that makes the value change [rad/s].
+            values: Values in the sensor's unit, in order of time, shape (n, channels).
+            wanted: Set-point of the disc that makes the values change [rad/s].
             now: Host time [s].
 
         Raises:
-            FrozenReading: None of the channels has changed for longer than the limit.
+            FrozenReading: No channel has changed for longer than the limit, over at least
+                `MIN_REPEATS` readings, though one of them must have changed.
         """
         if abs(wanted) <= TURNING:
             self._last = None
@@ -115,7 +117,7 @@ class FrozenGuard:
                 raise FrozenReading(self._what, value=now - self._changed, limit=self._limit)
 
     def _learn(self, values: Values, last: Values, now: float) -> None:
-        """Update the resolution and scatter of the channels at a steady set-point."""
+        """Update each channel's smallest step, and whether any scatters beyond its rounding."""
         steps = np.abs(np.diff(values, axis=0, prepend=last[None]))
         if not len(self._smallest):
             self._smallest, self._large_fraction = np.full(len(last), np.inf), np.zeros(len(last))
@@ -131,10 +133,10 @@ class FrozenGuard:
 
 
 class RecordGuard:
-    """Check for a stream whose record numbers restart repeatedly or that mostly gets lost.
+    """Check for a stream whose record numbers restart repeatedly, or of which most records fail.
 
-    Random record numbers count as restarts. A single restart is tolerated, and so are losses of up
-    to `MAX_BAD_FRACTION`.
+    Random record numbers count as restarts. One restart within `RESTART_WINDOW` is tolerated, and
+    so is a fraction of missing and rejected records of up to `MAX_BAD_FRACTION`.
 
     Args:
         name: Name of the stream, for the message.
@@ -155,8 +157,8 @@ class RecordGuard:
             now: Host time [s].
 
         Raises:
-            UnreliableRecords: The record numbers have restarted twice within `RESTART_WINDOW`, or
-                most records are missing or refused.
+            UnreliableRecords: The record numbers restarted twice within `RESTART_WINDOW`, or more
+                than `MAX_BAD_FRACTION` of the last `BAD_FRACTION_WINDOW` is missing or discarded.
         """
         if self._base is None:
             self._base, self._since, self._restarted = counters, now, counters.restarted

@@ -24,8 +24,8 @@ class TomlTable:
     key is missing without a default, or its value has the wrong type or range.
 
     Args:
-        entries: The table.
-        file: File that holds it, for messages.
+        entries: Keys and values of the table, as parsed; copied.
+        file: File that holds the table, for messages.
         path: Dotted name of the table inside the file; empty for the whole file.
     """
 
@@ -44,7 +44,7 @@ class TomlTable:
 
     @property
     def empty(self) -> bool:
-        """Return whether no key is left to read."""
+        """Return whether the table has no key that has not been read yet."""
         return not self._entries
 
     @property
@@ -53,7 +53,7 @@ class TomlTable:
         return tuple(self._entries)
 
     def fault(self, problem: str, key: str | None = None) -> Exception:
-        """Return an error that names the file and the key.
+        """Return a `ProfileError` that names the file and the key; does not raise.
 
         Args:
             problem: What was found and what was expected.
@@ -62,19 +62,19 @@ class TomlTable:
         return ProfileError(problem, file=self.file, key=self.dotted(key))
 
     def dotted(self, key: str | None) -> str | None:
-        """Return the dotted name of a key in the file; None for the whole file."""
+        """Return the dotted name of a key, or for None of this table; None for the whole file."""
         return ".".join(part for part in (self.path, key) if part) or None
 
     def table(self, key: str) -> Self:
-        """Read a nested table; an absent one is empty."""
+        """Read a nested table; an absent one gives an empty table."""
         return self.as_table(key, self.value(key, {}))
 
     def as_table(self, key: str, value: object, *, expected: str = "a table") -> Self:
-        """Return a value that was read from a key as a table.
+        """Wrap a value of this table as a nested table, which `finish` then checks as well.
 
         Args:
-            key: Key of the value.
-            value: The value.
+            key: Key that the value was read from.
+            value: The value; anything but a dictionary is an error.
             expected: Expected kind of value, for the message.
         """
         if not isinstance(value, dict):
@@ -110,7 +110,7 @@ class TomlTable:
         return value
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """Read a list of strings, or one string; an absent one is empty."""
+        """Read a list of strings, or one string as a list of one; an absent key gives none."""
         value = self.value(key, [])
         texts = [value] if isinstance(value, str) else value
         if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
@@ -120,7 +120,7 @@ class TomlTable:
     def choice(
         self, key: str, choices: tuple[Choice, ...], default: Choice | None = None
     ) -> Choice:
-        """Read one of several allowed strings.
+        """Read a string that must be one of several allowed ones.
 
         Args:
             key: Name of the key.
@@ -134,7 +134,7 @@ class TomlTable:
         raise self.fault(f"found {value!r}; expected one of {', '.join(choices)}", key)
 
     def names(self, key: str, known: tuple[str, ...]) -> tuple[str, ...]:
-        """Read a list of known names without duplicates.
+        """Read a list of known names, and drop duplicates.
 
         Args:
             key: Name of the key; an absent one gives an empty list.
@@ -172,7 +172,7 @@ class TomlTable:
         return value
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Read a finite number.
+        """Read a finite number; a boolean is an error.
 
         Args:
             key: Name of the key.
@@ -181,7 +181,7 @@ class TomlTable:
         return self._finite(self.value(key, default), key)
 
     def positive(self, key: str, default: float | None = None) -> float:
-        """Read a number above 0.
+        """Read a finite number above 0.
 
         Args:
             key: Name of the key.
@@ -193,11 +193,11 @@ class TomlTable:
         return value
 
     def positive_or_none(self, key: str) -> float | None:
-        """Read a number above 0; None where the key is absent."""
+        """Read a finite number above 0; None where the key is absent."""
         return self.positive(key) if key in self else None
 
     def numbers(self, key: str, count: int) -> tuple[float, ...]:
-        """Read a list of finite numbers.
+        """Read a required list of finite numbers.
 
         Args:
             key: Name of the key.
@@ -206,7 +206,7 @@ class TomlTable:
         return tuple(self._finite(item, key) for item in self._list(key, count))
 
     def wholes(self, key: str, *, most: int) -> tuple[int, ...]:
-        """Read a list of integers from 0.
+        """Read a required list of integers from 0, of any length.
 
         Args:
             key: Name of the key.
@@ -221,7 +221,7 @@ class TomlTable:
         return tuple(items)
 
     def signs(self, key: str, count: int) -> tuple[int, ...]:
-        """Read a list of signs, each 1 or -1.
+        """Read a required list of signs, each 1 or -1.
 
         Args:
             key: Name of the key.
@@ -233,14 +233,17 @@ class TomlTable:
         return tuple(int(value) for value in values)
 
     def sign(self, key: str) -> int:
-        """Read a sign, 1 or -1; an absent one is 1."""
+        """Read a sign, 1 or -1; an absent key gives 1."""
         value = self.value(key, 1)
         if isinstance(value, bool) or value not in (-1, 1):
             raise self.fault(f"found {value!r}; expected 1 or -1", key)
         return int(value)
 
     def series(self, key: str) -> tuple[float, ...]:
-        """Read a list of numbers, or equidistant ones as a table of `first`, `last`, `count`."""
+        """Read 1 to `LONGEST` numbers: a list, or a table of `first`, `last` and `count`.
+
+        The table means `count` (at least 2) equidistant numbers, first and last included.
+        """
         value = self.value(key)
         if isinstance(value, dict):
             return self._even(self.as_table(key, value))
@@ -252,10 +255,11 @@ class TomlTable:
         return tuple(self._finite(item, key) for item in value)
 
     def finish(self) -> None:
-        """Check that no unknown key is left, here or in a nested table that was read.
+        """Check that every key was read, here and in the nested tables that were read.
 
         Raises:
-            ProfileError: There is an unknown key; the message names the nearest known one.
+            ProfileError: A key was not read; the message names the nearest of the keys that were
+                looked up.
         """
         for key in self._entries:
             raise self.fault(f"unknown key; {nearest(key, self._known)}", key)

@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 MOST_BYTES: Final = 1 << 20
-"""Largest TOML file that is parsed, which takes up to 3 s; a calibration of 8000 runs has it."""
+"""Largest size of TOML that is parsed, which takes up to 3 s; a calibration of 8000 runs has
+this size [bytes]."""
 DEEPEST: Final = 32
 """Largest depth of nested tables and lists, and largest number of parts of a dotted key."""
 
@@ -29,8 +30,9 @@ def parse_toml(data: bytes) -> dict[str, Any]:
         data: Content of a file, at most `MOST_BYTES`, in UTF-8 with or without a byte order mark.
 
     Raises:
-        ValueError: The content is larger, not UTF-8, not TOML, nested too deeply, or holds an
-            integer beyond 64 bits; the message is one line without the file's name.
+        ValueError: The content is larger than `MOST_BYTES`, not UTF-8, not TOML, nested more than
+            `DEEPEST` deep, has a key of more than `DEEPEST` dotted parts, or holds an integer
+            beyond 64 bits; the message does not name the file.
 
     >>> parse_toml(b"mass = 2.17")
     {'mass': 2.17}
@@ -55,8 +57,8 @@ def require_bounded(document: object) -> None:
         document: Tables and lists of plain values, as parsed from TOML or JSON.
 
     Raises:
-        ValueError: It is nested more than `DEEPEST` deep, an integer has more than 64 bits, or a
-            string holds an unpaired surrogate, which cannot be encoded.
+        ValueError: The document is nested more than `DEEPEST` deep, an integer has more than 64
+            bits, or a string or key holds an unpaired surrogate, which cannot be encoded.
     """
     level: list[object] = [document]
     for _ in range(DEEPEST + 1):
@@ -70,7 +72,7 @@ def require_bounded(document: object) -> None:
 
 
 def _checked_parts(node: object) -> list[object]:
-    """Check the plain values of a table or list, and return the tables and lists in it."""
+    """Check keys and plain values of a table or list; return the tables and lists in it."""
     if isinstance(node, Mapping):
         _require_plain(*node)
         values = list(node.values())

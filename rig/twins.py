@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Simulated devices in real time behind the real drivers, which `sim` in place of a port selects.
+"""Simulated devices in real time behind the real drivers, which `sim` instead of a port selects.
 
 Each context manager serves a twin and yields its driver, not yet entered, whose `source` says that
 it is simulated. To let other programs reach a twin, serve a byte twin such as `robot_twin` with
@@ -45,6 +45,7 @@ from rig.zebro.simulated import CanRobot, DumpRobot, PacketRobot, PolledRobot
 from rig.zebro.simulated_legs import EXACT_ROBOT, RobotImperfections, SimulatedLegs
 
 BYTE_ROBOTS: Final = {"packet": PacketRobot, "dump": DumpRobot, "poll": PolledRobot}
+"""Simulated robot of each layout that a serial line carries."""
 _channels = itertools.count()
 
 
@@ -56,20 +57,20 @@ def robot_twin(
     faults: Faults = PERFECT_LINE,
     rng: np.random.Generator,
 ) -> ByteTwin:
-    """Return the byte twin of a robot on a serial link.
+    """Return a simulated robot on a serial line, as a byte twin that is not served yet.
 
     Args:
         profile: Counts, layout and rate of the robot.
-        reference: Gait that it walks.
-        imperfections: Its deviations from the gait.
+        reference: Gait that the robot walks until it is commanded.
+        imperfections: Deviations of the robot from the gait.
         faults: Transmission errors of the line.
-        rng: Random generator.
+        rng: Random generator of imperfections and transmission errors.
 
     Returns:
         The twin.
 
     Raises:
-        ProfileError: The profile's robot is on a CAN bus, not on a serial line.
+        ProfileError: The profile's layout is `can` or `table`, which no serial line carries.
     """
     if profile.layout not in BYTE_ROBOTS:
         raise ProfileError(
@@ -84,15 +85,15 @@ def robot_twin(
 def simulated_legs(
     profile: LegProfile, reference: LegReference, *, rng: np.random.Generator
 ) -> Iterator[Any]:
-    """Serve a simulated robot of any layout and yield its driver.
+    """Serve a simulated robot at a virtual CAN bus or a port, and yield its driver.
 
     Args:
-        profile: Counts, layout and rate of the robot.
-        reference: Gait that it walks.
+        profile: Counts, layout and rate of the robot; the layout `table` is a `ProfileError`.
+        reference: Gait that the robot walks until it is commanded.
         rng: Random generator.
 
     Yields:
-        A `Stream` that also takes `LegCommands`.
+        A `Stream` that also takes `LegCommands`, not yet entered.
     """
     if profile.layout == "can":
         channel = _new_channel()
@@ -112,15 +113,15 @@ def simulated_legs(
 def simulated_imu(
     profile: ImuProfile, *, rng: np.random.Generator, name: str = "imu"
 ) -> Iterator[ImuStream]:
-    """Serve a simulated inertial measurement unit and yield its driver.
+    """Serve a simulated inertial measurement unit at a port, and yield its driver.
 
     Args:
         profile: Scale of the counts, mounting and rate of the unit.
-        rng: Random generator.
+        rng: Random generator of transmission errors.
         name: Name of the stream.
 
     Yields:
-        The driver.
+        The driver, not yet entered.
     """
     twin = SimulatedImu(profile=profile, rng=rng)
     with PortServer(twin) as server:
@@ -137,13 +138,13 @@ def simulated_rig_devices(
     buffered: bool = False,
     rng: np.random.Generator,
 ) -> Iterator[RigDevices]:
-    """Serve a simulated slip rig and yield its drivers.
+    """Serve a simulated slip rig in real time and yield its drivers.
 
     Args:
-        profile: The rig's profile.
-        rig: The simulated rig; it runs its own sweep until a drive is commanded.
-        watchdog: Silence after which drives or board stop the discs [s].
-        buffered: Let the load cell send many records per packet, see `NetFtCell`.
+        profile: Profile of the rig; decides between a board, and drives with a load cell.
+        rig: Simulated discs and contact; they run their own sweep until a drive is commanded.
+        watchdog: Time without a command after which drives or board stop the discs [s].
+        buffered: Let the load cell send many records per datagram, see `NetFtCell`.
         rng: Random generator of the transmission errors.
 
     Yields:
@@ -177,7 +178,7 @@ def _served_on_bus(
     watchdog: float,
     rng: np.random.Generator,
 ) -> Iterator[tuple[CanLink, UdpLink]]:
-    """Serve simulated drives and load cell; yield the links to them."""
+    """Serve drives on a virtual bus and a load cell at a UDP port; yield the links to them."""
     channel = _new_channel()
     with (
         can.Bus(interface="virtual", channel=channel) as bus,

@@ -24,7 +24,7 @@ from rig.safety import StopCategory, StopRequested, require_within
 PERIOD: Final = 0.004
 """Polling period: waking up for each of 7,000 samples per second is several times slower [s]."""
 FAULT_CLEAR_TIME: Final = 0.5
-"""How long reports from before arming may still arrive [s]."""
+"""Time after arming in which a reported fault may be one from before arming [s]."""
 SPACE_CHECK_PERIOD: Final = 0.1
 """Interval between checks whether data can still be stored [s]."""
 
@@ -34,8 +34,8 @@ class Ramp:
     """Linear ramp of the set-points of both discs.
 
     Attributes:
-        start: Host time at which it begins [s].
-        duration: Duration of the ramp [s].
+        start: Host time at which the ramp begins [s].
+        duration: Duration of the ramp; 0 is a step [s].
         before: Speeds of leg and ground disc before the ramp [rad/s].
         after: Speeds of leg and ground disc after the ramp [rad/s].
     """
@@ -46,7 +46,10 @@ class Ramp:
     after: tuple[float, float]
 
     def at(self, now: float) -> tuple[float, float]:
-        """Compute the set-points at a time [rad/s]."""
+        """Interpolate the set-points of leg and ground disc [rad/s] at a host time `now` [s].
+
+        Before the ramp they are `before`, after it `after`.
+        """
         done = 1.0 if self.duration <= 0 else min(max((now - self.start) / self.duration, 0.0), 1.0)
         leg, ground = (b + done * (a - b) for b, a in zip(self.before, self.after, strict=True))
         return leg, ground
@@ -57,16 +60,16 @@ class GuardedAcquisition:
 
     Args:
         bench: The rig, entered.
-        limits: Limits of the guards.
+        limits: Limits of the plan, at which the guards trip.
         control: Mailbox with requests to stop.
-        sink: Receiver of notes; also asked whether data can still be stored.
+        sink: Receiver of notes, which also checks that data can still be stored.
         clock: Host time.
         period: Polling period [s].
 
     Attributes:
         reaction: Time from the arrival of a sample that tripped a guard until the stop was sent;
             None while no guard has tripped [s].
-        energised: Whether the drives have been energised and not been commanded to stop since.
+        energised: Whether the drives were energised by `arm`, without a call of `disarm` since.
     """
 
     def __init__(
@@ -98,7 +101,7 @@ class GuardedAcquisition:
 
     @property
     def wanted(self) -> tuple[float, float]:
-        """Set-points of leg and ground disc now [rad/s]."""
+        """Present set-points of leg and ground disc, interpolated on the latest ramp [rad/s]."""
         return self._ramp.at(self._clock.now())
 
     @property
@@ -107,10 +110,11 @@ class GuardedAcquisition:
         return self._clock.now() < self._ramp.start + self._ramp.duration
 
     def arm(self) -> None:
-        """Energise at standstill and start the silence guards.
+        """Energise at standstill, wait until no fault is reported, and start the silence guards.
 
         Raises:
-            RigError: A device does not respond or stays faulty.
+            RigError: A drive does not energise; or a fault is still reported after
+                `FAULT_CLEAR_TIME`, and both drives have been de-energised.
         """
         self._bench.read()  # discard what is in buffers
         self.energised = True
@@ -120,20 +124,23 @@ class GuardedAcquisition:
         self._guards.expect_samples(now=self._clock.now())
 
     def disarm(self) -> None:
-        """De-energise both drives at once; never fails."""
+        """Command both drives to stand and de-energise at once; errors of sending are suppressed.
+
+        A board only gets speed 0, because it has no command to de-energise.
+        """
         self._bench.disarm()
         self.energised = False
 
     def start_ramp(self, leg: float, slip: float | None) -> None:
-        """Start a ramp of the set-points, within the acceleration limit.
+        """Start a linear ramp from the present set-points, at the plan's acceleration.
 
         Args:
-            leg: Speed of the leg disc [rad/s].
-            slip: Slip ratio, which sets the speed of the ground disc; None for standstill of both
-                discs [-].
+            leg: Final speed of the leg disc [rad/s].
+            slip: Final slip ratio, which sets the speed of the ground disc; None stops the ground
+                disc [-].
 
         Raises:
-            LimitExceeded: A speed is beyond its limit.
+            LimitExceeded: A final speed is beyond the smaller of the plan's and the rig's limit.
         """
         profile = self._bench.profile
         ground = 0.0 if slip is None else ground_speed(
@@ -149,14 +156,15 @@ class GuardedAcquisition:
         self._standing = False
 
     def poll(self) -> Batch:
-        """Wait one period, command the set-points, read the samples and check them.
+        """Wait for the next period, read and check the samples, then command the set-points.
 
         Returns:
             The samples that have arrived.
 
         Raises:
-            RigError: A guard tripped; the drives are already commanded to de-energise.
-            StopRequested: A stop was requested.
+            RigError: A guard tripped or a device failed; the drives have been de-energised.
+            StopRequested: A stop is pending that is not ignored; only an emergency de-energises.
+            SinkFailed: Notes or data cannot be stored; the drives stay energised.
         """
         self._clock.sleep(min(max(self._poll_at - self._clock.now(), 0.0), self._period))
         self._poll_at = self._clock.now() + self._period  # a slow poll delays no other
@@ -179,15 +187,15 @@ class GuardedAcquisition:
         return batch
 
     def come_to_rest(self, longest: float) -> None:
-        """Ramp to standstill and verify it; only a harder stop than the present one interrupts.
+        """Ramp both discs to standstill and verify that they stand; they stay energised.
 
         Args:
             longest: Time after the ramp within which standstill must be verified [s].
 
         Raises:
-            NotAtRest: It was not verified; the drives are de-energised.
-            RigError: A guard tripped meanwhile.
-            StopRequested: A harder stop was requested.
+            NotAtRest: Standstill was not verified in time; the drives have been de-energised.
+            RigError: As `poll`.
+            StopRequested: A stop was requested that is not ignored, see `ignore_stops`.
         """
         self.start_ramp(0.0, None)
         self.until(lambda _: not self.ramping, float("inf"))
@@ -205,11 +213,11 @@ class GuardedAcquisition:
         """Poll the rig until a condition holds or a timeout expires.
 
         Args:
-            holds: Condition, called with every batch.
-            longest: Timeout [s].
+            holds: Condition, called with every batch; true ends the polling.
+            longest: Timeout; may be infinite [s].
 
         Returns:
-            Whether the condition held before the timeout.
+            Whether the condition held before the timeout. Raises as `poll`.
         """
         end = self._clock.now() + longest
         while self._clock.now() < end:
@@ -218,7 +226,9 @@ class GuardedAcquisition:
         return False
 
     def rest_without_sink(self, longest: float) -> None:
-        """Ramp to standstill without the sink, which has failed, and de-energise.
+        """Ramp to standstill and de-energise without using the sink, which has failed.
+
+        Errors on the way (`RigError`, `OSError`) are suppressed; they also end in de-energising.
 
         Args:
             longest: Time after the ramp within which standstill must be verified [s].
@@ -232,7 +242,7 @@ class GuardedAcquisition:
             self.disarm()
 
     def ignore_stops(self, category: StopCategory | None) -> None:
-        """Ignore stops up to a category, which is being carried out; None ignores none."""
+        """Ignore stops up to `category`, which is being carried out; None ignores no stop."""
         self._ignored = category
 
     def _log_notes(self) -> None:
@@ -241,13 +251,13 @@ class GuardedAcquisition:
                 self._sink.event(note.kind, note.text)
 
     def _require_free_space(self, now: float) -> None:
-        """Check periodically whether data can still be stored."""
+        """Check every `SPACE_CHECK_PERIOD` that the sink can store the plan's `free_space`."""
         if self._sink is not None and now >= self._check_space_at:
             self._check_space_at = now + SPACE_CHECK_PERIOD
             self._sink.require_room(self._limits.free_space)
 
     def _await_health(self) -> None:
-        """Wait until reports of a fault that arming has cleared have passed."""
+        """Read until no fault is reported; after `FAULT_CLEAR_TIME` disarm and raise the fault."""
         end = self._clock.now() + FAULT_CLEAR_TIME
         while True:
             self._clock.sleep(self._period)

@@ -58,10 +58,10 @@ class Bench(ABC):
 
     @abstractmethod
     def watch(self, limits: Collection[str]) -> None:
-        """Start to measure the quantities of some of `FURTHER_LIMITS`, to be guarded.
+        """Start to return the quantities of some of `FURTHER_LIMITS` in `Batch.further`.
 
         Args:
-            limits: Names of the limits, all among those that the profile lists as measured.
+            limits: Names of the limits, all among `RigProfile.measured`.
         """
 
     @abstractmethod
@@ -69,12 +69,16 @@ class Bench(ABC):
         """Return the samples that have arrived, without waiting; feeds the watchdogs."""
 
     def arm(self) -> None:
-        """Energise both drives, at standstill."""
+        """Energise the drive of the leg disc, then that of the ground disc, at standstill.
+
+        Raises:
+            RigError: A drive did not energise within `ARM_TIMEOUT`, or reports a fault.
+        """
         self._leg.arm(ARM_TIMEOUT)
         self._ground.arm(ARM_TIMEOUT)
 
     def turn(self, leg: float, ground: float) -> None:
-        """Command the speeds of both discs.
+        """Command the speeds of both discs, positive driving.
 
         Args:
             leg: Speed of the leg disc [rad/s].
@@ -84,12 +88,19 @@ class Bench(ABC):
         self._ground.set_speed(ground)
 
     def disarm(self) -> None:
-        """De-energise both drives at once; never raises."""
+        """Command both drives to stand and de-energise; errors of sending are suppressed.
+
+        A board only gets speed 0, because it has no command to de-energise.
+        """
         self._leg.disarm()
         self._ground.disarm()
 
     def require_healthy(self) -> None:
-        """Raise DeviceFault where a drive or the board reports an error."""
+        """Check the drives or the board by their latest status.
+
+        Raises:
+            DeviceFault: A drive or the board reports an error, or an armed drive left closed loop.
+        """
         self._motors.require_healthy()
 
     def __enter__(self) -> Self:
@@ -107,7 +118,7 @@ class BoardBench(Bench):
     """Slip rig on one micro-controller.
 
     Args:
-        board: Its driver, not yet entered.
+        board: Driver of the board, not yet entered.
         profile: Profile of the rig.
     """
 
@@ -121,7 +132,7 @@ class BoardBench(Bench):
         """Do nothing: a board measures no further quantities; see `Bench.watch`."""
 
     def read(self) -> Batch:
-        """Return the samples that have arrived; see `Bench.read`."""
+        """Return the samples that have arrived, with the board's times converted to host time."""
         samples = self._board.read(0.0)
         forces, speeds = decode_board(self._board.profile, samples)
         taken = self._time.map(samples)
@@ -159,14 +170,17 @@ class DrivesBench(Bench):
         self._speeds = {"leg": np.empty((0, 2)), "ground": np.empty((0, 2))}
 
     def watch(self, limits: Collection[str]) -> None:
-        """Start to measure the guarded quantities besides the two forces; see `Bench.watch`."""
+        """Select the quantities of `Batch.further`; request temperatures if they are among them.
+
+        Requested temperatures are also checked for silence; see `Bench.watch`.
+        """
         self._further = frozenset(limits)
         if "temperature_celsius" in self._further:
             self.watched += ("temperature of the leg drive", "temperature of the ground drive")
             self._drives.request_temperatures()
 
     def read(self) -> Batch:
-        """Return the samples that have arrived; see `Bench.read`."""
+        """Return the samples that have arrived, speeds interpolated at the times of the forces."""
         turned, weighed = self._drives.read(0.0), self._cell.read(0.0)
         hot = self._drives.take_temperatures()
         forces = decode_forces(self._cell.profile, weighed)
@@ -199,7 +213,11 @@ class DrivesBench(Bench):
     def _further_loads(
         self, weighed: SampleColumns, hot: Mapping[int, list[float]]
     ) -> dict[str, Array]:
-        """Return the guarded values of the load cell's other channels and of the temperatures."""
+        """Compute the new values of the watched quantities by the name of their limit.
+
+        They are lateral force [N], largest torque [N m], and the higher of the drives' latest
+        temperatures at each answer of a drive [degC], each of shape (m,).
+        """
         if not self._further:
             return {}
         lateral, torque = decode_further_loads(self._cell.profile, weighed)
@@ -215,7 +233,11 @@ class DrivesBench(Bench):
         return {k: v for k, v in found.items() if k in self._further and v is not None}
 
     def _interpolate_speeds(self) -> Readings:
-        """Interpolate both speeds at the times of the forces; later forces wait for speeds."""
+        """Interpolate both discs' speeds linearly at the times of the waiting forces.
+
+        Forces later than a disc's last speed wait for the next call; forces are discarded until
+        both discs have sent a speed.
+        """
         if not all(len(speeds) for speeds in self._speeds.values()):
             self._waiting = self._waiting[:0]
             return join([])
@@ -231,10 +253,10 @@ class DrivesBench(Bench):
 
 
 def make_bench(devices: RigDevices) -> Bench:
-    """Return the bench for a rig's devices, real or simulated.
+    """Return the bench of a rig: `BoardBench` with a board, else `DrivesBench`.
 
     Args:
-        devices: Drivers of the rig, not yet entered.
+        devices: Drivers of the rig, real or simulated, not yet entered.
 
     Returns:
         The bench, not yet entered.

@@ -36,6 +36,8 @@ _KEYS: Final = {StopCategory.SOFT: "s", StopCategory.SAFE: "ss", StopCategory.EM
 def next_stop(pending: StopCategory | None) -> StopCategory:
     """Return the stop that the next Ctrl-C requests: one category harder than the pending one.
 
+    Without a pending stop (None) it is the soft stop; after an emergency stop an emergency stop.
+
     >>> next_stop(StopCategory.SOFT)
     <StopCategory.SAFE: 2>
     """
@@ -47,7 +49,7 @@ class Condition:
     """State of a run with its reason.
 
     Attributes:
-        state: The state.
+        state: State of the run.
         energised: Whether the drives of the discs are energised.
         why: Reason for the state; empty where there is none.
         pending: Hardest stop being carried out; None where there is none.

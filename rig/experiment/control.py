@@ -12,15 +12,16 @@ from rig.safety import StopCategory, StopSwitch
 STOPS: Final = {category.name.lower(): category for category in StopCategory}
 COMMANDS: Final = ("pause", "resume", "confirm", "note TEXT", *STOPS, "status")
 LONGEST_NOTE: Final = 2000
+"""Largest length of a note or a command [characters]."""
 
 
 @dataclass(frozen=True)
 class Note:
-    """Entry for the log.
+    """Entry for the log of a run.
 
     Attributes:
-        kind: `note`, or the command given.
-        text: Text of the note, or details of the command.
+        kind: `note`, `pause` or `resume`.
+        text: Origin and text of a note; `requested` for a command.
     """
 
     kind: str
@@ -31,7 +32,7 @@ class Control:
     """Mailbox of commands to a run, which polls it continuously.
 
     Attributes:
-        stop: Requests to stop.
+        stop: Switch that collects requests to stop.
         status: Progress of the run in one line.
         paused: Whether the run holds after the present point.
         failure: First part of the run that failed; None without a failure.
@@ -49,14 +50,14 @@ class Control:
         """Execute a command given as a line of text.
 
         Args:
-            line: One of `COMMANDS`.
+            line: One of `COMMANDS`; a reason may follow the name of a stop.
             who: Origin of the command, for the log.
 
         Returns:
-            The answer.
+            The status for the command `status`, else `done`.
 
         Raises:
-            ProtocolError: There is no such command.
+            ProtocolError: There is no such command, or a note has no text.
         """
         command, _, text = line.strip().partition(" ")
         actions = {"pause": self.pause, "resume": self.resume, "confirm": self.confirm}
@@ -73,11 +74,11 @@ class Control:
         return "done"
 
     def fail(self, part: str, error: BaseException) -> None:
-        """Report the failure of a part of the run, which causes a safe stop and an error.
+        """Request a safe stop because a part of the run failed; keep the first in `failure`.
 
         Args:
             part: Name of the part, such as a thread or the keyboard.
-            error: Exception that it raised.
+            error: Exception that the part raised.
         """
         failure = PartFailed(part, error)
         if self.failure is None:
@@ -85,22 +86,22 @@ class Control:
         self.stop.request(StopCategory.SAFE, str(failure))
 
     def pause(self) -> None:
-        """Hold after the point that is being measured."""
+        """Request a hold after the point that is being measured; logged."""
         self.paused = True
         self._notes.append(Note("pause", "requested"))
 
     def resume(self) -> None:
-        """Resume after a pause or a soft stop; harder stops stay."""
+        """Clear a pause and soft stops, so that the run resumes; harder stops stay. Logged."""
         self.paused = False
         self.stop.release()
         self._notes.append(Note("resume", "requested"))
 
     def confirm(self) -> None:
-        """Confirm that the action requested by a prompt is done."""
+        """Store the confirmation that the action of a prompt is done, for `take_confirmation`."""
         self._confirmed = True
 
     def take_confirmation(self) -> bool:
-        """Return whether there was a confirmation since the last call, and clear it."""
+        """Return whether `confirm` was called since the last call of this method."""
         confirmed, self._confirmed = self._confirmed, False
         return confirmed
 
@@ -111,9 +112,9 @@ class Control:
 
 
 def storable_note(text: str) -> str:
-    r"""Truncate a text to the longest note and escape what UTF-8 cannot encode.
+    r"""Truncate a text to `LONGEST_NOTE` characters, and escape what UTF-8 cannot encode.
 
-    Surrogates, such as bytes of another encoding, become escape sequences.
+    Unpaired surrogates, such as bytes of another encoding, become escape sequences.
 
     >>> storable_note("caf\udce9")
     'caf\\udce9'

@@ -27,15 +27,15 @@ JOIN_TIMEOUT: Final = 2.0
 
 
 class ControlServer:
-    """TCP server of a run's mailbox at a loopback port; a context manager.
+    """TCP server that passes commands to a run's mailbox, at a loopback port; a context manager.
 
     A line is `TOKEN COMMAND`; the answer is a line that begins with `ok` or `error`.
 
     Args:
-        control: The mailbox.
+        control: Mailbox of the run.
 
     Attributes:
-        port: Port assigned by the system.
+        port: Port assigned by the system; 0 until the server is entered.
         token: Token with which each line must begin.
     """
 
@@ -47,7 +47,10 @@ class ControlServer:
         self._thread: threading.Thread | None = None
 
     def answer(self, line: str) -> str:
-        """Return the answer to one line; an error is also an answer."""
+        """Execute the command of one line `TOKEN COMMAND` and return the answer.
+
+        The answer is `ok ...`, or `error: ...` for a wrong token or an invalid command.
+        """
         token, _, command = line.strip().partition(" ")
         if not hmac.compare_digest(token.encode(), self.token.encode()):
             return "error: wrong token; it is in the run's control.json"
@@ -75,7 +78,7 @@ class ControlServer:
             block_on_close = False
 
             def handle_error(self, request: object, client_address: object) -> None:
-                """Report an exception of a connection, which Python's server only prints."""
+                """Report an exception in a connection to the run, which then makes a safe stop."""
                 del request, client_address
                 error = sys.exception()
                 control.fail("control socket", error or RuntimeError("unknown"))
@@ -99,21 +102,21 @@ class ControlServer:
 
 
 def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -> str:
-    """Send a command to a running experiment.
+    """Send a command to a running experiment on this machine, and return the answer.
 
     Args:
-        port: Port of its control socket.
+        port: Port of the run's control socket.
         token: Token of the run.
         command: One of the commands of `Control.execute`.
-        timeout: Longest wait [s].
+        timeout: Longest wait for the connection, and for the answer [s].
 
     Returns:
-        The answer.
+        The answer without its `ok`.
 
     Raises:
-        LinkError: There is no answer: the run is over.
-        ProtocolError: The run rejected the command, or the command is not one line of at most
-            `LONGEST_NOTE` characters.
+        LinkError: No run listens at the port, or a busy run does not answer within `timeout`.
+        ProtocolError: The run rejected the command or closed the connection, or the command is
+            not one line of at most `LONGEST_NOTE` characters.
     """
     line = f"{token} {_checked_command(command)}\n"
     try:
@@ -129,7 +132,11 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
 
 
 def _checked_command(command: str) -> str:
-    """Check that a command is one line of allowed length, and escape what cannot be encoded."""
+    """Return a command stripped and with unpaired surrogates escaped.
+
+    Raises:
+        ProtocolError: The command has several lines or more than `LONGEST_NOTE` characters.
+    """
     text = command.strip().encode("utf-8", "backslashreplace").decode("utf-8")
     lines = len(text.splitlines())
     if lines > 1:

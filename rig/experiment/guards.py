@@ -29,8 +29,8 @@ class RigGuards:
     """All guards of a rig.
 
     Args:
-        bench: The rig, entered; it starts to measure the limited quantities.
-        limits: Limits of the plan; those of the rig's profile hold as well.
+        bench: The rig, entered; `Bench.watch` is called for the limited quantities.
+        limits: Limits of the plan; where the rig's profile has a smaller one, that holds.
     """
 
     def __init__(self, bench: Bench, limits: RunLimits) -> None:
@@ -60,7 +60,7 @@ class RigGuards:
         self._silence: dict[str, SilenceGuard] = {}
 
     def expect_samples(self, *, now: float) -> None:
-        """Start the silence guards: from now on every device must send [s]."""
+        """Start the silence guards at host time `now` [s]; before, silence is not checked."""
         self._silence = {
             name: SilenceGuard(name, limit=self._limits.silence, now=now)
             for name in self._bench.watched
@@ -69,16 +69,17 @@ class RigGuards:
     def check(
         self, batch: Batch, *, wanted: tuple[float, float], standing: bool, now: float
     ) -> None:
-        """Check the samples of a poll, the devices' status, and how their samples arrive.
+        """Check values, age, silence, losses and freezing of samples, and the devices' status.
 
         Args:
-            batch: The samples.
+            batch: Samples of one poll.
             wanted: Set-points of leg and ground disc [rad/s].
             standing: Whether both discs have been verified to stand.
             now: Host time at which the samples arrived [s].
 
         Raises:
-            RigError: A guard tripped.
+            RigError: A guard tripped: `LimitExceeded`, `DeviceFault`, `RigTimeout`,
+                `FrozenReading` or `UnreliableRecords`.
         """
         forces = {"normal_force": batch.normal, "traction_force": batch.traction}
         for key, values in (forces | dict(batch.further)).items():

@@ -30,18 +30,18 @@ class LoadSetter(Protocol):
         ...
 
     def follow(self, normal: float) -> bool:
-        """Return whether the requested force is set.
+        """Return whether the requested force is set; called with each new normal force.
 
         Args:
             normal: Normal force, zero subtracted [N].
 
         Raises:
-            RigTimeout: It cannot be set.
+            RigTimeout: The requested force was not reached in time.
         """
         ...
 
     def halt(self) -> None:
-        """Stop the motion that sets the force; never fails."""
+        """Stop the motion that sets the force; an implementation must not raise."""
         ...
 
 
@@ -53,7 +53,7 @@ class HandShaft:
 
     Args:
         control: Mailbox that receives the confirmation.
-        tolerance: Largest distance from the target [N].
+        tolerance: Largest difference of the normal force from the target [N].
     """
 
     def __init__(self, control: Control, *, tolerance: float) -> None:
@@ -62,10 +62,12 @@ class HandShaft:
         self._target = 0.0
 
     def request(self, target: float) -> str:
-        """Ask the operator for a force; see `LoadSetter.request`.
+        """Store the target and return the prompt; see `LoadSetter.request`.
+
+        Confirmations given before this prompt are discarded.
 
         Args:
-            target: Normal force [N].
+            target: Normal force; 0 removes all load [N].
 
         Returns:
             The prompt for the operator.
@@ -77,7 +79,9 @@ class HandShaft:
         return f"set the normal force to {target:g} N +/- {self._tolerance:g} N, then confirm"
 
     def follow(self, normal: float) -> bool:
-        """Return whether the operator has confirmed a force within tolerance.
+        """Return whether the operator confirmed since the last call, with the force in tolerance.
+
+        At target 0 any force is accepted.
 
         Args:
             normal: Normal force, zero subtracted [N].
@@ -99,12 +103,12 @@ class LoadAxis(Protocol):
 
 
 class DrivenShaft:
-    """Proportional control of a linear axis to a normal force.
+    """Proportional control of a linear axis to a normal force; velocity is `GAIN` times error.
 
     Args:
-        axis: The axis.
-        tolerance: Largest distance from the target [N].
-        patience: Timeout of setting a force [s].
+        axis: Linear drive that presses the discs together.
+        tolerance: Largest difference of the normal force from the target [N].
+        patience: Timeout of setting a force, from `request` on [s].
         clock: Host time.
     """
 
@@ -120,7 +124,7 @@ class DrivenShaft:
         self._lowest = 0.0
 
     def request(self, target: float) -> str:
-        """Set the target of the axis; see `LoadSetter.request`.
+        """Store the target and start its timeout; `follow` moves the axis to it.
 
         Args:
             target: Normal force; 0 unloads [N].
@@ -134,16 +138,17 @@ class DrivenShaft:
         return ""
 
     def follow(self, normal: float) -> bool:
-        """Move the axis in proportion to the force error until the force stays in tolerance.
+        """Command a velocity proportional to the force error; halt when the force is set.
 
         Args:
             normal: Normal force, zero subtracted [N].
 
         Returns:
-            Whether the force has been within its tolerance for `AXIS_PERIOD`.
+            Whether the force has been within its tolerance for `AXIS_PERIOD`; at target 0, whether
+            it has not fallen further for that time.
 
         Raises:
-            RigTimeout: The force was not reached within `patience`.
+            RigTimeout: The force was not reached within `patience`; the axis has been halted.
         """
         now, missing = self._clock.now(), self._target - normal
         if self._target == 0:
@@ -163,14 +168,15 @@ class DrivenShaft:
         return False
 
     def _withdraw(self, normal: float, now: float) -> float:
-        """Return the force error for unloading: retract until the force stops falling.
+        """Return a force error [N] that retracts the axis with its largest velocity.
 
-        The zero of the load cell is not known yet.
+        Whenever the force has fallen by a quarter of the tolerance, `AXIS_PERIOD` starts anew: the
+        zero of the load cell is not known yet, so that only the end of the fall shows no load.
         """
         if normal < self._lowest - self._tolerance / 4:
             self._lowest, self._since = normal, now
         return -FASTEST / GAIN
 
     def halt(self) -> None:
-        """Hold the axis."""
+        """Command velocity 0, which holds the axis."""
         self._axis.move(0.0)

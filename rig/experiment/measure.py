@@ -13,17 +13,21 @@ from rig.experiment.verdict import LEAST_COVERED, is_steady, span
 from rig.slip_rig.decode import Forces, Zero, tare
 
 ZERO_ATTEMPTS: Final = 3
+"""Largest number of recordings for a zero whose samples cover too little of the duration."""
 
 
 def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
-    """Average the readings of an unloaded load cell; repeat if too few of them arrive.
+    """Average both forces of an unloaded load cell over a duration.
+
+    While the readings span less than `LEAST_COVERED` of the duration, the recording is repeated,
+    up to `ZERO_ATTEMPTS` in all; the last one is used in any case.
 
     Args:
         acquire: The rig, unloaded and at standstill.
         duration: Time over which the zero is averaged [s].
 
     Raises:
-        ProtocolError: There are too few readings.
+        ProtocolError: The last recording has fewer than ten readings.
     """
     readings = join([])
     for _ in range(ZERO_ATTEMPTS):
@@ -34,16 +38,16 @@ def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
 
 
 def settle(acquire: GuardedAcquisition, plan: Plan, point: Point, zero: Zero) -> bool:
-    """Ramp the discs to the set-points of a point and wait for a steady state.
+    """Ramp the discs to a point's first slip ratio and wait for a steady state.
 
     Args:
         acquire: The rig, armed.
-        plan: The plan.
-        point: The point.
-        zero: Zero of the load cell.
+        plan: Plan with the speed of the leg disc and the criterion for a steady state.
+        point: Point to be measured.
+        zero: Zero of the load cell, subtracted from the forces.
 
     Returns:
-        Whether the rig was steady before the plan's timeout.
+        Whether the rig was steady, see `is_steady`, before the plan's timeout after the ramp.
     """
     criterion = plan.settle
     acquire.start_ramp(plan.points.omega_leg, point.slips[0])
@@ -72,14 +76,14 @@ def record(
     *,
     clock: Clock,
 ) -> Readings:
-    """Record the samples of a point; a sweep changes the set-points meanwhile.
+    """Record a point for the plan's duration into the sink; a sweep changes the slip meanwhile.
 
     Args:
         acquire: The rig, at the point's set-points.
         sink: Recorder of the samples; its run is open.
-        plan: The plan.
-        point: The point.
-        zero: Zero of the load cell.
+        plan: Plan with the duration and the speed of the leg disc.
+        point: Point to be measured.
+        zero: Zero of the load cell, subtracted from the forces.
         clock: Host time.
 
     Returns:

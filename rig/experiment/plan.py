@@ -8,8 +8,9 @@ from rig.device import Limits
 from rig.slip_rig.profile import FURTHER_LIMITS
 
 SCHEMA: Final = 1
+"""Version of the layout of plans; a file with another one is an error."""
 MOST_POINTS: Final = 100_000
-"""Largest number of points between two zeros or checks."""
+"""Largest allowed number of points between two zeros or two check points."""
 Order: TypeAlias = Literal["monotone", "shuffled", "up-down"]
 ORDERS: Final[tuple[Order, ...]] = ("monotone", "shuffled", "up-down")
 LIMIT_UNITS: Final = {
@@ -23,7 +24,8 @@ OFF_ABOVE: Final = {
     "in_a_row": 10.0, "speed_error_time": 1.0, "silence": 1.0, "reading_age": 1.0, "frozen": 1.0,
     "rest_speed": 1.0,
 }  # fmt: skip
-"""Limits above which a guard counts as off; for `speed_error` this is half the top speed."""
+"""Limits above which a guard counts as off, in the unit of `LIMIT_UNITS`; for `speed_error` it is
+half of `PointGrid.omega_leg`."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +35,10 @@ class PointGrid:
     Attributes:
         loads: Normal forces [N].
         slips: Material slip ratios, Eq. (4-44) [-].
-        omega_leg: Speed of the leg disc [rad/s].
+        omega_leg: Speed of the leg disc at every point [rad/s].
         duration: Recorded time of a point, or of a whole sweep [s].
-        order: `monotone` as given, `shuffled` within and among the loads, or `up-down`.
+        order: `monotone` as given; `shuffled` both within and among the loads; or `up-down`: loads
+            as given, slips ascending, then descending.
         seed: Seed of the shuffle.
         repeats: Number of passes through the slips at each load.
         sweep: Whether the slip changes continuously through all its values in one run per load.
@@ -57,8 +60,8 @@ class LoadSetting:
 
     Attributes:
         set_by: `hand` on the threaded shaft, or a driven `axis`.
-        tolerance: Largest distance from the target [N].
-        patience: Estimated time that a person needs, and timeout of an axis [s].
+        tolerance: Largest difference of the normal force from its target [N].
+        patience: Estimated time to set a load, and timeout of an axis, not of a person [s].
     """
 
     set_by: Literal["hand", "axis"]
@@ -74,9 +77,9 @@ class SettleCriterion:
     ground disc changes the forces in every turn but hardly the friction.
 
     Attributes:
-        window: Length of the window [s].
-        speed: Largest difference of each disc's mean speed from its set-point, and between both
-            halves [rad/s].
+        window: Length of the window, whose halves are compared [s].
+        speed: Largest difference of each disc's mean speed from its set-point, and between the
+            mean speeds of both halves [rad/s].
         friction: Largest difference of the friction between both halves [-].
         timeout: Time after which the point is recorded even if it is not steady [s].
     """
@@ -92,9 +95,11 @@ class Acceptance:
     """Acceptance limits of a recorded point, which is repeated if it exceeds one.
 
     Attributes:
-        slip: Largest difference of the mean slip ratio from the commanded one [-].
-        slip_drift: Largest difference of the mean slip ratio between both halves [-].
-        friction_drift: Largest difference of the friction between both halves [-].
+        slip: Largest difference of the mean slip ratio from the commanded mean [-].
+        slip_drift: Largest difference of the mean slip ratio between both halves of the recorded
+            time; not for sweeps [-].
+        friction_drift: Largest difference of the friction, traction over normal force, between
+            both halves; not for sweeps [-].
         attempts: Largest number of attempts at a point.
     """
 
@@ -109,11 +114,11 @@ class Controls:
     """Zeros of the load cell and check points between the points.
 
     Attributes:
-        tare_every: Number of points between two zeros of the load cell; 0 means one zero, before
-            the first point.
+        tare_every: Number of points, check points not counted, between two zeros of the load
+            cell; 0 means a single zero, before the first point.
         tare_duration: Time over which a zero is averaged [s].
         zero_drift: Change of the zero that causes a warning [N].
-        check_every: Number of points between two check points; 0 means none.
+        check_every: Number of points between two check points; 0 means no check points.
         check_slip: Slip ratio of the check point, at the present load [-].
     """
 
@@ -129,24 +134,27 @@ class RunLimits:
     """Limits of an experiment, at which the guards stop the rig.
 
     Attributes:
-        speed: Speed of a disc [rad/s].
-        acceleration: Rate at which the set-point of a disc changes [rad/s^2].
-        normal_force: Normal force [N].
-        traction_force: Traction force [N].
+        speed: Largest speed of a disc's set-point [rad/s].
+        acceleration: Rate at which the set-points of the discs ramp [rad/s^2].
+        normal_force: Largest magnitude of the normal force [N].
+        traction_force: Largest magnitude of the traction force [N].
         in_a_row: Number of samples beyond a force limit, among the latest 2 in_a_row - 1, that are
             a fault.
-        speed_error: Difference of a disc's speed from its set-point [rad/s].
-        speed_error_time: Longest duration of a larger speed error [s].
-        silence: Longest silence of a stream [s].
+        speed_error: Largest difference of a disc's speed from its set-point [rad/s].
+        speed_error_time: Longest duration of a speed error beyond that [s].
+        silence: Longest time for which a device may send no samples [s].
         reading_age: Largest age of a reading when it is checked [s].
         frozen: Longest time for which forces and speeds stay the same, bit for bit, while discs
             turn [s].
         rest_speed: Mean speed below which a disc counts as standing [rad/s].
         free_space: Least free space on the disk of the data [bytes].
         hold: Longest duration of a hold, after which a soft stop becomes a safe one [s].
-        lateral_force: Force on the load cell's third axis; None where it is not guarded [N].
-        torque: Torque on any of its axes; None where it is not guarded [N m].
-        temperature_celsius: Of a drive or its motor; None where it is not guarded [degC].
+        lateral_force: Largest magnitude of the force on the load cell's third axis; None where the
+            plan does not limit it [N].
+        torque: Largest magnitude of the torque about any axis of the load cell; None where the plan
+            does not limit it [N m].
+        temperature_celsius: Highest temperature of a drive or its motor; None where the plan does
+            not limit it [degC].
         guards_off: Names of limits that a person has explicitly set so high that they have no
             effect.
     """
@@ -171,7 +179,7 @@ class RunLimits:
 
     @property
     def guards_off_text(self) -> str:
-        """Text with the guards that are off and their limits; empty where none is."""
+        """Text with the names of `guards_off` and their limits; empty where no guard is off."""
         return ", ".join(
             f"{name} ({getattr(self, name):g} {LIMIT_UNITS[name]})" for name in self.guards_off
         )
@@ -189,7 +197,7 @@ class Plan:
         load: How the normal force is set.
         settle: Criterion for a steady state.
         accept: Acceptance limits of a point.
-        controls: Zeros and check points.
+        controls: How often zeros and check points are measured.
         limits: Limits of the guards.
     """
 
@@ -210,7 +218,7 @@ def ground_speed(
     """Compute the speed of the ground disc for a material slip ratio, Eq. (4-44) [rad/s].
 
     Args:
-        slip: Slip ratio [-].
+        slip: Material slip ratio; 1 makes the ground disc stand [-].
         omega_leg: Speed of the leg disc [rad/s].
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
@@ -229,7 +237,7 @@ def rig_limits(limits: RunLimits, allowed: Limits) -> Limits:
         allowed: Limits of the rig's profile.
 
     Returns:
-        The limits that hold for the run.
+        The limits that hold for the run; None where neither plan nor rig limits a quantity.
     """
     smaller: dict[str, Any] = {
         name: min((v for v in (getattr(limits, name), own) if v is not None), default=None)

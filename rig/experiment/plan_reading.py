@@ -32,8 +32,9 @@ def parse_plan(table: TomlTable) -> Plan:
         The plan.
 
     Raises:
-        ProfileError: A key is missing or unknown (the message names the nearest known one), or its
-            value is invalid; a subclass of the table raises its own error.
+        ProfileError: A key is missing or unknown (the message names the nearest known one), a
+            value is invalid, or `guards_off` contradicts a limit; a subclass of `TomlTable` raises
+            its own error.
     """
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     parts = {key: table.table(key) for key in
@@ -148,7 +149,7 @@ def _limits(table: TomlTable, *, top_speed: float) -> RunLimits:
 
 
 def _require_guard(table: TomlTable, limits: RunLimits, name: str, highest: float) -> None:
-    """Check that a limit turns its guard off if and only if `guards_off` names it.
+    """Check that a limit is above `highest` if and only if `guards_off` names it.
 
     Raises:
         ProfileError: The limit and `guards_off` contradict each other.

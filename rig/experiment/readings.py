@@ -20,14 +20,14 @@ RESTART_DELAY: Final = 0.1
 
 @dataclass(frozen=True)
 class Readings:
-    """Samples of the rig on a common time base, each shape (n,).
+    """Speeds and forces of the rig at common times, each of shape (n,).
 
     Attributes:
         t: Host time at which the device took each sample [s].
         omega_leg: Speed of the leg disc [rad/s].
         omega_ground: Speed of the ground disc [rad/s].
         normal_force: Normal force, positive when pressed together [N].
-        traction_force: Traction, positive when driving [N].
+        traction_force: Traction force, positive when driving the robot forward [N].
     """
 
     t: Array
@@ -41,20 +41,20 @@ class Readings:
         return len(self.t)
 
     def without(self, zero: Zero) -> "Readings":
-        """Subtract the zero of the load cell from both forces."""
+        """Return readings with the zero of the load cell subtracted from both forces."""
         return Readings(
             self.t, self.omega_leg, self.omega_ground,
             self.normal_force - zero.normal, self.traction_force - zero.traction,
         )  # fmt: skip
 
     def since(self, start: float) -> "Readings":
-        """Return the samples from a time on [s]."""
+        """Return the samples with t >= `start` [s]."""
         keep = self.t >= start
         return Readings(*(getattr(self, field.name)[keep] for field in fields(self)))
 
 
 def join(parts: "list[Readings]") -> Readings:
-    """Concatenate readings."""
+    """Concatenate readings in the given order; no parts give empty readings."""
     if not parts:
         return Readings(*(np.empty(0) for _ in fields(Readings)))
     names = [field.name for field in fields(Readings)]
@@ -72,8 +72,8 @@ class Batch:
         traction: Every traction force that has just arrived, shape (m,) [N].
         speeds: Every speed of each disc that has just arrived, by `leg` and `ground`, each of
             shape (k,) [rad/s].
-        arrived: Samples of each device or answer that is checked for silence, by name.
-        further: New values of other guarded quantities, by the name of their limit.
+        arrived: New samples or answers of each name in `Bench.watched`, checked for silence.
+        further: New values of other guarded quantities, by the name of their limit, shape (m,).
         taken: Host times at which new readings were taken, by device; arrival times where the
             device sends no time, shape (n,) [s].
         fault: Description of a fault in a device's status; empty without one.
@@ -104,7 +104,10 @@ class HostTime:
         self._read_at = self._latest = -np.inf
 
     def map(self, samples: Sequence[Sample]) -> Array:
-        """Return the host times at which the samples were taken, shape (n,) [s]."""
+        """Estimate the host times at which new samples were taken, shape (n,) [s].
+
+        Where a sample has no device time, the times of reading are returned.
+        """
         columns = as_columns(samples)
         host, device = columns.host_time, columns.device_time
         if len(samples) == 0 or not np.isfinite(device).all():

@@ -16,12 +16,12 @@ WINDOW: Final = 0.25
 FEWEST: Final = 5
 """Least number of new readings of each disc in the window."""
 SCATTER: Final = 5.0
-"""Largest root mean square of the speed, over the limit of its mean, to allow for noise [-]."""
+"""Largest ratio of the root mean square of the speed to the limit of its mean, for noise [-]."""
 DISCS: Final[tuple[str, ...]] = ("leg", "ground")
 
 
 class RestProof:
-    """Standstill detector: collects new readings of both discs' speeds and tests them.
+    """Standstill detector: tests mean and root mean square of both discs' speeds over `WINDOW`.
 
     The mean over a window is tested, because an encoder's noise can exceed the limit. The root mean
     square is bounded as well, because the mean speed of an oscillating disc is also small.
@@ -38,7 +38,7 @@ class RestProof:
         self._seen: dict[str, deque[tuple[float, float]]] = {disc: deque() for disc in DISCS}
 
     def take(self, batch: Batch, *, now: float) -> None:
-        """Add a batch; readings that are too old restart the collection.
+        """Add the speeds of a batch; a reading older than `oldest` discards all earlier ones.
 
         Args:
             batch: Samples of one poll of the rig.
@@ -53,12 +53,15 @@ class RestProof:
                 seen.popleft()
 
     def holds(self, *, now: float) -> bool:
-        """Return whether both discs stood during a whole window up to now [s]."""
+        """Return whether both discs stood during the whole `WINDOW` before host time `now` [s].
+
+        Each disc needs `FEWEST` readings in the window.
+        """
         whole = self._began is not None and now - self._began >= WINDOW
         return whole and all(not self._problem(disc) for disc in DISCS)
 
     def failure(self, *, waited: float) -> NotAtRest:
-        """Return an error that names the disc that moves, or that too few readings arrived.
+        """Return an error that says why standstill is not verified, and of which disc.
 
         Args:
             waited: Duration of the attempt [s].
@@ -73,7 +76,7 @@ class RestProof:
         )
 
     def _problem(self, disc: str) -> str:
-        """Return why standstill of a disc is not verified; empty where it is."""
+        """Return why standstill of a disc is not verified, as text; empty where it is verified."""
         speeds = np.array([speed for _, speed in self._seen[disc]])
         if len(speeds) < FEWEST:
             return (
@@ -99,7 +102,7 @@ def prove_rest(
     """Poll a rig until standstill of both discs is verified.
 
     Args:
-        poll: Waits one period and returns the new samples.
+        poll: Waits one period and returns the new samples; its errors are passed on.
         limit: Largest mean speed of a disc that stands [rad/s].
         longest: Timeout [s].
         clock: Host time.

@@ -25,6 +25,7 @@ from rig.slip_rig.decode import Zero, require_zero
 REST_TIMEOUT: Final = 5.0
 """Timeout for the discs to stand after their set-points are zero [s]."""
 UNLOADED: Final = Zero(0.0, 0.0, 0.0)
+"""Zero that is subtracted until the first zero has been measured [N]."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +33,10 @@ class Outcome:
     """Outcome of a run.
 
     Attributes:
-        reason: `completed`, or the stop that ended it, with its reason.
+        reason: `completed`, or category and reason of the stop that ended the run.
         finished: Number of accepted points, those of an earlier run included.
         refused: Numbers of the points of which every attempt was rejected.
-        attempts: Number of attempts in this run.
+        attempts: Number of attempts at points in this run.
     """
 
     reason: str
@@ -61,7 +62,7 @@ def run_plan(
     period: float = PERIOD,
     done: Collection[int] = (),
 ) -> Outcome:
-    """Run a plan; in the end the motors are at rest and the sink has stored the reason.
+    """Run a plan; in the end the drives are de-energised and the sink has stored the reason.
 
     Args:
         plan: The plan.
@@ -78,11 +79,12 @@ def run_plan(
         The outcome of a run that was completed or stopped on request.
 
     Raises:
-        LimitExceeded: The plan would exceed a limit, found before motion; or a guard tripped.
-        SinkFailed: Measurements could not be stored; the rig was ramped to rest first.
-        PartFailed: A thread of the program failed; the rig was ramped to rest first.
-        RigError: A guard tripped or a device failed; the rig was de-energised.
-        ProtocolError: An emergency stop is latched.
+        LimitExceeded: A set-point exceeds a limit, found before motion; or a guard tripped.
+        ProfileError: The plan limits a quantity that the rig does not measure.
+        SinkFailed: Measurements could not be stored; the discs were ramped to rest first.
+        PartFailed: A thread of the program failed; the discs were ramped to rest first.
+        RigError: A guard tripped or a device failed; the drives were de-energised at once.
+        ProtocolError: An emergency stop is latched, or a zero has too few readings.
     """
     require_allowed(plan, bench.profile)
     if control.stop.latched:
@@ -95,7 +97,7 @@ def run_plan(
 
 @dataclass
 class _Run:
-    """One run of a plan; see `run_plan`."""
+    """State and steps of one run of a plan; see `run_plan`."""
 
     _plan: Plan
     _bench: Bench
@@ -124,7 +126,7 @@ class _Run:
         self._refused: list[int] = []
 
     def go(self) -> Outcome:
-        """Run the plan; in every case leave the rig at rest and store the reason."""
+        """Run the plan; in every case leave the rig de-energised and store the reason."""
         reason = "failed"
         try:
             self._show(RigState.PREPARING)
@@ -140,7 +142,7 @@ class _Run:
         return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
 
     def _execute_plan(self) -> str:
-        """Carry out the steps, and stops that end the run."""
+        """Carry out the steps, and a stop that ends the run; return the reason of `Outcome`."""
         self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
         if self._plan.limits.guards_off:
             self._sink.event("guards off", self._plan.limits.guards_off_text)
@@ -165,7 +167,10 @@ class _Run:
         return "completed"
 
     def _remaining(self) -> list[Step]:
-        """List the remaining steps; a resumed run begins with a zero."""
+        """List the steps without finished points; a resumed run begins with a zero.
+
+        Zeros without a remaining point since the previous zero are left out.
+        """
         left = [step for step in self._steps if step.number not in self._done]
         first = next((k for k, step in enumerate(left) if isinstance(step, Point)), None)
         if first is None:
@@ -174,7 +179,7 @@ class _Run:
                 or k + 1 == first or (k > first and isinstance(left[k - 1], Point))]  # fmt: skip
 
     def _carry_out(self, step: Step) -> None:
-        """Carry out a step; hold on a soft stop, then repeat the step."""
+        """Carry out a zero or a point; on a soft stop hold, and after it repeat the step."""
         while True:
             try:
                 if self._control.paused:
@@ -195,7 +200,10 @@ class _Run:
                 return
 
     def _hold(self, why: str) -> None:
-        """Ramp to standstill and wait, energised, until the run is resumed."""
+        """Ramp to standstill and wait, energised, until the run is resumed.
+
+        After the plan's `hold` without a command a safe stop is requested.
+        """
         if self._control.stop.pending is None:
             self._control.stop.request(StopCategory.SOFT, why)  # the next stop is a harder one
         self._acquire.ignore_stops(StopCategory.SOFT)
@@ -216,7 +224,7 @@ class _Run:
         self._show(RigState.RUNNING)
 
     def _show(self, state: RigState, why: str = "") -> None:
-        """Publish the state of the run to the watcher and to the status line."""
+        """Pass the state to the watcher and, unless the run is RUNNING, to the status line."""
         pending = self._control.stop.pending
         condition = Condition(
             state, self._acquire.energised, why, None if pending is None else pending.category,
@@ -264,7 +272,7 @@ class _Run:
         self._loaded = target
 
     def _measure(self, point: Point) -> None:
-        """Measure a point until an attempt is accepted or none is left."""
+        """Set the load and measure a point until an attempt is accepted or all are used up."""
         self._set_load(point.load)
         problems: tuple[str, ...] = ()
         for attempt in range(1, self._plan.accept.attempts + 1):
@@ -302,7 +310,7 @@ class _Run:
         self._watcher.doing(what, done=done, of=self._points, left=seconds)
 
     def _stop(self, asked: StopRequested) -> None:
-        """Bring the rig to rest for a safe or an emergency stop."""
+        """De-energise: at once for an emergency stop, after a ramp to rest for a safe stop."""
         if asked.stop.category is StopCategory.EMERGENCY:
             self._acquire.disarm()
             self._sink.latch(asked.stop.reason)
@@ -325,9 +333,9 @@ class _Run:
             self._sink.close_run(verdict, reason=reason)
 
     def _finish(self, reason: str) -> None:
-        """Store the end of the run, first the latch of an emergency stop, then show it.
+        """Store the latch of an emergency stop and the end of the run, then show the state.
 
-        A failure of the sink does not replace an earlier error.
+        A failure of the sink is raised only after a completed plan.
         """
         stop = self._control.stop.pending
         latched = stop is not None and stop.category is StopCategory.EMERGENCY

@@ -23,7 +23,7 @@ def signal_stops(switch: StopSwitch) -> Iterator[None]:
     that is ignored stays ignored, as under `nohup`, which lets a run outlive its terminal.
 
     Args:
-        switch: Receiver of the requests.
+        switch: Receiver of the stop requests.
     """
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:

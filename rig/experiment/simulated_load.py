@@ -14,23 +14,23 @@ LEAST: Final = 1e-3
 
 
 class SimulatedOperator:
-    """Sets the load exactly and at once; satisfies `LoadSetter`.
+    """Sets the load exactly and at once; implements the protocol `LoadSetter`.
 
     Args:
-        rig: The rig.
+        rig: Simulated rig whose load is set.
     """
 
     def __init__(self, rig: SimulatedRig) -> None:
         self._rig = rig
 
     def request(self, target: float) -> str:
-        """Set the load at once; see `LoadSetter.request`.
+        """Set the rig's load at once, to at least `LEAST`; see `LoadSetter.request`.
 
         Args:
             target: Normal force [N].
 
         Returns:
-            An empty text: nobody has to do anything.
+            An empty text: the operator has nothing to do.
         """
         self._rig.load = max(target, LEAST)
         return ""
@@ -45,14 +45,14 @@ class SimulatedOperator:
         return True
 
     def halt(self) -> None:
-        """Do nothing."""
+        """Do nothing: no motion has to be stopped."""
 
 
 class SimulatedAxis:
-    """A linear drive behind a spring; satisfies `LoadAxis`.
+    """Linear drive that loads the rig through a spring; implements the protocol `LoadAxis`.
 
     Args:
-        rig: The rig that it presses together.
+        rig: Simulated rig whose discs the drive presses together.
         stiffness: Spring stiffness [N/m].
         clock: Host time.
     """
@@ -65,7 +65,11 @@ class SimulatedAxis:
         self._moved = clock.now()
 
     def move(self, velocity: float) -> None:
-        """Command a velocity, positive pressing [m/s]."""
+        """Command a velocity, positive pressing [m/s].
+
+        The load first changes by stiffness times the way since the last command, to at least
+        `LEAST`; between commands it stays.
+        """
         now = self._clock.now()
         moved = self._velocity * (now - self._moved)
         self._rig.load = max(self._rig.load + self._stiffness * moved, LEAST)

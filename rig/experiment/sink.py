@@ -12,7 +12,7 @@ from rig.slip_rig.decode import Zero
 
 
 class SinkFailed(RigError, OSError):
-    """Measurements cannot be stored: disk full, folder gone, queue full."""
+    """Measurements or events cannot be stored: disk full, folder gone, queue full."""
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,8 @@ class RunStart:
     Attributes:
         point: Point that is measured.
         attempt: Number of the attempt, from 1.
-        time: Host time, with an arbitrary origin [s].
-        zero: Zero of the load cell, subtracted from the readings.
+        time: Host time at which the run begins, with an arbitrary origin [s].
+        zero: Zero of the load cell that is subtracted from the readings.
     """
 
     point: Point
@@ -39,7 +39,7 @@ class RunSink(Protocol):
     """
 
     def open_run(self, start: RunStart) -> None:
-        """Begin a run."""
+        """Begin the recording of one attempt at a point."""
         ...
 
     def write(self, readings: Readings, batch: Batch) -> None:
@@ -47,12 +47,12 @@ class RunSink(Protocol):
 
         Args:
             readings: Samples on a common time base, zero subtracted.
-            batch: The batch they came with, for its raw samples.
+            batch: Batch of the readings, for its raw samples.
         """
         ...
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
-        """End the run.
+        """End the recording that `open_run` began, and store the verdict.
 
         Args:
             verdict: Verdict on the point; None where the run was aborted.
@@ -70,9 +70,9 @@ class RunSink(Protocol):
         ...
 
     def require_room(self, least: float) -> None:
-        """Raise SinkFailed where less than `least` can still be written [bytes]."""
+        """Raise `SinkFailed` where fewer than `least` bytes can still be written."""
         ...
 
     def latch(self, reason: str) -> None:
-        """Store the latch of an emergency stop, at once and whatever else has failed."""
+        """Store the latch of an emergency stop at once, also after an earlier failure."""
         ...

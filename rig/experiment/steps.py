@@ -18,10 +18,10 @@ RISE: Final = 0.15
 
 @dataclass(frozen=True)
 class Tare:
-    """Take the zero of the load cell, unloaded and at standstill.
+    """Step that measures the zero of the load cell, unloaded and at standstill.
 
     Attributes:
-        number: Place in the plan, from 1.
+        number: Number of the step in the plan, from 1.
     """
 
     number: int
@@ -29,15 +29,16 @@ class Tare:
 
 @dataclass(frozen=True)
 class Point:
-    """Measurement at one load.
+    """Step that measures a slip ratio, or a sweep of slip ratios, at one load.
 
     Attributes:
-        number: Place in the plan, from 1.
-        load: Normal force [N].
-        slips: Commanded slip ratio; several for a sweep through them [-].
+        number: Number of the step in the plan, from 1.
+        load: Commanded normal force [N].
+        slips: Commanded slip ratio; for a sweep the values that it interpolates in order [-].
         kind: A `point` of the grid, a `sweep`, or a `check` point.
         repeat: Number of the pass through the load's slips, from 1.
-        direction: Whether slip grows, `up`, or falls, `down`, where the order has both; else ``.
+        direction: `up` where slip grows and `down` where it falls in the order `up-down`; empty
+            in other orders.
     """
 
     number: int
@@ -59,7 +60,7 @@ class Point:
         return f"{self.kind}-{self.number:04d} Fn {self.load:g} N slip {slip}{end}"
 
     def slip_at(self, fraction: float) -> float:
-        """Compute the commanded slip ratio at a fraction of the recorded time [-]."""
+        """Interpolate the commanded slip ratio at a fraction, 0 to 1, of the recorded time [-]."""
         at = np.linspace(0.0, 1.0, len(self.slips))
         return float(np.interp(fraction, at, self.slips))
 
@@ -68,9 +69,11 @@ Step: TypeAlias = Tare | Point
 
 
 def spell_out(plan: Plan) -> tuple[Step, ...]:
-    """Expand a plan into its steps, in order.
+    """Expand a plan into its steps: zeros of the load cell, points and check points, in order.
 
-    The same plan always gives the same steps, also when shuffled: a resumed run relies on this.
+    A zero comes first and after every `tare_every` points, a check point before every
+    `check_every` points, at the load of the next point. The same plan always gives the same steps,
+    also when shuffled: a resumed run relies on this.
     """
     steps: list[Step] = [Tare(1)]
     since_tare = 0
@@ -104,7 +107,7 @@ def _points(plan: Plan) -> list[Point]:
 
 
 def _passes(plan: Plan, rng: np.random.Generator) -> list[tuple[tuple[float, ...], str]]:
-    """List the slips of one pass at one load, each with its direction."""
+    """List the points of one pass at one load in order, each as (slips, direction)."""
     grid = plan.points
     if grid.order == "up-down":
         up = tuple(sorted(grid.slips))
@@ -124,10 +127,11 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
 
     Args:
         plan: The plan.
-        profile: The rig; its own limits apply as well as the plan's.
+        profile: Profile of the rig, whose limits apply as well as the plan's.
 
     Raises:
-        LimitExceeded: A speed or load exceeds a limit; the message has value, limit and unit.
+        LimitExceeded: A speed, a load, or a limit of the plan exceeds a limit; the message has
+            value, limit and unit.
         ProfileError: The plan limits a quantity that the rig does not measure.
     """
     allowed = rig_limits(plan.limits, profile.limits)
@@ -161,9 +165,9 @@ class DurationEstimate:
     """Estimated duration of steps.
 
     Attributes:
-        seconds: Total duration without repeated points [s].
-        points: Number of points among the steps.
-        loads: Number of times that the normal force is set, zeros included.
+        seconds: Total duration with a single attempt at each point [s].
+        points: Number of points and check points among the steps.
+        loads: Number of times that the normal force is set, unloading for a zero included.
     """
 
     seconds: float
@@ -172,7 +176,7 @@ class DurationEstimate:
 
 
 def estimate(plan: Plan, steps: tuple[Step, ...]) -> DurationEstimate:
-    """Estimate the duration of steps.
+    """Estimate the duration of steps: setting loads, ramps, settling and recording.
 
     Args:
         plan: Plan of the steps.

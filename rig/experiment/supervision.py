@@ -11,10 +11,10 @@ from rig.experiment.control import Control
 
 @contextmanager
 def supervised(control: Control) -> Iterator[None]:
-    """Report every uncaught exception of a thread to a run while the context lasts.
+    """Request a safe stop of a run at an uncaught exception of any thread, until the context ends.
 
     Args:
-        control: Mailbox of the run, which then makes a safe stop.
+        control: Mailbox of the run; `Control.fail` is called with the exception.
     """
     earlier = threading.excepthook
 
@@ -30,10 +30,10 @@ def supervised(control: Control) -> Iterator[None]:
 
 
 def start_thread(work: Callable[[], None], *, name: str, control: Control) -> threading.Thread:
-    """Start a thread that a run depends on; an exception in it stops the run.
+    """Start a daemon thread that a run depends on; an exception in it requests a safe stop.
 
     Args:
-        work: Function of the thread.
+        work: Function that the thread calls once.
         name: Name of the thread, for the message.
         control: Mailbox of the run.
 

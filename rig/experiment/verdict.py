@@ -24,10 +24,10 @@ class PointVerdict:
 
     Attributes:
         problems: Why the point must be repeated, one phrase each; empty where it is good.
-        samples: Number of samples.
-        slip: Mean slip ratio [-].
-        friction: Sum of the traction over sum of the normal force [-].
-        normal_force: Median normal force [N].
+        samples: Number of recorded samples.
+        slip: Mean slip ratio; NaN with too few samples [-].
+        friction: Sum of the traction over sum of the normal force; NaN without load [-].
+        normal_force: Median normal force; NaN with too few samples [N].
     """
 
     problems: tuple[str, ...]
@@ -48,7 +48,7 @@ def span(readings: Readings) -> float:
 
 
 def halves(readings: Readings) -> tuple[Readings, Readings]:
-    """Split readings in the middle of their time."""
+    """Split readings at the middle of their time; the middle belongs to the second half."""
     middle = (readings.t[0] + readings.t[-1]) / 2
     late = readings.since(middle)
     early = len(readings) - len(late)
@@ -57,7 +57,10 @@ def halves(readings: Readings) -> tuple[Readings, Readings]:
 
 
 def friction(readings: Readings) -> float:
-    """Compute the sum of the traction over the sum of the normal force; NaN without load [-]."""
+    """Compute the sum of the traction over the sum of the normal force [-].
+
+    NaN where the sum of the normal force is not above 0.
+    """
     load = float(readings.normal_force.sum())
     return float(readings.traction_force.sum()) / load if load > 0 else np.nan
 
@@ -66,12 +69,13 @@ def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCr
     """Return whether speeds are at their set-points and both halves of a window agree.
 
     Args:
-        window: The latest readings.
+        window: Readings of the latest `criterion.window`.
         wanted: Set-points of leg and ground disc [rad/s].
-        criterion: Tolerances.
+        criterion: Length of the window and tolerances.
 
     Returns:
-        False also where the window is not yet full.
+        Whether they are; False also for fewer than 8 readings, or where the readings span less
+        than 0.9 of `criterion.window`.
     """
     if len(window) < 8 or window.t[-1] - window.t[0] < 0.9 * criterion.window:
         return False
@@ -98,14 +102,15 @@ def judge_point(
 
     Args:
         readings: Recorded samples, zero subtracted.
-        point: Commanded slip ratio and load.
-        accept: Acceptance limits.
+        point: Point with the commanded slip ratio.
+        accept: Largest deviations and drifts of an accepted point.
         settled: Whether the rig was steady when recording began.
-        duration: Duration of the recording [s].
-        profile: Carries the radii.
+        duration: Intended duration of the recording [s].
+        profile: Profile of the rig, with the radii of the discs.
 
     Returns:
-        The verdict. The normal force is reported but not checked: the disc may stand on its bump.
+        The verdict; with fewer than 8 samples that is the only problem, and means are NaN. The
+        normal force is not checked: the ground disc may stand on its bump.
     """
     if len(readings) < 8:
         return PointVerdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
@@ -124,7 +129,10 @@ def judge_point(
 
 
 def _deviations(readings: Readings, slip: Array, point: Point, accept: Acceptance) -> Iterator[str]:
-    """Yield what is wrong with the slip ratio and the friction of a recorded point."""
+    """Yield a phrase for each excess of mean slip, slip drift and friction drift.
+
+    The drifts, second half less first half, are not checked in a sweep.
+    """
     wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
     off = float(slip.mean()) - wanted
     if not abs(off) <= accept.slip:

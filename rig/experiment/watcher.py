@@ -16,7 +16,7 @@ class ExperimentWatcher:
         """Show a message to a person."""
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Show the step that begins.
+        """Show which step begins, and the progress of the run.
 
         Args:
             what: Name of the step.
@@ -26,15 +26,15 @@ class ExperimentWatcher:
         """
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Show a prompt for the operator; called repeatedly until it is followed.
+        """Show a prompt for the operator; called repeatedly until the load is set.
 
         Args:
             text: What the operator must do.
-            normal: Present normal force [N].
+            normal: Present normal force, zero subtracted [N].
         """
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Show the verdict on a point.
+        """Show the verdict on an attempt at a point.
 
         Args:
             point: The point.

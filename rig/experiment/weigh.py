@@ -26,9 +26,9 @@ class Weighing:
     """Readings of the load cell under known weights.
 
     Attributes:
-        forces: True forces, zero among them, shape (n,) [N].
-        readings: Readings of the normal channel, shape (n,) [N].
-        errors: Standard error of each reading, shape (n,) [N].
+        forces: True forces, the first one 0 for no load, n values [N].
+        readings: Mean of the normal channel under each force, n values [N].
+        errors: Standard error of each mean, n values [N].
     """
 
     forces: tuple[float, ...]
@@ -41,11 +41,11 @@ class GainCheck:
     """Linear regression of the readings on the forces: reading = zero + slope·force.
 
     Attributes:
-        slope: Reading over force; 1 where the profile's counts are right [-].
-        slope_sd: Standard error of the slope, that of the weights included [-].
-        zero: Reading without load [N].
+        slope: Change of the reading per force; 1 where the profile's counts are right [-].
+        slope_sd: Standard error of the slope, including the error of the weights [-].
+        zero: Reading without load, from the fitted line [N].
         zero_sd: Standard error of the zero [N].
-        misfit: Largest distance of a reading from the line [N].
+        misfit: Largest difference of a reading from the line, as a magnitude [N].
     """
 
     slope: float
@@ -56,7 +56,7 @@ class GainCheck:
 
     @property
     def gain_sd(self) -> float:
-        """Standard deviation of the gain's prior where the slope is not corrected [-]."""
+        """Root of (slope - 1)² + slope_sd²: spread of the gain's prior without correction [-]."""
         return float(np.hypot(self.slope - 1, self.slope_sd))
 
 
@@ -70,16 +70,16 @@ def weigh(
     clock: Clock = SYSTEM_CLOCK,
     period: float = PERIOD,
 ) -> Weighing:
-    """Read the normal channel without load and under each weight; nothing is energised.
+    """Average the normal channel without load and under each weight; nothing is energised.
 
     Standstill of both discs is verified before each prompt to hang a weight.
 
     Args:
         bench: The rig, entered.
-        forces: Weights [N].
+        forces: Weights in the order in which they are hung [N].
         load: Setter of the load: the operator who hangs the weights.
         prompt: Called repeatedly with the instruction and the present normal force [N].
-        duration: Duration of each reading [s].
+        duration: Time over which each reading is averaged [s].
         clock: Host time.
         period: Polling period [s].
 
@@ -104,7 +104,7 @@ def weigh(
 
 
 def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
-    """Fit gain and zero of the normal channel by weighted linear regression.
+    """Fit gain and zero of the normal channel: readings on forces, weighted by 1 / error².
 
     Args:
         weighing: Readings under at least two different forces.
@@ -138,7 +138,7 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
 def _set_load(
     poll: Callable[[], Batch], load: LoadSetter, force: float, prompt: Callable[[str, float], None]
 ) -> None:
-    """Request a load and wait until it is set."""
+    """Request a load [N], then poll and prompt until the setter says that it is set."""
     text = load.request(force)
     waiting = True
     while waiting:
@@ -149,7 +149,11 @@ def _set_load(
 
 
 def _read(poll: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:
-    """Average the normal force over a duration; return mean and batch-means error [N]."""
+    """Average the normal force over a duration; return its mean and standard error [N].
+
+    Raises:
+        ProtocolError: Fewer than 2 `BATCHES` samples have arrived.
+    """
     end = clock.now() + duration
     parts = []
     while clock.now() < end:

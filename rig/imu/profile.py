@@ -17,21 +17,23 @@ from rig.sample_columns import as_columns
 from rig.zebro.profile import Array
 
 NORM_TOLERANCE: Final = 0.05
+"""Largest difference of a quaternion's length from 1 [-]."""
 FIELDS: Final = 10
+"""Number of counts of a sample: quaternion 4, angular rate 3, specific force 3."""
 Link: TypeAlias = Literal["serial", "table"]
 
 
 @dataclass(frozen=True)
 class ImuProfile:
-    """An inertial measurement unit.
+    """Profile of an inertial measurement unit: frame layout, scales and mounting.
 
     Attributes:
-        name: Name of the profile.
+        name: Name of the profile: that of its file without suffix.
         baudrate: Line rate; 0 for a table [baud].
-        byte_order: Of values of two bytes.
-        quaternion_scale: Counts of a quaternion component of 1.
-        rate_scale: Counts of 1 rad/s.
-        force_scale: Counts of 1 m/s².
+        byte_order: Byte order of the counts, of two bytes each.
+        quaternion_scale: Counts per 1 of a quaternion component.
+        rate_scale: Counts per angular rate [s/rad].
+        force_scale: Counts per specific force [s²/m].
         mounting: Quaternion w, x, y, z of the rotation from the sensor's axes to the body's.
         rate: Sample rate [Hz].
         link: `serial`, or `table` for an imported file.
@@ -53,23 +55,23 @@ class ImuProfile:
         return struct.Struct(("<" if self.byte_order == "little" else ">") + f"{FIELDS}h")
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Return whether the quaternion has length 1, within `NORM_TOLERANCE`."""
+        """Return whether the quaternion (first four counts) has length 1 +/- `NORM_TOLERANCE`."""
         norm = sum(count * count for count in counts[:4]) ** 0.5 / self.quaternion_scale
         return abs(norm - 1) <= NORM_TOLERANCE
 
 
 @dataclass(frozen=True)
 class Orientation:
-    """Measurements of a unit, in the body's axes.
+    """Orientation of the body, with angular rate and specific force in the body's axes.
 
     Attributes:
         host_time: Time at which the host read each sample, shape (n,) [s].
-        device_time: Time at which the unit took it, shape (n,) [s].
-        roll: Shape (n,) [rad].
-        pitch: Shape (n,) [rad].
-        yaw: Unwrapped, from an arbitrary heading, shape (n,) [rad].
-        angular_rate: Of the body in its own axes, shape (n, 3) [rad/s].
-        specific_force: Acceleration less gravity, shape (n, 3) [m/s²].
+        device_time: Time at which the unit took each sample, NaN where unknown, shape (n,) [s].
+        roll: Roll angle, left side up, shape (n,) [rad].
+        pitch: Pitch angle, nose down, shape (n,) [rad].
+        yaw: Unwrapped yaw angle from an arbitrary heading, to the left, shape (n,) [rad].
+        angular_rate: Angular velocity of the body, columns x, y, z, shape (n, 3) [rad/s].
+        specific_force: Acceleration less gravity, columns x, y, z, shape (n, 3) [m/s²].
     """
 
     host_time: Array
@@ -91,7 +93,8 @@ def load_imu_profile(name: str) -> ImuProfile:
         The profile.
 
     Raises:
-        ProfileError: A key is missing, unknown or of the wrong type.
+        ProfileError: The file is missing or not such a profile; or a key is missing, unknown or
+            invalid.
     """
     table = open_profile(name, device="imu")
     link, frame, scale, mounting, stream = (
@@ -117,7 +120,7 @@ def load_imu_profile(name: str) -> ImuProfile:
 
 
 def render_table_profile(rate: float) -> str:
-    """Return the TOML of a profile for orientation imported from a table in SI, in the body's axes.
+    """Format as TOML the profile of orientation imported from a table in SI and the body's axes.
 
     Args:
         rate: Sample rate [Hz].
@@ -138,10 +141,10 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
 
     Args:
         profile: Profile of the unit.
-        samples: Its samples, in order.
+        samples: Samples of the unit, in order.
 
     Returns:
-        Orientation, angular rate and specific force.
+        Orientation, angular rate and specific force of the body, corrected for the mounting.
     """
     columns = as_columns(samples)
     counts = columns.counts.reshape(-1, FIELDS)
@@ -166,12 +169,12 @@ def encode_orientation(
 
     Args:
         profile: Profile of the unit.
-        rotation: Of the body in the inertial frame.
-        angular_rate: In the body's axes, shape (3,) [rad/s].
-        specific_force: In the body's axes, shape (3,) [m/s²].
+        rotation: Rotation from the body's axes to the inertial frame.
+        angular_rate: Angular velocity in the body's axes, shape (3,) [rad/s].
+        specific_force: Acceleration less gravity in the body's axes, shape (3,) [m/s²].
 
     Returns:
-        Ten counts, clipped to 16 bits.
+        Ten counts, rounded and clipped to 16 bits: quaternion w, x, y, z, rate, force.
     """
     mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
     values = np.concatenate([

@@ -15,14 +15,16 @@ from rig.links.packet import TICK, Kind, Packet, encode_packet
 from rig.zebro.profile import Array
 
 GRAVITY: Final = 9.81
+"""Acceleration of gravity [m/s²]."""
 STEP: Final = 1e-4
+"""Step of the finite difference that gives the angular rate [s]."""
 
 
 def rocking(time: float) -> tuple[float, float, float]:
-    """Compute the attitude of a body that oscillates in roll and pitch as it turns left.
+    """Compute the attitude of a body that oscillates at 1 Hz in roll and pitch as it turns left.
 
     Args:
-        time: Time since the beginning [s].
+        time: Time since the unit was switched on [s].
 
     Returns:
         Roll, pitch and yaw [rad].
@@ -32,12 +34,12 @@ def rocking(time: float) -> tuple[float, float, float]:
 
 
 class SimulatedImu:
-    """Simulated unit that sends packets; satisfies `ByteTwin`.
+    """Simulated unit that sends packets; implements the protocol `ByteTwin`.
 
     Args:
         profile: Scale of the counts, mounting and rate of the unit.
         faults: Transmission errors of the line.
-        rng: Random generator.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -80,7 +82,12 @@ class SimulatedImu:
 
 
 def _motion(time: float) -> tuple[Rotation, Array, Array]:
-    """Compute the body's rotation, its angular rate and the specific force at a time."""
+    """Compute the motion of the `rocking` body at a time [s].
+
+    Returns:
+        Rotation from body to inertial frame; angular rate [rad/s] and specific force [m/s²] in the
+        body's axes, each of shape (3,). The acceleration is taken as 0.
+    """
     rotation = _rotation(time)
     turned = (rotation.inv() * _rotation(time + STEP)).as_rotvec()
     return rotation, turned / STEP, rotation.inv().apply([0.0, 0.0, GRAVITY])

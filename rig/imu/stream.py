@@ -9,11 +9,11 @@ from rig.links.packet_stream import PacketStream
 
 
 class ImuStream(PacketStream):
-    """Stream of an inertial measurement unit; satisfies `rig.device.Stream`.
+    """Stream of an inertial measurement unit; implements the protocol `rig.device.Stream`.
 
     Args:
         link: Bytes from the unit.
-        profile: Its profile.
+        profile: Profile of the unit.
         name: Name of the stream; each of several units needs its own.
         clock: Host time.
     """

@@ -16,7 +16,7 @@ class Link(Protocol):
         """Open the link.
 
         Raises:
-            LinkError: There is no such port, or no permission to open it.
+            LinkError: There is no such port, no permission to open it, or another program has it.
         """
         ...
 
@@ -26,7 +26,7 @@ class Link(Protocol):
 
 
 class ByteLink(Link, Protocol):
-    """Bytes to and from one device."""
+    """Link that carries bytes to and from one device."""
 
     @property
     def reconnected(self) -> int:
@@ -41,7 +41,7 @@ class ByteLink(Link, Protocol):
         ...
 
     def write(self, data: bytes) -> bool:
-        """Send bytes; return whether the link took them.
+        """Send bytes; return whether the link took them, False while it is disconnected.
 
         Raises:
             RigTimeout: The port accepts no bytes within its timeout.
@@ -58,7 +58,7 @@ class ByteTwin(Protocol):
 
     @property
     def source(self) -> str:
-        """Origin of its data, as in manifests: `sim:WHAT`."""
+        """Origin of the twin's data, as in manifests: `sim:WHAT`."""
         ...
 
     def poll(self, now: float, received: bytes) -> bytes:

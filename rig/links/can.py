@@ -22,10 +22,13 @@ if TYPE_CHECKING:
     from can.interfaces.slcan import slcanBus
 
 WRITE_TIMEOUT: Final = 0.5
+"""Longest wait until the bus takes a frame [s]."""
 RETRY_AFTER: Final = 0.25
+"""Interval between attempts to reopen a lost bus [s]."""
 MAX_PER_READ: Final = 4096
+"""Largest number of frames of one read."""
 LONGEST_READ: Final = 0.05
-"""Longest duration of one read; more frames may still wait [s]."""
+"""Longest duration of one read beyond its timeout; more frames may still wait [s]."""
 STAMPED: Final = frozenset({"socketcan", "virtual"})
 """Interfaces whose frame time stamps are arrival times by the system's clock."""
 STAMP_ERROR: Final = 0.001
@@ -68,11 +71,11 @@ class CanLink:
         self._empty_at = self._since = clock.now()
 
     def open(self) -> None:
-        """Open the bus, for this program alone.
+        """Lock and open the bus, so that no other program uses it.
 
         Raises:
-            InUse: Another program has it; the message says which.
-            LinkError: There is no such bus, or no permission to open it.
+            InUse: Another program has the bus; the message says which.
+            LinkError: There is no such bus, its name is invalid, or permission is missing.
         """
         if self._lock is not None:
             self._lock.take()
@@ -101,9 +104,11 @@ class CanLink:
                 bus.shutdown()
 
     def read(self, timeout: float) -> list[can.Message]:
-        """Return all data frames that have arrived, waiting at most `timeout` for the first [s].
+        """Return the data frames that have arrived, waiting at most `timeout` for the first [s].
 
-        One call returns at most `MAX_PER_READ` frames and takes at most `LONGEST_READ` for them.
+        Only frames with 11-bit ids are returned, at most `MAX_PER_READ` of them; remote and damaged
+        frames are discarded. While the bus is disconnected the call tries to reopen it, at most
+        every `RETRY_AFTER`, and returns no frames without success.
         """
         if self._bus is None and not self._reconnect(timeout):
             return []
@@ -117,11 +122,11 @@ class CanLink:
         return messages
 
     def arrivals(self, messages: Sequence[can.Message]) -> list[float]:
-        """Estimate the arrival times of frames just read, by host time, non-decreasing [s].
+        """Estimate the arrival time of each frame just read, by host time, non-decreasing [s].
 
         A frame arrived after the bus was last found empty. Its time stamp gives the arrival where
         the interface takes it from the system's clock, as the kernel does for socketcan. Otherwise
-        the frames are spread evenly over that time.
+        the frames are spread evenly between that moment and now.
         """
         now, wall = self._clock.now(), time.time()
         longest = now - self._since
@@ -161,7 +166,7 @@ class CanLink:
             Whether the frame was sent; False while the bus is disconnected.
 
         Raises:
-            RigTimeout: As `write`.
+            RigTimeout: The bus is there but takes no frame, as in `write`.
         """
         return self._send(
             can.Message(
@@ -186,13 +191,13 @@ class CanLink:
 
     @property
     def _stamped(self) -> bool:
-        """Whether the time stamps of frames are arrival times."""
+        """Whether frames have time stamps by the system's clock: `STAMPED`, or an open bus."""
         if isinstance(self._channel, str):
             return self._channel.partition(":")[0] in STAMPED
         return _serial_port(self._channel) is None
 
     def _drain(self, bus: can.BusABC, timeout: float, messages: list[can.Message]) -> None:
-        """Receive frames until none is left, or until a limit of `read` is reached."""
+        """Append frames to `messages` until none is left, or a limit of `read` is reached."""
         port = _serial_port(bus)
         began, wait = self._clock.now(), timeout
         for _ in range(MAX_PER_READ):
@@ -209,7 +214,7 @@ class CanLink:
             wait = 0.0
 
     def _receive(self, bus: can.BusABC, wait: float, messages: list[can.Message]) -> bool:
-        """Receive one frame; return whether there was any."""
+        """Receive one frame, valid or damaged; return whether there was any within `wait` [s]."""
         try:
             message = bus.recv(wait)
         except (ValueError, LookupError):  # raised by python-can's slcan for a damaged line
@@ -245,7 +250,10 @@ class CanLink:
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _reconnect(self, timeout: float) -> bool:
-        """Try to reopen a lost bus, at most every `RETRY_AFTER`; return whether it is back."""
+        """Try to reopen a lost bus, at most every `RETRY_AFTER`; return whether it is open.
+
+        Waits at most `timeout` [s]. A bus that was given as an object is never reopened.
+        """
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
         if wait > timeout or isinstance(self._channel, can.BusABC):
@@ -261,12 +269,12 @@ class CanLink:
 
 
 def _serial_port(bus: can.BusABC) -> "serial.Serial | None":
-    """Return the port behind python-can's slcan; None of any other bus."""
+    """Return the serial port of a python-can slcan bus; None for any other bus."""
     return getattr(bus, "serialPortOrig", None)
 
 
 def _bus_lock(channel: "str | can.BusABC") -> Exclusive | None:
-    """Return the lock of a bus; None where no other program can open it.
+    """Return the lock of a bus; None for an open or virtual bus, which no other program opens.
 
     An adapter on a serial line is locked as that serial port, however it is opened.
     """

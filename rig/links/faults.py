@@ -15,13 +15,13 @@ class Faults:
     """Probabilities of transmission errors on a line; the defaults are an error-free line.
 
     Attributes:
-        flip: Probability that a bit is flipped.
+        flip: Probability, for each bit, that it is flipped.
         drop: Probability that a frame is lost whole.
-        truncate: Probability that a frame loses its end.
+        truncate: Probability that the end of a frame is lost.
         duplicate: Probability that a frame is sent twice.
         delay: Probability that a frame is sent after the next one.
-        garbage: Probability that random bytes precede a frame.
-        noise_at_start: Random bytes before the first frame.
+        garbage: Probability that 1 to 39 random bytes precede a frame.
+        noise_at_start: Number of random bytes before the first frame.
 
     Raises:
         ProtocolError: A probability is outside 0 to 1.
@@ -50,7 +50,7 @@ FrameT = TypeVar("FrameT")
 
 
 class FaultyLine(Generic[FrameT]):
-    """Channel that loses, duplicates and delays whole frames.
+    """Channel that drops, truncates, duplicates and delays frames at random.
 
     Args:
         faults: Probabilities of the errors.
@@ -72,7 +72,7 @@ class FaultyLine(Generic[FrameT]):
             truncate: Removes the end of a frame; None where frames arrive whole or not at all.
 
         Returns:
-            The frames that arrive now: none, this one, or an earlier one that was delayed.
+            The frames that arrive now: this one never, once or twice, then a delayed earlier one.
         """
         held, self._held = self._held, []
         if self._happens(self._faults.delay):
@@ -89,20 +89,20 @@ class FaultyLine(Generic[FrameT]):
 
 
 class FaultyWire(FaultyLine[bytes]):
-    """Byte stream that also flips bits and adds random bytes to the frames it carries."""
+    """Byte stream of frames with all errors of `Faults`, flipped and random bytes included."""
 
     def __init__(self, faults: Faults, *, rng: np.random.Generator) -> None:
         super().__init__(faults, rng=rng)
         self._noise = faults.noise_at_start
 
     def stream(self, frames: list[bytes]) -> bytes:
-        """Transmit frames with random errors.
+        """Transmit frames as bytes with random errors; an error-free line draws no numbers.
 
         Args:
             frames: Whole frames, in order.
 
         Returns:
-            The bytes at the far end.
+            The bytes that arrive at the far end.
         """
         if self._faults == PERFECT_LINE:
             return b"".join(frames)

@@ -16,7 +16,12 @@ class CobsFramer:
     while the port was opened, and are not counted as damaged.
 
     Args:
-        longest: Longest encoded frame of the protocol, without its end [bytes].
+        longest: Longest encoded frame of the protocol, without its zero; longer ones are damaged
+            [bytes].
+
+    Attributes:
+        damaged: Number of damaged frames so far.
+        resynchronised: Number of times that a good frame followed damaged ones.
     """
 
     def __init__(self, *, longest: int) -> None:
@@ -28,7 +33,11 @@ class CobsFramer:
         self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Add bytes and return the payloads of the frames that are now complete."""
+        """Add received bytes and return the decoded content of the frames that are now complete.
+
+        Damaged frames are counted and left out. The caller calls `accept` or `refuse` for each
+        content.
+        """
         *pieces, tail = (self._tail + data).split(DELIMITER)
         self._tail = tail
         if len(tail) > self._longest:  # bounds the memory for noise without an end
@@ -36,17 +45,17 @@ class CobsFramer:
         return [payload for piece in pieces if (payload := self._decode(piece)) is not None]
 
     def reset(self) -> None:
-        """Discard an incomplete frame."""
+        """Discard an incomplete frame, as after a reconnection."""
         self._tail = b""
         self._joined = False
 
     def refuse(self) -> None:
-        """Count a correctly stuffed frame with invalid content as damaged."""
+        """Count a frame as damaged, for example one with valid stuffing and invalid content."""
         self.damaged += 1
         self._out_of_sync = True
 
     def accept(self) -> None:
-        """Count a resynchronisation where a good frame follows damaged ones."""
+        """Register a good frame: a resynchronisation where the frame before was damaged."""
         self.resynchronised += self._out_of_sync
         self._out_of_sync = False
 
@@ -74,6 +83,10 @@ class TrailerFramer:
     Args:
         length: Length of a frame with its trailer [bytes].
         trailer: Last bytes of every frame.
+
+    Attributes:
+        damaged: Number of times that a frame did not end in the trailer.
+        resynchronised: Number of times that a good frame followed damaged ones.
     """
 
     def __init__(self, *, length: int, trailer: bytes) -> None:
@@ -86,7 +99,7 @@ class TrailerFramer:
         self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Add bytes and return the frames that are now complete, without their trailers."""
+        """Add received bytes and return the frames that are now complete, without trailers."""
         self._buffer += data
         frames: list[bytes] = []
         while self._aligned or self._align():
@@ -102,7 +115,7 @@ class TrailerFramer:
         return frames
 
     def reset(self) -> None:
-        """Discard an incomplete frame."""
+        """Discard an incomplete frame and search for the next trailer, as after a reconnection."""
         self._buffer = b""
         self._aligned = False
 

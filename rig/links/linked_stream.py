@@ -13,7 +13,7 @@ class LinkedStream(Generic[LinkT]):
     """A stream over one link, as a context manager.
 
     Args:
-        link: The link.
+        link: Link to the device, opened on entering and closed on leaving.
         name: Name of the stream.
         clock: Host time.
 

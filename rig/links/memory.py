@@ -13,6 +13,10 @@ class MemoryLink:
 
     With a `ManualClock` an hour of streaming takes seconds and is reproducible. Not modelled: baud
     rate, and overflow of a receive buffer.
+
+    Args:
+        twin: Simulated device at the other end.
+        clock: Host time, which is passed to the twin and used for waiting.
     """
 
     def __init__(self, twin: ByteTwin, *, clock: Clock) -> None:
@@ -26,7 +30,7 @@ class MemoryLink:
         """Do nothing: the twin is always connected."""
 
     def close(self) -> None:
-        """Pass the last written bytes to the twin."""
+        """Pass the last written bytes to the twin, and discard the bytes that it sends."""
         self._poll()
 
     def read(self, timeout: float) -> bytes:

@@ -29,6 +29,7 @@ WRAP: Final = 1 << 32
 TICK: Final = 1e-6
 """One tick of the device time [s]."""
 LONGEST_BODY: Final = 200
+"""Longest body of a packet [bytes]."""
 
 
 class Kind(IntEnum):
@@ -43,10 +44,10 @@ class Kind(IntEnum):
 
 
 class Packet(NamedTuple):
-    """One packet.
+    """Content of one frame, without checksum.
 
     Attributes:
-        kind: `Kind`, or an unknown number.
+        kind: Kind of packet, one of `Kind` or an unknown number, 0 to 255.
         sequence: Number of the packet, modulo 2³².
         ticks: Device time, modulo 2³² [µs].
         body: Content, whose layout depends on the kind.
@@ -65,7 +66,7 @@ def encode_packet(packet: Packet) -> bytes:
         packet: Packet; sequence number and ticks are taken modulo 2³².
 
     Returns:
-        Stuffed bytes, ended by a zero.
+        Stuffed bytes, ended by a zero byte.
 
     Raises:
         ProtocolError: The body is longer than a packet can hold.
@@ -80,7 +81,7 @@ def encode_packet(packet: Packet) -> bytes:
 
 
 def decode_packet(content: bytes) -> Packet | None:
-    r"""Decode one unstuffed packet; None where its checksum or length is wrong.
+    r"""Decode one unstuffed packet; None where it is too short or its checksum is wrong.
 
     >>> wire = encode_packet(Packet(Kind.LEGS, 7, 20_000, bytes(range(6))))
     >>> decode_packet(cobs.decode(wire[:-1]))

@@ -25,12 +25,13 @@ from rig.links.packet import (
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 
 LONGEST: Final = HEADER.size + LONGEST_BODY + CHECKSUM.size + 1
+"""Longest stuffed packet without its zero byte [bytes]."""
 MAX_FOREIGN: Final = 20
-"""Number of packets of another device, with none of the expected one, that is a mismatch."""
+"""Number of packets of other kinds or lengths, with no sample so far, that is a mismatch."""
 
 
 class PacketStream(LinkedStream[ByteLink]):
-    """Samples from packets of one kind; satisfies `rig.device.Stream`.
+    """Samples from packets of one kind; implements the protocol `rig.device.Stream`.
 
     Args:
         link: Bytes to and from the device.
@@ -38,8 +39,8 @@ class PacketStream(LinkedStream[ByteLink]):
         kind: Kind of packet that carries the samples.
         body: Layout of the packet's body; its fields are the sample's counts.
         rate: Sample rate; distinguishes a loss from a restart [Hz].
-        possible: Returns whether counts are possible; impossible ones are discarded. None takes
-            any.
+        possible: Returns whether the counts of a sample are possible; samples with impossible ones
+            are discarded and counted as refused. None accepts any counts.
         clock: Host time.
     """
 
@@ -67,7 +68,7 @@ class PacketStream(LinkedStream[ByteLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far."""
+        """Counters of the stream so far; packets of other kinds or lengths count as refused."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -83,7 +84,8 @@ class PacketStream(LinkedStream[ByteLink]):
         """Return all samples that have arrived, waiting at most `timeout` for the first [s].
 
         Raises:
-            DeviceMismatch: The port carries packets, but only those of another device.
+            DeviceMismatch: `MAX_FOREIGN` whole packets had another kind or length, and none has
+                given a sample.
         """
         data = self._link.read(timeout)
         if self._link.reconnected != self._connections:
@@ -103,8 +105,12 @@ class PacketStream(LinkedStream[ByteLink]):
             body: Encoded values of the command.
 
         Returns:
-            Whether the link took it; False while it is disconnected. The protocol has no
-            acknowledgement: whether the device obeys shows in its stream.
+            Whether the link took the packet; False while the link is disconnected. The protocol
+            has no acknowledgement: whether the device obeys shows in its stream.
+
+        Raises:
+            ProtocolError: The body is longer than a packet can hold.
+            RigTimeout: The port accepts no bytes within its timeout.
         """
         ticks = int(self._clock.now() / TICK)
         packet = Packet(kind, self._sent, ticks, body)

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 LATE_WINDOW: Final = 64
-"""Default distance behind the newest number up to which a sample is late, not a restart."""
+"""Default distance behind the newest number below which a sample is late, not a restart."""
 SLACK: Final = 64
+"""Jump forward that is always a loss, added to the number that can have been sent [samples]."""
 
 
 class SequenceTracker:
@@ -22,8 +23,8 @@ class SequenceTracker:
     Args:
         modulus: Modulus at which the device's numbers wrap.
         rate: Sample rate; None where unknown, then only jumps back are restarts [Hz].
-        late_window: A number up to this far back is an old sample; farther back it means a restart
-            of the device.
+        late_window: A number less than this far back is a late sample; farther back it means a
+            restart of the device; at most half of `modulus` is used.
 
     Attributes:
         lost: Number of samples missing so far.
@@ -51,8 +52,8 @@ class SequenceTracker:
             host_time: Time at which it was read [s].
 
         Returns:
-            The unwrapped number, larger than every earlier one; None where the sample must be
-            discarded.
+            The unwrapped number, larger than every earlier one; None where the sample is a
+            duplicate or late, and must be discarded.
 
         >>> tracker = SequenceTracker(modulus=256)
         >>> [tracker.accept(number, 0.0) for number in (254, 255, 2, 2, 3)]
@@ -89,7 +90,8 @@ class SequenceTracker:
             host_time: Time at which they were read [s].
 
         Returns:
-            An index of the accepted numbers, and the accepted numbers unwrapped.
+            Mask of shape (n,), or slice of everything, that selects the accepted numbers; and
+            the accepted numbers unwrapped, shape (accepted,).
 
         >>> tracker = SequenceTracker(modulus=256)
         >>> tracker.accept_all(np.array([254, 255, 2, 2]), 0.0)
@@ -114,7 +116,7 @@ class SequenceTracker:
 
 
 class TimeUnwrapper:
-    """Unwraps the ticks of a device's clock to a non-decreasing time.
+    """Converts the wrapping ticks of a device's clock to a non-decreasing time.
 
     Args:
         modulus: Modulus at which the device's ticks wrap.
@@ -127,7 +129,7 @@ class TimeUnwrapper:
         self._last: int | None = None
 
     def unwrap(self, ticks: int) -> float:
-        """Compute the device time of a reading not older than the last [s].
+        """Compute the device time [s] of a reading that is not older than the previous one.
 
         >>> clock = TimeUnwrapper(modulus=1000, tick=0.001)
         >>> [clock.unwrap(ticks) for ticks in (990, 999, 4)]
@@ -139,7 +141,7 @@ class TimeUnwrapper:
         return self._last * self._tick
 
     def unwrap_all(self, ticks: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
-        """Compute the device times of readings in order, shape (n,) [s]; see `unwrap`.
+        """Compute the device times [s] of readings from their ticks, in order, both of shape (n,).
 
         >>> TimeUnwrapper(modulus=1000, tick=0.001).unwrap_all(np.array([990, 999, 4]))
         array([0.99 , 0.999, 1.004])

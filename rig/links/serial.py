@@ -14,17 +14,20 @@ from rig.errors import LinkError, RigTimeout
 from rig.exclusive import device_lock
 
 CHUNK: Final = 1 << 16
+"""Largest number of bytes of one system call [bytes]."""
 MAX_PER_READ: Final = 1 << 18
-"""Largest number of bytes of one read: nearly a second at 3 Mbaud [bytes]."""
+"""Number of bytes after which one read ends: nearly a second at 3 Mbaud [bytes]."""
 RETRY_AFTER: Final = 0.25
+"""Interval between attempts to reopen a lost port [s]."""
 WRITE_TIMEOUT: Final = 1.0
+"""Longest wait until the port takes all bytes [s]."""
 
 
 class SerialLink:
     """Bytes to and from a serial port, or any URL that pyserial knows (`socket://host:port`).
 
     A read returns all available bytes, many frames with one system call. A disconnected port is
-    closed and reopened while the stream continues; `reconnected` counts this.
+    closed and reopened while the stream continues; `reconnected` counts how often.
 
     Args:
         port: Name of the port, or a URL.
@@ -46,11 +49,11 @@ class SerialLink:
         self._lock = device_lock(port)
 
     def open(self) -> None:
-        """Open the port, for this program alone.
+        """Lock and open the port, so that no other program uses it.
 
         Raises:
-            InUse: Another program has it; the message says which.
-            LinkError: There is no such port, or no permission to open it.
+            InUse: Another program has the port; the message says which.
+            LinkError: There is no such port, its name is invalid, or permission is missing.
         """
         self._lock.take()
         try:
@@ -68,7 +71,10 @@ class SerialLink:
         self._lock.release()
 
     def read(self, timeout: float) -> bytes:
-        """Return all available bytes, waiting at most `timeout` for the first [s]."""
+        """Return all available bytes, waiting at most `timeout` for the first [s].
+
+        While the port is disconnected the call tries to reopen it, and returns nothing otherwise.
+        """
         if self._serial is None and not self._reconnect(timeout):
             return b""
         port = self._serial
@@ -79,10 +85,10 @@ class SerialLink:
             return b""
 
     def write(self, data: bytes) -> bool:
-        """Send bytes; returns False while the port is disconnected.
+        """Send bytes; return whether the port took them, False while it is disconnected.
 
         Raises:
-            RigTimeout: The port is connected but accepts no bytes.
+            RigTimeout: The port is connected, but does not take all bytes in `WRITE_TIMEOUT`.
         """
         if self._serial is None:
             return False
@@ -118,7 +124,10 @@ class SerialLink:
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _reconnect(self, timeout: float) -> bool:
-        """Try to reopen a lost port, at most every `RETRY_AFTER`; return whether it is back."""
+        """Try to reopen a lost port, at most every `RETRY_AFTER`; return whether it is open.
+
+        Waits at most `timeout` [s].
+        """
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
         if wait > timeout:
@@ -134,7 +143,7 @@ class SerialLink:
 
 
 def _read_all(port: serial.Serial) -> bytes:
-    """Read all bytes of a port that has some.
+    """Read the available bytes of a port that has some, until there are `MAX_PER_READ`.
 
     Raises:
         OSError: The port is disconnected.
@@ -149,7 +158,7 @@ def _read_all(port: serial.Serial) -> bytes:
 
 
 def _read_once(port: serial.Serial) -> bytes:
-    """Read the bytes of one system call, at most 4 KiB from a terminal.
+    """Read bytes with one system call, at most 4 KiB from a terminal.
 
     Raises:
         OSError: The port is disconnected.
@@ -161,7 +170,7 @@ def _read_once(port: serial.Serial) -> bytes:
 
 
 def _readable(port: serial.Serial, timeout: float) -> bool:
-    """Return whether a port has bytes, waiting at most `timeout` [s]."""
+    """Return whether a port has bytes to read, waiting at most `timeout` for them [s]."""
     if hasattr(port, "fileno"):
         return bool(select.select([port], [], [], timeout)[0])
     end = time.monotonic() + timeout  # ports of Windows cannot be waited for

@@ -19,13 +19,14 @@ from rig.links.byte_link import ByteTwin
 TICK: Final = 0.002
 """Interval at which a served twin is polled [s]."""
 JOIN_TIMEOUT: Final = 2.0
+"""Longest wait for the end of the thread [s]."""
 
 
 class Ticker:
     """Thread that calls a function periodically, every `TICK`, until the context is left.
 
     Args:
-        tick: Function to call with the time [s].
+        tick: Function to call with the host time [s].
         clock: Host time.
 
     Attributes:
@@ -70,7 +71,10 @@ class _Terminal:
         self.port = str(link)
 
     def exchange(self, data: bytes) -> bytes:
-        """Send bytes and return those received."""
+        """Send bytes to the program at the port, and return those that it has sent.
+
+        Bytes that do not fit into the terminal's buffer are dropped.
+        """
         with contextlib.suppress(BlockingIOError):  # a full buffer drops bytes, as a UART does
             os.write(self._master, data)
         try:
@@ -138,13 +142,13 @@ class PortServer:
     """Serves a byte twin at a port: a context manager.
 
     Args:
-        twin: The simulated device.
-        as_socket: Listen on `socket://` of the loopback interface in place of a pseudo-terminal;
-            always so where the system has none.
+        twin: Simulated device, polled every `TICK` while the server is entered.
+        as_socket: Listen on `socket://` of the loopback interface instead of a pseudo-terminal;
+            always so on Windows, which has none.
         clock: Host time.
 
     Attributes:
-        port: Name of the port that a driver, or any program, opens.
+        port: Name of the port that a driver, or any program, opens; empty until entered.
     """
 
     def __init__(
@@ -162,18 +166,18 @@ class PortServer:
 
     @property
     def failure(self) -> BaseException | None:
-        """Exception that the twin raised; None without one."""
+        """Exception that the twin or its port raised, which ends the polling; None without one."""
         return self._ticker.failure
 
     def unplug(self) -> None:
-        """Remove the port while the twin keeps running."""
+        """Remove the port while the twin keeps running; its bytes are then lost."""
         with self._lock:
             end, self._end = self._end, None
             if end is not None:
                 end.close()
 
     def plug_in(self) -> None:
-        """Restore the port under its name.
+        """Create the port, after `unplug` again under the same name.
 
         Raises:
             LinkError: The system provides no port.

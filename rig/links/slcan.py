@@ -14,8 +14,11 @@ import can
 from rig.errors import ProtocolError
 
 END: Final = b"\r"
+"""End of a line."""
 OBEYED: Final = b"\r"
+"""Answer to a valid command."""
 REFUSED: Final = b"\a"
+"""Answer to an invalid command."""
 LONGEST: Final = 32
 """Longest line of a frame with a time stamp, with some margin [bytes]."""
 _FRAME: Final = re.compile(
@@ -26,7 +29,7 @@ _HIGHEST: Final = {False: (1 << 11) - 1, True: (1 << 29) - 1}
 
 
 def encode_frame(message: can.Message) -> bytes:
-    r"""Encode a frame as an SLCAN line, with its end.
+    r"""Encode a CAN frame as an SLCAN line, carriage return included.
 
     >>> encode_frame(can.Message(arbitration_id=0x121, data=b"\x01\xff", is_extended_id=False))
     b't121201FF\r'
@@ -40,10 +43,11 @@ def encode_frame(message: can.Message) -> bytes:
 
 
 def decode_frame(line: bytes) -> can.Message:
-    """Decode an SLCAN line without its end; the inverse of `encode_frame`.
+    """Decode an SLCAN line without its carriage return; the inverse of `encode_frame`.
 
     Raises:
-        ProtocolError: The line is not a frame, or its id or length is invalid.
+        ProtocolError: The line is not a frame, its id is too large for its kind, or its length is
+            not that of its data.
     """
     found = _FRAME.fullmatch(line)
     if found is None:
@@ -63,7 +67,7 @@ def decode_frame(line: bytes) -> can.Message:
 
 
 class SlcanAdapter:
-    """Simulated adapter between a serial line and a CAN bus; satisfies `ByteTwin`.
+    """Simulated adapter between a serial line and a CAN bus; implements `ByteTwin`.
 
     It makes the devices on the bus accessible to any program that speaks SLCAN, for example with
     python-can's `slcan` interface. Frames pass while the host has the channel open.
@@ -75,7 +79,7 @@ class SlcanAdapter:
         source: Origin of the data: `sim:WHAT`.
 
     Attributes:
-        refused: Number of invalid lines.
+        refused: Number of invalid lines received so far.
     """
 
     def __init__(self, bus: can.BusABC, *, source: str) -> None:
@@ -86,7 +90,9 @@ class SlcanAdapter:
         self._inbox = b""
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Execute the lines received and return the frames of the bus; see `ByteTwin.poll`.
+        """Execute the lines received, and return answers and the frames of the bus.
+
+        Frames that arrive while the host has the channel closed are discarded; see `ByteTwin.poll`.
 
         Args:
             now: Time, not used [s].
@@ -131,4 +137,4 @@ class SlcanAdapter:
 
 
 _ANSWERS: Final = {b"F": b"F00", b"V": b"V0101", b"N": b"NSIM1"}
-"""Status, version and serial number."""
+"""Answers to the requests for status, version and serial number, without their end."""

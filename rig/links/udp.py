@@ -15,6 +15,7 @@ BUFFER: Final = 4 << 20
 LONGEST: Final = 1472
 """Longest datagram, that of an Ethernet frame; longer ones are truncated [bytes]."""
 MAX_PER_READ: Final = 8192
+"""Largest number of datagrams of one read."""
 
 
 class UdpLink:
@@ -22,7 +23,7 @@ class UdpLink:
 
     Args:
         host: Name or address of the device.
-        port: Its port.
+        port: UDP port of the device.
         gather: Time for which datagrams accumulate before a read takes them all: waking up for
             each of 7,000 per second takes several times the CPU time [s].
         source: `real`, or `sim:WHAT` for a twin's address.
@@ -49,10 +50,10 @@ class UdpLink:
         self._read_at = 0.0
 
     def open(self) -> None:
-        """Open the socket, for this program alone; the device need not be connected yet.
+        """Lock the device and open the socket; the device need not be connected yet.
 
         Raises:
-            InUse: Another program uses this device; the message says which.
+            InUse: Another program has the lock; the message says which.
             LinkError: The host name is unknown, or there is no network.
         """
         self._lock.take()
@@ -77,7 +78,11 @@ class UdpLink:
         self._lock.release()
 
     def read(self, timeout: float) -> list[bytes]:
-        """Return all available datagrams, waiting at most `timeout` for the first [s]."""
+        """Return the available datagrams, waiting at most `timeout` for the first [s].
+
+        With a timeout, a read less than `gather` after the last one waits a little longer, so that
+        datagrams accumulate. One call returns at most `MAX_PER_READ`; each is cut to `LONGEST`.
+        """
         opened = self._socket
         if opened is None or not select.select([opened], [], [], timeout)[0]:
             return []
@@ -96,7 +101,7 @@ class UdpLink:
         return datagrams
 
     def write(self, data: bytes) -> bool:
-        """Send one datagram; return whether the system accepted it."""
+        """Send one datagram; return whether the system accepted it, False while not open."""
         if self._socket is None:
             return False
         try:

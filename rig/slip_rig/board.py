@@ -20,22 +20,25 @@ WATCHDOG_EXPIRED: Final = 1
 
 
 def board_body(profile: BoardProfile) -> struct.Struct:
-    """Return the layout of a body: normal and traction force, both speeds as counts, a status."""
+    """Return the layout of a sample: normal force, traction, leg and ground speed, status.
+
+    Four signed counts of 32 bits and an unsigned status of 32 bits, in the profile's byte order.
+    """
     return struct.Struct(("<" if profile.byte_order == "little" else ">") + "4iI")
 
 
 def speed_body(profile: BoardProfile) -> struct.Struct:
-    """Return the layout of a speed command: leg and ground, as counts."""
+    """Return the layout of a speed command: leg and ground speed as signed counts of 32 bits."""
     return struct.Struct(("<" if profile.byte_order == "little" else ">") + "2i")
 
 
 class RigBoard(PacketStream):
-    """Stream of the board, and speeds of both discs; its watchdog is fed by reading.
+    """Stream of the board and drives of both discs; reading feeds the board's watchdog.
 
     Args:
         link: Bytes to and from the board.
-        profile: Its profile.
-        limits: Limits of the discs.
+        profile: Profile of the board.
+        limits: Limits of the rig; commanded speeds must be within its speed.
         clock: Host time.
 
     Attributes:
@@ -65,7 +68,11 @@ class RigBoard(PacketStream):
         self._status = 0
 
     def read(self, timeout: float) -> list[Sample]:
-        """Return all samples, waiting at most `timeout` for the first [s]; feeds the watchdog."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s].
+
+        Counts are normal force, traction, leg and ground speed. While a disc is armed, both speeds
+        are sent every `feed_interval`, which feeds the watchdog.
+        """
         end = self._clock.now() + timeout
         while True:
             if self._armed and self._clock.now() >= self._feed_at:
@@ -76,10 +83,10 @@ class RigBoard(PacketStream):
                 return [self._with_status(sample) for sample in samples]
 
     def require_healthy(self) -> None:
-        """Check the status of the board.
+        """Check the status of the board's latest sample.
 
         Raises:
-            DeviceFault: Its watchdog has stopped the discs.
+            DeviceFault: The status is not 0: the watchdog has stopped the discs, or a fault.
         """
         if self._status:
             raise DeviceFault(
@@ -89,7 +96,7 @@ class RigBoard(PacketStream):
             )
 
     def command_speeds(self) -> bool:
-        """Send both speeds; return whether the link took them."""
+        """Send the latest commanded speeds of both discs; return whether the link took them."""
         self._feed_at = self._clock.now() + self.profile.feed_interval
         counts = [
             round(self._speeds[disc] * self.profile.counts_per_speed) for disc in ("leg", "ground")
@@ -116,7 +123,7 @@ class RigBoard(PacketStream):
 
 
 class BoardDrive:
-    """One disc of the board; satisfies `rig.device.Drive`."""
+    """One disc of the board; implements the protocol `rig.device.Drive`."""
 
     def __init__(self, board: RigBoard, disc: str) -> None:
         self.name = f"{disc} disc"
@@ -124,20 +131,30 @@ class BoardDrive:
         self._disc = disc
 
     def arm(self, timeout: float) -> None:
-        """Energise at standstill; `timeout` [s] is not used, because the board does not confirm."""
+        """Command speed 0 and begin to feed the watchdog; clear its stop where no disc is armed.
+
+        `timeout` [s] is not used, because the board does not confirm.
+        """
         del timeout
         self._board._arm(self._disc)
         self.set_speed(0.0)
 
     def set_speed(self, omega: float) -> None:
-        """Command an angular speed of the disc [rad/s]; see `Drive.set_speed`."""
+        """Send an angular speed of the disc [rad/s], and the other disc's latest speed again.
+
+        Raises:
+            LimitExceeded: The magnitude of the speed is above the limit, or NaN.
+        """
         limit = self._board.limits.speed
         require_within(omega, limit, quantity=f"speed of the {self.name}", unit="rad/s")
         self._board._speeds[self._disc] = omega
         self._board.command_speeds()
 
     def disarm(self) -> None:
-        """Command standstill."""
+        """Command speed 0; errors of sending are suppressed.
+
+        The board has no command to de-energise. When no disc is armed, its watchdog is not fed.
+        """
         self._board._armed.discard(self._disc)
         self._board._speeds[self._disc] = 0.0
         with contextlib.suppress(RigError):  # the board's watchdog remains

@@ -15,11 +15,15 @@ ESTIMATES: Final = struct.Struct("<ff")
 INPUT_VELOCITY: Final = struct.Struct("<ff")
 """Velocity [rev/s] and torque feed-forward [Nm]."""
 AXIS_STATE: Final = struct.Struct("<I")
+"""Requested axis state, an `AxisState`."""
 CONTROLLER_MODE: Final = struct.Struct("<II")
+"""Control mode and input mode."""
 TEMPERATURES: Final = struct.Struct("<ff")
 """Temperature of the drive's transistors and of the motor [degC]; NaN or 0 without a sensor."""
 VELOCITY_CONTROL: Final = 2
+"""Control mode in which the drive follows a velocity."""
 PASS_THROUGH: Final = 1
+"""Input mode in which set-points are not filtered."""
 
 
 class Command(IntEnum):
@@ -86,15 +90,15 @@ def can_id(node: int, command: Command) -> int:
 
 
 def split_id(arbitration_id: int) -> tuple[int, int]:
-    """Compute node and command of an arbitration id; the inverse of `can_id`."""
+    """Split an arbitration id into node and number of the command; the inverse of `can_id`."""
     return arbitration_id >> 5, arbitration_id & 0x1F
 
 
 def describe_error(error: int, firmware: str) -> str:
-    """Describe an axis error as text.
+    """Describe the set bits of an axis error as text, joined by commas; empty for 0.
 
     Args:
-        error: Bit field of the axis error.
+        error: Axis error, a field of bits.
         firmware: Version of the firmware, a key of `ERRORS`.
 
     >>> describe_error(0x800, "0.5"), describe_error(0x10000000, "0.5")

@@ -22,16 +22,17 @@ from rig.slip_rig.profile import (
 )
 
 BATCHES: Final = 10
+"""Number of consecutive batches whose means give a standard error."""
 
 
 @dataclass(frozen=True)
 class Forces:
-    """Forces at the contact.
+    """Forces at the contact of both discs.
 
     Attributes:
-        time: When each was read, shape (n,) [s].
-        normal: Positive when pressed together, shape (n,) [N].
-        traction: Positive when driving, shape (n,) [N].
+        time: Host time at which each force was read, shape (n,) [s].
+        normal: Normal force, positive when pressed together, shape (n,) [N].
+        traction: Traction force, positive when driving, shape (n,) [N].
     """
 
     time: Array
@@ -44,9 +45,9 @@ class DiscSpeeds:
     """Angular speeds of both discs at the same instants.
 
     Attributes:
-        time: Shape (n,) [s].
-        leg: Shape (n,) [rad/s].
-        ground: Shape (n,) [rad/s].
+        time: Host time at which the speeds were read, shape (n,) [s].
+        leg: Speed of the leg disc, positive driving, shape (n,) [rad/s].
+        ground: Speed of the ground disc, positive driving, shape (n,) [rad/s].
     """
 
     time: Array
@@ -60,7 +61,7 @@ def measured_slip(omega_leg: Array, omega_ground: Array, profile: RigProfile) ->
     Args:
         omega_leg: Speed of the leg disc, shape (n,) [rad/s].
         omega_ground: Speed of the ground disc, shape (n,) [rad/s].
-        profile: Carries the radii of the discs.
+        profile: Profile of the rig, with the radii of the discs.
 
     Returns:
         Slip ratio, NaN or infinite where the leg disc stands still, shape (n,) [-].
@@ -77,11 +78,11 @@ def decode_forces(profile: LoadCellProfile, samples: Sequence[Sample]) -> Forces
     """Compute forces from the counts of a load cell.
 
     Args:
-        profile: Profile of the cell.
-        samples: Its samples.
+        profile: Profile of the cell, with scale, axes and signs.
+        samples: Samples of the cell.
 
     Returns:
-        Forces with the zero that the cell had.
+        Normal and traction force; the zero offset is not subtracted.
     """
     columns = as_columns(samples)
     counts = columns.counts.reshape(-1, 6)
@@ -99,11 +100,12 @@ def decode_further_loads(
 
     Args:
         profile: Profile of the cell.
-        samples: Its samples.
+        samples: Samples of the cell.
 
     Returns:
-        Force on the third axis, shape (n,) [N], and the largest magnitude of the three torques,
-        shape (n,) [N m]; None for the torques where the profile has no scale for them.
+        Force on the axis that is neither normal nor traction, with the cell's sign, shape (n,) [N],
+        and the largest magnitude of the three torques, shape (n,) [N m]; None for the torques where
+        the profile has no scale for them.
     """
     counts = as_columns(samples).counts.reshape(-1, 6).astype(float)
     lateral = counts[:, 3 - profile.normal.index - profile.traction.index]
@@ -115,19 +117,19 @@ def decode_further_loads(
 def decode_speeds(leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample]) -> DiscSpeeds:
     """Compute the speeds of both discs at the instants of the leg disc's samples.
 
-    The drives report in turns, so the ground disc's speed is interpolated, and held beyond its
-    first and last sample.
+    The drives report in turns, so the ground disc's speed is interpolated linearly, and held before
+    its first and after its last sample.
 
     Args:
         leg: Drive of the leg disc.
         ground: Drive of the ground disc.
-        samples: Samples of both, in order.
+        samples: Samples of both drives, in order of time.
 
     Returns:
-        Both speeds.
+        Both speeds, positive driving.
 
     Raises:
-        ProtocolError: One of the drives sent nothing.
+        ProtocolError: There is no sample of one of the drives.
     """
     columns = as_columns(samples)
     time, speed = {}, {}
@@ -146,11 +148,11 @@ def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forc
     """Compute forces and speeds from the counts of a board.
 
     Args:
-        profile: Profile of the board.
-        samples: Its samples.
+        profile: Profile of the board, with scales and signs of the forces.
+        samples: Samples of the board.
 
     Returns:
-        Forces and speeds at the same instants.
+        Forces and speeds at the same instants; the zero offset is not subtracted.
     """
     columns = as_columns(samples)
     counts, time = columns.counts.reshape(-1, 4), columns.host_time
@@ -164,12 +166,12 @@ def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forc
 
 @dataclass(frozen=True)
 class Zero:
-    """Zero offset: reading of an unloaded load cell.
+    """Zero offset: mean reading of an unloaded load cell.
 
     Attributes:
         normal: Mean normal force [N].
         traction: Mean traction force [N].
-        standard_error: Of the worse of the two means, from ten batch means [N].
+        standard_error: Larger of the standard errors of both means, from ten batch means [N].
     """
 
     normal: float
@@ -181,14 +183,17 @@ def standard_error(values: Array) -> float:
     """Compute the standard error of the mean of autocorrelated values from batch means.
 
     Args:
-        values: At least `BATCHES` values, in order.
+        values: At least `BATCHES` values in order of time, shape (n,), in any unit.
+
+    Returns:
+        Standard deviation of the `BATCHES` batch means over the root of `BATCHES`.
     """
     means = [batch.mean() for batch in np.array_split(values, BATCHES)]
     return float(np.std(means, ddof=1) / np.sqrt(BATCHES))
 
 
 def tare(forces: Forces) -> Zero:
-    """Compute the zero of an unloaded rig.
+    """Compute the zero offset of an unloaded rig: the mean of both forces.
 
     Args:
         forces: At least ten readings without load.
@@ -197,7 +202,7 @@ def tare(forces: Forces) -> Zero:
         The zero. Its standard error comes from batch means, because readings are autocorrelated.
 
     Raises:
-        ProtocolError: There are too few readings.
+        ProtocolError: There are fewer than ten readings.
     """
     if len(forces.time) < BATCHES:
         raise ProtocolError(f"{len(forces.time)} readings; expected at least {BATCHES} for a zero")
@@ -212,12 +217,12 @@ def require_zero(before: Zero, after: Zero, *, limit: float) -> None:
     """Check that a zero did not move during a run.
 
     Args:
-        before: Zero before it.
-        after: Zero after it.
-        limit: Largest change allowed, beside twice the zeros' own errors [N].
+        before: Zero before the run.
+        after: Zero after the run.
+        limit: Largest change allowed, to which twice the standard error of the change is added [N].
 
     Raises:
-        LimitExceeded: A channel moved farther: the run is not to be trusted.
+        LimitExceeded: The zero of a channel changed by more: the run is not to be trusted.
     """
     error = float(np.hypot(before.standard_error, after.standard_error))
     for channel in ("normal", "traction"):

@@ -48,9 +48,9 @@ class DriveBus(LinkedStream[CanLink]):
     CANSimple has no sequence numbers and no device time, so that losses are not detected.
 
     Args:
-        link: The bus.
-        profile: Both drives.
-        limits: Limits of the discs.
+        link: Link to the bus of both drives.
+        profile: Profile of both drives.
+        limits: Limits of the rig; commanded speeds must be within its speed.
         clock: Host time.
 
     Attributes:
@@ -78,7 +78,7 @@ class DriveBus(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far."""
+        """Counters of the stream so far; frames with impossible estimates count as refused."""
         return Counters(
             received=self._received,
             damaged=self._link.damaged,
@@ -87,7 +87,7 @@ class DriveBus(LinkedStream[CanLink]):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Return samples of both drives, waiting at most `timeout` for the first [s].
+        """Return samples of both drives by host time, waiting at most `timeout` for the first [s].
 
         Feeds the watchdogs of armed drives while it waits.
         """
@@ -102,21 +102,24 @@ class DriveBus(LinkedStream[CanLink]):
                 return sorted(samples, key=lambda sample: sample.host_time)
 
     def request_temperatures(self) -> None:
-        """Start to request the temperatures of both drives whenever the stream is read."""
+        """Start to request both drives' temperatures in `read`, every `TEMPERATURE_INTERVAL`."""
         self._temperatures_at = -math.inf
 
     def take_temperatures(self) -> dict[int, list[float]]:
-        """Return and clear the temperatures received since the last call, by node [degC]."""
+        """Return and clear the temperatures received since the last call, by node [degC].
+
+        Each is the higher one of a drive's transistors and its motor.
+        """
         taken = {node: axis.temperatures for node, axis in self._axes.items()}
         for axis in self._axes.values():
             axis.temperatures = []
         return taken
 
     def require_healthy(self) -> None:
-        """Check both drives.
+        """Check both drives by their last heartbeats.
 
         Raises:
-            DeviceFault: An armed drive reports an error, or has left closed loop by itself.
+            DeviceFault: A drive reports an error, or an armed one has left closed-loop control.
         """
         for axis in self._axes.values():
             axis.require_no_error()
@@ -164,7 +167,11 @@ class DriveBus(LinkedStream[CanLink]):
                 self._link.request(can_id(node, Command.TEMPERATURE), TEMPERATURES.size)
 
     def _wait(self, holds: Callable[[], bool], timeout: float, problem: str) -> None:
-        """Read until a condition holds, and keep the samples for the next `read`."""
+        """Receive and feed the watchdogs until a condition holds; keep samples for the next `read`.
+
+        Raises:
+            RigTimeout: The condition did not hold within `timeout`.
+        """
         end = self._clock.now() + timeout
         while not holds():
             left = end - self._clock.now()
@@ -207,18 +214,18 @@ class DriveBus(LinkedStream[CanLink]):
 
 
 class OdriveDrive:
-    """One of the two drives with its state; satisfies `rig.device.Drive`.
+    """One of the two drives with its state; implements the protocol `rig.device.Drive`.
 
     Args:
         bus: Driver of both drives.
-        name: Name of the disc that it turns.
-        place: Node on the bus, gear and sign.
+        name: Name of the disc that the drive turns.
+        place: Node of the drive on the bus, gear and sign.
 
     Attributes:
-        armed: Whether it has been energised and not been commanded to idle since.
+        armed: Whether the drive was commanded to closed loop, and not to idle since.
         state: Axis state of the last heartbeat; 0 before the first.
-        error: Axis error of the last heartbeat.
-        temperatures: Temperatures that have not been taken yet [degC].
+        error: Axis error of the last heartbeat; 0 without a fault.
+        temperatures: Temperatures received since the last `take_temperatures` [degC].
     """
 
     def __init__(self, bus: DriveBus, name: str, place: DiscDrive) -> None:
@@ -232,7 +239,10 @@ class OdriveDrive:
         self._velocity = 0.0
 
     def arm(self, timeout: float) -> None:
-        """Energise at standstill, waiting at most `timeout` [s]; see `Drive.arm`."""
+        """Clear errors and energise with velocity 0; see `Drive.arm`.
+
+        Waits at most `timeout` for closed-loop control [s]; after a failure the drive is disarmed.
+        """
         self._velocity = 0.0
         self._send(Command.CLEAR_ERRORS, b"")
         self._send(
@@ -251,14 +261,14 @@ class OdriveDrive:
             raise
 
     def set_speed(self, omega: float) -> None:
-        """Command an angular speed of the disc [rad/s]; see `Drive.set_speed`."""
+        """Send the motor velocity for a disc's angular speed [rad/s]; see `Drive.set_speed`."""
         limit = self._bus.limits.speed
         require_within(omega, limit, quantity=f"speed of the {self.name}", unit="rad/s")
         self._velocity = self.place.sign * omega * self.place.gear / (2 * math.pi)
         self.send_velocity()
 
     def disarm(self) -> None:
-        """Command standstill and de-energise."""
+        """Command velocity 0 and de-energise (idle); errors of sending are suppressed."""
         self._velocity, self.armed = 0.0, False
         with contextlib.suppress(RigError, can.CanError, OSError):  # the watchdog remains
             self.send_velocity()
@@ -266,7 +276,7 @@ class OdriveDrive:
             self._send(Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.IDLE))
 
     def send_velocity(self) -> None:
-        """Send the velocity set-point, which feeds the watchdog."""
+        """Send the latest velocity set-point of the motor again, which feeds the watchdog."""
         self._send(Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(self._velocity, 0.0))
 
     def require_no_error(self) -> None:
@@ -287,11 +297,11 @@ class OdriveDrive:
 
 
 def disc_speed(drive: DiscDrive, velocity: float) -> float:
-    """Compute the angular speed of a disc, positive driving [rad/s].
+    """Compute the angular speed of a disc from its motor's, positive driving [rad/s].
 
     Args:
-        drive: The disc's drive.
-        velocity: Second count of a sample, speed of the motor [rev/s].
+        drive: Drive of the disc, with gear and sign.
+        velocity: Speed of the motor, the second count of a sample [rev/s].
 
     >>> round(disc_speed(DiscDrive(node=0, gear=10.0, sign=-1), -20.0), 3)
     12.566

@@ -10,7 +10,7 @@ from model.errors import DomainError
 from model.slip.law import Array
 
 GAIN_SD: Final = 0.005
-"""Standard deviation of both channels' gain errors [-]."""
+"""Standard deviation of each force channel's relative gain error [-]."""
 BIAS_SD: Final = 0.05
 """Standard deviation of the normal channel's bias [N]."""
 CROSSTALK_SD: Final = 0.005
@@ -22,24 +22,28 @@ class RigImperfections:
     """True parameters of a rig besides the slip law; the defaults are an ideal rig.
 
     Attributes:
-        gain_traction: Relative gain error g_t of the traction channel [-].
-        gain_normal: Relative gain error g_n of the normal channel [-].
-        bias_normal: Bias b_n of the normal channel, added to what it reads [N].
-        crosstalk: Share c of the traction that the normal channel subtracts from the load [-].
-        offset_sd: Standard deviation tau of the traction zero between runs [N].
+        gain_traction: Relative gain error g_t of the traction channel, whose reading is multiplied
+            by 1 + g_t [-].
+        gain_normal: Relative gain error g_n of the normal channel, whose reading is divided by
+            1 + g_n [-].
+        bias_normal: Bias b_n of the normal channel, added to the load before the gain [N].
+        crosstalk: Normal force c that the normal channel misses for each newton of traction [-].
+        offset_sd: Standard deviation tau of the traction channel's zero between runs [N].
         noise_sd0: Traction noise without traction, marginal standard deviation s0 [N].
         noise_sd1: Growth s1 of that standard deviation with the traction [-].
         noise_correlation_time: Correlation time T of the noise, an AR(1) process with
             rho = exp(-dt/T); 0 is white [s].
         speed_noise: Standard deviation of each disc's white speed-sensor noise [rad/s].
-        slip_wander_sd: Standard deviation of the true slip ratio about its set-point, seen by
-            sensors and force alike; none at slip 1, where the ground disc is held still [-].
-        slip_wander_time: Correlation time of that wander, an Ornstein-Uhlenbeck process [s].
+        slip_wander_sd: Standard deviation of the true slip ratio about its set-point, which changes
+            speeds and forces alike; none at slip 1, where the ground disc is held still [-].
+        slip_wander_time: Correlation time of the slip wander, an Ornstein-Uhlenbeck process; 0 is
+            white [s].
         bump_height: Relative rise of the load at the top of the ground disc's bump [-].
         bump_width: Angle of the ground disc under the whole bump [rad].
 
     Raises:
-        DomainError: A spread, time or height is negative, or a gain leaves no signal.
+        DomainError: A standard deviation, time, height or width is negative or NaN, or a gain
+            error is not above -1.
     """
 
     gain_traction: float = 0.0
@@ -78,11 +82,11 @@ TYPICAL_RIG = RigImperfections(
     slip_wander_time=0.15,
     bump_height=0.6,
 )
-"""A rig like the thesis's under a perfectly calibrated load cell."""
+"""A rig like that of the Thesis with a perfectly calibrated load cell."""
 
 
 def draw_imperfections(rng: np.random.Generator) -> RigImperfections:
-    """Draw a load cell's calibration errors around 0; everything else is `TYPICAL_RIG`.
+    """Draw gain errors, normal bias and crosstalk from Gaussians around 0; rest as `TYPICAL_RIG`.
 
     A calibration has priors on these errors. It can only cover the truth at its nominal rate, seed
     after seed, where the truth is drawn from those priors.
@@ -111,23 +115,23 @@ def measured_load(
         F_{n,measured} = \frac{F_n + b_n - c\,F_t}{1 + g_n}
 
     Args:
-        load_true: True normal force F_n [N].
-        traction_force: Measured traction force F_t [N].
-        imperfections: Carries g_n, b_n and c.
+        load_true: True normal force F_n, any shape [N].
+        traction_force: Measured traction force F_t, same shape [N].
+        imperfections: Gain error g_n, bias b_n and crosstalk c.
 
     Returns:
-        Measured normal force [N].
+        Measured normal force, same shape [N].
     """
     seen = load_true + imperfections.bias_normal - imperfections.crosstalk * traction_force
     return seen / (1 + imperfections.gain_normal)
 
 
 def lag_one_correlation(interval: float, correlation_time: float) -> float:
-    """Compute rho = exp(-dt/T), an AR(1)'s correlation from one sample to the next [-].
+    """Compute rho = exp(-dt/T), correlation of consecutive samples of an AR(1) process [-].
 
     Args:
         interval: Time dt between samples [s].
-        correlation_time: Correlation time T of the process; 0 is white noise [s].
+        correlation_time: Correlation time T of the process; 0 gives 0, white noise [s].
 
     >>> round(lag_one_correlation(0.004, 0.05), 4), lag_one_correlation(0.004, 0.0)
     (0.9231, 0.0)
@@ -140,11 +144,11 @@ def bump_rise(angle: Array, *, height: float, width: float) -> Array:
 
     Args:
         angle: Ground-disc angle from the top of the bump, any number of turns [rad].
-        height: Rise at the top, over the load [-].
-        width: Angle under the whole bump [rad].
+        height: Rise of the load at the top of the bump, per load [-].
+        width: Angle of the disc over which the whole bump extends [rad].
 
     Returns:
-        Rise over the load, 0 off the bump [-].
+        Rise of the load, per load off the bump; 0 off the bump, same shape as `angle` [-].
 
     >>> bump_rise(np.array([0.0, 0.25, 0.5]), height=0.6, width=1.0).round(3).tolist()
     [0.6, 0.3, 0.0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A Net F/T load cell: records by UDP at up to 7 kHz, zero, and counts to newtons."""
+"""Driver of a Net F/T load cell: records by UDP at up to 7 kHz, bias, and its configuration."""
 
 import http.client
 from collections.abc import Sequence
@@ -29,10 +29,14 @@ from rig.slip_rig.rdt import (
 START_AGAIN_AFTER: Final = 0.5
 """Silence after which the start request is repeated, because requests can be lost [s]."""
 LATE_DATAGRAMS: Final = 4
-"""Distance up to which a datagram counts as late or duplicate; farther back is a restart."""
+"""Distance behind the newest datagram up to which one counts as late or duplicate [datagrams].
+
+Farther back it means a restart of the cell.
+"""
 WHOLE: Final = frozenset(RECORD.size * count for count in range(1, MOST_IN_ONE + 1))
 """Valid lengths of datagrams [bytes]."""
 LONGEST_PAGE: Final = 1 << 20
+"""Longest part of the configuration page that is read [bytes]."""
 
 
 class NetFtCell(LinkedStream[UdpLink]):
@@ -43,7 +47,7 @@ class NetFtCell(LinkedStream[UdpLink]):
 
     Args:
         link: Datagrams to and from the cell.
-        profile: Its profile.
+        profile: Profile of the cell.
         buffered: Request many records in each datagram, which takes less CPU time but delays
             them by a few milliseconds: not for guards. From a cell that then sends nothing,
             single records are requested.
@@ -72,7 +76,7 @@ class NetFtCell(LinkedStream[UdpLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; reconnected counts silences that ended."""
+        """Counters of the stream so far; reconnected counts silences over 0.5 s that ended."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -83,7 +87,10 @@ class NetFtCell(LinkedStream[UdpLink]):
         )
 
     def read(self, timeout: float) -> SampleColumns:
-        """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s].
+
+        To a cell that has been silent for `START_AGAIN_AFTER` the start request is sent again.
+        """
         datagrams = self._link.read(timeout)
         now = self._clock.now()
         samples = self._samples(datagrams, now)
@@ -92,7 +99,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         return samples
 
     def bias(self) -> None:
-        """Set the present reading as zero, which the cell itself then subtracts."""
+        """Request the cell to subtract its present reading from all later ones; not confirmed."""
         self._link.write(encode_request(Request.BIAS))
 
     def __enter__(self) -> Self:
@@ -106,7 +113,10 @@ class NetFtCell(LinkedStream[UdpLink]):
         super().__exit__(*exception)
 
     def _samples(self, datagrams: Sequence[bytes], now: float) -> SampleColumns:
-        """Decode all records of a read together, column by column."""
+        """Decode the records of datagrams read at host time `now` [s]; drop late or duplicate ones.
+
+        Datagrams of an invalid length are counted as damaged.
+        """
         whole = datagrams
         if not WHOLE.issuperset(map(len, datagrams)):
             whole = [datagram for datagram in datagrams if len(datagram) in WHOLE]
@@ -124,7 +134,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         )
 
     def _check_silence(self, heard: bool, now: float) -> None:
-        """Repeat the start request to a silent cell, and count reconnections."""
+        """Repeat the start request after each `START_AGAIN_AFTER` of silence; count its ends."""
         if heard:
             self._last_arrival = now
             self._reconnected += self._silent
@@ -141,16 +151,16 @@ def read_configuration(host: str, *, port: int = 80, timeout: float = 2.0) -> Ce
     """Read the configuration of a cell over HTTP.
 
     Args:
-        host: Its address.
-        port: Its HTTP port.
-        timeout: Longest wait for each step [s].
+        host: Address of the cell.
+        port: HTTP port of the cell.
+        timeout: Longest wait for connecting, and for each receipt [s].
 
     Returns:
-        Counts in SI and the rate, for the profile.
+        Counts per newton and record rate, for the profile.
 
     Raises:
-        LinkError: The cell does not answer.
-        ProtocolError: The answer is not a cell's.
+        LinkError: The cell does not answer, or not in HTTP.
+        ProtocolError: The page lacks a value or gives an invalid one.
     """
     connection = http.client.HTTPConnection(host, port, timeout=timeout)
     try:

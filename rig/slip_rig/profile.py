@@ -16,6 +16,7 @@ from rig.toml_table import TomlTable
 BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")
 HIGHEST_NODE: Final = 0x3F
+"""Highest node of CANSimple: six bits."""
 FURTHER_LIMITS: Final = {"lateral_force": "N", "torque": "N m", "temperature_celsius": "degC"}
 """Optional limits of a rig, and their units."""
 _NO_LIMITS: Final = Limits(speed=math.inf, normal_force=math.inf, traction_force=math.inf)
@@ -26,9 +27,9 @@ class DiscDrive:
     """One ODrive axis and the disc it turns.
 
     Attributes:
-        node: Node on the bus.
-        gear: Turns of the motor in one of the disc [-].
-        sign: 1 where the motor's positive sense drives, else -1.
+        node: CAN node of the axis, 0 to 63.
+        gear: Turns of the motor per turn of the disc [-].
+        sign: 1 if a positive speed of the motor turns the disc in the driving direction, else -1.
     """
 
     node: int
@@ -41,8 +42,8 @@ class DriveProfile:
     """Both drives of a rig.
 
     Attributes:
-        bitrate: Of the bus [bit/s].
-        firmware: Version of the firmware, which defines the error bits.
+        bitrate: Bit rate of the CAN bus [bit/s].
+        firmware: Version of both drives' firmware, which defines the error bits.
         feed_interval: Interval between two set-points, which feed the drives' watchdogs [s].
         leg: Drive of the leg disc.
         ground: Drive of the ground disc.
@@ -57,11 +58,11 @@ class DriveProfile:
 
 @dataclass(frozen=True)
 class ForceAxis:
-    """Where a force is found among the channels Fx, Fy and Fz.
+    """Channel of a load cell, Fx, Fy or Fz, that measures a force, and its sign.
 
     Attributes:
-        index: Channel, from 0.
-        sign: Sign that makes the force positive as defined in `docs/conventions.md`, 1 or -1.
+        index: Channel: 0 for Fx, 1 for Fy, 2 for Fz.
+        sign: Factor that makes the force positive as defined in `docs/conventions.md`, 1 or -1.
     """
 
     index: int
@@ -73,13 +74,13 @@ class LoadCellProfile:
     """A Net F/T load cell.
 
     Attributes:
-        host: Its address.
-        port: Its UDP port.
-        rate: Records in a second, also of its internal numbering [Hz].
-        counts_per_force: Counts in 1 N.
-        counts_per_torque: Counts in 1 N m; None where torques are not evaluated.
-        normal: Where the normal force is found.
-        traction: Where the traction force is found.
+        host: Network name or address of the cell.
+        port: UDP port of the cell.
+        rate: Records per second, and readings per second in the cell's own numbering [Hz].
+        counts_per_force: Counts per newton [1/N].
+        counts_per_torque: Counts per newton metre; None where torques are not evaluated [1/(N m)].
+        normal: Channel and sign of the normal force.
+        traction: Channel and sign of the traction force.
     """
 
     host: str
@@ -93,18 +94,18 @@ class LoadCellProfile:
 
 @dataclass(frozen=True)
 class BoardProfile:
-    """One micro-controller in place of drives and load cell.
+    """One micro-controller instead of drives and load cell, or a table of their measurements.
 
     Attributes:
         baudrate: Line rate; 0 for a table [baud].
         rate: Sample rate [Hz].
-        byte_order: Of values of several bytes.
+        byte_order: Byte order of counts and status.
         feed_interval: Interval between two speed commands, which feed the board's watchdog; 0 for a
             table [s].
-        counts_per_force: Counts in 1 N.
-        counts_per_speed: Counts in 1 rad/s.
-        normal_sign: Sign that makes pressing positive, 1 or -1.
-        traction_sign: Sign that makes driving positive, 1 or -1.
+        counts_per_force: Counts per newton [1/N].
+        counts_per_speed: Counts per angular speed of a disc [s/rad].
+        normal_sign: Factor that makes the normal force positive when pressed together, 1 or -1.
+        traction_sign: Factor that makes the traction force positive when driving, 1 or -1.
         link: `serial`, or `table` for an imported file.
     """
 
@@ -124,10 +125,10 @@ class RigProfile:
     """A slip rig: either drives and a load cell, or a board.
 
     Attributes:
-        name: Name of the profile.
+        name: Name of the profile: that of its file without suffix.
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
-        limits: Largest magnitudes allowed.
+        limits: Largest magnitudes allowed; infinite where the board is a table.
         drives: Both drives; None where there is a board.
         load_cell: The load cell; None where there is a board.
         board: The board; None where there are drives.
@@ -143,7 +144,11 @@ class RigProfile:
 
     @property
     def measured(self) -> frozenset[str]:
-        """Names of those of `FURTHER_LIMITS` that its devices measure."""
+        """Names of those of `FURTHER_LIMITS` whose quantity a device of the rig measures.
+
+        A load cell measures `lateral_force` and, with a scale of torques, `torque`; drives measure
+        `temperature_celsius`; a board none.
+        """
         measures = {
             "lateral_force": self.load_cell is not None,
             "torque": self.load_cell is not None and self.load_cell.counts_per_torque is not None,
@@ -153,7 +158,7 @@ class RigProfile:
 
 
 def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float) -> str:
-    """Return the TOML of a profile for speeds and forces imported from a table in SI.
+    """Format as TOML the profile of a rig whose speeds and forces are imported from a table in SI.
 
     Args:
         radius_leg: Radius of the leg disc [m].
@@ -176,8 +181,8 @@ def device_profiles(profile: RigProfile) -> BoardProfile | tuple[DriveProfile, L
     """Return the profile of a rig's board, or those of its drives and its load cell.
 
     Raises:
-        ProfileError: The profile describes a table and no device that could be opened, or lacks
-            devices.
+        ProfileError: The profile describes a table, or has neither a board nor both drives and
+            load cell.
     """
     if profile.board is not None and profile.board.link == "table":
         raise ProfileError(
@@ -200,7 +205,8 @@ def load_rig_profile(name: str) -> RigProfile:
         The profile.
 
     Raises:
-        ProfileError: A key is missing, unknown, of the wrong type or contradicts another.
+        ProfileError: The file is missing or not such a profile; or a key is missing, unknown,
+            invalid or contradicts another.
     """
     table = open_profile(name, device="slip-rig")
     discs, limits = table.table("discs"), table.table("limits")

@@ -12,15 +12,17 @@ import numpy as np
 from rig.errors import ProtocolError
 
 REQUEST: Final = struct.Struct(">HHI")
+"""`MAGIC`, `Request`, number of records (0 for no end)."""
 RECORD: Final = struct.Struct(">III6i")
 """Number of the record, number of the reading inside the cell, status, Fx Fy Fz Tx Ty Tz."""
 COLUMNS: Final = np.dtype(
     [("number", ">u4"), ("reading", ">u4"), ("status", ">u4"), ("counts", ">i4", 6)]
 )
-"""The same for many records at once."""
+"""Fields of a record as a structured array, to decode many records at once."""
 MAGIC: Final = 0x1234
 WRAP: Final = 1 << 32
 SATURATED: Final = 1 << 17
+"""Status bit of a saturated transducer."""
 MOST_IN_ONE: Final = 40
 """Largest number of records in a datagram of a buffered stream."""
 
@@ -44,11 +46,11 @@ STATUS_BITS: Final[dict[int, str]] = {
 
 FORCE_UNITS: Final = {"N": 1.0, "kN": 1e3, "lb": 4.4482216152605, "klb": 4448.2216152605,
                       "g": 9.80665e-3, "kg": 9.80665}  # fmt: skip
-"""Force units of the cell's configuration in N."""
+"""Size of each force unit of the cell's configuration [N]."""
 
 
 class Request(IntEnum):
-    """Requests to a cell.
+    """Requests to a cell, the second field of `REQUEST`; BIAS makes the present reading zero.
 
     START sends each record as soon as it is read. START_BUFFERED sends as many in a datagram as the
     cell is set to (`comrdtbsiz`, 1 to 40), as soon as the last of them is read.
@@ -65,8 +67,8 @@ class CellConfiguration:
     """Configuration that a cell reports.
 
     Attributes:
-        counts_per_force: Counts in 1 N.
-        rate: Records in a second; None where the page does not give it [Hz].
+        counts_per_force: Counts per newton [1/N].
+        rate: Records per second; None where the page does not give it [Hz].
     """
 
     counts_per_force: float
@@ -74,7 +76,7 @@ class CellConfiguration:
 
 
 def encode_request(request: Request) -> bytes:
-    """Encode a request; after a start, records come until `STOP`.
+    """Encode a request as a datagram; after a start request, records come until `STOP`.
 
     Args:
         request: Kind of request.
@@ -86,7 +88,7 @@ def encode_request(request: Request) -> bytes:
 
 
 def describe_status(status: int) -> str:
-    """Describe a status word as text; empty without a fault.
+    """Describe the set bits of a status word as text, joined by commas; empty without a fault.
 
     >>> describe_status(0x80020000)
     'transducer saturated'
@@ -103,13 +105,14 @@ def parse_configuration(page: bytes) -> CellConfiguration:
     or follow references in a page from the network.
 
     Args:
-        page: The page.
+        page: Content of the page.
 
     Returns:
-        Counts in SI and the rate.
+        Counts per newton, converted from the cell's force unit, and the record rate.
 
     Raises:
-        ProtocolError: A value is missing, or its unit unknown.
+        ProtocolError: Counts or force unit are missing, the unit is unknown, or a number is not
+            above 0.
     """
     counts = _number(page, "cfgcpf")
     unit = _text(page, "scfgfu")

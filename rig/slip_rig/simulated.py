@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Simulated two-disc rig: discs, contact and load cell in continuous operation, no protocol.
+"""Simulated two-disc rig: discs, contact and load cell over time, without a protocol.
 
 Its force comes from any slip law of `model`, so that a calibration can be tried on one that is not
 the fitted one. Not modelled: temperature, wear, play, bending of the frame, side forces.
@@ -47,13 +47,14 @@ class RigDynamics:
     """Dynamics of the discs and delay of the force channels; the defaults are a small rig's.
 
     Attributes:
-        speed_lag: Time constant with which a disc follows its set-point [s].
-        ripple: Amplitude of the speed's ripple over the speed [-].
-        ripple_order: Ripples in one turn.
-        force_delay: Delay of the force channels [s].
+        speed_lag: Time constant of a disc's exponential approach to its set-point, above 0 [s].
+        ripple: Amplitude of the ripple of a disc's speed, as a fraction of the speed [-].
+        ripple_order: Periods of the ripple per turn of the disc.
+        force_delay: Time by which the force channels lag behind the speeds [s].
 
     Raises:
-        ProtocolError: A number is negative, or the delay longer than `MEMORY`.
+        ProtocolError: `speed_lag` is not above 0, `ripple` or `force_delay` is negative, or
+            `force_delay` is not below half of `MEMORY`.
     """
 
     speed_lag: float = 0.05
@@ -74,10 +75,10 @@ class RigTruth:
     """True states of the rig over a stretch of time, one entry for each grid step.
 
     Attributes:
-        time: Since the rig was switched on, shape (n,) [s].
-        omega_leg: Speed of the leg disc, shape (n,) [rad/s].
-        omega_ground: Speed of the ground disc, shape (n,) [rad/s].
-        slip: True slip ratio, shape (n,) [-].
+        time: Time since the rig was switched on, shape (n,) [s].
+        omega_leg: True speed of the leg disc, shape (n,) [rad/s].
+        omega_ground: True speed of the ground disc, shape (n,) [rad/s].
+        slip: True material slip ratio, 0 while the leg disc stands, shape (n,) [-].
         load: True normal force, shape (n,) [N].
         normal: Reading of the normal channel, shape (n,) [N].
         traction: Reading of the traction channel, shape (n,) [N].
@@ -97,11 +98,11 @@ class SimulatedRig:
 
     Args:
         law: The true slip law, in the material slip ratio.
-        values: Its values.
+        values: Values of the law's parameters.
         plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands:
             its slips a `duration` apart, gliding from each to the next.
-        imperfections: Sensor errors, noise and bump.
-        dynamics: Dynamics of the discs.
+        imperfections: Sensor errors, noise, slip wander and bump of the ground disc.
+        dynamics: Dynamics of the discs and delay of the force channels.
         rng: Random generator.
 
     Attributes:
@@ -138,11 +139,13 @@ class SimulatedRig:
         self._history: deque[RigTruth] = deque()
 
     def command(self, disc: str, omega: float) -> None:
-        """Set the speed of a disc, which ends the rig's own sweep.
+        """Set the speed of a disc; the first call ends the rig's own sweep.
+
+        The other disc then stops, until its speed is set.
 
         Args:
             disc: `leg` or `ground`.
-            omega: Set-point [rad/s].
+            omega: Set-point of its speed [rad/s].
         """
         if self._sweeping:
             self._target = dict.fromkeys(self._target, 0.0)
@@ -150,7 +153,10 @@ class SimulatedRig:
         self._target[disc] = omega
 
     def advance(self, now: float) -> None:
-        """Simulate the rig up to a time by the caller's clock [s]."""
+        """Simulate the rig in steps of `GRID` up to `now` by the caller's clock [s].
+
+        The first call switches the rig on.
+        """
         if self._switched_on is None:
             self._switched_on = now
         due = math.floor((now - self._switched_on) / GRID + 1e-6)
@@ -162,17 +168,17 @@ class SimulatedRig:
                 self._history.popleft()
 
     def elapsed(self, now: float) -> float:
-        """Compute the time since the rig was switched on [s]."""
+        """Return the time from switching on to `now` by the caller's clock; 0 before it [s]."""
         return 0.0 if self._switched_on is None else now - self._switched_on
 
     def truth(self, since: float = 0.0) -> RigTruth:
         """Return the true states, as far back as `MEMORY`.
 
         Args:
-            since: Earliest time of interest; a little before it is returned too [s].
+            since: Earliest time of interest since switching on; up to 0.1 s more is returned [s].
 
         Returns:
-            The truth.
+            The states from `since`, or the oldest stored one, to now.
 
         Raises:
             ProtocolError: The rig has not run yet.
@@ -188,7 +194,14 @@ class SimulatedRig:
         return RigTruth(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
     def forces(self, times: Array) -> tuple[Array, Array]:
-        """Read both force channels at times since the start, each of shape (n,) [N]."""
+        """Return readings of normal force and traction, each of shape (n,) [N].
+
+        They are the channels' values one `force_delay` earlier; a time before the history gives its
+        first value.
+
+        Args:
+            times: Times since switching on, increasing, shape (n,) [s].
+        """
         late = times - self._dynamics.force_delay
         truth = self.truth(float(late[0]) - GRID)
         at = np.searchsorted(truth.time, late + GRID / 2) - 1
@@ -196,7 +209,7 @@ class SimulatedRig:
         return truth.normal[at], truth.traction[at]
 
     def speeds(self) -> dict[str, tuple[float, float]]:
-        """Read angle [rad] and speed [rad/s] of each disc as its encoder gives them now."""
+        """Return (angle [rad], noisy speed [rad/s]) of each disc now, by `leg` and `ground`."""
         noise = self._imperfections.speed_noise
         return {
             disc: (self._angle[disc], omega + noise * self._rng.standard_normal())
@@ -204,14 +217,18 @@ class SimulatedRig:
         }
 
     def measured_speeds(self, times: Array) -> tuple[Array, Array]:
-        """Read both discs' speeds at times since the start, each of shape (n,) [rad/s]."""
+        """Return leg and ground speed, with sensor noise, each of shape (n,) [rad/s].
+
+        Args:
+            times: Times since switching on, increasing, shape (n,) [s].
+        """
         truth = self.truth(float(times[0]) - GRID)
         at = np.clip(np.searchsorted(truth.time, times + GRID / 2) - 1, 0, None)
         noise = self._imperfections.speed_noise * self._rng.standard_normal((2, len(times)))
         return truth.omega_leg[at] + noise[0], truth.omega_ground[at] + noise[1]
 
     def description(self) -> dict[str, object]:
-        """Return the true parameters of this rig, as plain values for a manifest."""
+        """Return law, values, imperfections, dynamics and traction offset, as plain values."""
         return {
             "law": self._law.name,
             "values": [float(np.asarray(value)) for value in self._values],
@@ -235,7 +252,11 @@ class SimulatedRig:
         return RigTruth(time, leg, ground, slip, load, normal, traction)
 
     def _follow_plan(self, time: float) -> None:
-        """Interpolate the set-points through the plan's slip ratios at one load after another."""
+        """Set load and set-points of the rig's own sweep at a time since switching on [s].
+
+        Slip is interpolated linearly through the plan's slip ratios, one `duration` apart, at one
+        load after another, and again from the first.
+        """
         loads, slips, duration = self._plan.loads, self._plan.slips, self._plan.duration
         sweep, place = divmod(time / duration, len(slips))
         slip = float(np.interp(place, np.arange(len(slips)), slips))
@@ -246,7 +267,7 @@ class SimulatedRig:
         }
 
     def _turn(self, disc: str, n: int) -> Array:
-        """Let a disc follow its set-point over n steps; return its speed [rad/s]."""
+        """Advance a disc by n steps towards its set-point; return its speed, shape (n,) [rad/s]."""
         target = self._target[disc]
         decay = np.exp(-GRID / self._dynamics.speed_lag * np.arange(1, n + 1))
         smooth = target + (self._omega[disc] - target) * decay
@@ -255,7 +276,7 @@ class SimulatedRig:
         return smooth * (1 + self._dynamics.ripple * np.sin(self._dynamics.ripple_order * angle))
 
     def _wandering(self, n: int) -> Array:
-        """Compute a factor of the ground speed that makes the slip ratio wander [-]."""
+        """Draw the factor on the ground speed that makes the slip ratio wander, shape (n,) [-]."""
         rho = lag_one_correlation(GRID, self._imperfections.slip_wander_time)
         path, self._wander = _continue_ar1(rho, self._wander, self._rng, n)
         return 1 - self._imperfections.slip_wander_sd * path
@@ -283,7 +304,11 @@ class SimulatedRig:
 
 
 def _continue_ar1(rho: float, last: float, rng: np.random.Generator, n: int) -> tuple[Array, float]:
-    """Continue an AR(1) path of unit marginal variance by n steps; also return its last value."""
+    """Continue an AR(1) path of unit marginal variance by n steps from its last value.
+
+    Returns:
+        The new values, shape (n,), and the last of them.
+    """
     shock = np.sqrt(1 - rho**2) * rng.standard_normal(n)
     path, _ = lfilter([1.0], [1.0, -rho], shock, zi=np.array([rho * last]))
     return np.asarray(path), float(path[-1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A simulated micro-controller in place of drives and load cell; satisfies `ByteTwin`."""
+"""A simulated micro-controller instead of drives and load cell."""
 
 import math
 
@@ -15,12 +15,13 @@ from rig.slip_rig.simulated import SimulatedRig
 
 
 class SimulatedBoard:
-    """A board that streams forces and speeds, takes speeds, and has a watchdog.
+    """Simulated board with forces, speeds and a watchdog; implements the protocol `ByteTwin`.
 
     Args:
-        rig: The rig it turns and weighs.
-        profile: Counts, signs and rate.
-        watchdog: Silence after which it stops both discs, once it has been commanded [s].
+        rig: Simulated discs and contact that the board turns and measures.
+        profile: Counts, signs and rate of the board.
+        watchdog: Time without a speed command after which the board stops both discs; starts with
+            the first command [s].
         faults: Transmission errors of the line.
         rng: Random generator of the transmission errors.
     """
@@ -47,7 +48,9 @@ class SimulatedBoard:
         self._status = 0
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Execute speed commands and return the packets that are due; see `ByteTwin.poll`.
+        """Check the watchdog, execute commands, simulate the rig, and return the packets due.
+
+        See `ByteTwin.poll`.
 
         Args:
             now: Time, never decreasing [s].

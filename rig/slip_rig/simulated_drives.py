@@ -25,7 +25,9 @@ from rig.slip_rig.profile import DiscDrive, DriveProfile
 from rig.slip_rig.simulated import SimulatedRig
 
 HEARTBEAT_INTERVAL: Final = 0.05
+"""Interval between the heartbeats of an axis [s]."""
 ESTIMATE_INTERVAL: Final = 0.01
+"""Interval between the position and velocity frames of an axis [s]."""
 WATCHDOG_EXPIRED: Final = {"0.5": 0x800, "0.6": 0x1000000}
 EMERGENCY_STOP: Final = {"0.5": 0x4000, "0.6": 0x2}
 
@@ -41,16 +43,16 @@ class _Axis:
 
 
 class SimulatedDrives:
-    """Both axes of a rig on one end of a bus.
+    """Simulated ODrive axes of both discs, on one end of a CAN bus.
 
     Args:
-        rig: The rig they turn.
-        bus: Their own end of the bus; the caller closes it.
-        profile: Nodes, gears and signs.
-        watchdog: Silence after which an axis stops by itself [s].
+        rig: Simulated rig whose discs the axes turn.
+        bus: The axes' own end of the bus; the caller closes it.
+        profile: Nodes, gears, signs and firmware of the drives.
+        watchdog: Time without a message after which an energised axis stops by itself [s].
 
     Attributes:
-        temperature: That both transistors have; the motors have no sensor [degC].
+        temperature: Temperature of both drives' transistors; the motors have no sensor [degC].
     """
 
     def __init__(
@@ -69,22 +71,22 @@ class SimulatedDrives:
         self._heartbeat_at = self._estimate_at = -math.inf
 
     def turning(self) -> bool:
-        """Return whether any axis is energised and commanded to turn."""
+        """Return whether any axis is in closed loop with a velocity set-point other than 0."""
         return any(a.state == AxisState.CLOSED_LOOP and a.velocity for a in self._axes.values())
 
     def trip(self, disc: str, error: int) -> None:
-        """Make an axis fail.
+        """Inject a fault: stop and de-energise an axis, and add an axis error.
 
         Args:
-            disc: `leg` or `ground`.
-            error: Axis error that it reports.
+            disc: Disc of the axis, `leg` or `ground`.
+            error: Bits of the axis error that the axis then reports.
         """
         for axis in self._axes.values():
             if axis.disc == disc:
                 self._fail(axis, error)
 
     def poll(self, now: float) -> None:
-        """Execute commands, check the watchdogs, and send the frames due up to a time [s]."""
+        """Execute commands, check watchdogs, simulate the rig, and send frames due at `now` [s]."""
         while (message := self._bus.recv(0.0)) is not None:
             node, command = split_id(message.arbitration_id)
             if node in self._axes and message.is_remote_frame:

@@ -19,21 +19,21 @@ INT32 = (1 << 31) - 1
 
 
 class SimulatedLoadCell:
-    """A cell that answers start, stop and bias: a context manager, because it holds a socket.
+    """Simulated Net F/T cell that answers start, stop and bias; its socket is open while entered.
 
     Args:
-        rig: The rig it weighs.
-        profile: Counts, axes and rate; its address is not used.
+        rig: Simulated rig whose forces the cell measures.
+        profile: Counts, axes and rate of the cell; the profile's address is not used.
         faults: Transmission errors; `drop`, `duplicate`, `delay` and `truncate` apply to datagrams.
         rng: Random generator of the transmission errors.
 
     Attributes:
         host: Loopback address.
-        port: Port that the system gave.
-        sent: Records sent so far, dropped ones counted.
-        status: Status word of its records.
-        lateral_force: On the third axis, which the rig does not load [N].
-        torque: About each axis [N m].
+        port: UDP port assigned by the system; 0 until the cell is entered.
+        sent: Number of records sent so far, including those that the faults drop.
+        status: Status word of all later records.
+        lateral_force: Force on the third axis, which the rig does not load [N].
+        torque: Torque about each of the three axes [N m].
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class SimulatedLoadCell:
         self._socket = None
 
     def poll(self, now: float) -> None:
-        """Execute requests and send the records that are due up to a time [s]."""
+        """Simulate the rig up to `now` [s], execute requests, and send the records that are due."""
         self._rig.advance(now)
         due = int(self._rig.elapsed(now) * self._profile.rate + 1e-6)
         readings = np.arange(self._reading + 1, due + 1)
@@ -89,7 +89,7 @@ class SimulatedLoadCell:
                 self._send(reading, values)
 
     def _counts(self, readings: "np.ndarray") -> "np.ndarray":
-        """Read the rig, shape (n, 6) [counts]."""
+        """Compute the counts of readings by their numbers, columns Fx to Tz, shape (n, 6)."""
         normal, traction = self._rig.forces(readings / self._profile.rate)
         counts = np.zeros((len(readings), 6))
         counts[:, 3 - self._profile.normal.index - self._profile.traction.index] = (

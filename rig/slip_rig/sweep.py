@@ -46,19 +46,20 @@ def _require(holds: bool, name: str, value: float, expected: str) -> None:
 class SweepPlan:
     """Set-points of a sweep: each slip ratio at each load, the loads outermost, one run a point.
 
-    The defaults are the thesis's rig (section 4-6): 62 slip ratios, four loads.
+    The defaults are the rig of the Thesis (section 4-6): 62 slip ratios, four loads.
 
     Attributes:
-        slips: Material slip ratios, Eq. (4-44) [-].
-        loads: Normal forces away from the ground disc's bump [N].
-        duration: Length of a run [s].
+        slips: Material slip ratios, Eq. (4-44), at most 1 [-].
+        loads: Normal forces away from the ground disc's bump, above 0 [N].
+        duration: Duration of a run, one for each slip ratio at each load [s].
         rate: Sample rate [Hz].
         omega_leg: Speed of the leg disc [rad/s].
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
 
     Raises:
-        DomainError: A run has fewer than two samples, or a number is not positive that must be.
+        DomainError: A run has fewer than two samples, a slip ratio is above 1, or another number
+            is not above 0.
 
     >>> SweepPlan().n_runs, SweepPlan().n_samples
     (248, 250)
@@ -83,12 +84,12 @@ class SweepPlan:
 
     @property
     def n_runs(self) -> int:
-        """Count the runs."""
+        """Number of runs: loads times slip ratios."""
         return len(self.loads) * len(self.slips)
 
     @property
     def n_samples(self) -> int:
-        """Count the samples of one run."""
+        """Number of samples of one run: duration times rate, rounded."""
         return round(self.duration * self.rate)
 
     @property
@@ -97,12 +98,15 @@ class SweepPlan:
         return self.omega_leg * self.radius_leg
 
     def set_points(self) -> tuple[Array, Array]:
-        """Return the commanded load [N] and slip ratio [-] of every run, each of shape (runs,)."""
+        """Return commanded load [N] and slip ratio [-] of every run, each of shape (runs,).
+
+        The slip ratio changes from run to run, the load after all slip ratios.
+        """
         load, slip = np.meshgrid(self.loads, self.slips, indexing="ij")
         return load.ravel(), slip.ravel()
 
     def run_names(self) -> tuple[str, ...]:
-        """Name every run after its set-point."""
+        """Return the name of every run, with load and slip ratio, in the order of `set_points`."""
         return tuple(
             f"Fn {load:g} N, slip {slip:.4f}" for load, slip in zip(*self.set_points(), strict=True)
         )
@@ -144,11 +148,11 @@ def simulate_sweep(
         F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
 
     with f the law at the true slip and load, b_run ~ N(0, tau²), and e an AR(1) process of
-    marginal standard deviation s0 + s1·|(1 + g_t)·f|, stationary and new in each run.
+    marginal standard deviation s0 + s1·|(1 + g_t)·f|, stationary and independent in each run.
 
     Args:
         law: The true slip law, in the material slip ratio.
-        values: Its parameter values, numbers.
+        values: Values of the law's parameters, numbers.
         plan: Set-points.
         imperfections: Sensor errors, noise and bump of the rig.
         rng: Random generator: the same state gives the same sweep.
@@ -177,7 +181,7 @@ def simulate_sweep(
 
 
 def samples_from_table(table: dict[str, Column], plan: SweepPlan) -> SlipSamples:
-    """Turn a sweep's log into samples, with slip from both measured disc speeds, Eq. (4-44).
+    """Convert a sweep's log to samples, with slip from both measured disc speeds, Eq. (4-44).
 
     Args:
         table: Canonical columns, as in `SimulatedSweep.table`.
@@ -203,7 +207,10 @@ def samples_from_table(table: dict[str, Column], plan: SweepPlan) -> SlipSamples
 
 
 def _wander_slip(plan: SweepPlan, truth: RigImperfections, rng: np.random.Generator) -> Array:
-    """Simulate the true slip ratio, shape (runs, samples) [-]."""
+    """Simulate the true slip ratio: set-point plus AR(1) wander, shape (runs, samples) [-].
+
+    At set-point 1 it does not wander.
+    """
     _, slip = plan.set_points()
     rho = lag_one_correlation(1 / plan.rate, truth.slip_wander_time)
     wander = truth.slip_wander_sd * _stationary_ar1(rho, plan, rng)
@@ -214,7 +221,11 @@ def _wander_slip(plan: SweepPlan, truth: RigImperfections, rng: np.random.Genera
 def _ride_bump(
     omega_ground: Array, plan: SweepPlan, truth: RigImperfections, rng: np.random.Generator
 ) -> Array:
-    """Simulate the true load, shape (runs, samples) [N]; the disc turns on from run to run."""
+    """Simulate the true load on the ground disc's bump, shape (runs, samples) [N].
+
+    The disc starts at a random angle and turns on from run to run, with speed `omega_ground` of
+    shape (runs, samples) [rad/s].
+    """
     load, _ = plan.set_points()
     turned = np.cumsum(omega_ground.ravel()).reshape(omega_ground.shape) / plan.rate
     angle = rng.uniform(0.0, 2 * np.pi) + turned
@@ -224,14 +235,14 @@ def _ride_bump(
 def _force_noise(
     force: Array, plan: SweepPlan, truth: RigImperfections, rng: np.random.Generator
 ) -> Array:
-    """Simulate the traction channel's noise, shape (runs, samples) [N]."""
+    """Simulate the traction channel's AR(1) noise at a force, both of shape (runs, samples) [N]."""
     rho = lag_one_correlation(1 / plan.rate, truth.noise_correlation_time)
     size = truth.noise_sd0 + truth.noise_sd1 * np.abs(force)
     return size * _stationary_ar1(rho, plan, rng)
 
 
 def _stationary_ar1(rho: float, plan: SweepPlan, rng: np.random.Generator) -> Array:
-    """Draw one AR(1) path of unit marginal variance a run, shape (runs, samples)."""
+    """Draw a stationary AR(1) path of unit variance for each run, shape (runs, samples) [-]."""
     shock = rng.standard_normal((plan.n_runs, plan.n_samples))
     shock[:, 1:] *= np.sqrt(1 - rho**2)  # the first sample already has the marginal variance
     return np.asarray(lfilter([1.0], [1.0, -rho], shock, axis=1))

@@ -32,10 +32,10 @@ STANDING: Final = 1e-3
 
 
 def sweeps(time: Array, speed_leg: Array, speed_ground: Array) -> NDArray[np.intp]:
-    """Number the sweeps of a recording.
+    """Number the sweeps of a recording, which jumps of the slip ratio separate.
 
     Args:
-        time: Increasing, shape (n,) [s].
+        time: Time of each sample, increasing, shape (n,) [s].
         speed_leg: Surface speed of the leg disc, shape (n,) [m/s].
         speed_ground: Surface speed of the ground disc, shape (n,) [m/s].
 
@@ -56,13 +56,17 @@ def sweeps(time: Array, speed_leg: Array, speed_ground: Array) -> NDArray[np.int
 
 
 def _bin_edges(time: Array) -> NDArray[np.intp]:
-    """Return the index of the first sample of each bin that holds any."""
+    """Return the index of the first sample of each `BIN` that holds any, shape (bins,)."""
     number = np.floor((time - time[0]) / BIN).astype(np.intp)
     return np.flatnonzero(np.diff(number, prepend=-1))
 
 
 def _jumping(slip: Array) -> NDArray[np.bool_]:
-    """Return a mask of the bins in which slip jumps to the next sweep, shape (n,)."""
+    """Return whether slip jumps to the next sweep in each bin, shape (bins,).
+
+    A jump is a stretch with |d| > `SETTLED` that exceeds `JUMP` somewhere. `slip` is the mean slip
+    ratio of each bin, shape (bins,); there are no jumps in less than two `WINDOW`.
+    """
     w = round(WINDOW / BIN)
     jumping = np.zeros(len(slip), dtype=bool)
     if len(slip) < 2 * w:
@@ -78,7 +82,7 @@ def _jumping(slip: Array) -> NDArray[np.bool_]:
 
 
 def _numbered(swept: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Number the stretches between jumps, -1 in jumps."""
+    """Number the stretches of true values from 0 on, -1 where false, shape (bins,)."""
     index = np.full(len(swept), -1, dtype=np.intp)
     for number, (begin, end) in enumerate(_stretches(swept)):
         index[begin:end] = number
@@ -86,6 +90,6 @@ def _numbered(swept: NDArray[np.bool_]) -> NDArray[np.intp]:
 
 
 def _stretches(true: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """List where true values begin and end."""
+    """List the stretches of true values in order, each as (first index, last index + 1)."""
     edges = np.flatnonzero(np.diff(true, prepend=False, append=False))
     return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))

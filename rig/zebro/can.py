@@ -16,22 +16,28 @@ from rig.zebro.profile import LegProfile
 
 # Layouts written by hand: cantools decodes about 20 times slower. It serves tests and tools.
 CLOCK: Final = struct.Struct("<HI")
+"""Number of the positions that follow, and their device time [ticks]."""
 POSITIONS: Final = struct.Struct("<6BH")
+"""Count of each channel, and number of the positions."""
 SET_POINTS: Final = struct.Struct("<6BH")
+"""Target count of each channel, and duration of the motion [ms]."""
 SEQUENCE_WRAP: Final = 1 << 16
+"""Modulus of the numbers."""
 TICKS_WRAP: Final = 1 << 32
+"""Modulus of the device time [ticks]."""
 TICK: Final = 1e-6
+"""One tick of the device time [s]."""
 
 
 class CanLegs(LinkedStream[CanLink]):
-    """Stream of the layout `can`; satisfies `Stream` and `LegCommands`.
+    """Stream of the layout `can`; implements the protocols `Stream` and `LegCommands`.
 
     CAN protects each frame with a checksum. The device time arrives in a separate frame before the
     positions of the same number; where that frame is lost, the positions have no device time.
 
     Args:
-        link: The bus.
-        profile: Of the layout `can`.
+        link: Link to the robot's bus.
+        profile: Profile of the robot, of the layout `can`.
         clock: Host time.
     """
 
@@ -44,7 +50,7 @@ class CanLegs(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; the bus's error frames count as damaged."""
+        """Counters of the stream so far; error and truncated frames of the bus count as damaged."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -65,10 +71,10 @@ class CanLegs(LinkedStream[CanLink]):
         return samples
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`.
+        """Send the command to turn every leg to a count; see `LegCommands.set_points`.
 
         Args:
-            counts: Targets in the order of the wire.
+            counts: Target count of each channel, in the order of the wire.
             duration: Duration of the motion [s].
 
         Returns:
@@ -78,7 +84,7 @@ class CanLegs(LinkedStream[CanLink]):
         return self._link.write(self.profile.can_ids.set_points, data)
 
     def stop(self) -> bool:
-        """Stop every leg at its present angle; return whether the link took the command."""
+        """Send the command to stop every leg where it is; return whether the link took it."""
         return self._link.write(self.profile.can_ids.stop, b"")
 
     def _sample(self, message: can.Message, now: float) -> Sample | None:

@@ -21,12 +21,15 @@ from rig.zebro.profile import LegProfile
 STEP: Final = 0.1
 """Motion of a leg that a person observes [turns]."""
 DURATION: Final = 0.5
+"""Duration of that motion [s]."""
 SETTLING: Final = 0.5
+"""Wait after that motion before the counts are compared [s]."""
 ANSWER_TIMEOUT: Final = 2.0
+"""Longest wait for a sample of the robot [s]."""
 
 
 class CheckedLegs(LegCommands, Stream, Protocol):
-    """A robot that can be read and commanded."""
+    """A robot whose leg stream can be read and that takes leg commands."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,8 @@ class MovedLeg:
     """Observation of the leg that moved when the count of one channel was increased.
 
     Attributes:
-        leg: Number of the leg that moved.
-        forward: Whether it turned as in walking forward.
+        leg: Number of the leg that moved, 1 to 6.
+        forward: Whether the leg turned as in walking forward.
     """
 
     leg: int
@@ -52,15 +55,16 @@ def check_legs(
 
     Args:
         robot: The robot, open, its legs free.
-        observe: Asks the person what was seen; gets the channel, from 0.
+        observe: Called after each motion with the channel, from 0; asks a person which leg moved.
         clock: Host time.
 
     Returns:
-        The profile with `legs` and `sign` as observed; zeros are kept with their channels.
+        The robot's profile with `legs` and `sign` as observed; each channel keeps its zero.
 
     Raises:
         RigTimeout: The robot sends nothing.
-        DeviceFault: A channel did not follow its command, or a leg was seen twice.
+        DeviceFault: A channel did not follow its command, another channel moved, or the same leg
+            was observed for two channels.
     """
     seen: list[MovedLeg] = []
     for channel in range(len(robot.profile.legs)):
@@ -81,7 +85,7 @@ def check_legs(
 
 
 def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOCK) -> None:
-    """Move one channel up by `STEP` and hold all others; check that it followed.
+    """Increase one channel's count by `STEP` and hold all others; check that only it moved.
 
     Args:
         robot: The robot, open.
@@ -90,7 +94,7 @@ def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOC
 
     Raises:
         RigTimeout: The robot sends nothing.
-        DeviceFault: The channel stayed, or another one moved.
+        DeviceFault: A channel's motion is more than a quarter of the step from the commanded one.
     """
     around = robot.profile.counts_per_revolution
     before = latest_counts(robot, clock=clock)
@@ -114,14 +118,14 @@ def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOC
 
 
 def zero_legs(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> LegProfile:
-    """Determine zeros: the present counts, while a person holds every toe straight ahead.
+    """Measure the zeros: each channel's count while a person holds every toe straight ahead.
 
     Args:
         robot: The robot, open.
         clock: Host time.
 
     Returns:
-        The profile with `zero_counts` as read.
+        The robot's profile with `zero_counts` as read, below a revolution.
 
     Raises:
         RigTimeout: The robot sends nothing.
@@ -139,10 +143,10 @@ def latest_counts(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> tuple[f
         clock: Host time.
 
     Returns:
-        Counts in the order of the wire.
+        Counts by channel, in the order of the wire.
 
     Raises:
-        RigTimeout: The robot sends nothing.
+        RigTimeout: No new sample arrived within `ANSWER_TIMEOUT`.
     """
     robot.read(0.0)
     end = clock.now() + ANSWER_TIMEOUT
@@ -158,9 +162,9 @@ class LiftOff:
     """A lift-off angle found on the robot.
 
     Attributes:
-        theta: The angle, a whole number of counts [rad].
-        mismatch: Hip height there less that at touchdown [m].
-        measurements: Number of measured heights.
+        theta: Lift-off angle, a whole number of counts [rad].
+        mismatch: Hip height at `theta` less hip height at touchdown [m].
+        measurements: Number of measured hip heights.
     """
 
     theta: float
@@ -171,12 +175,12 @@ class LiftOff:
 def find_lift_off(
     hip_height: Callable[[float], float], touchdown: float, *, counts_per_revolution: int
 ) -> LiftOff:
-    r"""Find the lift-off angle whose hip height is the touchdown's, sections 2-6-1 and 5-2-3.
+    r"""Find the lift-off angle with the hip height of touchdown, sections 2-6-1 and 5-2-3.
 
-    Past the vertical a leg's hip only sinks, so that the angle is found by halving, among the
-    angles that the robot can count. A half-circular leg would have it at
-    :math:`2\sin\theta_{LO} = 1 + \sin\theta_{TD}`, Eq. (2-17); real ones are longer than that,
-    and the thesis measured 130° where that equation gives 118°.
+    Past the vertical a leg's hip only sinks, so that the angle is found by bisection, among the
+    angles between pi/2 and pi that are whole counts. For a half-circular leg
+    :math:`2\sin\theta_{LO} = 1 + \sin\theta_{TD}`, Eq. (2-17); arcs of real legs are longer, and
+    the Thesis measured 130° where that equation gives 118°.
 
     Args:
         hip_height: Turns a standing leg to an angle [rad] and measures the height of its hip [m].
@@ -184,7 +188,7 @@ def find_lift_off(
         counts_per_revolution: Counts of a whole turn.
 
     Returns:
-        The count angle with the nearest height.
+        The angle whose hip height is nearest to that at touchdown.
     """
     count = 2 * math.pi / counts_per_revolution
     heights: dict[int, float] = {}

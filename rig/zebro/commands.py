@@ -8,11 +8,13 @@ from rig.errors import LimitExceeded
 from rig.zebro.profile import LegProfile, encode_counts
 
 LONGEST_MOTION: Final = 65.535
+"""Longest duration of a motion that 16 bits of milliseconds can encode [s]."""
 MILLISECOND: Final = 1e-3
+"""One millisecond [s]."""
 
 
 class LegCommands(Protocol):
-    """Commands to the robot's legs."""
+    """Commands to the robot's legs: motion to counts, and stop."""
 
     @property
     def profile(self) -> LegProfile:
@@ -20,37 +22,37 @@ class LegCommands(Protocol):
         ...
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count, the short way round.
+        """Send the command to turn every leg to a count, the short way round.
 
         Args:
-            counts: Targets in the order of the wire.
+            counts: Target count of each channel, in the order of the wire.
             duration: Duration of the motion [s].
 
         Returns:
             Whether the link took the command.
 
         Raises:
-            LimitExceeded: The motion is longer than the protocol can encode.
+            LimitExceeded: The duration is negative or above `LONGEST_MOTION`.
             ProtocolError: This robot's link takes no commands.
         """
         ...
 
     def stop(self) -> bool:
-        """Stop every leg where it is; return whether the link took the command."""
+        """Send the command to stop every leg where it is; return whether the link took it."""
         ...
 
 
 def milliseconds(duration: float) -> int:
-    """Convert the duration of a motion to milliseconds, 16 bits in the protocols.
+    """Convert the duration of a motion to whole milliseconds, which the protocols send.
 
     Args:
         duration: Duration of a motion [s].
 
     Returns:
-        The same [ms].
+        The duration, rounded [ms].
 
     Raises:
-        LimitExceeded: It is negative, or too long.
+        LimitExceeded: The duration is negative or above `LONGEST_MOTION`.
     """
     if not 0 <= duration <= LONGEST_MOTION:
         raise LimitExceeded("duration of a leg motion", value=duration, limit=LONGEST_MOTION,
@@ -61,14 +63,14 @@ def milliseconds(duration: float) -> int:
 def follow(
     legs: LegCommands, reference: LegReference, *, start: float, now: float, horizon: float
 ) -> bool:
-    """Command the leg angles of a gait at a time `horizon` ahead.
+    """Send the leg angles that a gait has a time `horizon` ahead as set-points.
 
     Called repeatedly, at intervals of at most `horizon`, it makes the robot walk. A leg must move
     less than half a turn within the horizon, or it would turn in the wrong direction.
 
     Args:
-        legs: The robot.
-        reference: The gait.
+        legs: Robot whose legs are commanded.
+        reference: Gait with the leg angles over time since its beginning.
         start: Host time at which the gait began [s].
         now: Host time [s].
         horizon: Time ahead at which the set-point is due, and duration of the motion to it [s].

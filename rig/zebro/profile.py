@@ -25,19 +25,21 @@ LINK_OF: dict[str, str] = {
 }  # fmt: skip
 """Link that each layout needs; `table` is not a device but an imported file."""
 DUMP_REGISTERS = 256
+"""Number of one-byte registers of a robot."""
 
 
 @dataclass(frozen=True)
 class Registers:
-    """Register map of a robot; each value takes two registers.
+    """Register map of a robot; each value takes two registers of one byte.
 
     Attributes:
         positions: First register of the position of each channel.
         read_command: Byte that requests registers.
         write_command: Byte that writes registers.
-        set_points: First register of the set-point of each channel; empty where none is taken.
-        duration: First register of the duration of a motion [ms].
-        stop: Register that stops every leg when anything but 0 is written.
+        set_points: First register of the set-point of each channel; empty for the layout `dump`,
+            which takes no set-points.
+        duration: First register of the duration of a motion, which is in milliseconds.
+        stop: Register that stops every leg when a value other than 0 is written to it.
     """
 
     positions: tuple[int, ...] = ()
@@ -53,10 +55,10 @@ class CanIds:
     """Arbitration ids of a robot on CAN.
 
     Attributes:
-        clock: Device time of the positions that follow.
-        positions: Leg positions.
-        set_points: Targets of a motion.
-        stop: Stop every leg.
+        clock: Id of the frame with the device time of the positions that follow.
+        positions: Id of the frame with the leg positions.
+        set_points: Id of the frame that commands targets of a motion.
+        stop: Id of the frame that stops every leg.
     """
 
     clock: int = 0x120
@@ -67,7 +69,7 @@ class CanIds:
 
 @dataclass(frozen=True)
 class LegProfile:
-    r"""A robot's leg stream.
+    r"""Profile of a robot's leg stream: frame layout and conversion of counts to leg angles.
 
     Leg angle of a count n, with the leg's zero n_0, sign s and N counts a revolution:
 
@@ -75,17 +77,17 @@ class LegProfile:
         \theta = s\,\frac{2\pi}{N}\,(n - n_0)
 
     Attributes:
-        name: Name of the profile.
-        layout: Form of the frames.
+        name: Name of the profile: that of its file without suffix.
+        layout: Layout of the frames, which decides on the driver; `table` for an imported file.
         baudrate: Line rate of the serial port, or bit rate of the bus; 0 for a table [1/s].
-        byte_order: Of values of several bytes.
+        byte_order: Byte order of values of two bytes.
         legs: Leg number of each channel, in the order of the wire.
         counts_per_revolution: Counts N of a whole turn; N itself reads as 0.
         zero_counts: Count n_0 of each channel with its toe straight ahead.
         sign: 1 for a channel whose count grows as the robot walks forward, else -1.
         rate: Sample rate [Hz].
-        registers: For the layouts `dump` and `poll`.
-        can_ids: For the layout `can`.
+        registers: Register map; used only in the layouts `dump` and `poll`.
+        can_ids: Arbitration ids; used only in the layout `can`.
     """
 
     name: str
@@ -102,7 +104,7 @@ class LegProfile:
 
     @property
     def quantisation(self) -> float:
-        """Half a count as an angle: the error is uniform between minus and plus this [rad].
+        """Half a count as an angle: an angle's error is uniform between minus and plus this [rad].
 
         0 for a table: its numbers have fractions, and their rounding is unknown.
         """
@@ -117,7 +119,7 @@ class LegProfile:
         return struct.Struct(f"{'<' if self.byte_order == 'little' else '>'}{count}H")
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Return whether every count is between 0 and a revolution."""
+        """Return whether every count is from 0 to `counts_per_revolution`, both included."""
         return max(counts) <= self.counts_per_revolution and min(counts) >= 0
 
 
@@ -126,11 +128,12 @@ class LegAngles:
     """Leg angles of a stream.
 
     Attributes:
-        host_time: When the host read each sample, shape (n,) [s].
-        device_time: When the device took it, NaN where unknown, shape (n,) [s].
+        host_time: Host time at which each sample was read, shape (n,) [s].
+        device_time: Device time at which each sample was taken, NaN where unknown, shape (n,) [s].
         legs: Leg number of each column, ascending.
-        theta: Unwrapped leg angles, shape (n, legs) [rad].
-        quantisation: Half a count: the error is uniform between minus and plus this [rad].
+        theta: Unwrapped leg angles, shape (n, number of legs) [rad].
+        quantisation: Half a count as an angle: the error of an angle is uniform between minus and
+            plus this; 0 for a table [rad].
     """
 
     host_time: Array
@@ -150,7 +153,8 @@ def load_leg_profile(name: str) -> LegProfile:
         The profile.
 
     Raises:
-        ProfileError: A key is missing, unknown, of the wrong type or contradicts another.
+        ProfileError: The file is missing or not such a profile; or a key is missing, unknown,
+            invalid or contradicts another.
     """
     table = open_profile(name, device="legs")
     link, frame, legs, stream = (table.table(key) for key in ("link", "frame", "legs", "stream"))
@@ -186,17 +190,17 @@ def load_leg_profile(name: str) -> LegProfile:
 
 
 def save_leg_profile(profile: LegProfile, path: Path) -> None:
-    """Write a profile, so that `load_leg_profile` gives it back.
+    """Write a profile as TOML, so that `load_leg_profile` gives it back but for its name.
 
     Args:
-        profile: The profile; its name becomes the file's.
-        path: Path of the file; an existing one is replaced.
+        profile: The profile; its name is not stored: a loaded profile is named after its file.
+        path: Path of the file; an existing file is overwritten.
     """
     path.write_text(render_leg_profile(profile), encoding="utf-8")
 
 
 def render_leg_profile(profile: LegProfile) -> str:
-    """Return a profile as the TOML that `load_leg_profile` reads."""
+    """Format a profile as the TOML that `load_leg_profile` reads; the name is not part of it."""
     return tomlkit.dumps(_as_document(profile))
 
 
@@ -208,11 +212,11 @@ def decode_angles(profile: LegProfile, samples: Sequence[Sample]) -> LegAngles:
     contact with the ground.
 
     Args:
-        profile: Profile of the stream; a corrected one repairs an old log.
-        samples: The stream's samples, in order.
+        profile: Profile of the stream; a corrected profile repairs an old log.
+        samples: Samples of the stream, in order.
 
     Returns:
-        Angles, first sample of each leg in [-pi, pi).
+        Angles with their columns by ascending leg number; the first of each leg is in [-pi, pi].
 
     Raises:
         ProtocolError: The samples have another number of channels than the profile.
@@ -245,7 +249,7 @@ def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[
         theta: Leg angles by ascending leg number, shape (legs,) [rad].
 
     Returns:
-        Counts from 0 to below a revolution.
+        Count of each channel, from 0 to below a revolution.
     """
     ascending = sorted(profile.legs)
     by_channel = np.array([theta[ascending.index(leg)] for leg in profile.legs], dtype=float)
@@ -262,7 +266,7 @@ def _order(legs: TomlTable) -> tuple[int, ...]:
 
 
 def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, ...]:
-    """Reorder values listed by ascending leg number into the order of the channels."""
+    """Reorder values from ascending leg number to the order of the channels, `order`."""
     ascending = sorted(order)
     return tuple(by_leg[ascending.index(leg)] for leg in order)
 

@@ -18,7 +18,9 @@ from rig.zebro.commands import milliseconds
 from rig.zebro.profile import DUMP_REGISTERS, LegProfile
 
 SYNC: Final = bytes.fromhex("FF4512EA4B")
+"""Trailer of a dump."""
 DUMP_LENGTH: Final = DUMP_REGISTERS + len(SYNC)
+"""Length of a dump with its trailer [bytes]."""
 ANSWER_TIMEOUT: Final = 0.05
 """Timeout of an answer to a poll [s]."""
 QUIET_AFTER_FAILURE: Final = 0.1
@@ -26,7 +28,7 @@ QUIET_AFTER_FAILURE: Final = 0.1
 
 
 class _RegisterStream(LinkedStream[ByteLink]):
-    """Base of both layouts: link, profile and counters."""
+    """Base of the streams of both layouts, with link, profile and counters."""
 
     def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
         super().__init__(link, name="legs", clock=clock)
@@ -45,7 +47,7 @@ class DumpLegs(_RegisterStream):
 
     Args:
         link: Bytes from one leg module.
-        profile: Of the layout `dump`.
+        profile: Profile of the module, of the layout `dump`.
         clock: Host time.
     """
 
@@ -56,7 +58,7 @@ class DumpLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far."""
+        """Counters of the stream so far; there are no numbers, so that losses are not counted."""
         return Counters(
             received=self._received,
             damaged=self._framer.damaged,
@@ -84,7 +86,7 @@ class DumpLegs(_RegisterStream):
         """Raise: a robot that only dumps its registers takes no commands.
 
         Args:
-            counts: Targets in the order of the wire.
+            counts: Target count of each channel, in the order of the wire.
             duration: Duration of the motion [s].
 
         Raises:
@@ -96,19 +98,20 @@ class DumpLegs(_RegisterStream):
         )
 
     def stop(self) -> bool:
-        """Return False: a robot that only dumps its registers takes no commands."""
+        """Return False, send nothing: a robot that only dumps its registers takes no commands."""
         return False
 
 
 class PolledLegs(_RegisterStream):
-    """Stream of the layout `poll`: read command, first register, number of registers; their values.
+    """Stream of the layout `poll`: each reading is requested, and answered by register values.
 
-    Readings are requested at the profile's rate. Buffered bytes are discarded before each request,
-    so that a late answer is never taken for the next one.
+    A request is read command, first register and number of registers, one byte each. Readings
+    are requested at the profile's rate. Buffered bytes are discarded before each request, so that
+    a late answer is never taken for the next one.
 
     Args:
         link: Bytes to and from the bridge.
-        profile: Of the layout `poll`.
+        profile: Profile of the robot, of the layout `poll`.
         clock: Host time.
     """
 
@@ -132,7 +135,11 @@ class PolledLegs(_RegisterStream):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Request one reading when it is due; none where that is beyond `timeout` [s]."""
+        """Wait until the next reading is due, request it, and return its sample.
+
+        There is none where the reading is due later than `timeout` [s], or the answer is incomplete
+        or impossible. Waiting for the answer adds up to `ANSWER_TIMEOUT`.
+        """
         now = self._clock.now()
         wait = self._next_at - now
         self._clock.sleep(min(max(wait, 0.0), timeout))
@@ -151,10 +158,10 @@ class PolledLegs(_RegisterStream):
         return self._sample(self._answer.unpack(answer))
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`.
+        """Send the command to turn every leg to a count; see `LegCommands.set_points`.
 
         Args:
-            counts: Targets in the order of the wire.
+            counts: Target count of each channel, in the order of the wire.
             duration: Duration of the motion [s].
 
         Returns:
@@ -165,7 +172,7 @@ class PolledLegs(_RegisterStream):
         return self._write(self.profile.registers.set_points[0], data)
 
     def stop(self) -> bool:
-        """Stop every leg at its present angle; return whether the link took the command."""
+        """Send the command to stop every leg where it is; return whether the link took it."""
         return self._write(self.profile.registers.stop, b"\x01")
 
     def _write(self, first: int, data: bytes) -> bool:

@@ -10,11 +10,11 @@ from rig.zebro.profile import LegProfile
 
 
 class PacketLegs(PacketStream):
-    """Stream of the layout `packet`; satisfies `Stream` and `LegCommands`.
+    """Stream of the layout `packet`; implements the protocols `Stream` and `LegCommands`.
 
     Args:
         link: Bytes to and from the bridge.
-        profile: Of the layout `packet`.
+        profile: Profile of the robot, of the layout `packet`.
         clock: Host time.
     """
 
@@ -31,10 +31,10 @@ class PacketLegs(PacketStream):
         self.profile = profile
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`.
+        """Send the command to turn every leg to a count; see `LegCommands.set_points`.
 
         Args:
-            counts: Targets in the order of the wire.
+            counts: Target count of each channel, in the order of the wire.
             duration: Duration of the motion [s].
 
         Returns:
@@ -44,5 +44,5 @@ class PacketLegs(PacketStream):
         return self.send(Kind.LEG_SET_POINTS, body)
 
     def stop(self) -> bool:
-        """Stop every leg at its present angle; return whether the link took the command."""
+        """Send the command to stop every leg where it is; return whether the link took it."""
         return self.send(Kind.STOP)

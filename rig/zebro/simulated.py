@@ -21,10 +21,10 @@ from rig.zebro.simulated_legs import Frame, SimulatedLegs
 
 
 class _ByteRobot(ABC):
-    """Simulated robot on a serial line; satisfies `ByteTwin`.
+    """Simulated robot on a serial line; implements the protocol `ByteTwin`.
 
     Args:
-        legs: The legs.
+        legs: Simulated legs that the robot moves and reports.
         faults: Transmission errors of the line.
         rng: Random generator of the transmission errors.
     """
@@ -54,11 +54,11 @@ class _ByteRobot(ABC):
 
     @abstractmethod
     def _answer(self, now: float, received: bytes) -> list[bytes]:
-        """Execute commands and return the frames that are due, before transmission errors."""
+        """Execute the commands received, and return the due frames without transmission errors."""
 
 
 class PacketRobot(_ByteRobot):
-    """Robot behind a bridge that sends packets."""
+    """Simulated robot behind a bridge that sends packets; layout `packet`."""
 
     def __init__(
         self, legs: SimulatedLegs, *, faults: Faults = PERFECT_LINE, rng: np.random.Generator
@@ -88,7 +88,7 @@ class PacketRobot(_ByteRobot):
 
 
 class DumpRobot(_ByteRobot):
-    """One leg module that dumps its registers; its profile says which legs it turns."""
+    """Simulated leg module that dumps its registers and ignores commands; layout `dump`."""
 
     def _answer(self, now: float, received: bytes) -> list[bytes]:
         del received  # the real module ignores commands, too
@@ -97,7 +97,7 @@ class DumpRobot(_ByteRobot):
 
 
 class PolledRobot(_ByteRobot):
-    """Bridge that answers register reads and executes register writes."""
+    """Simulated bridge that answers register reads and executes register writes; layout `poll`."""
 
     _inbox = b""
     _counts: tuple[int, ...]
@@ -112,7 +112,10 @@ class PolledRobot(_ByteRobot):
         return answers
 
     def _serve(self, now: float, answers: list[bytes]) -> bool:
-        """Answer the first request of the inbox; return whether it was complete."""
+        """Execute and remove the first request of the inbox; append the answer to a read.
+
+        An unknown command byte is discarded. Returns False where the request is not complete yet.
+        """
         command, first, size = self._inbox[:3]
         registers = self.legs.profile.registers
         if command == registers.read_command:
@@ -138,11 +141,11 @@ class PolledRobot(_ByteRobot):
 
 
 class CanRobot:
-    """Robot on a CAN bus.
+    """Simulated robot on a CAN bus; layout `can`.
 
     Args:
-        legs: The legs.
-        bus: Its own end of the bus; the caller closes it.
+        legs: Simulated legs that the robot moves and reports.
+        bus: The robot's own end of the bus; the caller closes it.
         faults: Transmission errors; only `drop`, `duplicate` and `delay` apply, because the bus
             protects each frame with a checksum.
         rng: Random generator of the transmission errors.
@@ -162,7 +165,7 @@ class CanRobot:
         self._line: FaultyLine[can.Message] = FaultyLine(faults, rng=rng)
 
     def poll(self, now: float) -> None:
-        """Execute commands from the bus and send the frames that are due up to a time [s]."""
+        """Execute the commands on the bus, and send the frames that are due up to `now` [s]."""
         while (message := self._bus.recv(0.0)) is not None:
             self._execute(message, now)
         for frame in self.legs.frames(now):
@@ -191,7 +194,7 @@ class CanRobot:
 
 
 def _registers(profile: LegProfile, counts: tuple[int, ...]) -> bytes:
-    """Encode the registers of a robot whose positions are some counts."""
+    """Encode the counts of all channels as a dump of registers; all other registers are 0."""
     registers = bytearray(DUMP_REGISTERS)
     for first, count in zip(profile.registers.positions, counts, strict=True):
         registers[first : first + 2] = count.to_bytes(2, profile.byte_order)

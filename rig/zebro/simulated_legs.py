@@ -22,13 +22,13 @@ class RobotImperfections:
     """Deviations of the robot from its gait; the defaults follow it exactly.
 
     Attributes:
-        jitter: Standard deviation of the time of a frame, limited to half a period [s].
+        jitter: Standard deviation of the time of a frame; its error is clipped to 0.45 periods [s].
         pause_probability: Probability that the robot pauses before a leg begins its swing.
         pause: Duration of a pause [s].
-        clock_rate_error: Relative error of the robot's clock [-].
+        clock_rate_error: Relative error of the robot's clock, above 0 where it runs fast [-].
 
     Raises:
-        ProtocolError: A number is negative, or a probability above 1.
+        ProtocolError: `jitter` or `pause` is negative, or `pause_probability` not from 0 to 1.
     """
 
     jitter: float = 0.0
@@ -54,9 +54,9 @@ class Frame:
 
     Attributes:
         number: Number of the frame, from 0.
-        device_time: By the robot's clock [s].
+        device_time: Time of the reading by the robot's clock [s].
         time: True time of the reading since the robot was switched on [s].
-        counts: In the order of the wire.
+        counts: Count of each channel, in the order of the wire.
     """
 
     number: int
@@ -69,7 +69,7 @@ class SimulatedLegs:
     """Six legs that follow a gait until they are commanded otherwise.
 
     Args:
-        reference: The gait, any.
+        reference: Gait that the legs follow until they are commanded.
         profile: Conversion of angles to counts; a driver may be given another one on purpose.
         imperfections: Deviations from the gait.
         rng: Random generator.
@@ -95,13 +95,13 @@ class SimulatedLegs:
         self._motion: tuple[float, float, Array, Array] | None = None
 
     def frames(self, now: float) -> list[Frame]:
-        """Return the frames that are due up to a time, one every 1/rate.
+        """Return the frames that are due since the last call, one every 1/rate.
 
         Args:
             now: Time by the caller's clock [s].
 
         Returns:
-            The frames since the last call.
+            The frames in order; the first call switches the robot on and returns frame 0.
         """
         time = self._since_start(now)
         due = int(np.floor(time * self.profile.rate + 1e-9)) + 1
@@ -110,16 +110,16 @@ class SimulatedLegs:
         return frames
 
     def restart(self) -> None:
-        """Restart, as after a loss of power: numbers and time begin at 0."""
+        """Restart as after a loss of power: numbers, time and gait begin at 0; a command stays."""
         self._switched_on = None
         self._number = 0
         self._behind = self._paused_until = 0.0
 
     def angles(self, time: float) -> Array:
-        """Compute the true leg angles, shape (6,) [rad].
+        """Compute the true leg angles of the gait, or of the last command, shape (6,) [rad].
 
         Args:
-            time: Since the robot was switched on [s].
+            time: Time since the robot was switched on [s].
         """
         if self._motion is not None:
             start, duration, origin, target = self._motion
@@ -131,8 +131,8 @@ class SimulatedLegs:
         """Turn every leg to a count the short way round, and hold it there.
 
         Args:
-            counts: Targets in the order of the wire.
-            duration: How long the motion takes [s].
+            counts: Target count of each channel, in the order of the wire.
+            duration: Duration of the motion [s].
             now: Time by the caller's clock [s].
         """
         time = self._since_start(now)
@@ -146,7 +146,7 @@ class SimulatedLegs:
         self._motion = (time, duration, origin, target)
 
     def stop(self, now: float) -> None:
-        """Hold every leg where it is."""
+        """Hold every leg at its angle at `now`, time by the caller's clock [s]."""
         time = self._since_start(now)
         here = self.angles(time)
         self._motion = (time, 0.0, here, here)
@@ -167,7 +167,10 @@ class SimulatedLegs:
         return Frame(number, device_time, time, encode_counts(self.profile, by_leg))
 
     def _pause(self, time: float) -> None:
-        """Delay the gait at random when a leg is about to begin its swing."""
+        """Start or continue a random pause of the gait at the time of a frame [s].
+
+        A pause starts with the probability `pause_probability` when a leg begins its swing.
+        """
         if self._imperfections.pause_probability == 0:
             return
         if time < self._paused_until:

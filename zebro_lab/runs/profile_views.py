@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Make the converters of streams to display messages from the profile that a run folder keeps."""
+"""Convert streams to display messages with the profiles in a run folder."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -36,7 +36,7 @@ def stored_views(folder: Path, profiles: Iterable[str]) -> dict[str, StreamView]
 
     Args:
         folder: The run folder.
-        profiles: Names of its profiles.
+        profiles: Names of the profiles in the run folder, such as `rig` and `imu`.
 
     Raises:
         RigError: A profile is invalid.

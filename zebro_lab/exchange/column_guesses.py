@@ -71,7 +71,10 @@ def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
 
 
 def guess_set_points(table: RawTable) -> list[str]:
-    """Return the headers of numeric columns that change, but in fewer than 200 and 10 % of rows."""
+    """Return headers of set-point columns: numbers that change at under 10 % of rows, 200 at most.
+
+    Columns with an empty cell are left out.
+    """
     found = []
     for name in table.columns:
         numbers = numbers_or_none(table, name)

@@ -38,7 +38,7 @@ class Journal:
     Attributes:
         plan: Fingerprint of the plan.
         accepted: Number of the accepted point, by name of its run folder.
-        folders: Names of the run folders with a verdict on their point, accepted or not.
+        folders: Names of the run folders that were closed, their point accepted or not.
         latched: Reason of the last emergency stop or damaged line since a reset; None without.
     """
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Latch of an emergency stop on disk: a file with preallocated space.
 
-It is written in place, so that it also works on a full disk, and by the thread that stops the rig,
-without a queue. A file of blanks means not latched; any other content, or an unreadable file,
-counts as latched.
+The file is overwritten in place, so that latching also works on a full disk, by the thread that
+stops the rig, without a queue. A file of blanks means not latched; any other content, or an
+unreadable file, counts as latched.
 """
 
 import errno

@@ -88,7 +88,7 @@ def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
         The samples; host times since the start of the run [s].
 
     Raises:
-        ValueError: The message is truncated, or its sequences differ in length.
+        ValueError: The message is not CDR or truncated, or its sequences differ in length.
     """
     reader = CdrReader(data)
     host, device = reader.array("<f8"), reader.array("<f8")

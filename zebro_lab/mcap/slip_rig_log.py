@@ -80,7 +80,7 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
         Samples by rows, columns in the order of the attributes of `SlipRigTable`, shape (m, 5).
 
     Raises:
-        ValueError: The message is truncated or empty, or its sequences differ in length.
+        ValueError: The message is not CDR, truncated or empty, or sequences differ in length.
     """
     reader = CdrReader(data)
     columns = [reader.array("<f8") for _ in fields(SlipRigTable)]

@@ -34,9 +34,9 @@ from zebro_lab.runs.recorded_legs import LEGS
 RIG_PROFILE: Final = "rig-odrive-netft"
 PAUSE: Final = 0.053
 """Pause between two reads of a device that sends its time; the system buffers its data meanwhile.
-With the recorder's wait it stays well below the 200 ms that a killed run may lack. It is no
+With the recorder's wait it stays well below the 200 ms that a killed run may lack. It is not a
 multiple of a usual period, so that samples are read with varying delays; those with the smallest
-ones give the clock offset [s]."""
+delays give the clock offset [s]."""
 TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=1.0)
 """Sweep of a simulated rig: all slips in 16 s at each of four loads."""
 
@@ -111,7 +111,7 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
 
 
 def default_gait() -> LegReference:
-    """Return leg angles over time of `GaitRequest()`'s gait, which a simulated robot walks."""
+    """Return the default gait, leg angles over time, which a simulated robot walks."""
     return make_gait(GaitRequest(), leg_arc=np.pi).reference
 
 

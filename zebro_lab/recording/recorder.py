@@ -152,7 +152,7 @@ class RunRecorder:
         """Store the requested duration of the run for the end record.
 
         Args:
-            asked: Requested duration [s].
+            asked: Requested duration of the run [s].
             since: Host time from which the duration counts [s].
         """
         duration = {"asked": asked, "from": since - self.start}

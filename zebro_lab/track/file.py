@@ -54,8 +54,8 @@ def read_track(path: Path) -> TrackFile:
 
     Raises:
         NotFound: The table file does not exist.
-        DataError: A column is missing, a cell holds no number, time does not increase, or there
-            are fewer than `FEWEST` poses; names file, row and column.
+        DataError: A column is missing, a cell holds no number, time does not increase, a
+            covariance has a negative eigenvalue, or there are fewer than `FEWEST` poses.
     """
     settle(path)
     file = path / TRACK_CSV if path.is_dir() else path

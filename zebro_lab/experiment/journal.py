@@ -54,7 +54,9 @@ def plan_fingerprint(text: str) -> str:
 
 
 class JournalWriter:
-    """Writer of a journal; each event is flushed to the disk before the next one is written.
+    """Writer of `experiment.jsonl`; each event is flushed to the disk (fsync) when appended.
+
+    As a context manager it keeps a reserve file, which is deleted when the disk is full.
 
     Args:
         data: Folder of the experiment; created when missing.

@@ -99,7 +99,7 @@ def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
 
 
 def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
-    """Return whether a run is a point of an earlier version that ended without an end record."""
+    """Return whether a run, by label a point of an earlier version, ended without an end record."""
     return (
         not manifest.point
         and manifest.excluded is None

@@ -102,7 +102,7 @@ class ExperimentScreen(ExperimentWatcher):
         self._lines.append(text)
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Show the step that begins; see `ExperimentWatcher.doing`.
+        """Show the step that begins and clear the prompt; see `ExperimentWatcher.doing`.
 
         Args:
             what: Name of the step.
@@ -115,10 +115,10 @@ class ExperimentScreen(ExperimentWatcher):
         self._picture = replace(self._picture, head=head, done=done, of=max(of, 1), prompt="")
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Show a prompt for the operator; see `ExperimentWatcher.prompt`.
+        """Show an instruction to the operator; without a terminal print each new one once.
 
         Args:
-            text: What the operator must do.
+            text: Instruction, replaced by the next `changed`, `doing` or `prompt`.
             normal: Present normal force [N].
         """
         if self._live is not None:

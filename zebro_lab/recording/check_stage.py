@@ -23,7 +23,7 @@ MOVING: Final = 1.0
 
 
 class Person(Protocol):
-    """Person who watches the robot and answers questions about it."""
+    """Interface to a person who watches the robot and reports observations."""
 
     def watch(self, channel: int) -> MovedLeg:
         """Return which leg moved with a channel (from 0), and whether it turned forward."""

@@ -141,7 +141,7 @@ class RunRecorder:
         )
 
     def dropped(self, stream: str) -> int:
-        """Return the number of samples of a stream dropped because its queue was full."""
+        """Return the number of samples of a stream dropped so far because its queue was full."""
         return self._queues[stream].dropped
 
     def compare_clocks(self, clocks: Mapping[str, Mapping[str, float]]) -> None:
@@ -238,7 +238,7 @@ class RunRecorder:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _fail(self, why: str) -> None:
-        """Store why writing has stopped; the first reason counts."""
+        """Store why writing has stopped as `failure`, unless a reason is stored already."""
         with self._failing:
             if self._failure is None:
                 self._failure = why

@@ -126,6 +126,6 @@ class RunFiles:
         write_manifest(folder, replace(manifest, streams=self.log.written, log_sha256=log_sha256))
 
     def close(self) -> None:
-        """Close the log's file; an error of the disk is ignored."""
+        """Close the log's file; an OSError is suppressed."""
         with contextlib.suppress(OSError):
             self._file.close()

@@ -29,7 +29,7 @@ LOOK_EVERY: Final = 0.05
 
 
 class RecordWatcher(Protocol):
-    """Display of a recording, which can also request its end."""
+    """Interface of a display of a recording, which can also request the recording's end."""
 
     def show(self, status: RecordStatus) -> None:
         """Show the status, up to twenty times a second.
@@ -151,7 +151,7 @@ def _watch(
 
 
 def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> None:
-    """Pass the last counters and the clock fits to the recorder, for the end record."""
+    """Pass the last counters and the clock fits to the recorder; log clocks that cannot be fit."""
     clocks = {}
     for name, reader in readers.items():
         recorder.count(name, reader.counters)

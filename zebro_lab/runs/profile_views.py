@@ -18,7 +18,7 @@ def profile_views(file: Path) -> dict[str, StreamView]:
     """Return the converters of all streams that a profile describes, by the streams' names.
 
     Args:
-        file: Profile in a run folder, named `rig` or as its stream: `imu`, `imu1`, `legs`.
+        file: Profile in a run folder; its name selects the kind: `rig`, `imu…`, else legs.
 
     Raises:
         RigError: The profile is invalid.

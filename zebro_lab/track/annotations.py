@@ -108,7 +108,7 @@ def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
 
 
 def render_annotations(annotations: Annotations) -> str:
-    """Format annotations as commented TOML; inverse of `read_annotations`."""
+    """Format annotations as commented TOML, from which `read_annotations` reads the same."""
     template, values = _HEADING, {}
     if annotations.template is not None:
         template += _TEMPLATE_SECTION

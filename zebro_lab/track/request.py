@@ -34,7 +34,11 @@ def _moment(text: str) -> datetime:
 
 @dataclass(frozen=True)
 class TimeRequest:
-    """Where the times of photographs come from."""
+    """Options for the times of photographs; without any, EXIF times or a video's time stamps.
+
+    Raises:
+        SettingsError: Both an interval and a table are given.
+    """
 
     interval: Annotated[
         float | None,
@@ -70,7 +74,11 @@ class TimeRequest:
 
 @dataclass(frozen=True)
 class TrackRequest:
-    """Options of `zebro-lab track`."""
+    """Options of `zebro-lab track`.
+
+    Raises:
+        SettingsError: `merged` is given, and `photos` is a folder or a video.
+    """
 
     photos: Annotated[
         Path, Argument(help="Folder of photographs, a video, or one composite picture.")

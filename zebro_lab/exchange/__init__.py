@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Import and export: write a column map, import runs from other software, export runs."""
+"""Import runs from other software, export runs, and write a column map for a table."""

@@ -39,9 +39,9 @@ class ColumnGuess:
 
     Attributes:
         name: Header in the file.
-        unit: Unit parsed from the header; None if it has none.
-        negative: Whether the median is negative.
-        others: Other headers that match.
+        unit: Unit parsed from the header; None without a unit that fits the canonical column.
+        negative: Whether the median of the column's numbers is negative.
+        others: Other headers that match the canonical column.
     """
 
     name: str
@@ -51,9 +51,10 @@ class ColumnGuess:
 
 
 def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
-    """Guess the header of each canonical column that a table may have.
+    """Guess which column of a table holds each canonical column, by canonical name.
 
-    Columns are matched by their headers; the numbers only determine the sign.
+    Columns are matched by their headers, each at most once; the numbers only determine the sign.
+    Canonical columns without a match are omitted.
     """
     guesses: dict[str, ColumnGuess] = {}
     taken: set[str] = set()
@@ -70,7 +71,10 @@ def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
 
 
 def guess_set_points(table: RawTable) -> list[str]:
-    """Find set-point columns: few distinct values, each constant over many rows."""
+    """Return headers of set-point columns: numbers that change at under 10 % of rows, 200 at most.
+
+    Columns with an empty cell are left out.
+    """
     found = []
     for name in table.columns:
         numbers = numbers_or_none(table, name)
@@ -83,14 +87,14 @@ def guess_set_points(table: RawTable) -> list[str]:
 
 
 def numbers_or_none(table: RawTable, name: str) -> Array | None:
-    """Return the numbers of a column.
+    """Return the numbers of a column; None if it cannot be read as numbers.
 
     Args:
         table: Table that has the column.
         name: Header of the column.
 
     Returns:
-        Values by row, shape (n,), in the file's unit; None if no cell is a finite number.
+        Values by row, shape (n,), in the file's unit; None also if none is finite.
     """
     try:
         numbers = table.numbers(name)
@@ -111,7 +115,7 @@ def _unit(header: str, canonical: str) -> str | None:
 
 
 def _without_unit(header: str) -> tuple[str, str | None]:
-    """Split `FZ [N]` or `t_ms` into a plain lower-case name and the unit."""
+    """Split a header, `FZ [N]` or `t_ms`, into a lower-case name and a unit; None without one."""
     if match := _BRACKETED.fullmatch(header):
         return _plain(match["name"]), match["unit"].strip()
     plain = _plain(header)

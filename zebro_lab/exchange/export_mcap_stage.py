@@ -53,18 +53,18 @@ from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.prediction_file import robot_of_walk
 
 FLOOR, BODY, TRACKED = "floor", "body", "tracked"
-SHOWN_DRAWS = 20
-FRAMES = 50.0  # frame rate of the walking robot [Hz]
+SHOWN_DRAWS = 20  # number of draws of the band that are written, the first ones
+FRAMES = 50.0  # largest rate of the predicted robot's poses [Hz]
 
 
 @dataclass(frozen=True)
 class Exported:
-    """Summary of an exported file.
+    """Summary of an exported MCAP file.
 
     Attributes:
-        file: The file.
+        file: The written file.
         topics: Number of messages by topic.
-        notes: Notes on what is missing, one line each.
+        notes: Notes on a missing track, prediction or band, one line each.
     """
 
     file: Path
@@ -74,7 +74,15 @@ class Exported:
 
 @dataclass(frozen=True)
 class _Predicted:
-    """A prediction in the track's frame."""
+    """Prediction of a walk in the floor frame, anchored to the track where there is one.
+
+    Attributes:
+        walk: Predicted path as written by `predict`, not anchored, with leg angles and height.
+        robot: The robot that walked.
+        source: Where the leg angles come from.
+        path: Predicted path, anchored.
+        draws: Paths of the band, anchored; None without a band.
+    """
 
     walk: WalkPath
     robot: Robot
@@ -84,7 +92,7 @@ class _Predicted:
 
 
 class _Stamped:
-    """A log whose messages have the time of the run as time stamp."""
+    """Writer of an MCAP log that registers topics at first use; run time [s] to Unix time [ns]."""
 
     def __init__(self, log: MessageLog, start_ns: int) -> None:
         self._log, self._start = log, start_ns
@@ -101,16 +109,16 @@ class _Stamped:
 def export_mcap(run: Path, *, out: Path) -> Exported:
     """Write legs, frames, track and predicted band as one MCAP file of ROS 2 messages.
 
-    As in validation, the prediction is anchored at the first tracked pose. Without a track it
-    starts at the origin.
+    As in validation, the prediction is anchored at the first tracked pose in its time range.
+    Without a track, or with one without yaw, it starts at the origin.
 
     Args:
-        run: Run folder, or a folder with track/ or prediction/.
-        out: File to write.
+        run: Run folder, or another folder, with track/ or prediction/ or both.
+        out: File to write, atomically.
 
     Raises:
         AlreadyExists: `out` exists.
-        NotFound: There is nothing to export.
+        NotFound: The folder has neither a track nor a prediction.
         DataError: A file is damaged, or track and prediction do not overlap in time.
     """
     if out.exists():
@@ -235,7 +243,7 @@ def _write_band(log: _Stamped, draws: Poses, *, height: float) -> None:
 
 
 def _legs(robot: Robot, theta: Array) -> list[Transform]:
-    """Return the hip frames: turned by the leg's angle about the body's y axis."""
+    """Return the hip frames in the body frame from leg angles, shape (legs,) [rad], about y."""
     turned = Rotation.from_euler("y", theta[:, None]).as_quat()
     return [
         Transform(BODY, f"leg_{leg}", hip, quaternion)
@@ -248,7 +256,7 @@ def _level(yaw: Array) -> Array:
 
 
 def _thinned(t: Array, rate: float) -> Sequence[int]:
-    """Return indices of rows downsampled to a rate, including the last row."""
+    """Return indices of every k-th row, so that the rate is at most `rate` [Hz], and the last."""
     usual = float(np.median(np.diff(t)))
     rows = list(range(0, len(t), max(int(np.ceil(1 / (rate * usual) - 1e-6)), 1)))
     return rows if rows[-1] == len(t) - 1 else [*rows, len(t) - 1]

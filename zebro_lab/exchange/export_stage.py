@@ -30,15 +30,15 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
 
     Args:
         folder: The run folder.
-        to: "csv" or "parquet".
-        out: Folder to create.
+        to: Format of the tables, "csv" or "parquet".
+        out: Folder to create, whole or not at all.
 
     Returns:
         The files written.
 
     Raises:
-        NotFound: It is not a run folder, or its log is missing.
-        DataError: It cannot be read, or has no samples.
+        NotFound: The folder is not a run folder, or its log or profile is missing.
+        DataError: The run cannot be read, or has no samples.
         AlreadyExists: `out` exists.
     """
     if out.exists():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Find the column map that applies to each imported file."""
+"""Find and parse the column map (`columns.toml`) that applies to each imported file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ LEGS, IMU, TRACK, RIG = "legs", "imu", "track", "rig"
 SERIES: Final[Mapping[str, Mapping[str, str]]] = {
     LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: TRACK_UNITS,
 }  # fmt: skip
-"""Names and units of each time series."""
+"""SI unit of each column, by column and kind of time series."""
 _SECTIONS: Final = (*SERIES, RIG)
 _PLAIN: Final = (LEGS, RIG)
 """Kinds whose columns.toml may be without sections, as `predict` and `calibrate-slip` read it."""
@@ -28,30 +28,30 @@ _PLAIN: Final = (LEGS, RIG)
 
 @dataclass(frozen=True)
 class ForeignColumns:
-    """Entries of a `columns.toml` for one file.
+    """Entries of a `columns.toml` for one imported file.
 
     Attributes:
-        table: The entries; None if there are none.
+        table: The entries, not parsed yet; None without a `columns.toml`.
     """
 
     table: SettingsTable | None = None
 
     @property
     def topic(self) -> str | None:
-        """Topic of an MCAP log; None if not stated.
+        """Topic of joint states to read from an MCAP log; None if not stated.
 
         Raises:
-            SettingsError: It is not a string.
+            SettingsError: The topic is not a string.
         """
         if self.table is None or "topic" not in self.table:
             return None
         return self.table.text("topic")
 
     def series(self, what: str) -> MappedColumns:
-        """Return the column map of a time series; a topic among its entries is allowed.
+        """Parse the column map of a time series; without entries, the canonical names and units.
 
         Args:
-            what: One of `SERIES`.
+            what: Kind of time series, a key of `SERIES`; the entry `topic` is ignored.
 
         Raises:
             SettingsError: A key, a unit or a sign is invalid.
@@ -63,7 +63,7 @@ class ForeignColumns:
         return parse_mapped_columns(self.table, SERIES[what])
 
     def rig(self) -> Columns:
-        """Return the column map of a rig table.
+        """Parse the column map of a rig table; without entries, the default `Columns()`.
 
         Raises:
             SettingsError: A key, a unit or a value is invalid.
@@ -72,16 +72,18 @@ class ForeignColumns:
 
 
 def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumns:
-    """Find the entries of a `columns.toml` for an imported file.
+    """Read the `columns.toml` for an imported file: the section of its kind.
+
+    Without any section, all entries apply to leg and rig files, and only `source` to the others.
 
     Args:
         what: Kind of file: `legs`, `imu`, `track` or `rig`.
-        table: The file.
-        named: A `columns.toml` in place of that beside the file.
+        table: Path of the imported file.
+        named: A `columns.toml` instead of the one beside the file.
 
     Raises:
         NotFound: The named `columns.toml` does not exist.
-        SettingsError: It cannot be read, or has entries both in sections and outside of them.
+        SettingsError: The `columns.toml` is not TOML, or has unknown keys beside its sections.
     """
     beside = table.parent / COLUMNS_FILE
     file = named or (beside if beside.is_file() else None)

@@ -34,7 +34,7 @@ from zebro_lab.track.foreign import (
 )
 
 _UNIX: Final = 1e9
-"""Times from this value on are taken as Unix time: no run lasts for 30 years [s]."""
+"""First time that counts as Unix time, since no run lasts for 30 years [s]."""
 _FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _LAST: Final = datetime(2262, 1, 1, tzinfo=UTC)  # largest time in nanoseconds in 64 bits
 
@@ -44,8 +44,8 @@ class Imported:
     """Result of an import.
 
     Attributes:
-        folders: The run folders.
-        notes: Notes, one line each.
+        folders: The written run folders, the walk first.
+        notes: Notes on start time, damage, left-out rows and overlap in time, one line each.
     """
 
     folders: tuple[Path, ...]
@@ -60,7 +60,7 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
 
     Args:
         request: Files to import and settings.
-        watcher: Receives progress.
+        watcher: Progress display.
 
     Returns:
         The run folders written, and notes.
@@ -69,7 +69,7 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
         SettingsError: An option or a `columns.toml` is invalid.
         NotFound: A file is missing.
         DataError: A file has invalid content; names file, column and row.
-        AlreadyExists: One of the runs exists.
+        AlreadyExists: The folder of one of the runs exists.
     """
     _require_something(request)
     watcher.step("reading", None)
@@ -165,7 +165,10 @@ def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
 
 
 def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple[str, ...]]:
-    """Return the start date of a run, the files' time at the start [s], and notes."""
+    """Return the start date of a run, the files' time at that date [s], and notes.
+
+    The date is `given` for time 0; else `first` read as Unix time, if large enough; else now.
+    """
     if given is not None:
         return given.astimezone(UTC), 0.0, ()
     if first >= _UNIX:
@@ -179,7 +182,7 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
 def _apart(
     t: Array, imu: ImuLog | None, track: ForeignTrack | None, zero: float
 ) -> tuple[str, ...]:
-    """Return notes on files that do not overlap the leg log in time."""
+    """Return a note for IMU and track each if no time of it lies in the leg log's range `t` [s]."""
     others = {
         IMU: None if imu is None else imu.t - zero,
         TRACK: None if track is None else track.track.poses.t,

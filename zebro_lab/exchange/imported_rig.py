@@ -28,13 +28,14 @@ _ELSE = "calibrate-slip reads this table as it is"
 
 @dataclass(frozen=True)
 class RigRun:
-    """One run of a table.
+    """One run of an imported rig table.
 
     Attributes:
-        manifest: Name, source and radii; its start is known after `begun` is called.
-        table: Its samples, in the time base of the table until `begun` is called.
-        files: Every file read.
-        load_cell: Standard deviations from the load cell's certificate, SI.
+        manifest: Name, source and radii of the run; its start is set by `begun`.
+        table: Samples of the run; their time is the file's, after `begun` the run's.
+        files: Every file read: the table and its `columns.toml`.
+        load_cell: Standard deviations from the load cell's certificate, SI, by key of the
+            `[load_cell]` in `columns.toml`; empty without a certificate.
     """
 
     manifest: RunManifest
@@ -43,11 +44,11 @@ class RigRun:
     load_cell: Mapping[str, float] = field(default_factory=dict)
 
     def begun(self, start: datetime, zero: float) -> "RigRun":
-        """Return the run in its own time base, which begins at 0.
+        """Return the run with its start date and times from 0 at its first sample.
 
         Args:
-            start: Date at which the table's time was `zero`.
-            zero: Time of the table at `start` [s].
+            start: Date at which the file's time was `zero`.
+            zero: Time of the file at `start` [s].
         """
         first = float(self.table.t[0])
         began = start + timedelta(seconds=first - zero)
@@ -61,7 +62,7 @@ class RigRun:
 def rig_runs(
     path: Path, columns: Columns, *, label: str, material: str, operator: str
 ) -> tuple[list[RigRun], tuple[str, ...]]:
-    """Read a table and separate it into runs.
+    """Read a table of a slip rig and separate it into runs.
 
     Args:
         path: CSV or Parquet file.
@@ -71,11 +72,11 @@ def rig_runs(
         operator: Name of the operator.
 
     Returns:
-        The runs, and notes, one line each.
+        The runs, not begun yet, and notes, one line each.
 
     Raises:
-        DataError: A column is missing, a radius changes, rows are averages of trials, or time does
-            not increase within a run.
+        DataError: The table cannot be read, a column is missing, a radius changes, rows are
+            averages of trials, or time does not increase within a run.
     """
     raw = read_table_file(path)
     table = RigTable(raw, columns, kept_rows(raw, columns))
@@ -117,14 +118,14 @@ def write_rig_run(data_dir: Path, run: RigRun) -> Path:
     Standard deviations from the load cell's certificate go into the folder's `columns.toml`.
 
     Args:
-        data_dir: Folder that holds all runs.
-        run: Samples, geometry and provenance of the run.
+        data_dir: Folder of run folders; created when missing.
+        run: The run, with its start set by `begun`.
 
     Returns:
         The run folder.
 
     Raises:
-        AlreadyExists: A run with this start and label exists.
+        AlreadyExists: A run of this start and label exists.
     """
     return write_slip_rig_run(
         data_dir,

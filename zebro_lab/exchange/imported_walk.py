@@ -32,11 +32,11 @@ class ImportedWalk:
     """Data of an imported walk.
 
     Attributes:
-        manifest: Name, start and sources.
+        manifest: Manifest of the run, with its name, start and sources.
         zero: Time of the files at which the run began [s].
-        legs: Leg angles.
-        imu: Orientation of the body.
-        track: Its tracked path; None without one.
+        legs: Leg angles, in the files' time.
+        imu: Orientation of the body, in the files' time; None without a file.
+        track: Tracked path, in the run's time; None without a file.
         robot: The robot; the thesis's robot without a file.
     """
 
@@ -49,24 +49,24 @@ class ImportedWalk:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """Every file that was read."""
+        """Every file read, each once: legs, IMU, track and robot."""
         parts = (self.legs.files, self.imu and self.imu.files, self.track and self.track.files)
         robot = (self.robot.file,) if self.robot.file else ()
         return tuple(dict.fromkeys([f for part in parts if part for f in part] + list(robot)))
 
 
 def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
-    """Write a run folder: log, profiles, manifest, and the track if there is one.
+    """Write the run folder of an imported walk: log, profiles, manifest, robot.toml and track.
 
     Args:
-        data_dir: Folder of run folders; made when missing.
+        data_dir: Folder of run folders; created when missing.
         walk: The walk.
 
     Returns:
         The run folder.
 
     Raises:
-        AlreadyExists: A run with this start and label exists.
+        AlreadyExists: A run of this start and label exists.
     """
     t, theta, imu = walk.legs.reference.t - walk.zero, walk.legs.reference.theta, walk.imu
     profiles = {LEGS: render_leg_profile(_leg_profile(_rate(t)))}
@@ -90,7 +90,7 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
 
 
 def _write_more(draft: Path, walk: ImportedWalk) -> None:
-    """Write the robot's file and the track."""
+    """Copy the robot's file and write the track into the draft folder, as far as there are any."""
     if walk.robot.file is not None:
         atomic_write_text(draft / ROBOT_FILE, walk.robot.file.read_text(encoding="utf-8-sig"))
     if walk.track is not None:

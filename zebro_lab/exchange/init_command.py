@@ -31,7 +31,7 @@ def init(
 
 
 def _to_check(found: set[str]) -> list[str]:
-    """Return advice on what to check, as it cannot be derived from a header."""
+    """Return advice on what a header does not show; `found` holds the mapped canonical columns."""
     advice = ["names, units and signs above; each is commented in the file"]
     missing = [name for name in ("normal_force", "traction_force") if name not in found]
     speeds = {"omega_leg", "omega_ground"} <= found

@@ -45,19 +45,19 @@ _LOAD_CELL = """
 
 
 def write_columns_template(file: Path, *, force: bool = False) -> Path:
-    """Write a commented `columns.toml` beside a table.
+    """Write a commented `columns.toml` beside a table, guessed from its header and numbers.
 
     Args:
-        file: CSV or Parquet file to read the header of.
+        file: CSV or Parquet file with the table.
         force: Whether to replace an existing `columns.toml`.
 
     Returns:
-        The file written.
+        The written `columns.toml`.
 
     Raises:
-        NotFound: There is no such table.
+        NotFound: The table file does not exist.
         DataError: The table cannot be read.
-        AlreadyExists: There is a `columns.toml` and `force` is not set.
+        AlreadyExists: A `columns.toml` exists beside the table, and `force` is not set.
     """
     file = Path(file)
     target = file.parent / COLUMNS_FILE
@@ -67,7 +67,7 @@ def write_columns_template(file: Path, *, force: bool = False) -> Path:
 
 
 def render_template(table: RawTable) -> str:
-    """Render the guessed column map of a table as commented TOML."""
+    """Format the guessed column map of a table as commented TOML, with a summary per column."""
     guesses = guess_columns(table)
     used = {guess.name for guess in guesses.values()}
     others = [name for name in table.columns if name not in used]

@@ -16,19 +16,19 @@ NANOSECOND: Final = 1e-9
 
 
 def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
-    """Read the joint states of an MCAP log, up to where it is damaged.
+    """Read the joint states of an MCAP log as a table, up to the first damage.
 
     Args:
         path: The log.
-        topic: Topic to read; None if the log has joint states on a single topic.
+        topic: Topic to read; None for the only topic with joint positions.
 
     Returns:
-        A table with `t`, the time stamps (log times if the messages have none) [s], and a column
-        of positions for each joint [rad]. A joint `leg_N` is named `thetaN`.
+        A row per message with positions: `t`, its stamp, or log time without one [s], and the
+        position of each joint [rad], NaN where missing. The column of joint `leg_N` is `thetaN`.
 
     Raises:
-        NotFound: There is no such file.
-        DataError: It is not MCAP, or does not have joint states on exactly one topic.
+        NotFound: The file does not exist.
+        DataError: The file is not MCAP, or has joint positions on no topic or on several.
     """
     messages, damage = read_messages(path, schema=JOINT_STATE.name)
     rows: dict[str, list[tuple[float, dict[str, float]]]] = {}

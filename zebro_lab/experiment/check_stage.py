@@ -17,22 +17,24 @@ from zebro_lab.calibration.rig_data import read_rig_data
 
 _LOG = logging.getLogger(__name__)
 STEP: Final = 1e-4
+"""Step of central differences relative to a parameter, whose size counts as `STEP` at least [-]."""
 BATCHES: Final = 8
+"""Number of consecutive parts of a run whose means estimate the noise of the run's mean."""
 SUSPICIOUS: Final = 3.0
 """Deviation that counts as drift [standard deviations]."""
 
 
 @dataclass(frozen=True)
 class CheckedRun:
-    """Comparison of a run with the calibration.
+    """Comparison of the mean traction of one run with the calibration.
 
     Attributes:
         name: Name of the run.
         slip: Mean slip ratio [-].
         load: Mean normal force [N].
         traction: Mean measured traction [N].
-        expected: Mean traction of the calibrated curve at the same slips and loads [N].
-        sd: Standard deviation of the difference, from the known contributions [N].
+        expected: Mean traction of the calibrated curve at the run's slip ratios and loads [N].
+        sd: Standard deviation of traction minus expected, from fit, noise and zero offset [N].
     """
 
     name: str
@@ -44,27 +46,27 @@ class CheckedRun:
 
     @property
     def deviation(self) -> float:
-        """Standardised difference: difference over its standard deviation [-]."""
+        """Standardised difference: (traction - expected) / sd [-]."""
         return (self.traction - self.expected) / self.sd
 
     @property
     def drifted(self) -> bool:
-        """Return whether the rig has drifted from the calibration."""
+        """Whether the deviation is larger than `SUSPICIOUS` in either direction."""
         return abs(self.deviation) > SUSPICIOUS
 
 
 def check_runs(
     data: Sequence[Path], calibration: Path, *, zero_sd: float = 0.1
 ) -> tuple[CheckedRun, ...]:
-    """Compare runs with a calibration.
+    """Compare the mean traction of each run with the calibrated slip curve.
 
     Args:
         data: Run folders, or folders of them.
-        calibration: `slip.toml` or its folder.
-        zero_sd: Spread of the load cell's zero from run to run [N].
+        calibration: `slip.toml` of the calibration, or its folder.
+        zero_sd: Standard deviation of the zero offset of traction between runs [N].
 
     Returns:
-        Comparison of each run with the curve.
+        Comparison of each run, in the order in which the runs were read.
 
     Raises:
         ZebroLabError: Data or calibration cannot be read.
@@ -99,7 +101,7 @@ def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float)
 
 
 def _gradient(curve: SlipCurve, slip: Array, load: Array) -> Array:
-    """Differentiate the mean force by each parameter, shape (k,)."""
+    """Differentiate the mean traction [N] by each parameter numerically, shape (k,)."""
     gradient = np.empty(len(curve.values))
     for k, value in enumerate(curve.values):
         step = STEP * max(abs(float(value)), STEP)

@@ -76,7 +76,7 @@ def _say_latched(data: Path) -> None:
 
 
 def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
-    """Print how an experiment ended and exit."""
+    """Print how an experiment ended, and exit with 0, `REFUSED` or `STOPPED`."""
     from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
     words = (
@@ -159,7 +159,7 @@ def check(
 
 
 class _Asker:
-    """Asks on the terminal, once a prompt, and takes Enter for done."""
+    """Prompter of the operator: shows each new instruction once and confirms on Enter."""
 
     def __init__(self, control: "Control") -> None:
         self._control = control

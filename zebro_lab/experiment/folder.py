@@ -30,6 +30,7 @@ from zebro_lab.runs.manifest import RunManifest
 MOST_WAITING: Final = 20_000
 """Capacity of the queue of write jobs: more than a minute of an experiment."""
 JOIN_LIMIT: Final = 30.0
+"""Timeout of the writing thread at the end of an experiment [s]."""
 DISK_PERIOD: Final = 0.1
 """Interval between checks of free disk space and folder [s]."""
 LONGEST_JOB: Final = 10.0
@@ -38,22 +39,22 @@ LONGEST_JOB: Final = 10.0
 
 @dataclass(frozen=True)
 class _Job:
-    """Queued write job."""
+    """Queued write job: a function to call in the writing thread, and the event set behind it."""
 
     write: Callable[[], None]
     done: threading.Event = field(default_factory=threading.Event)
 
 
 class ExperimentFolder:
-    """Recorder of an experiment's runs; satisfies `RunSink`; a context manager.
+    """Recorder of an experiment's runs; implements the protocol `RunSink`; a context manager.
 
     Args:
-        data: Folder of the experiment.
+        data: Folder of the experiment; must exist on entry.
         plan: Fingerprint of the plan.
-        manifest: What the manifests of all its runs have in common.
-        profiles: Name and text of the rig's profile, by its name in a run folder.
-        clock: Host time.
-        in_step: Wait for the disk at both ends of every run, for a twin with simulated time.
+        manifest: Manifest entries common to all runs.
+        profiles: Name and text of the rig's profile, by its role in a run folder.
+        clock: Clock of host time.
+        in_step: Wait until a run's start and end are on disk, for a twin with simulated time.
     """
 
     def __init__(
@@ -86,7 +87,7 @@ class ExperimentFolder:
         self._thread = threading.Thread(target=self._work, daemon=True, name="writer")
 
     def open_run(self, start: RunStart) -> None:
-        """Open a run folder; see `RunSink.open_run`."""
+        """Queue the opening of a run folder, excluded until its end; see `RunSink.open_run`."""
         label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
         manifest = replace(
@@ -105,8 +106,8 @@ class ExperimentFolder:
         """Queue the raw samples for the run's log; see `RunSink.write`.
 
         Args:
-            readings: Not stored: they follow from the raw samples.
-            batch: Carries the raw samples of each stream.
+            readings: Ignored: the readings follow from the raw samples.
+            batch: Batch whose raw samples of each stream are written.
         """
         del readings
         raw = batch.raw
@@ -121,9 +122,9 @@ class ExperimentFolder:
         self._put(write_now)
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
-        """Close the run folder; a rejected run is kept and excluded; see `RunSink.close_run`.
+        """Queue the closing of the run folder, also after a failure; see `RunSink.close_run`.
 
-        This is also tried after a failure, to write what can still be written.
+        The folder of a rejected or aborted run is kept, and excluded from calibrations.
 
         Args:
             verdict: Verdict on the point; None where the run was aborted.
@@ -132,7 +133,7 @@ class ExperimentFolder:
         self._put(lambda: self._close_now(verdict, reason), wait=True)
 
     def event(self, kind: str, text: str) -> None:
-        """Append an event to the journal and to the run's log, also after a failure.
+        """Queue an event for the journal and the open run's log, also after a failure.
 
         Args:
             kind: Kind of event, such as `note`.
@@ -149,16 +150,16 @@ class ExperimentFolder:
             self._require_working()
 
     def require_room(self, least: float) -> None:
-        """Raise SinkFailed where the writer has failed, which itself checks the disk space.
+        """Set the least free disk space, and raise SinkFailed where the writer has failed.
 
         Args:
-            least: Least free space [bytes].
+            least: Least free space [bytes]; checked by the writing thread from now on.
         """
         self._least_room = least
         self._require_working()
 
     def latch(self, reason: str) -> None:
-        """Latch an emergency stop on disk, from this thread; see `RunSink.latch`."""
+        """Latch an emergency stop on disk at once, without the queue; see `RunSink.latch`."""
         try:
             self._latch.latch(f"{EMERGENCY}: {reason}")
         except OSError as error:
@@ -196,7 +197,7 @@ class ExperimentFolder:
         )
 
     def _enter(self, manifest: RunManifest) -> RunRecorder:
-        """Open a run folder under an unused name: a point may be repeated within a second."""
+        """Open a run folder, with `again N` in its label where the folder's name is in use."""
         again = 1
         while True:
             recorder = RunRecorder(
@@ -256,12 +257,12 @@ class ExperimentFolder:
             raise SinkFailed(f"data cannot be kept: {self._failure}")
 
     def _fail(self, error: BaseException) -> None:
-        """Store the first failure for the acquiring thread, which then stops the rig."""
+        """Store the first failure as text, for the acquiring thread, which then stops the rig."""
         if self._failure is None:
             self._failure = " ".join(f"{type(error).__name__}: {error}".split())
 
     def _work(self) -> None:
-        """Carry out queued jobs; after a failure the later ones, such as a run's end, still run."""
+        """Carry out queued jobs until the end, also those behind a job that has failed."""
         while not (self._ending.is_set() and self._jobs.empty()):
             try:
                 job = self._jobs.get(timeout=DISK_PERIOD)
@@ -281,7 +282,7 @@ class ExperimentFolder:
             job.done.set()
 
     def _check_disk(self) -> None:
-        """Raise SinkFailed where the folder is gone or too little disk space is free."""
+        """Raise SinkFailed where the folder is gone, the recorder failed or the disk is full."""
         now = time.monotonic()
         if now - self._checked_at < DISK_PERIOD:
             return
@@ -299,7 +300,7 @@ class ExperimentFolder:
 
 
 def _why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
-    """Return why a run is left out of calibrations."""
+    """Return the reason for excluding a run: failure, else why it ended, else failed checks."""
     if failure is not None:
         return failure
     return reason if verdict is None else "; ".join(verdict.problems)

@@ -37,9 +37,9 @@ class Journal:
 
     Attributes:
         plan: Fingerprint of the plan.
-        accepted: Names of the run folders whose point was accepted, each with the point's number.
-        folders: Names of the run folders that were closed.
-        latched: Reason of an emergency stop that has not been reset; None where there is none.
+        accepted: Number of the accepted point, by name of its run folder.
+        folders: Names of the run folders that were closed, their point accepted or not.
+        latched: Reason of the last emergency stop or damaged line since a reset; None without.
     """
 
     plan: str
@@ -49,12 +49,14 @@ class Journal:
 
 
 def plan_fingerprint(text: str) -> str:
-    """Compute a fingerprint of a plan's text."""
+    """Compute a fingerprint (hash) of the text of a plan file."""
     return fingerprint({}, {"plan": text})
 
 
 class JournalWriter:
-    """Writer of a journal; each event is flushed to the disk before the next one is written.
+    """Writer of `experiment.jsonl`; each event is flushed to the disk (fsync) when appended.
+
+    As a context manager it keeps a reserve file, which is deleted when the disk is full.
 
     Args:
         data: Folder of the experiment; created when missing.
@@ -77,12 +79,12 @@ class JournalWriter:
             self._reserve.unlink(missing_ok=True)
 
     def append(self, kind: str, text: str, **more: Any) -> None:
-        """Append an event; on a full disk the reserved space is used.
+        """Append an event as one JSON line with UTC time; on a full disk the reserve is freed.
 
         Args:
-            kind: Kind of event.
+            kind: Kind of event, such as `point` or `end`.
             text: Description of the event.
-            more: Further entries of the line.
+            more: Further entries of the line; values that JSON can hold.
 
         Raises:
             OSError: The write failed; the journal is unchanged.
@@ -99,7 +101,7 @@ class JournalWriter:
             self._write(line)
 
     def repair(self) -> None:
-        """Remove a last line truncated by a crash, and log its content as an event."""
+        """Remove a last line without a newline (a crash), and append its text as an event."""
         content = read_bytes(self._file, most=LARGEST)
         whole, _, cut = content.rpartition(b"\n")
         if not cut:
@@ -128,13 +130,13 @@ def _write_all(handle: int, data: bytes) -> None:
 
 
 def read_journal(data: Path) -> Journal:
-    """Read a journal; a last line truncated by a crash is ignored.
+    """Read the journal of an experiment's folder; a last line truncated by a crash is ignored.
 
-    Any other unreadable line may have held an emergency stop, and counts as one.
+    Any other invalid line may have held an emergency stop, and counts as one.
 
     Raises:
-        NotFound: There is no journal.
-        DataError: It cannot be read, or does not begin with a plan.
+        NotFound: The folder has no journal.
+        DataError: The journal cannot be read, or has no fingerprint of a plan.
     """
     file = data / JOURNAL_FILE
     entries = list(_entries(file))
@@ -162,20 +164,22 @@ def read_journal(data: Path) -> Journal:
 
 
 def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) -> Journal:
-    """Start the journal of an experiment, or resume one.
+    """Start the journal of a new experiment, or resume an existing one; prepare the latch file.
 
     Args:
-        data: Folder of the experiment; its lock is held.
+        data: Folder of the experiment; the caller holds its lock.
         plan_text: Text of the plan.
-        resume: Resume the experiment in the folder.
-        reset: Reset an emergency stop that is latched.
+        resume: Whether to resume the experiment in the folder.
+        reset: Whether to reset a latched emergency stop.
 
     Returns:
-        Content of the journal.
+        Content of the journal; when resumed, as it was before any reset.
 
     Raises:
-        AlreadyExists: There is an experiment, and `resume` is not set.
-        SettingsError: It is of another plan, or an emergency stop is latched.
+        NotFound, DataError: `resume` is set, and there is no readable journal.
+        AlreadyExists: The folder has a journal, and `resume` is not set.
+        SettingsError: The journal is of another plan, or an emergency stop is latched.
+        RecordingError: The latch file cannot be created.
     """
     writer, latch = JournalWriter(data), EmergencyLatch(data)
     journal = _resumed(data, plan_text) if resume else None
@@ -207,7 +211,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
 
 
 def _resumed(data: Path, plan_text: str) -> Journal:
-    """Read the journal and check that it belongs to the plan."""
+    """Read the journal; raise SettingsError where it was started with another plan."""
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
@@ -218,7 +222,7 @@ def _resumed(data: Path, plan_text: str) -> Journal:
 
 
 def _entries(file: Path) -> Iterator[dict[str, Any]]:
-    """Yield the entries of a journal; an invalid complete line gives one of kind `damaged`."""
+    """Yield the entry of each complete line; an invalid line gives an entry of kind `damaged`."""
     advice = "no experiment to resume; run without --resume"
     content = read_bytes(file, most=LARGEST, advice=advice)
     for number, line in enumerate(content.split(b"\n")[:-1], start=1):

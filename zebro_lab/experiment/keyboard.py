@@ -11,17 +11,17 @@ from rig.experiment.control import Control
 KEYS: Final = {"p": "pause", "r": "resume", "": "confirm", "s": "soft", "ss": "safe",
                "e": "emergency"}  # fmt: skip
 LONGEST_LINE: Final = 4096
-"""Length to which a line is truncated: terminals pass no longer one [bytes]."""
+"""Length to which a line is truncated; the longest line of common terminals [bytes]."""
 WAIT: Final = 200
 """Polling interval for the end of the run [ms]."""
 
 
 class Keyboard:
-    """Keyboard commands of a terminal, one per line.
+    """Reader of keyboard commands from a terminal, one per line: a key of `KEYS`, or in full.
 
     Args:
         handle: File descriptor of the terminal.
-        control: Mailbox of the run.
+        control: Mailbox of the run, which executes the commands.
     """
 
     def __init__(self, handle: int, control: Control) -> None:
@@ -31,7 +31,7 @@ class Keyboard:
         self._over = False
 
     def close(self) -> None:
-        """Stop reading; the terminal stays open."""
+        """End `listen` within the polling interval `WAIT`; the terminal stays open."""
         self._over = True
 
     def listen(self) -> None:
@@ -39,7 +39,7 @@ class Keyboard:
 
         Raises:
             LinkError: The terminal is gone, so that its keys can no longer stop the run.
-            OSError: It cannot be read.
+            OSError: The terminal cannot be read.
         """
         if not hasattr(select, "poll"):  # Windows, whose consoles cannot be waited for
             while not self._over:
@@ -55,7 +55,7 @@ class Keyboard:
                 self.take(data)
 
     def take(self, data: bytes) -> None:
-        """Add typed bytes and execute complete lines; an end of input (Ctrl-D) is ignored."""
+        """Buffer typed bytes and execute complete lines; unknown commands and Ctrl-D do nothing."""
         *lines, rest = (self._line + data).split(b"\n")
         self._line = rest[:LONGEST_LINE]
         for line in lines:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Latch of an emergency stop on disk: a file with preallocated space.
 
-It is written in place, so that it also works on a full disk, and by the thread that stops the rig,
-without a queue. A file of blanks means not latched; any other content, or an unreadable file,
-counts as latched.
+The file is overwritten in place, so that latching also works on a full disk, by the thread that
+stops the rig, without a queue. A file of blanks means not latched; any other content, or an
+unreadable file, counts as latched.
 """
 
 import errno
@@ -21,7 +21,7 @@ _NO_WAIT: Final = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
 class EmergencyLatch:
-    """Emergency latch of one experiment.
+    """Emergency latch of one experiment: the file `emergency-latch` in its folder.
 
     Args:
         data: Folder of the experiment.
@@ -32,7 +32,7 @@ class EmergencyLatch:
 
     @property
     def reason(self) -> str | None:
-        """Reason of the latch; None where it is not latched, or was never prepared."""
+        """Reason of the latched stop, or that the file is unreadable; None if not latched."""
         try:
             handle = self._open(os.O_RDONLY)
         except FileNotFoundError:
@@ -49,10 +49,10 @@ class EmergencyLatch:
             return f"{self._file.name} is damaged"
 
     def prepare(self) -> None:
-        """Create the file, not latched, unless it exists; allocates its disk space.
+        """Create the file, not latched, with its disk space; leave an existing file as it is.
 
         Raises:
-            OSError: It cannot be created, or something else is in its place.
+            OSError: The file cannot be created or opened, or is not a regular file.
         """
         try:
             os.close(self._open(os.O_WRONLY))
@@ -60,16 +60,16 @@ class EmergencyLatch:
             self._write(b"", os.O_CREAT | os.O_EXCL)
 
     def latch(self, reason: str) -> None:
-        """Latch an emergency stop without allocating disk space.
+        """Write the reason of an emergency stop, cut to 256 characters, into the prepared file.
 
         Raises:
-            OSError: The file is gone, or the write failed.
+            OSError: The file is missing, or the write failed.
         """
         text = json.dumps(reason[: SIZE // 16])  # an escaped character takes up to twelve bytes
         self._write(text.encode("ascii"), 0)
 
     def reset(self) -> None:
-        """Reset the latch; only on a person's explicit request.
+        """Overwrite the file as not latched; only on a person's explicit request.
 
         Raises:
             OSError: The write failed.
@@ -77,10 +77,10 @@ class EmergencyLatch:
         self._write(b"", os.O_CREAT)
 
     def _open(self, flags: int) -> int:
-        """Open the file without blocking, and check that it is a regular file.
+        """Open the file without blocking and return its descriptor.
 
         Raises:
-            OSError: It cannot be opened, or is no regular file.
+            OSError: The file cannot be opened, or is not a regular file.
         """
         handle = os.open(self._file, flags | _NO_WAIT, 0o644)
         if stat.S_ISREG(os.fstat(handle).st_mode):

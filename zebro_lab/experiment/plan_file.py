@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`plan.toml`: the plan of a rig experiment on disk."""
+"""Read `plan.toml`, the plan of a rig experiment."""
 
 from pathlib import Path
 
@@ -9,16 +9,16 @@ from zebro_lab.files.settings_table import read_settings
 
 
 def read_plan(file: Path) -> Plan:
-    """Read a plan.
+    """Read and validate the plan of a rig experiment.
 
     Args:
-        file: TOML; `examples/plan-thesis.toml` shows every key.
+        file: TOML file; `examples/plan-thesis.toml` shows every key.
 
     Returns:
         The plan.
 
     Raises:
-        NotFound: There is no such file.
-        SettingsError: It is not TOML, or a key is missing, unknown or impossible.
+        NotFound: The file does not exist.
+        SettingsError: The file is not TOML, or a key is missing, unknown or impossible.
     """
     return parse_plan(read_settings(file, advice="examples/plan-thesis.toml is one"))

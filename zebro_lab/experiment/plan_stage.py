@@ -18,9 +18,9 @@ class Foreseen:
 
     Attributes:
         plan: The plan.
-        profile: The rig.
-        steps: Its steps in order.
-        estimate: Their estimated duration.
+        profile: Profile of the rig that it was checked against.
+        steps: Steps of the plan in order: points and measurements of the zero offset.
+        estimate: Estimated duration of the steps.
     """
 
     plan: Plan
@@ -30,15 +30,15 @@ class Foreseen:
 
 
 def foresee(file: Path, rig: str) -> Foreseen:
-    """Check a plan against its limits and a rig's.
+    """Check a plan against its own limits and the rig's; list its steps and their duration.
 
     Args:
-        file: The plan.
-        rig: Name of the rig's profile, with or without a port, or `sim`.
+        file: Plan file (TOML).
+        rig: Name of the rig's profile, with or without `@PORT`; `sim` means `TWIN_PROFILE`.
 
     Raises:
         ZebroLabError: The plan cannot be read.
-        LimitExceeded: It would exceed a limit.
+        LimitExceeded: A set-point of the plan exceeds a limit.
     """
     plan = read_plan(file)
     name = resolve(rig, default=TWIN_PROFILE)[0] if "@" in rig or rig == "sim" else rig

@@ -28,8 +28,8 @@ class Finished:
     """Finished points of earlier runs of a plan.
 
     Attributes:
-        numbers: Numbers of the points that are finished.
-        notices: Messages to a person, one line each.
+        numbers: Numbers of the points in the plan that are finished.
+        notices: Messages on runs left out, lost or damaged, one line each.
     """
 
     numbers: frozenset[int]
@@ -37,11 +37,11 @@ class Finished:
 
 
 def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dict[str, Any]:
-    """Return the `point` entry of an end record.
+    """Return the `point` entry of an end record, with the arguments as its keys.
 
     Args:
         plan: Fingerprint of the plan.
-        number: Number of the point in it.
+        number: Number of the point in the plan.
         attempt: Number of the attempt, from 1.
         accepted: Whether the point passed its quality checks.
     """
@@ -49,15 +49,14 @@ def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dic
 
 
 def finished_points(data: Path, journal: Journal) -> Finished:
-    """Find the points that earlier runs of a plan have finished.
+    """Find the points of a plan that are finished; exclude repeated, lost and interrupted runs.
 
-    Runs of earlier versions have no `point` in their end record; for them the journal decides, and
-    those that were cut short are left out here. Recordings and experiments of others in the folder
-    or below it are not touched.
+    A run is excluded by an entry in its `run.json`. For runs of earlier versions, without `point`
+    in their end record, the journal decides. Other recordings and plans are left as they are.
 
     Args:
-        data: Folder of the experiment; its lock is held.
-        journal: Its journal.
+        data: Folder of the experiment; the caller holds its lock.
+        journal: Journal of the experiment.
     """
     numbers: set[int] = set()
     manifests, notices = _read_all(data)
@@ -83,12 +82,12 @@ def finished_points(data: Path, journal: Journal) -> Finished:
 
 
 def holds_points(data: Path) -> bool:
-    """Return whether a folder holds runs of an experiment, whatever its plan."""
+    """Return whether any run folder in `data` is a point of an experiment, of whatever plan."""
     return any(manifest.point for _, manifest in _read_all(data)[0])
 
 
 def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
-    """Read the manifests of all runs; a damaged one is a notice and keeps nothing from going on."""
+    """Read the manifests of all run folders by name; an unreadable one becomes a notice instead."""
     manifests: list[tuple[Path, RunManifest]] = []
     notices: list[str] = []
     for run in sorted(file.parent for file in data.glob(f"*/{MANIFEST_FILE}")):
@@ -100,7 +99,7 @@ def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
 
 
 def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
-    """Return whether a run is a point of an earlier version that ended without an end record."""
+    """Return whether a run, by label a point of an earlier version, ended without an end record."""
     return (
         not manifest.point
         and manifest.excluded is None
@@ -112,7 +111,7 @@ def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
 
 
 def _lost_log(run: Path, manifest: RunManifest) -> str | None:
-    """Return what is wrong with the log of a finished run; None where it is intact."""
+    """Return what is wrong with a run's log (missing, incomplete); None where it is intact."""
     log = run / LOG_FILE
     if not log.is_file():  # nor is a FIFO one, which would be waited for
         return f"{run.name}/{LOG_FILE} is missing"
@@ -124,7 +123,7 @@ def _lost_log(run: Path, manifest: RunManifest) -> str | None:
 
 
 def _accepted(manifest: RunManifest, journal: Journal, name: str) -> int | None:
-    """Return the number of the point that a run has finished; None where it has none."""
+    """Return the number of the point of this plan that a run has finished; None without one."""
     point: Mapping[str, Any] = manifest.point
     if not point:
         return journal.accepted.get(name)

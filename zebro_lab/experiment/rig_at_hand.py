@@ -36,15 +36,16 @@ FAST_PERIOD: Final = 0.02
 
 @dataclass(frozen=True)
 class RigAtHand:
-    """A rig, its bench not yet entered.
+    """A rig, real or simulated, whose bench is not yet entered.
 
     Attributes:
-        bench: The bench.
-        profiles: Name and text of its profile, by the name that a run keeps it under.
-        clock: Host time.
+        bench: Bench of the rig's devices, a context manager.
+        profiles: Name and text of the rig's profile, by its role in a run folder.
+        clock: Clock of host time.
         period: Polling period [s].
         twin: The simulated rig; None for a real one.
-        fast: Whether it runs in simulated time instead of real time.
+        fast: Whether the rig runs in simulated time instead of real time.
+        truth: True parameters of the simulated rig, for the manifest; empty for a real one.
     """
 
     bench: Bench
@@ -57,7 +58,7 @@ class RigAtHand:
 
     @property
     def constants(self) -> dict[str, float]:
-        """Radii of the discs [m]."""
+        """Radii of the discs [m], as `radius_leg` and `radius_ground`."""
         profile = self.bench.profile
         return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
 
@@ -65,11 +66,11 @@ class RigAtHand:
         """Return the setter of the normal force: the operator or a driven axis, real or simulated.
 
         Args:
-            setting: How the plan wants the force to be set.
+            setting: How the force is set: by hand or axis, tolerance, patience.
             control: Mailbox that receives the operator's confirmation.
 
         Raises:
-            SettingsError: The plan wants an axis, and the rig has none.
+            SettingsError: The setting names an axis, and the rig is real: no real axis exists.
         """
         if setting.set_by == "hand":
             if self.twin is not None:
@@ -94,17 +95,17 @@ def rig_at_hand(
     fast: bool = False,
     imperfections: RigImperfections | None = None,
 ) -> Iterator[RigAtHand]:
-    """Make the rig that an address names; a twin is served for as long as the context lasts.
+    """Open the rig that an address names; a twin is simulated while the context lasts.
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        seed: Of a twin's randomness.
-        fast: Let a twin's time pass at once; only for a board's.
-        imperfections: What a twin's sensors and bump add; a load cell's errors are drawn by
-            default, so that each seed is a rig of its own and one seed the same rig again.
+        seed: Seed of a twin's randomness.
+        fast: Run a twin in simulated time, as fast as possible; only a profile with a board.
+        imperfections: Errors of a twin's load cell, discs and sensors; by default drawn from the
+            seed, so that each seed is another rig and an equal seed the same rig.
 
     Yields:
-        The rig.
+        The rig; its bench is not yet entered.
 
     Raises:
         RigError: The address or the profile is invalid.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Terminal display of an experiment: state, progress, prompts, slip curve; and its keys.
+"""Terminal display of an experiment: state, progress, prompts, slip curve; keyboard commands.
 
 The acquiring thread only stores values here. A separate thread draws, so that a stopped or slow
 terminal does not delay the guards.
@@ -33,7 +33,7 @@ MARKS = "ox+*#@%&"
 PERIOD: Final = 0.125
 """Refresh interval of the display [s]."""
 LAST_PICTURE: Final = 1.0
-"""How long a terminal may take for the last lines; a stopped one shows them when it goes on [s]."""
+"""Timeout of the display for the last lines, and of the keyboard thread [s]."""
 _STYLES: Final = {
     RigState.RUNNING: "green", RigState.HOLDING: "bold yellow", RigState.STOPPING: "bold yellow",
     RigState.LATCHED: "bold red",
@@ -42,15 +42,15 @@ _STYLES: Final = {
 
 @dataclass(frozen=True)
 class ScreenPicture:
-    """What the screen shows.
+    """Content of the screen at one instant.
 
     Attributes:
         condition: State of the run; None before it begins.
-        head: What is done, and how far the run is.
-        done: Points finished.
-        of: Points in all.
-        prompt: What the operator is to do; empty where nothing.
-        points: Load [N], slip ratio [-] and friction [-] of the points that are good.
+        head: Present step, finished points and remaining time as text.
+        done: Number of finished points.
+        of: Number of all points, at least 1.
+        prompt: Instruction to the operator; empty without one.
+        points: Load [N], slip ratio [-] and friction [-] of each accepted point.
     """
 
     condition: Condition | None = None
@@ -61,7 +61,7 @@ class ScreenPicture:
     points: tuple[tuple[float, float, float], ...] = ()
 
     def render(self) -> RenderableType:
-        """Make the picture for a terminal."""
+        """Return the content as Rich text: state, keys, progress bar, slip chart, prompt."""
         parts: list[RenderableType] = []
         if self.condition is not None:
             style = _STYLES.get(self.condition.state, "")
@@ -76,11 +76,11 @@ class ScreenPicture:
 
 
 class ExperimentScreen(ExperimentWatcher):
-    """Follows an experiment, and never waits for the console.
+    """Display of an experiment that stores changes at once and draws them in `draw_on`.
 
     Args:
-        console: Where to draw.
-        live: The part that is drawn anew; None without a terminal, where changes are lines.
+        console: Console to draw on.
+        live: Part that is redrawn in place; None without a terminal: changes are printed lines.
     """
 
     def __init__(self, console: Console, live: Live | None) -> None:
@@ -92,17 +92,17 @@ class ExperimentScreen(ExperimentWatcher):
         self._over = threading.Event()
 
     def changed(self, condition: Condition) -> None:
-        """Show the state of the run; see `ExperimentWatcher.changed`."""
+        """Show a new state of the run and clear the prompt; see `ExperimentWatcher.changed`."""
         self._picture = replace(self._picture, condition=condition, prompt="")
         if self._live is None:
             self._lines.append(f"{condition.headline}; {condition.keys}")
 
     def notice(self, text: str) -> None:
-        """Show a line that stays; see `ExperimentWatcher.notice`."""
+        """Print a line above the redrawn part; see `ExperimentWatcher.notice`."""
         self._lines.append(text)
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Show the step that begins; see `ExperimentWatcher.doing`.
+        """Show the step that begins and clear the prompt; see `ExperimentWatcher.doing`.
 
         Args:
             what: Name of the step.
@@ -115,10 +115,10 @@ class ExperimentScreen(ExperimentWatcher):
         self._picture = replace(self._picture, head=head, done=done, of=max(of, 1), prompt="")
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Show a prompt for the operator; see `ExperimentWatcher.prompt`.
+        """Show an instruction to the operator; without a terminal print each new one once.
 
         Args:
-            text: What the operator must do.
+            text: Instruction, replaced by the next `changed`, `doing` or `prompt`.
             normal: Present normal force [N].
         """
         if self._live is not None:
@@ -128,7 +128,9 @@ class ExperimentScreen(ExperimentWatcher):
             self._picture = replace(self._picture, prompt=text)
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Show the verdict on a point; see `ExperimentWatcher.judged`.
+        """Add an accepted point to the chart; print a rejected one; see `ExperimentWatcher.judged`.
+
+        Without a terminal, the verdict on every point is printed.
 
         Args:
             point: The point.
@@ -146,10 +148,10 @@ class ExperimentScreen(ExperimentWatcher):
             )
 
     def draw_on(self) -> None:
-        """Draw what has changed, again and again, until closed.
+        """Draw changes every `PERIOD` until `close`, then a last time.
 
         Raises:
-            BrokenPipeError: The output pipe is closed.
+            BrokenPipeError: The output pipe was closed by its reader.
         """
         try:
             while not self._over.wait(PERIOD):
@@ -161,7 +163,7 @@ class ExperimentScreen(ExperimentWatcher):
             ) from error
 
     def draw(self) -> None:
-        """Draw what has changed since the last time."""
+        """Print the waiting lines, and redraw the live part where its content has changed."""
         while self._lines:
             self._console.print(plain(self._lines.popleft()))
         if self._live is not None and self._picture is not self._shown:
@@ -169,15 +171,15 @@ class ExperimentScreen(ExperimentWatcher):
             self._live.update(self._shown.render(), refresh=True)
 
     def close(self) -> None:
-        """Draw the remaining changes and end the display."""
+        """Let `draw_on` draw the remaining changes and return."""
         self._over.set()
 
 
 def slip_chart(points: list[tuple[float, float, float]]) -> str:
-    """Draw friction over slip in characters, a mark a load.
+    """Plot friction over slip ratio as text, one mark per load, below a line with the ranges.
 
     Args:
-        points: Load [N], slip ratio [-] and friction [-] of each.
+        points: Load [N], slip ratio [-] and friction [-] of each point; none give an empty text.
 
     >>> slip_chart([])
     ''
@@ -199,14 +201,14 @@ def slip_chart(points: list[tuple[float, float, float]]) -> str:
 
 @contextmanager
 def experiment_screen(console: Console, control: Control) -> Iterator[ExperimentScreen]:
-    """Show an experiment on a console while the body runs; a terminal's keys command it.
+    """Show an experiment on a console while the body runs, and execute keyboard commands.
 
     Args:
-        console: Where to draw.
-        control: Mailbox of the run; informed where the screen or the keyboard fails.
+        console: Console to draw on; keys are read only if it and standard input are terminals.
+        control: Mailbox of the run; receives commands, and failures of screen or keyboard.
 
     Raises:
-        PartFailed: The system gives no thread to draw or to listen.
+        PartFailed: The thread of the screen or of the keyboard cannot be started.
     """
     live = Live(console=console, auto_refresh=False) if console.is_terminal else None
     screen = ExperimentScreen(console, live)
@@ -229,7 +231,7 @@ def experiment_screen(console: Console, control: Control) -> Iterator[Experiment
 
 @contextmanager
 def _keys(console: Console, control: Control) -> Iterator[None]:
-    """Listen to the keys of a terminal while the body runs."""
+    """Execute keyboard commands of a terminal while the body runs; nothing without a terminal."""
     # Standard input is None where a shell has closed it.
     if not (console.is_terminal and sys.stdin is not None and sys.stdin.isatty()):
         yield

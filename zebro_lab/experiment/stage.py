@@ -33,10 +33,10 @@ LOCK_FILE: Final = ".experiment.lock"
 
 
 def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:
-    """Run a plan, each point into a run folder of its own.
+    """Run a plan on a rig, and record each point into a run folder of its own.
 
     Args:
-        request: What is asked.
+        request: Options of `zebro-lab rig run`.
         watcher: Progress display.
         control: Mailbox for pauses, notes and stops; signals and the control socket feed it.
 
@@ -44,9 +44,9 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
         The outcome of the run.
 
     Raises:
-        ZebroLabError: The plan, the folder or the request is at fault; nothing moved.
+        ZebroLabError: The plan, the folder or an option is invalid; nothing moved.
         InUse: Another program runs an experiment into this folder, or uses a device.
-        RigError: A limit, a guard or a device; the motors are at rest and the journal says why.
+        RigError: A limit is exceeded, or a guard or device stopped the run; motors are at rest.
     """
     plan = read_plan(request.plan)
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
@@ -70,7 +70,7 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
 
 
 def _begin(request: RigRunRequest) -> tuple[Journal, Finished]:
-    """Begin or resume the journal, and find the points that are finished."""
+    """Start or resume the journal as the options say, and find the points that are finished."""
     if not request.resume:
         _require_no_points(request.data)
     journal = begin_or_resume(
@@ -82,7 +82,10 @@ def _begin(request: RigRunRequest) -> tuple[Journal, Finished]:
 
 @contextmanager
 def _recording(folder: ExperimentFolder, data: Path, control: Control) -> Iterator[None]:
-    """Write into the experiment's folder, with signals and the control socket heard."""
+    """Open the writer, stop on signals and serve the control socket while the body runs.
+
+    An emergency stop that is latched in `control` at the end is latched on disk, too.
+    """
     with signal_stops(control.stop), supervised(control), folder, _commandable(data, control):
         try:
             yield
@@ -93,7 +96,7 @@ def _recording(folder: ExperimentFolder, data: Path, control: Control) -> Iterat
 
 
 def _manifest(plan: Plan, rig: RigAtHand) -> RunManifest:
-    """Return what the manifests of all runs of an experiment have in common."""
+    """Return the manifest entries common to all runs of an experiment, from plan and rig."""
     return RunManifest(
         kind="slip-rig",
         label=plan.name,
@@ -107,7 +110,7 @@ def _manifest(plan: Plan, rig: RigAtHand) -> RunManifest:
 
 
 def _require_no_points(data: Path) -> None:
-    """Check that no points exist without a journal: repeated, each would count twice."""
+    """Raise AlreadyExists where points exist without a journal: repeated, they'd count twice."""
     if not (data / JOURNAL_FILE).exists() and holds_points(data):
         raise AlreadyExists(
             f"{data} holds points of an experiment without its {JOURNAL_FILE}; restore that, or "
@@ -117,7 +120,7 @@ def _require_no_points(data: Path) -> None:
 
 @contextmanager
 def _owned(data: Path) -> Iterator[None]:
-    """Make the folder of an experiment this program's own; one that stays empty is taken away."""
+    """Create and lock the experiment's folder; remove a new one if no journal is begun in it."""
     new = not data.exists()
     try:
         data.mkdir(parents=True, exist_ok=True)
@@ -143,14 +146,14 @@ def _owned(data: Path) -> Iterator[None]:
 
 
 def command_run(data: Path, command: str) -> str:
-    """Send a command to the experiment that runs in a folder, and return its answer.
+    """Send a command to the experiment that runs in a folder, and return the reply.
 
     Args:
         data: Folder of the experiment.
         command: One of the commands of `rig.experiment.control`.
 
     Raises:
-        NotFound: No experiment runs there.
+        NotFound: No experiment runs in the folder.
         DataError: The file with the address of the control socket is damaged.
         RigError: The experiment does not answer, or rejects the command.
     """
@@ -162,10 +165,10 @@ def command_run(data: Path, command: str) -> str:
 
 
 def _address(file: Path) -> tuple[int, str]:
-    """Return port and token of a running experiment's control socket.
+    """Read port and token of a running experiment's control socket from its JSON file.
 
     Raises:
-        DataError: The file is damaged.
+        DataError: The file is damaged, or port or token is missing or invalid.
     """
     content = require_object(read_json_document(file, advice="no experiment runs here"), file)
     port, token = content.get("port"), content.get("token")
@@ -178,7 +181,10 @@ def _address(file: Path) -> tuple[int, str]:
 
 @contextmanager
 def _commandable(data: Path, control: Control) -> Iterator[None]:
-    """Serve the control socket; its address is in a file that only its owner may read."""
+    """Serve the control socket while the body runs; write its port and token to `control.json`.
+
+    Only the file's owner may read it.
+    """
     file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
     with ControlServer(control) as server:
         draft.unlink(missing_ok=True)

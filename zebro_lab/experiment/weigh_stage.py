@@ -30,19 +30,19 @@ def _require_finite(request: WeighRequest) -> None:
 def weigh_masses(
     request: WeighRequest, prompt: Callable[[str, float], None], control: Control
 ) -> tuple[Weighing, GainCheck, Path | None]:
-    """Check the load cell with known weights, and write the gain prior for the fit.
+    """Measure the load cell's gain with known weights, and write the gain prior for the fit.
 
     Args:
-        request: What is asked.
+        request: Options of `zebro-lab rig weigh`.
         prompt: Called with the instruction for the operator and the present normal force [N].
-        control: Where the operator confirms.
+        control: Mailbox that receives the operator's confirmation.
 
     Returns:
-        The readings, the line through them, and the file that was written.
+        The readings, the line through them, and the written file; None without `--data`.
 
     Raises:
-        SettingsError: A mass is not positive, or a number is not finite.
-        AlreadyExists: There is a `columns.toml` already; nothing was measured.
+        SettingsError: A mass is missing or not positive, or a number is not finite.
+        AlreadyExists: The folder has a `columns.toml` already; nothing was measured.
         RigError: A weight is beyond the rig's limit, or a device failed.
     """
     _require_finite(request)
@@ -71,9 +71,10 @@ def weigh_masses(
 
 
 def render_load_cell(check: GainCheck) -> str:
-    """Write the check as the `[load_cell]` of a `columns.toml`.
+    """Format a load cell check as the text of `columns.toml`: `[load_cell]` gain_sd, bias_sd.
 
-    Each run is tared, so that only the zero's error stays; the gain is as uncertain as it is off.
+    `bias_sd` is the largest of the zero's standard deviation, the misfit and 0.001 N: each run is
+    tared, so that only the zero's error stays.
     """
     return (
         "# From a check of the load cell with known weights.\n"

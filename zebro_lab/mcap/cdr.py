@@ -18,9 +18,9 @@ _NANOSECONDS = 1_000_000_000
 
 
 class CdrWriter:
-    """Builds one message; every method adds a field and returns the writer.
+    """Encoder of one CDR message; each field method appends a field and returns the writer.
 
-    Numbers are aligned to their size, counted from behind the header.
+    Numbers are aligned to multiples of their size, counted from the end of the 4-byte header.
 
     >>> CdrWriter().uint32(7).text("ab").message().hex()
     '000100000700000003000000616200'
@@ -30,35 +30,35 @@ class CdrWriter:
         self._parts = bytearray()
 
     def uint32(self, value: int) -> Self:
-        """Add a 32-bit number."""
+        """Append an unsigned 32-bit integer."""
         return self._packed("<I", 4, value)
 
     def uint64(self, value: int) -> Self:
-        """Add a 64-bit number."""
+        """Append an unsigned 64-bit integer."""
         return self._packed("<Q", 8, value)
 
     def uint8(self, value: int) -> Self:
-        """Add an 8-bit number."""
+        """Append an unsigned 8-bit integer."""
         return self._packed("<B", 1, value)
 
     def float64(self, *values: float) -> Self:
-        """Add doubles, also an array of fixed length."""
+        """Append doubles without a length: single fields, or an array of fixed length."""
         return self._packed(f"<{len(values)}d", 8, *values)
 
     def text(self, value: str) -> Self:
-        """Add a text."""
+        """Append a string in UTF-8, with its length in bytes before and a zero byte behind."""
         self._align(4)
         self._parts += _text_block(value)
         return self
 
     def texts(self, values: Sequence[str]) -> Self:
-        """Add a sequence of texts."""
+        """Append a sequence of strings, preceded by their number."""
         self._align(4)
         self._parts += _texts_block(tuple(values))
         return self
 
     def array(self, values: NDArray[Any]) -> Self:
-        """Add a sequence of numbers of the array's type."""
+        """Append a one-dimensional array as a sequence of its dtype, preceded by its length."""
         self.uint32(len(values))
         if len(values):  # an empty sequence is its length alone
             self._align(values.itemsize)
@@ -66,12 +66,12 @@ class CdrWriter:
         return self
 
     def time(self, nanoseconds: int) -> Self:
-        """Add a `builtin_interfaces/Time` from nanoseconds since the Unix epoch."""
+        """Append a `builtin_interfaces/Time` from nanoseconds since the Unix epoch."""
         seconds, rest = divmod(nanoseconds, _NANOSECONDS)
         return self._packed("<iI", 4, seconds, rest)
 
     def message(self) -> bytes:
-        """Return the message."""
+        """Return the encoded message: the CDR header and all fields so far."""
         return HEADER + bytes(self._parts)
 
     def _align(self, size: int) -> None:
@@ -97,13 +97,13 @@ def _texts_block(values: tuple[str, ...]) -> bytes:
 
 
 class CdrReader:
-    """Decodes a message of `CdrWriter`, field by field in order.
+    """Decoder of a message of `CdrWriter`; each method reads the next field.
 
     Args:
-        data: The message.
+        data: The message, with its CDR header.
 
     Raises:
-        ValueError: It is not little-endian CDR.
+        ValueError: The message does not begin with the header of little-endian CDR.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -113,14 +113,14 @@ class CdrReader:
         self._at = 0
 
     def uint32(self) -> int:
-        """Read a 32-bit number."""
+        """Read an unsigned 32-bit integer; ValueError where the message ends before it does."""
         return int(self._take(np.dtype("<u4"), 1)[0])
 
     def array(self, dtype: str) -> NDArray[Any]:
-        """Read a sequence of numbers.
+        """Read the next sequence of numbers of a NumPy dtype such as `<f8`, shape (length,).
 
         Raises:
-            ValueError: The message ends before it.
+            ValueError: The message ends before the sequence does.
         """
         count = self.uint32()
         return self._take(np.dtype(dtype), count) if count else np.empty(0, dtype)

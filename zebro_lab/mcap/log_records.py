@@ -19,24 +19,26 @@ if TYPE_CHECKING:
 MOST_CHUNK: Final = 64 << 20
 """Largest chunk that is decompressed; recorders write chunks of about 1 MiB [bytes]."""
 FREELY: Final = 64 << 20
+"""Decompressed size allowed to every log, however small its file [bytes]."""
 MOST_RATIO: Final = 100
-"""How much larger than on disk a log may unpack to, beyond `FREELY`: no sensor is so still."""
+"""Decompressed size allowed beyond `FREELY`, per size of the file [-]; sensor data stay below."""
 _WIDEST_WINDOW: Final = 1 << 27  # memory that a zstd frame may ask for while it is unpacked
 
 
 def read_records(path: Path, take: "Callable[[McapRecord], object]") -> str | None:
-    """Pass each record of a log to a function, up to the first damage.
+    """Pass each record of an MCAP log to a function, up to the first damage.
 
     Args:
         path: The log.
-        take: Function called with each record; an exception in it also counts as damage.
+        take: Called with each record, those inside chunks included; an exception in it also counts
+            as damage, except a ZebroLabError, which is raised.
 
     Returns:
-        Why reading stopped before the end; None for a whole log.
+        Why reading stopped before the end; None for a log read to its end.
 
     Raises:
-        NotFound: There is no such file.
-        DataError: It is not a regular file, or not MCAP.
+        NotFound: The file does not exist.
+        DataError: The file is not a regular file, or not MCAP.
     """
     from mcap.exceptions import InvalidMagic
     from mcap.records import Chunk
@@ -67,10 +69,11 @@ def read_records(path: Path, take: "Callable[[McapRecord], object]") -> str | No
 
 
 def _unpacked(chunk: "Chunk", most: int) -> "Chunk":
-    """Decompress a chunk with a limit on its size, whatever size it claims.
+    """Decompress a chunk (zstd or lz4) of at most `most` bytes; return an uncompressed one as is.
 
     Raises:
-        ValueError: It holds more bytes than it claims, or more than `most`.
+        ValueError: The chunk claims more than `most` bytes, or holds more than it claims.
+        KeyError: The compression is unknown.
     """
     if chunk.compression == "":
         return chunk

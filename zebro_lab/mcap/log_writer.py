@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write the MCAP log of a run incrementally, so that it is readable at every instant."""
+"""Write the MCAP log of a run incrementally, so that it is readable up to the last flush."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -26,17 +26,17 @@ _CHUNK_BYTES: Final = 1 << 20  # flushing ends a chunk long before
 
 
 class LogWriter:
-    """Writes the messages of a run as MCAP; used by one thread.
+    """Writer of a run's MCAP log: raw samples, display messages, events; not thread-safe.
 
     Args:
         file: Output file.
-        views: Converter of each stream to display messages, by the stream's name.
-        attachments: Texts stored in the log, by file name: the profiles.
+        views: Converter of each stream's samples to display messages, by the stream's name.
+        attachments: Texts of the device profiles to attach, by file name.
         start: Host time at which the run began [s].
-        start_ns: The same since the Unix epoch [ns].
+        start_ns: Start of the run since the Unix epoch [ns].
 
     Attributes:
-        written: Samples written, by topic.
+        written: Number of samples written, by topic of the raw samples.
     """
 
     def __init__(
@@ -59,11 +59,11 @@ class LogWriter:
             self._log.attach(start_ns, name, "application/toml", text)
 
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
-        """Write samples of a stream: the raw counts, and the messages of its view.
+        """Write samples of a stream: one message of raw counts, and its display messages.
 
         Args:
             stream: Name of the stream.
-            samples: Its next samples, at least one.
+            samples: Next samples of the stream, at least one.
         """
         view = self._views[stream]
         dtype, _ = RAW_SCHEMAS[view.raw_schema]
@@ -77,21 +77,21 @@ class LogWriter:
             self._log.add(shown, stamp, message)
 
     def event(self, host_time: float, text: str, *, level: int = INFO) -> None:
-        """Write an event.
+        """Write an event to the topic `/events`.
 
         Args:
-            host_time: Time of the event [s].
+            host_time: Host time of the event [s].
             text: Description of the event.
-            level: Severity, as in `logging`.
+            level: Severity: `INFO`, `WARNING` or `ERROR` of `ros_messages`.
         """
         stamp = self.stamp(host_time)
         self._log.add(EVENTS, stamp, log_entry(stamp, text, level=level))
 
     def count(self, host_time: float, stream: str, counters: Counters, *, dropped: int) -> None:
-        """Write the counters of a stream.
+        """Write the counters of a stream to its topic `/STREAM/counters`.
 
         Args:
-            host_time: Time of the counters [s].
+            host_time: Host time of the counters [s].
             stream: Name of the stream.
             counters: Samples received, lost, damaged and so on so far.
             dropped: Samples dropped so far because the queue to the disk was full.
@@ -103,15 +103,15 @@ class LogWriter:
         self._log.add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
 
     def flush(self) -> None:
-        """Pass all buffered data to the system, so that it survives the end of this process."""
+        """Pass all buffered data to the operating system; they survive a crash of this process."""
         self._log.flush()
 
     def finish(self) -> None:
-        """Write the end of the log with its index."""
+        """Write the index and the end of the log; the file stays open."""
         self._log.finish()
 
     def stamp(self, host_time: float) -> int:
-        """Convert host time to nanoseconds since the Unix epoch, unaffected by clock changes."""
+        """Convert host time [s] to Unix time [ns] by the start of the run, not the wall clock."""
         return self._start_ns + round((host_time - self._start) * 1e9)
 
     def _register(self, name: str, view: StreamView) -> None:

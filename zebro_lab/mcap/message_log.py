@@ -8,14 +8,14 @@ from zebro_lab.mcap.ros_messages import Schema
 
 
 class MessageLog:
-    """Writes messages of registered topics; used by one thread.
+    """Writer of an MCAP file of ROS 2 messages by topic; not thread-safe.
 
     Args:
-        file: Output file.
-        chunk_size: Size at which a chunk ends [bytes].
+        file: Binary output file; the start of the MCAP file is written at once.
+        chunk_size: Uncompressed size at which a chunk is compressed and written [bytes].
 
     Attributes:
-        counts: Messages written, by topic.
+        counts: Number of messages written, by topic.
     """
 
     def __init__(self, file: IO[bytes], *, chunk_size: int = 1 << 20) -> None:
@@ -30,12 +30,12 @@ class MessageLog:
     def register(
         self, topic: str, schema: Schema, *, metadata: Mapping[str, str] | None = None
     ) -> None:
-        """Register the channel of a topic, to which `add` then writes.
+        """Register a topic with its message type, so that `add` can write its messages.
 
         Args:
             topic: Name of the topic.
-            schema: Message type.
-            metadata: Names and values stored with the channel.
+            schema: Message type; registered once for all topics with its name.
+            metadata: Names and values stored with the topic's channel.
         """
         from mcap.well_known import MessageEncoding, SchemaEncoding
 
@@ -48,11 +48,11 @@ class MessageLog:
         )
 
     def add(self, topic: str, stamp: int, message: bytes) -> None:
-        """Write a message of a registered topic.
+        """Write a message with the topic's next sequence number, from 0.
 
         Args:
-            topic: Name of the topic.
-            stamp: Time since the Unix epoch [ns].
+            topic: Name of a registered topic; KeyError for another.
+            stamp: Log and publish time since the Unix epoch [ns].
             message: Message in CDR.
         """
         number = self.counts.get(topic, 0)
@@ -65,24 +65,24 @@ class MessageLog:
         Args:
             stamp: Time since the Unix epoch [ns].
             name: File name of the attachment.
-            media_type: Its MIME type.
-            content: The text.
+            media_type: MIME type of the attachment.
+            content: The text; stored in UTF-8.
         """
         self._writer.add_attachment(stamp, stamp, name, media_type, content.encode())
 
     def describe(self, name: str, content: Mapping[str, str]) -> None:
-        """Write metadata of the whole file.
+        """Write a metadata record of the whole file.
 
         Args:
             name: Name of the metadata record.
-            content: Names and values.
+            content: Values by their names.
         """
         self._writer.add_metadata(name, dict(content))
 
     def flush(self) -> None:
-        """Pass all buffered data to the system, so that it survives the end of this process."""
+        """Pass all buffered data to the operating system; they survive a crash of this process."""
         self._writer.flush()
 
     def finish(self) -> None:
-        """Write the end of the file with its index."""
+        """Write the index and the end of the MCAP file; the file stays open."""
         self._writer.finish()

@@ -40,11 +40,11 @@ doubles for those whose counts have a fraction."""
 
 @dataclass(frozen=True)
 class SalvagedStreams:
-    """Streams read from a log that may be damaged.
+    """Raw samples of all devices, read from a log that may be damaged.
 
     Attributes:
-        streams: Samples of each device, by topic; host times since the start of the run.
-        damage: Why reading stopped before the end; None for a whole log.
+        streams: Samples of each device, by topic; host times since the start of the run [s].
+        damage: Why reading stopped before the end; None for a log read to its end.
     """
 
     streams: dict[str, SampleColumns]
@@ -52,21 +52,21 @@ class SalvagedStreams:
 
 
 def raw_topic(stream: str) -> str:
-    """Return the topic of a stream's raw samples."""
+    """Return the topic of a stream's raw samples, `/STREAM/raw`."""
     return f"/{stream}/raw"
 
 
 def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
-    """Encode samples, at least one, as one message.
+    """Encode samples of one device, at least one, as one CDR message of raw counts.
 
     Args:
-        samples: Samples of one device, with equal numbers of counts.
-        dtype: Type of the counts, of `RAW_SCHEMAS`.
-        start: Host time at which the run began [s].
+        samples: Samples with equal numbers of counts.
+        dtype: NumPy type of the counts in the message, one of those in `RAW_SCHEMAS`.
+        start: Host time at which the run began [s]; subtracted from the samples' host times.
 
     Raises:
-        ValueError: The samples differ in width, or a count does not fit.
-        OverflowError: A count does not fit.
+        ValueError: The samples differ in their number of counts, or a count does not fit `dtype`.
+        OverflowError: A count does not fit `dtype`.
     """
     columns = as_columns(samples, dtype)
     message = CdrWriter()
@@ -78,17 +78,17 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
 
 
 def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
-    """Decode a message of `encode_raw`.
+    """Decode a message of `encode_raw` to columns of samples.
 
     Args:
         data: The message in CDR.
-        dtype: Type of the counts, of `RAW_SCHEMAS`.
+        dtype: NumPy type of the counts in the message, one of those in `RAW_SCHEMAS`.
 
     Returns:
-        The samples; host times since the start of the run.
+        The samples; host times since the start of the run [s].
 
     Raises:
-        ValueError: The message does not have that form.
+        ValueError: The message is not CDR or truncated, or its sequences differ in length.
     """
     reader = CdrReader(data)
     host, device = reader.array("<f8"), reader.array("<f8")
@@ -103,10 +103,11 @@ def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
 
 
 def read_raw_log(path: Path) -> SalvagedStreams:
-    """Read all raw streams of a log, up to the last whole chunk where it is damaged.
+    """Read the raw samples of all devices from an MCAP log; a damaged log up to the damage.
 
     Raises:
-        DataError: The file is not MCAP.
+        NotFound: The file does not exist.
+        DataError: The file is not a regular file, or not MCAP.
     """
     from mcap.records import Channel, Message, Schema
 

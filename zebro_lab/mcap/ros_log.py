@@ -11,12 +11,12 @@ from zebro_lab.mcap.log_records import read_records
 
 
 class LoggedMessage(NamedTuple):
-    """Decoded message of a log.
+    """Decoded ROS 2 message of a log.
 
     Attributes:
         topic: Topic of the message.
         log_time: Time of logging since the Unix epoch [ns].
-        content: Its fields as attributes.
+        content: The decoded message, an object with the message's fields as attributes.
     """
 
     topic: str
@@ -25,19 +25,19 @@ class LoggedMessage(NamedTuple):
 
 
 def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:
-    """Read all messages of one type from a log.
+    """Read all ROS 2 messages of one type from an MCAP log, up to the first damage.
 
     Args:
         path: The log, in MCAP.
         schema: Name of the type, such as `sensor_msgs/msg/JointState`.
 
     Returns:
-        The messages in the order of the log, and why reading stopped before its end; None for a
-        whole log.
+        The messages in the order of the log, and why reading stopped before the log's end; None
+        for a log read to its end.
 
     Raises:
-        NotFound: There is no such file.
-        DataError: It is not MCAP.
+        NotFound: The file does not exist.
+        DataError: The file is not a regular file, or not MCAP.
     """
     from mcap.records import Channel, McapRecord, Message, Schema
     from mcap_ros2.decoder import DecoderFactory
@@ -69,10 +69,10 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
 
 @contextmanager
 def _damage_of(what: str) -> Iterator[None]:
-    """Convert any exception of the decoder to a `ValueError`: its parser has no common error.
+    """Convert any exception of the ROS 2 decoder in the body to a `ValueError`; mute its prints.
 
     Raises:
-        ValueError: The decoder failed.
+        ValueError: The decoder failed; the message begins with `what`.
     """
     try:
         with redirect_stdout(StringIO()):  # it prints what it does not understand

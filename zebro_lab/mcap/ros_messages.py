@@ -44,7 +44,12 @@ float64 w
 
 @dataclass(frozen=True)
 class Schema:
-    """Message type: its name, and its definition with all nested types."""
+    """ROS 2 message type.
+
+    Attributes:
+        name: Name of the type, such as `sensor_msgs/msg/Imu`.
+        text: Definition of the type in ros2msg, with the definitions of all nested types.
+    """
 
     name: str
     text: str
@@ -106,7 +111,7 @@ uint32 nanosec
 """,
 )
 INFO, WARNING, ERROR = 20, 30, 40
-"""Levels of `LOG`."""
+"""Severity levels of a `LOG` message, by ROS."""
 
 _UNKNOWN = (0.0,) * 9  # ROS: a covariance of zeros is one that is not known
 
@@ -118,7 +123,7 @@ def joint_state(
     position: Sequence[float] = (),
     velocity: Sequence[float] = (),
 ) -> bytes:
-    """Encode a `sensor_msgs/JointState`.
+    """Encode angles and speeds of joints as a `sensor_msgs/JointState` in CDR.
 
     Args:
         stamp: Time since the Unix epoch [ns].
@@ -133,7 +138,9 @@ def joint_state(
 
 
 def wrench(stamp: int, *, normal: float, traction: float) -> bytes:
-    """Encode the force at a contact as a wrench in the frame `contact`.
+    """Encode the force at a contact as a `geometry_msgs/WrenchStamped`, frame `contact`, in CDR.
+
+    The lateral force and all torques are NaN.
 
     Args:
         stamp: Time since the Unix epoch [ns].
@@ -151,13 +158,13 @@ def imu(
     angular_rate: Sequence[float],
     specific_force: Sequence[float],
 ) -> bytes:
-    """Encode a `sensor_msgs/Imu` of the body.
+    """Encode the body's orientation, rate and specific force as a `sensor_msgs/Imu` in CDR.
 
     Args:
         stamp: Time since the Unix epoch [ns].
-        orientation: Quaternion x, y, z, w.
-        angular_rate: In the body's axes, shape (3,) [rad/s].
-        specific_force: Acceleration less gravity, in the body's axes, shape (3,) [m/s^2].
+        orientation: Orientation of the body, quaternion x, y, z, w.
+        angular_rate: Angular rate in the body's axes, shape (3,) [rad/s].
+        specific_force: Acceleration minus gravity, in the body's axes, shape (3,) [m/s^2].
     """
     message = CdrWriter().time(stamp).text("body")
     message.float64(*orientation, *_UNKNOWN, *angular_rate, *_UNKNOWN, *specific_force, *_UNKNOWN)
@@ -165,7 +172,7 @@ def imu(
 
 
 def log_entry(stamp: int, text: str, *, level: int = INFO) -> bytes:
-    """Encode an event as a log message.
+    """Encode an event as a `rcl_interfaces/Log` of the node `zebro_lab`, in CDR.
 
     Args:
         stamp: Time since the Unix epoch [ns].

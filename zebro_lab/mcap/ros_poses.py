@@ -79,8 +79,8 @@ class Transform:
     Attributes:
         parent: Name of the parent frame.
         child: Name of the frame.
-        position: Origin of the frame, shape (3,) [m].
-        quaternion: Orientation of the frame, x, y, z, w, shape (4,).
+        position: Origin of the frame in the parent frame, x, y, z, shape (3,) [m].
+        quaternion: Orientation of the frame in the parent frame, x, y, z, w, shape (4,).
     """
 
     parent: str
@@ -90,7 +90,7 @@ class Transform:
 
 
 def transforms(stamp: int, frames: Iterable[Transform]) -> bytes:
-    """Encode the transforms of frames at an instant.
+    """Encode the transforms of frames at one instant as a `tf2_msgs/TFMessage` in CDR.
 
     Args:
         stamp: Time since the Unix epoch [ns].
@@ -105,12 +105,12 @@ def transforms(stamp: int, frames: Iterable[Transform]) -> bytes:
 
 
 def path(stamps: Sequence[int], frame: str, positions: Array, quaternions: Array) -> bytes:
-    """Encode a path, stamped with the time of its first pose.
+    """Encode a path as a `nav_msgs/Path` in CDR, stamped with the time of its first pose.
 
     Args:
         stamps: Time of each pose since the Unix epoch, at least one, shape (n,) [ns].
-        frame: Frame of the poses.
-        positions: Positions, shape (n, 3) [m].
+        frame: Name of the frame of the poses.
+        positions: Positions x, y, z, shape (n, 3) [m].
         quaternions: Orientations, x, y, z, w, shape (n, 4).
     """
     message = CdrWriter().time(stamps[0]).text(frame).uint32(len(stamps))
@@ -122,14 +122,14 @@ def path(stamps: Sequence[int], frame: str, positions: Array, quaternions: Array
 def pose_with_covariance(
     stamp: int, frame: str, *, position: Array, quaternion: Array, covariance: Array
 ) -> bytes:
-    """Encode a planar pose with its covariance.
+    """Encode a planar pose as a `geometry_msgs/PoseWithCovarianceStamped` in CDR.
 
     Args:
         stamp: Time since the Unix epoch [ns].
-        frame: Frame of the pose.
-        position: Position, shape (3,) [m].
+        frame: Name of the frame of the pose.
+        position: Position x, y, z, shape (3,) [m].
         quaternion: Orientation, x, y, z, w, shape (4,).
-        covariance: Covariance of x, y [m] and yaw [rad], shape (3, 3).
+        covariance: Covariance of x, y [m] and yaw [rad], shape (3, 3); z, roll and pitch get zeros.
     """
     whole = np.zeros((6, 6))
     whole[np.ix_((0, 1, 5), (0, 1, 5))] = covariance

@@ -32,7 +32,7 @@ float64[] traction_force  # positive when driving [N]
 
 @dataclass(frozen=True)
 class SlipRigTable:
-    """Samples of one run of the slip rig, SI, each shape (n,).
+    """Samples of one run of the slip rig, SI; each attribute has shape (n,).
 
     Attributes:
         t: Time since the start of the run [s].
@@ -49,21 +49,21 @@ class SlipRigTable:
     traction_force: NDArray[np.float64]
 
     def __len__(self) -> int:
-        """Count the samples."""
+        """Return the number of samples."""
         return len(self.t)
 
     def rows(self) -> NDArray[np.float64]:
-        """Stack the columns in the order of the attributes, shape (n, 5)."""
+        """Return the samples by rows, columns in the order of the attributes, shape (n, 5)."""
         return np.column_stack([getattr(self, field.name) for field in fields(self)])
 
 
 @dataclass(frozen=True)
 class SalvagedLog:
-    """Samples read from a log that may be damaged.
+    """Samples of the slip rig, read from a log that may be damaged.
 
     Attributes:
-        table: The samples.
-        damage: Why reading stopped before the end; None for a whole log.
+        table: Samples up to the damage.
+        damage: Why reading stopped before the end; None for a log read to its end.
     """
 
     table: SlipRigTable
@@ -71,16 +71,16 @@ class SalvagedLog:
 
 
 def decode_block(data: bytes) -> NDArray[np.float64]:
-    """Decode a CDR message of `SCHEMA_TEXT`, shape (m, 5).
+    """Decode a CDR message of the schema `SCHEMA_NAME` to rows of samples.
 
     Args:
         data: The message.
 
     Returns:
-        Samples in the order of the attributes of `SlipRigTable`.
+        Samples by rows, columns in the order of the attributes of `SlipRigTable`, shape (m, 5).
 
     Raises:
-        ValueError: The message does not have that form.
+        ValueError: The message is not CDR, truncated or empty, or sequences differ in length.
     """
     reader = CdrReader(data)
     columns = [reader.array("<f8") for _ in fields(SlipRigTable)]
@@ -90,10 +90,11 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
 
 
 def read_log(path: Path) -> SalvagedLog:
-    """Read the samples of an MCAP log, up to the last whole chunk where it is damaged.
+    """Read the slip rig's samples from an MCAP log of an earlier version, up to the first damage.
 
     Raises:
-        DataError: The file is not MCAP, or no sample of it can be read.
+        NotFound: The file does not exist.
+        DataError: The file is not MCAP, or no sample on `TOPIC` can be read.
     """
     from mcap.records import Channel, Message, Schema
 

@@ -27,14 +27,14 @@ FASTEST: Final = 50.0
 
 
 MEAN_OVER: Final = 0.02
-"""Interval over which fast samples are averaged for display [s]."""
+"""Interval over which forces and speeds are averaged for display [s]."""
 ENOUGH: Final = 1000.0
-"""Rate to which samples are thinned before they are averaged for display [Hz]."""
+"""Rate to which samples of the load cell are thinned before averaging for display [Hz]."""
 _DISCS: Final = ("leg_disc", "ground_disc")
 
 
 Messages = Iterator[tuple[str, int, bytes]]
-"""Topic, stamp and content of each message."""
+"""Topic, time since the Unix epoch [ns] and CDR content of each message."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +42,11 @@ class StreamView:
     """Converter of one device's samples to display messages of a log.
 
     Attributes:
-        raw_schema: Name of the schema of its raw samples, of `RAW_SCHEMAS`.
-        metadata: Names and units of its counts, so that the log can be read on its own.
-        topics: Topics that it writes, and their types.
+        raw_schema: Name of the schema of the device's raw samples, a key of `RAW_SCHEMAS`.
+        metadata: Names and units of the device's counts, so that the log needs no profile.
+        topics: Message type of each topic of the display messages.
         messages: Yields the display messages of the next samples of the device, at least one;
-            the second argument is the time at which each was read, since the Unix epoch [ns].
+            the second argument is the time of reading of each sample since the Unix epoch [ns].
     """
 
     raw_schema: str
@@ -56,11 +56,11 @@ class StreamView:
 
 
 def legs_view(name: str, *, profile: LegProfile) -> StreamView:
-    """Return the converter of leg counts to joint states, unwrapped.
+    """Return the converter of leg counts to joint states, unwrapped, at `FASTEST` at most.
 
     Args:
         name: Name of the stream.
-        profile: Profile of the robot.
+        profile: Profile of the robot's legs.
     """
     topic, unwrapped = f"/{name}/joint_states", UnwrappedAngles(profile)
     names = [f"leg_{leg}" for leg in sorted(profile.legs)]
@@ -81,10 +81,10 @@ def legs_view(name: str, *, profile: LegProfile) -> StreamView:
 
 
 class UnwrappedAngles:
-    """Decoder of leg angles that goes on unwrapping from call to call.
+    """Decoder of leg angles that stay unwrapped across calls.
 
     Args:
-        profile: Profile of the robot.
+        profile: Profile of the robot's legs.
     """
 
     def __init__(self, profile: LegProfile) -> None:
@@ -92,7 +92,7 @@ class UnwrappedAngles:
         self._last: tuple[Sample, Array] | None = None
 
     def __call__(self, samples: Sequence[Sample]) -> Array:
-        """Decode the angles of the next samples, at least one, shape (n, legs) [rad]."""
+        """Decode the unwrapped angles of the next samples, at least one, shape (n, legs) [rad]."""
         if self._last is None:
             theta = decode_angles(self._profile, samples).theta
         else:
@@ -104,11 +104,11 @@ class UnwrappedAngles:
 
 
 def imu_view(name: str, *, profile: ImuProfile) -> StreamView:
-    """Return the converter to orientation, rate and specific force of the body.
+    """Return the converter of IMU counts to messages of the body, at `FASTEST` at most.
 
     Args:
         name: Name of the stream.
-        profile: Profile of the unit.
+        profile: Profile of the inertial unit, with its mounting on the body.
     """
     topic, stride = f"/{name}/data", _stride(profile.rate)
     mount = Rotation.from_quat(profile.mounting, scalar_first=True)
@@ -135,11 +135,11 @@ def imu_view(name: str, *, profile: ImuProfile) -> StreamView:
 
 
 def drives_view(name: str, *, profile: DriveProfile) -> StreamView:
-    """Return the converter to angles and speeds of both discs as joint states.
+    """Return the converter of motor counts to joint states: each sample's disc, angle and speed.
 
     Args:
         name: Name of the stream.
-        profile: Both drives.
+        profile: Profile of both drives.
     """
     topic = f"/{name}/joint_states"
     discs = {
@@ -166,11 +166,11 @@ def drives_view(name: str, *, profile: DriveProfile) -> StreamView:
 
 
 def load_cell_view(name: str, *, profile: LoadCellProfile) -> StreamView:
-    """Return the converter to the mean force of each `MEAN_OVER` as a wrench.
+    """Return the converter of load cell counts to wrenches: mean forces over `MEAN_OVER`.
 
     Args:
         name: Name of the stream.
-        profile: Profile of the cell.
+        profile: Profile of the load cell.
     """
     topic, step = f"/{name}/wrench", max(int(profile.rate / ENOUGH), 1)
     metadata = {
@@ -188,11 +188,11 @@ def load_cell_view(name: str, *, profile: LoadCellProfile) -> StreamView:
 
 
 def board_view(name: str, *, profile: BoardProfile) -> StreamView:
-    """Return the converter to mean force and speeds of each `MEAN_OVER`.
+    """Return the converter of the board's counts to wrenches and joint states: `MEAN_OVER` means.
 
     Args:
         name: Name of the stream.
-        profile: Profile of the board.
+        profile: Profile of the rig's board.
     """
     wrenches, joints = f"/{name}/wrench", f"/{name}/joint_states"
     metadata = {
@@ -214,7 +214,7 @@ def board_view(name: str, *, profile: BoardProfile) -> StreamView:
 
 
 def rig_views(profile: RigProfile) -> dict[str, StreamView]:
-    """Return the views of all streams of a slip rig, by the streams' names."""
+    """Return the views of a slip rig by stream: `board`, `drives`, `load_cell` as it has them."""
     views: dict[str, StreamView] = {}
     if profile.board is not None:
         views["board"] = board_view("board", profile=profile.board)
@@ -233,7 +233,7 @@ def _mean_wrenches(topic: str, forces: Forces, stamps: Sequence[int], rate: floa
 
 
 def _parts(count: int, rate: float) -> Iterator[slice]:
-    """Split samples into intervals of `MEAN_OVER`, the last one shorter."""
+    """Yield slices of `count` samples at `rate` [Hz] over `MEAN_OVER` each; the last is shorter."""
     length = max(round(rate * MEAN_OVER), 1)
     for first in range(0, count, length):
         yield slice(first, min(first + length, count))

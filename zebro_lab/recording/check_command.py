@@ -36,10 +36,10 @@ def check(request: CheckRequest) -> None:
 
 
 class _Terminal:
-    """Asks the person at the terminal; satisfies `Person`."""
+    """Prompts on the terminal; implements the protocol `Person`."""
 
     def watch(self, channel: int) -> "MovedLeg":
-        """Ask what moved."""
+        """Prompt for the leg that moved with a channel (from 0), and for its direction."""
         from rig.zebro.check import MovedLeg
 
         leg = typer.prompt(
@@ -48,13 +48,13 @@ class _Terminal:
         return MovedLeg(leg, typer.confirm("did it turn as in walking forward?"))
 
     def hold_toes_ahead(self) -> None:
-        """Wait until every toe points straight ahead."""
+        """Ask the person to hold every toe straight ahead, and wait for Enter."""
         typer.prompt(
             "turn every toe straight ahead and hold it; Enter", default="", show_default=False
         )
 
     def measure_height(self, theta_deg: float) -> float:
-        """Ask for the height of the hip above the ground."""
+        """Prompt for the height of leg 1's hip in mm, leg at `theta_deg`; return it in m."""
         asked = f"leg 1 stands at {theta_deg:.1f} degrees; hip height in mm?"
         return typer.prompt(asked, value_proc=_number) / 1000
 

@@ -19,28 +19,33 @@ from zebro_lab.recording.devices import default_gait
 from zebro_lab.recording.request import CheckRequest
 
 MOVING: Final = 1.0
-"""Time allowed for a leg to turn to an angle [s]."""
+"""Duration of a leg's turn to an angle, and wait before the height is asked for [s]."""
 
 
 class Person(Protocol):
-    """Person who watches the robot and answers questions about it."""
+    """Interface to a person who watches the robot and reports observations."""
 
     def watch(self, channel: int) -> MovedLeg:
-        """Return which leg moved with a channel, and in which direction."""
+        """Return which leg moved with a channel (from 0), and whether it turned forward."""
         ...
 
     def hold_toes_ahead(self) -> None:
-        """Wait until every toe points straight ahead."""
+        """Return once a person holds every toe straight ahead."""
         ...
 
     def measure_height(self, theta_deg: float) -> float:
-        """Measure the height of a hip whose leg stands at an angle [deg], above the ground [m]."""
+        """Return the height of a hip above the ground [m] whose leg stands at an angle [deg]."""
         ...
 
 
 @dataclass(frozen=True)
 class LiftOffFound:
-    """Lift-off angle [deg] and how much higher the hip is than at touchdown [m]."""
+    """Lift-off angle of a leg.
+
+    Attributes:
+        theta_deg: Lift-off angle [deg].
+        mismatch: Height of the hip at lift-off minus its height at touchdown [m].
+    """
 
     theta_deg: float
     mismatch: float
@@ -48,12 +53,12 @@ class LiftOffFound:
 
 @dataclass(frozen=True)
 class Checked:
-    """Result of a check.
+    """Result of a check of the robot's legs.
 
     Attributes:
-        file: Profile written.
-        profile: The same.
-        lift_off: Lift-off angle; None where it was not requested.
+        file: File of the written profile.
+        profile: Content of the written profile.
+        lift_off: Lift-off angle; None where no touchdown angle was given.
     """
 
     file: Path
@@ -62,19 +67,19 @@ class Checked:
 
 
 def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_CLOCK) -> Checked:
-    """Find order, signs and zeros of a robot's legs and write its profile.
+    """Find order, signs and zeros of a robot's legs, moving each leg, and write its profile.
 
     Args:
         request: Address of the robot, file to write, touchdown angle.
-        person: The person who watches the robot, asked for observations.
-        clock: Host time.
+        person: Observer of the robot: which leg moved, its direction, heights.
+        clock: Clock of host time.
 
     Returns:
         The profile, and the lift-off angle where a touchdown angle is given.
 
     Raises:
-        AlreadyExists: The file to write is there already.
-        RigError: The robot cannot be reached, sends nothing, or does not follow.
+        AlreadyExists: The file to write exists; the robot was not moved.
+        RigError: The robot cannot be reached, sends no samples, or does not follow.
     """
     if request.save.exists():
         raise AlreadyExists(f"{request.save} exists already; name another --save")
@@ -101,7 +106,7 @@ def _robot(address: str) -> Iterator[Any]:
 
 
 def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
-    """Return the present leg counts as set-points, which make a walking robot stand still."""
+    """Return the present count of each leg within one turn; as set-points they stop a gait."""
     around = robot.profile.counts_per_revolution
     return tuple(int(count) % around for count in latest_counts(robot))
 

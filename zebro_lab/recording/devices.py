@@ -34,9 +34,9 @@ from zebro_lab.runs.recorded_legs import LEGS
 RIG_PROFILE: Final = "rig-odrive-netft"
 PAUSE: Final = 0.053
 """Pause between two reads of a device that sends its time; the system buffers its data meanwhile.
-With the recorder's wait it stays well below the 200 ms that a killed run may lack. It is no
+With the recorder's wait it stays well below the 200 ms that a killed run may lack. It is not a
 multiple of a usual period, so that samples are read with varying delays; those with the smallest
-ones give the clock offset [s]."""
+delays give the clock offset [s]."""
 TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=1.0)
 """Sweep of a simulated rig: all slips in 16 s at each of four loads."""
 
@@ -46,10 +46,10 @@ class DevicesRequest:
     """Addresses of the requested devices; None or empty where none is requested.
 
     Attributes:
-        zebro: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`.
-        imus: Address of each inertial measurement unit, in the same form.
-        rig: Address of the slip rig, in the same form.
-        play: Gait whose set-points are sent to the robot.
+        zebro: Address of the robot: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`.
+        imus: Address of each inertial measurement unit, in the form of `zebro`.
+        rig: Address of the slip rig, in the form of `zebro`.
+        play: Gait whose set-points are sent to the robot; None sends none.
         seed: Seed of the random generator of simulated devices.
     """
 
@@ -62,13 +62,13 @@ class DevicesRequest:
 
 @dataclass(frozen=True)
 class OpenDevices:
-    """Opened devices.
+    """Opened devices and the manifest entries that they give.
 
     Attributes:
-        devices: The devices.
-        profiles: Name and text of each profile, by its name in the run folder.
-        constants: Radii of the rig's discs [m].
-        truth: True parameters of simulated devices.
+        devices: The devices, a stream each.
+        profiles: Name and TOML text of each profile, by its name in the run folder.
+        constants: Radii of the rig's discs [m]; of a replayed rig all constants of its run.
+        truth: True parameters of a simulated rig; else empty.
         replayed: Duration of each replayed run [s].
     """
 
@@ -81,7 +81,7 @@ class OpenDevices:
 
 @contextmanager
 def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
-    """Open every requested device, and close each at the end, which de-energises its motors.
+    """Open every requested device; close each when the body ends, which de-energises its motors.
 
     Args:
         request: Addresses of the devices.
@@ -111,19 +111,19 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
 
 
 def default_gait() -> LegReference:
-    """Return the default gait of a simulated robot."""
+    """Return the default gait, leg angles over time, which a simulated robot walks."""
     return make_gait(GaitRequest(), leg_arc=np.pi).reference
 
 
 def twin_rig(rng: np.random.Generator) -> SimulatedRig:
-    """Return the simulated rig that `sim` selects, which runs `TWIN_SWEEP`."""
+    """Return the simulated rig of recordings: typical imperfections, sweeping by `TWIN_SWEEP`."""
     return SimulatedRig(
         plan=TWIN_SWEEP, imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
     )
 
 
 def profile_text(name: str) -> str:
-    """Return the TOML text of a profile, shipped or from a file."""
+    """Read the TOML text of a profile: of the file `name`, else of the shipped `name.toml`."""
     path = Path(name)
     return (path if path.is_file() else shipped_file(f"{name}.toml")).read_text(encoding="utf-8")
 
@@ -195,7 +195,7 @@ def _add_rig(opened: OpenDevices, stack: ExitStack, address: str, rng: np.random
 
 
 def _replay(opened: OpenDevices, address: str, what: str, *, name: str | None = None) -> None:
-    """Add the streams of a recorded run in place of a device."""
+    """Add the streams of a recorded run instead of a device, with profile, duration, constants."""
     replayed = read_replay(address, what, name=name)
     opened.devices.extend(Device(stream, pause=PAUSE) for stream in replayed.streams)
     opened.profiles[name or what] = replayed.profile
@@ -209,6 +209,9 @@ class ForceCheck:
 
     Args:
         profile: Profile of the rig: axes, scale and limits.
+
+    Raises:
+        SettingsError: The profile has neither a board nor a load cell.
     """
 
     def __init__(self, profile: RigProfile) -> None:
@@ -223,13 +226,13 @@ class ForceCheck:
         self._traction = SampleGuard(limits.traction_force, quantity="traction force", unit="N")
 
     def __call__(self, samples: Sequence[Sample]) -> None:
-        """Check samples.
+        """Decode the forces of samples and check them against the profile's limits.
 
         Args:
-            samples: The next samples of the board or the load cell.
+            samples: Next samples of the board or the load cell.
 
         Raises:
-            LimitExceeded: Several in a row are beyond a limit.
+            LimitExceeded: Several samples in a row, also across calls, are beyond a force limit.
         """
         forces = self._forces(samples)
         self._normal.check_all(forces.normal)

@@ -11,15 +11,15 @@ from zebro_lab.recording.status import RecordStatus
 from zebro_lab.recording.threads import needing_threads
 
 PATIENCE: Final = 1.0
-"""Timeout after which a display that does not return is abandoned [s]."""
+"""Timeout of one call of the display, after which the display is abandoned [s]."""
 
 
 class Display:
-    """Passes the newest status to a display in its own thread, until it raises or hangs.
+    """Thread that passes the newest status to a display, until the display raises or hangs.
 
     Args:
-        show: The display; called in a separate thread, one call at a time.
-        give_up: Called once, in any thread, with the reason why the display ended.
+        show: Draws a status; called in the display's thread, one call at a time.
+        give_up: Called at most once, in any thread, with the reason why the display failed.
     """
 
     def __init__(
@@ -49,9 +49,9 @@ class Display:
             self._hangs()
 
     def close(self) -> None:
-        """Show the last status and end the thread; waits at most `PATIENCE` for the display.
+        """Show the last status and end the thread.
 
-        The thread of a hanging display is abandoned.
+        A display that takes longer than `PATIENCE` is abandoned.
         """
         with self._changed:
             self._ending = True
@@ -79,7 +79,7 @@ class Display:
                 self._end(f"display failed, recording goes on without it: {error!r}")
 
     def _take(self) -> RecordStatus | None:
-        """Wait for a status to show; None after `close`."""
+        """Wait for a status and return it; None after `close` or a failure of the display."""
         with self._changed:
             self._since = None
             self._changed.wait_for(lambda: self._newest is not None or self._ending or self._over)

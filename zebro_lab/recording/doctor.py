@@ -40,7 +40,7 @@ CAN_TYPE: Final = "280"
 
 
 class Grade(StrEnum):
-    """Severity of a finding."""
+    """Severity of a finding: OK, NOTE (matters to some), BROKEN (a needed part is missing)."""
 
     OK = "ok"
     NOTE = "note"
@@ -53,8 +53,8 @@ class Finding:
 
     Attributes:
         state: Severity.
-        what: Subject of the check.
-        text: What was found, and what to do about it.
+        what: Subject of the check, such as `python` or `CAN can0`.
+        text: What was found; unless OK, also the remedy.
     """
 
     state: Grade
@@ -63,7 +63,7 @@ class Finding:
 
 
 def examine(data: Path) -> Iterator[Finding]:
-    """Run every check and yield its findings.
+    """Run every check of this machine and yield the findings.
 
     Args:
         data: Folder for recordings; need not exist.
@@ -79,7 +79,7 @@ def examine(data: Path) -> Iterator[Finding]:
 
 
 def check_python(version: tuple[int, ...]) -> Finding:
-    """Check the version of the Python interpreter."""
+    """Check a Python version against `LEAST_PYTHON`; BROKEN if older."""
     found = f"{'.'.join(map(str, version))} on {platform.system()} {platform.machine()}"
     if version[:2] < LEAST_PYTHON:
         wanted = ".".join(map(str, LEAST_PYTHON))
@@ -90,8 +90,10 @@ def check_python(version: tuple[int, ...]) -> Finding:
 def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
     """Check that every required package is installed in a compatible version.
 
+    Yields BROKEN for each that is not, then one OK finding that lists the others.
+
     Args:
-        needed: Requirements in the format of package metadata.
+        needed: Requirements in the format of package metadata; those of extras are skipped.
     """
     fitting = []
     for requirement in map(Requirement, needed):
@@ -110,7 +112,7 @@ def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
 
 
 def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
-    """Check that no module is shadowed by another of the same name.
+    """Check that `OURS` and `FOREIGN` modules are not shadowed by other modules of their names.
 
     Args:
         folder: Working folder, which `python` puts first on the search path.
@@ -135,7 +137,7 @@ def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
 
 
 def check_serial_ports() -> Iterator[Finding]:
-    """List serial ports and check the permission to open them."""
+    """Yield a finding for each serial port, NOTE where it may not be opened or none is found."""
     from serial.tools import list_ports
 
     ports = sorted(list_ports.comports())
@@ -149,11 +151,11 @@ def check_serial_ports() -> Iterator[Finding]:
 def check_port(
     device: Path, description: str, *, may: Callable[[Path, int], bool] = os.access
 ) -> Finding:
-    """Check the permission to open one serial port.
+    """Check the permission to read and write one serial port; NOTE without it.
 
     Args:
         device: Path of the port.
-        description: Description by the system.
+        description: Description of the port by the operating system.
         may: Returns whether a file can be accessed in a mode, as `os.access`.
     """
     what = f"serial port {device}"
@@ -168,10 +170,10 @@ def check_port(
 
 
 def check_can(net: Path) -> Iterator[Finding]:
-    """List the CAN interfaces of Linux and whether they are up.
+    """Yield a finding for each CAN interface of Linux, NOTE where it is down or none is found.
 
     Args:
-        net: Folder of the system's network interfaces.
+        net: Folder of the system's network interfaces, `/sys/class/net`.
     """
     found = [place for place in sorted(net.glob("*")) if _read(place / "type") == CAN_TYPE]
     if not found:
@@ -188,10 +190,10 @@ def check_can(net: Path) -> Iterator[Finding]:
 
 
 def check_udp(limit: Path) -> Iterator[Finding]:
-    """Check the largest UDP receive buffer of the system, which must hold a fast load cell's data.
+    """Check that the largest UDP receive buffer of the system is at least `UDP_BUFFER`, else NOTE.
 
     Args:
-        limit: File in which Linux gives the limit.
+        limit: File in which Linux gives the size [bytes]; nothing is yielded if it is unreadable.
     """
     text = _read(limit)
     if text is None:
@@ -208,10 +210,10 @@ def check_udp(limit: Path) -> Iterator[Finding]:
 
 
 def check_disk(data: Path) -> Finding:
-    """Check free disk space for recordings and the permission to write them.
+    """Check write permission (else BROKEN) and free disk space (BROKEN, NOTE or OK) for recordings.
 
     Args:
-        data: Folder for recordings; need not exist.
+        data: Folder for recordings; where it does not exist, its nearest parent is checked.
     """
     place = next(
         folder for folder in (data.absolute(), *data.absolute().parents) if folder.is_dir()
@@ -228,7 +230,7 @@ def check_disk(data: Path) -> Finding:
 
 
 def check_optional() -> Iterator[Finding]:
-    """List optional programs and packages with their purpose."""
+    """Yield path or version of each optional program and package; NOTE with purpose if missing."""
     for program, purpose in OPTIONAL_PROGRAMS.items():
         found = shutil.which(program)
         yield Finding(Grade.OK if found else Grade.NOTE, program,

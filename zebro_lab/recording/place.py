@@ -15,11 +15,11 @@ from zebro_lab.files.errors import RecordingError
 
 
 class OpenPlace:
-    """Expected path of an open file and its folder, by device and inode.
+    """Check of whether an open file is still under its path, by device and inode.
 
     Args:
-        path: The file.
-        file: The same file, open.
+        path: Path of the file.
+        file: The file, open.
     """
 
     def __init__(self, path: Path, file: IO[bytes]) -> None:
@@ -29,7 +29,7 @@ class OpenPlace:
         self._folder = identity(path.parent.stat())
 
     def problem(self) -> str | None:
-        """Return why the file can no longer be found under its path; None where it can."""
+        """Return why the open file is no longer under its path; None where it is."""
         try:
             found = self._path.stat()
         except FileNotFoundError:
@@ -41,7 +41,7 @@ class OpenPlace:
         return None
 
     def folder(self) -> Path | None:
-        """Return the folder's path, also after a rename; None where it is gone or not found."""
+        """Return the folder's present path, on Linux also after a rename; None if not found."""
         for place in (self._path.parent, *self._renamed()):
             try:
                 if identity(place.stat()) == self._folder:
@@ -51,7 +51,7 @@ class OpenPlace:
         return None
 
     def _renamed(self) -> list[Path]:
-        """Return the present path of the open file according to the system (Linux only)."""
+        """Return the present folder of the open file by `/proc` in a list; empty if unknown."""
         try:
             return [Path(f"/proc/self/fd/{self._number}").readlink().parent]
         except OSError:
@@ -59,14 +59,14 @@ class OpenPlace:
 
 
 def require_space(folder: Path, least: float) -> None:
-    """Check the free disk space of a folder.
+    """Raise where the disk of a folder has too little free space.
 
     Args:
         folder: The folder.
         least: Least free space [bytes].
 
     Raises:
-        RecordingError: There is less.
+        RecordingError: Less space is free, or the free space cannot be determined.
     """
     try:
         free = shutil.disk_usage(folder).free
@@ -80,10 +80,10 @@ def require_space(folder: Path, least: float) -> None:
 
 
 def sync_files(paths: Iterable[Path]) -> None:
-    """Flush files to the disk (fsync).
+    """Flush existing files to the disk (fsync), after all could be opened.
 
     Raises:
-        OSError: The disk fails, or a file is gone.
+        OSError: The disk fails, or a file is missing or not writable.
     """
     with ExitStack() as stack:
         for file in [stack.enter_context(path.open("r+b")) for path in paths]:
@@ -91,5 +91,5 @@ def sync_files(paths: Iterable[Path]) -> None:
 
 
 def identity(status: os.stat_result) -> tuple[int, int]:
-    """Return device and inode, which identify a file or folder."""
+    """Return device and inode number, which identify a file or folder."""
     return status.st_dev, status.st_ino

@@ -32,6 +32,7 @@ from zebro_lab.runs.manifest import RunManifest
 FLUSH_EVERY: Final = 0.1
 """Interval at which the queues are written and flushed [s]."""
 SYNC_EVERY: Final = 1.0
+"""Interval of flushing the log to the disk (fsync) and of checks of free space [s]."""
 LIMIT: Final = 100_000
 """Capacity of the queue of one stream: 14 s of a fast load cell [samples]."""
 LEAST_FREE: Final = 64 << 20
@@ -51,14 +52,14 @@ class RunRecorder:
 
     Args:
         data_dir: Folder of run folders; created when missing.
-        manifest: What is known of the run before it begins.
+        manifest: Manifest entries known before the run begins.
         profiles: Name and TOML text of each device's profile, by its name in the run folder.
         limit: Capacity of the queue of each stream [samples].
         least_free: Free space below which a run does not start, or ends [bytes].
-        clock: Host time.
+        clock: Clock of host time.
 
     Attributes:
-        folder: The run folder; its new path if it was renamed and can be found.
+        folder: The run folder; after the end its new path if it was renamed and can be found.
         start: Host time at which the run began [s].
     """
 
@@ -94,7 +95,7 @@ class RunRecorder:
 
     @property
     def failure(self) -> str | None:
-        """Why writing has stopped, or the end is incomplete; None without a failure.
+        """First reason why writing stopped or the end is incomplete; None without a failure.
 
         A failure of a recorder thread appears here within a second: a full or failing disk, a
         folder that was removed or renamed. A program that drives motors must check it.
@@ -106,10 +107,10 @@ class RunRecorder:
 
         Args:
             stream: Name of the stream.
-            samples: Its next samples.
+            samples: Next samples of the stream.
 
         Returns:
-            Whether the queue had room; where it had none, the recording fails.
+            True if the queue had room; False if not: samples are dropped, `failure` is set.
         """
         if self._queues[stream].put(samples):
             return True
@@ -117,17 +118,17 @@ class RunRecorder:
         return False
 
     def event(self, text: str, *, level: int = INFO) -> None:
-        """Log an event that happens now.
+        """Queue an event with the present time for the log, without blocking.
 
         Args:
             text: Description of the event.
-            level: Severity, as in `logging`.
+            level: Severity: `INFO`, `WARNING` or `ERROR` of `mcap.ros_messages`.
         """
         now = self._clock.now()
         self._notes.append(lambda log: log.event(now, text, level=level))
 
     def count(self, stream: str, counters: Counters) -> None:
-        """Log the counters of a stream.
+        """Queue the counters of a stream for the log, and store them for the end record.
 
         Args:
             stream: Name of the stream.
@@ -140,7 +141,7 @@ class RunRecorder:
         )
 
     def dropped(self, stream: str) -> int:
-        """Return the number of samples of a stream dropped because its queue was full."""
+        """Return the number of samples of a stream dropped so far because its queue was full."""
         return self._queues[stream].dropped
 
     def compare_clocks(self, clocks: Mapping[str, Mapping[str, float]]) -> None:
@@ -151,24 +152,24 @@ class RunRecorder:
         """Store the requested duration of the run for the end record.
 
         Args:
-            asked: Requested duration [s].
+            asked: Requested duration of the run [s].
             since: Host time from which the duration counts [s].
         """
         duration = {"asked": asked, "from": since - self.start}
         self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
-        """Set the time and reason of the run's end; the first call counts."""
+        """Set the time of the run's end to now, and its reason unless one was set before."""
         self._ended = self._clock.now()
         if self._reason == "completed":
             self._reason = reason
 
     def judge(self, *, excluded: str, point: Mapping[str, Any]) -> None:
-        """Set the verdict on the run, which is stored in the end record atomically.
+        """Store the verdict on the run for the end record, which is written atomically.
 
         Args:
-            excluded: Why the run is left out of every calibration; empty where it counts.
-            point: Record of the point of an experiment, with whether it was accepted.
+            excluded: Why the run is left out of every calibration; empty for an included run.
+            point: Entry `point` of the end record; see `experiment.points.point_record`.
         """
         why = {"why": excluded} if excluded else None
         self._manifest = replace(self._manifest, excluded=why, point=point)
@@ -237,14 +238,14 @@ class RunRecorder:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _fail(self, why: str) -> None:
-        """Store why writing has stopped; the first reason counts."""
+        """Store why writing has stopped as `failure`, unless a reason is stored already."""
         with self._failing:
             if self._failure is None:
                 self._failure = why
 
     @contextmanager
     def _storing_failure(self, where: object) -> Iterator[None]:
-        """Store any exception as the failure, for the owner, who ends the run."""
+        """Store any exception of the body as `failure`, prefixed with `where`; do not raise it."""
         try:
             yield
         except RecordingError as error:
@@ -259,7 +260,7 @@ class RunRecorder:
             self._drain(files.log)
 
     def _check_loop(self, files: RunFiles) -> None:
-        """Check folder and disk space periodically, in a thread that a slow disk does not delay."""
+        """Check the folder every `FLUSH_EVERY` and free space every `SYNC_EVERY` until the end."""
         seen = self._clock.now()
         with self._storing_failure(files.folder):
             while not self._ending.wait(FLUSH_EVERY):
@@ -276,7 +277,7 @@ class RunRecorder:
                 files.sync_log()
 
     def _drain(self, log: LogWriter) -> None:
-        """Write everything queued to the log, and flush it."""
+        """Write all queued samples, events and counters to the log, and flush the log."""
         for name, queue in self._queues.items():
             samples = queue.take()
             if samples:
@@ -286,7 +287,7 @@ class RunRecorder:
         log.flush()
 
     def _finish(self, files: RunFiles) -> None:
-        """Close the log and write the end record; a failure becomes its reason."""
+        """Join the writers, end the log and write the end record; store a failure in both."""
         before = [thread for thread in self._threads if thread is not threading.current_thread()]
         for thread in before:
             thread.join(JOIN_LIMIT)
@@ -315,7 +316,8 @@ class RunRecorder:
         """Return the manifest of the ended run.
 
         Args:
-            whole: The log is complete; else the point of an experiment is not finished.
+            whole: Whether the log is complete; else an experiment's point is not accepted and the
+                run is excluded.
         """
         ended = self._clock.now() if self._ended is None else self._ended
         stop = self._manifest.began + timedelta(seconds=ended - self.start)

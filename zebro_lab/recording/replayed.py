@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Replay a recorded run in place of a device (`replay:RUN`), at its recorded pace."""
+"""Replay a recorded run instead of a device (`replay:RUN`), at its recorded pace."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,10 +23,10 @@ class Replayed:
     """Streams of a replayed run.
 
     Attributes:
-        streams: Each stream, not yet entered.
-        profile: Name and text of their profile.
-        manifest: Manifest of the run.
-        lasts: Time from the first to the last sample [s].
+        streams: Replaying streams, not yet entered.
+        profile: Name and TOML text of the streams' profile.
+        manifest: Manifest of the recorded run.
+        lasts: Longest time from first to last sample of a stream, plus a margin of 1 ms [s].
     """
 
     streams: tuple[ReplayStream, ...]
@@ -41,15 +41,16 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     Args:
         address: `replay:RUN`, with the run folder.
         what: Kind of device: `legs`, `imu` or `rig`.
-        name: Name of an IMU's stream, which selects the run's stream of the same name, if any.
+        name: Name of the replayed IMU stream; the run's stream of this name is replayed, or its
+            first IMU if it has none.
 
     Returns:
-        Its streams. Their source is `replay:RUN`, or `sim:replay:RUN` where it was simulated.
+        The streams. Their source is `replay:RUN`, or `sim:replay:RUN` for simulated samples.
 
     Raises:
-        NotFound: There is no such run, or its profile is missing.
+        NotFound: The run, its log or its profile is missing.
         DataError: The run has no such stream, or cannot be read.
-        RigError: Its profile is invalid.
+        RigError: The run's profile is invalid.
     """
     folder = Path(address.removeprefix(REPLAY))
     manifest = read_manifest(folder)

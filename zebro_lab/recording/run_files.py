@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files of a run while it is recorded: log, profiles, manifest, and space kept for its end."""
+"""Files of a run while it is recorded: log, profiles, manifest, and disk space for its end."""
 
 import contextlib
 import os
@@ -23,12 +23,12 @@ from zebro_lab.runs.manifest import (
 from zebro_lab.runs.profile_views import stored_views
 
 RESERVE: Final = 1 << 16
-"""Space reserved in the run folder for the end record on a full disk [bytes]."""
+"""Disk space reserved in the run folder for log end and end record on a full disk [bytes]."""
 _RESERVE_FILE = ".reserve"
 
 
 class RunFiles:
-    """Open files of a run folder; making one writes the beginning of the run.
+    """Open files of a run folder; the constructor writes profiles, manifest and start of the log.
 
     Args:
         folder: The run folder, empty.
@@ -38,11 +38,12 @@ class RunFiles:
 
     Attributes:
         folder: The run folder; its new path if it was renamed before its end was written.
-        log: The log.
+        log: Writer of the log, open.
         streams: Names of the streams that the profiles describe.
 
     Raises:
         OSError: A file cannot be written.
+        RigError: A profile is invalid.
     """
 
     def __init__(
@@ -87,35 +88,35 @@ class RunFiles:
         os.fsync(self._file.fileno())
 
     def require_place(self) -> None:
-        """Check that the log is still found under its path.
+        """Check that the log is still under its path.
 
         Raises:
-            RecordingError: Its folder was removed, renamed or replaced.
+            RecordingError: The log or its folder was removed, renamed or replaced.
         """
         problem = self._place.problem()
         if problem is not None:
             raise RecordingError(f"{problem} while recording")
 
     def free_reserve(self) -> None:
-        """Free the reserved space, for the end of the run."""
+        """Delete the reserve file, so that its disk space is free for the end of the run."""
         (self.folder / _RESERVE_FILE).unlink(missing_ok=True)
 
     def finish_log(self) -> None:
-        """Write the end of the log and flush it to the disk."""
+        """Write index and end of the log and flush the log to the disk (fsync)."""
         self.log.finish()
         self._file.flush()
         self.sync_log()
 
     def write_end(self, manifest: RunManifest, *, whole: bool) -> None:
-        """Write the end record, also into a folder that was renamed.
+        """Write the end record with sample counts and checksum, also into a renamed folder.
 
         Args:
             manifest: Manifest of the run that ended.
-            whole: The log is complete, so that its checksum is stored.
+            whole: Whether the log is complete, so that its SHA-256 is stored.
 
         Raises:
             RecordingError: The folder is gone.
-            OSError: It cannot be written.
+            OSError: The end record cannot be written.
         """
         folder = self._place.folder()
         if folder is None:
@@ -128,6 +129,6 @@ class RunFiles:
         write_manifest(folder, replace(manifest, streams=self.log.written, log_sha256=log_sha256))
 
     def close(self) -> None:
-        """Close the log's file; an error of the disk is ignored."""
+        """Close the log's file; an OSError is suppressed."""
         with contextlib.suppress(OSError):
             self._file.close()

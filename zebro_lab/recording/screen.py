@@ -31,11 +31,11 @@ _HANGUP: Final = getattr(signal, "SIGHUP", None)
 
 
 class RecordScreen:
-    """Live display that also handles signals and keys; satisfies `RecordWatcher`.
+    """Live display that also handles signals and keys; implements the protocol `RecordWatcher`.
 
     Args:
         live: Display to update; None draws nothing.
-        keys: Input from which keys are read; None without a keyboard.
+        keys: Input file from which keys are read; None without a keyboard.
 
     Attributes:
         signalled: Whether a signal, or a closed terminal, ended the recording.
@@ -52,7 +52,11 @@ class RecordScreen:
         self._outlives = _HANGUP is not None and signal.getsignal(_HANGUP) == signal.SIG_IGN
 
     def show(self, status: "RecordStatus") -> None:
-        """Draw the status of the recording; called in a separate thread."""
+        """Draw the status, at most every `DRAW_EVERY` s; called in a separate thread.
+
+        Raises:
+            OSError: The terminal cannot be written; a lost terminal also requests a stop.
+        """
         if self._live is None or time.monotonic() - self._drawn < DRAW_EVERY:
             return
         try:
@@ -66,7 +70,7 @@ class RecordScreen:
         self._drawn = time.monotonic()
 
     def stop_reason(self) -> str | None:
-        """Return the signal or key that requested the end; None without one."""
+        """Read keys; return a stop's reason: signal name, `key` or `terminal closed`; else None."""
         typed = self._typed()
         if any(key in STOP_KEYS for key in typed):
             self._reason = self._reason or "key"
@@ -81,7 +85,7 @@ class RecordScreen:
             number: Number of the signal.
 
         Raises:
-            KeyboardInterrupt: It is the second signal.
+            KeyboardInterrupt: The signal is the second one that is not a hangup.
         """
         if number != _HANGUP:
             if self._asked:
@@ -91,12 +95,12 @@ class RecordScreen:
         self._reason = self._reason or signal.Signals(number).name
 
     def close(self) -> bool:
-        """End the display; return whether the terminal accepted the output in time."""
+        """End the display; return whether the terminal accepted its last output in time."""
         live, self._live = self._live, None
         return live is None or in_time(live.stop)
 
     def _typed(self) -> bytes:
-        """Return the bytes typed; a disconnected keyboard requests a stop."""
+        """Read typed bytes without blocking, empty without any; a lost keyboard requests a stop."""
         if self._keys is None:
             return b""
         try:
@@ -120,13 +124,13 @@ class RecordScreen:
 
 @contextmanager
 def record_screen(console: Console) -> Iterator[RecordScreen]:
-    """Provide the display of a recording, which never blocks on the terminal.
+    """Provide the display of a recording; handle SIGINT, SIGTERM and SIGHUP while the body runs.
 
     Args:
         console: Output; nothing is drawn and no key is read unless it is a terminal.
 
     Yields:
-        The watcher for the stage.
+        The display, to be passed to the stage as its watcher.
     """
     with contextlib.ExitStack() as stack:
         screen = RecordScreen(None)
@@ -152,7 +156,7 @@ def record_screen(console: Console) -> Iterator[RecordScreen]:
 
 @contextmanager
 def _single_keys() -> Iterator[Any]:
-    """Read keys without Enter; yields None where stdin is not a terminal, and on Windows."""
+    """Yield stdin, set to pass keys without Enter; None if it is not a terminal, or on Windows."""
     if sys.platform == "win32" or not sys.stdin.isatty():
         yield None
         return

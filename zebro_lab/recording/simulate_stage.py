@@ -39,12 +39,12 @@ TwinRequest: TypeAlias = ZebroTwinRequest | ImuTwinRequest | RigTwinRequest
 
 @dataclass(frozen=True)
 class Served:
-    """A twin that is being served.
+    """Simulated device that is being served.
 
     Attributes:
-        source: Origin of its data: `sim:WHAT`.
-        places: Port of each part, by the name of the part.
-        address: `PROFILE@PORT` for a driver.
+        source: Source of the device's data, `sim:WHAT`.
+        places: Port of each part of the device, by the name of the part.
+        address: `PROFILE@PORT` under which a driver finds the device.
     """
 
     source: str
@@ -54,11 +54,12 @@ class Served:
 
 @contextmanager
 def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
-    """Serve a simulated robot while the context lasts.
+    """Serve a simulated robot, on a port or a CAN bus, while the context lasts.
 
     Raises:
-        SettingsError: The named bus cannot be opened.
+        SettingsError: The named CAN bus cannot be opened.
         RigError: The profile or the port is invalid.
+        ZebroLabError: The leg angles to walk cannot be read.
     """
     profile = load_leg_profile(request.profile)
     rng = np.random.default_rng(request.seed)
@@ -79,7 +80,7 @@ def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
-    """Serve a simulated inertial measurement unit while the context lasts.
+    """Serve a simulated inertial measurement unit on a port while the context lasts.
 
     Raises:
         RigError: The profile or the port is invalid.
@@ -93,11 +94,11 @@ def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
-    """Serve a simulated slip rig while the context lasts.
+    """Serve a simulated slip rig while the context lasts: a board, or drives and load cell.
 
     Raises:
-        SettingsError: The profile has neither a board nor drives, or the bus that is named cannot
-            be opened.
+        SettingsError: The profile has neither a board nor drives with a load cell, or the named
+            CAN bus cannot be opened.
         RigError: The profile or the port is invalid.
     """
     profile = load_rig_profile(request.profile)
@@ -131,7 +132,7 @@ def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def _profile_of_cell(name: str, cell: SimulatedLoadCell) -> Iterator[Path]:
-    """Write a temporary copy of the rig's profile with the address of its simulated cell."""
+    """Yield a temporary copy of profile `name` with host and port of the simulated load cell."""
     document = tomlkit.parse(profile_text(name))
     load_cell = cast("dict[str, object]", document["load_cell"])
     load_cell |= {"host": cell.host, "port": cell.port}
@@ -151,7 +152,11 @@ def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
 def _bus(
     request: ZebroTwinRequest | RigTwinRequest, source: str
 ) -> Iterator[tuple[can.BusABC, str]]:
-    """Open the named bus, or one with a simulated adapter; yield the bus and its port."""
+    """Open the named CAN bus, or a virtual one behind a simulated SLCAN adapter; yield bus, port.
+
+    Raises:
+        SettingsError: The named bus cannot be opened.
+    """
     if request.can is None:
         with (
             can.Bus(
@@ -174,12 +179,12 @@ def _bus(
 def wait_until(
     stop_requested: Callable[[], bool], *, duration: float | None, clock: Clock = SYSTEM_CLOCK
 ) -> None:
-    """Wait until a stop is requested or a duration has passed.
+    """Wait until a stop is requested or a duration has passed, polling every 50 ms.
 
     Args:
         stop_requested: Returns whether a stop is requested.
-        duration: Longest wait; None without limit [s].
-        clock: Host time.
+        duration: Longest wait [s]; None for no limit.
+        clock: Clock of host time, which also sleeps.
     """
     end = clock.now() + (float("inf") if duration is None else duration)
     while not stop_requested() and clock.now() < end:

@@ -25,10 +25,11 @@ from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 LOOK_EVERY: Final = 0.05
+"""Interval between checks of the conditions that end a recording [s]."""
 
 
 class RecordWatcher(Protocol):
-    """Display of a recording, which can also request its end."""
+    """Interface of a display of a recording, which can also request the recording's end."""
 
     def show(self, status: RecordStatus) -> None:
         """Show the status, up to twenty times a second.
@@ -38,17 +39,17 @@ class RecordWatcher(Protocol):
         ...
 
     def stop_reason(self) -> str | None:
-        """Return why the recording must end now; None where it continues."""
+        """Return why the recording must end now, such as a signal's name; None to go on."""
         ...
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """A run that has been recorded.
+    """A recorded run that has ended.
 
     Attributes:
         folder: The run folder.
-        manifest: Its end record.
+        manifest: Manifest with the end record, as read from the folder.
     """
 
     folder: Path
@@ -58,12 +59,12 @@ class Recorded:
 def record(
     request: RecordRequest, watcher: RecordWatcher, *, clock: Clock = SYSTEM_CLOCK
 ) -> Recorded:
-    """Record devices into a run folder.
+    """Record devices into a new run folder until the duration, a stop or a failure ends it.
 
     Args:
         request: Devices, duration and description of the run.
-        watcher: Shown the status; may end the recording.
-        clock: Host time.
+        watcher: Display of the status, which may also request the end.
+        clock: Clock of host time.
 
     Returns:
         The run folder and its manifest.
@@ -71,7 +72,8 @@ def record(
     Raises:
         SettingsError: No device is named, or the settings contradict each other.
         RigError: A profile, an address or a port is invalid.
-        RecordingError: The run ended early; its folder holds what was recorded, and the reason.
+        RecordingError: The run cannot begin, or ended early; then its folder holds the samples
+            until then, and the reason.
     """
     play = None if request.play is None else _played(request.play)
     duration = _duration(request, play)
@@ -102,7 +104,7 @@ def _run(
     duration: float | None,
     clock: Clock,
 ) -> str | None:
-    """Record until the end; return what went wrong, or None."""
+    """Read all devices into the recorder until the end; return the failure, or None."""
     readers: Mapping[str, Acquisition] = {}
     display = Display(watcher.show, give_up=lambda why: recorder.event(why, level=WARNING))
     try:
@@ -132,7 +134,7 @@ def _watch(
     watcher: RecordWatcher,
     clock: Clock,
 ) -> str | None:
-    """Poll the conditions that end a recording until one holds; return the failure, or None."""
+    """Poll until duration, stop or failure ends the recording; return the failure, or None."""
     counted = clock.now()
     while (left := streams.left(now := clock.now())) > 0:
         if now - counted >= COUNT_EVERY:
@@ -149,7 +151,7 @@ def _watch(
 
 
 def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> None:
-    """Pass the last counters and the clock fits to the recorder, for the end record."""
+    """Pass the last counters and the clock fits to the recorder; log clocks that cannot be fit."""
     clocks = {}
     for name, reader in readers.items():
         recorder.count(name, reader.counters)

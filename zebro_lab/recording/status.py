@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Status of a recording: when its streams began, their rates and counters, what ends it."""
+"""Status of a recording: first samples, rates and counters of its streams, remaining duration."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -21,10 +21,10 @@ class StreamStatus:
     """Status of a stream.
 
     Attributes:
-        source: Origin of its samples.
+        source: Source of the samples.
         rate: Sample rate over about the last second [Hz].
         counters: Counters of the stream so far.
-        dropped: Number of samples that the recorder dropped.
+        dropped: Number of samples dropped because the recorder's queue was full.
     """
 
     source: str
@@ -39,8 +39,8 @@ class RecordStatus:
 
     Attributes:
         folder: The run folder.
-        elapsed: Time since every stream has sent its first sample [s].
-        duration: Planned duration; None where unknown [s].
+        elapsed: Time since the last stream sent its first sample [s]; 0 before.
+        duration: Planned duration from the first samples [s]; None for no limit.
         streams: Status of each stream, by its name.
     """
 
@@ -56,8 +56,8 @@ class StreamWatch:
     Args:
         recorder: Writer of the run.
         readers: Reader of each stream, by its name.
-        devices: The devices that they read.
-        duration: Planned duration; None where unknown [s].
+        devices: Devices that the readers read.
+        duration: Planned duration from the first samples [s]; None for no limit.
     """
 
     def __init__(
@@ -76,14 +76,14 @@ class StreamWatch:
         self._began: float | None = None
 
     def left(self, now: float) -> float:
-        """Return the least remaining duration of the recording [s]."""
+        """Return the remaining duration at host time `now` [s]; all of it before streams begin."""
         if self._duration is None:
             return float("inf")
         began = self._first_samples()
         return self._duration if began is None else began + self._duration - now
 
     def problem(self, now: float) -> str | None:
-        """Return the problem that ends the recording; None without one."""
+        """Return a failure of recorder or reader, or that a stream sent no sample; else None."""
         problem = self._recorder.failure or reading_failure(self._readers)
         waited = now - self._recorder.start
         if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
@@ -96,12 +96,12 @@ class StreamWatch:
         return problem
 
     def count(self) -> None:
-        """Write all counters to the log."""
+        """Pass the counters of all streams to the recorder, for the log."""
         for name, reader in self._readers.items():
             self._recorder.count(name, reader.counters)
 
     def status(self, now: float) -> RecordStatus:
-        """Return the status of the recording."""
+        """Return the status at host time `now`; rates are renewed every `COUNT_EVERY`."""
         began, received = self._before
         if now - began >= COUNT_EVERY:
             current = {name: r.counters.received for name, r in self._readers.items()}
@@ -120,7 +120,11 @@ class StreamWatch:
         return RecordStatus(self._recorder.folder, elapsed, self._duration, streams)
 
     def _first_samples(self) -> float | None:
-        """Return the time by which every stream had sent a sample, and log it; None before."""
+        """Return the host time of the last stream's first sample, from which `duration` counts.
+
+        None before. The first time, the duration is stored for the end record and the readers get
+        their end.
+        """
         firsts = [reader.first for reader in self._readers.values()]
         known = [first for first in firsts if first is not None]
         if self._began is None and len(known) == len(firsts):
@@ -133,7 +137,7 @@ class StreamWatch:
 
 
 def reading_failure(readers: Mapping[str, Acquisition]) -> str | None:
-    """Return which stream could not be read on, and why; None where all could."""
+    """Return `STREAM: TYPE: MESSAGE` of the first reader that failed; None without a failure."""
     for name, reader in readers.items():
         if reader.failure is not None:
             return f"{name}: {type(reader.failure).__name__}: {reader.failure}"

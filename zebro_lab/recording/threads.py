@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Convert the system's refusal to start a thread to an error of one line."""
+"""Convert a failure to start a thread to an error of one line."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -15,7 +15,7 @@ from model.slip.law import Array
 from zebro_lab.files.provenance import file_hash
 
 FEWEST: Final = 20
-"""Fewest samples with which equal forces identify a run; fewer may be equal by chance."""
+"""Fewest samples of a run whose forces identify it; fewer may be equal by chance."""
 _MOST: Final = 1 << 30  # bytes that are unpacked to be compared; a larger file is compared packed
 _CHUNK: Final = 1 << 20
 _SHOWN: Final = 3
@@ -23,7 +23,7 @@ _T = TypeVar("_T")
 
 
 def content_hash(file: Path) -> str:
-    """Compute the SHA-256 of a file's content; gzip files are decompressed first."""
+    """Compute the SHA-256 of a file, of the content for `.gz`; a damaged or huge one as it is."""
     if file.name.lower().endswith(".gz"):
         try:
             return _unpacked_hash(file) or file_hash(file)
@@ -44,7 +44,7 @@ def _unpacked_hash(file: Path) -> str | None:
 
 
 def array_hash(*arrays: Array) -> str:
-    """Compute the SHA-256 of the bytes of arrays."""
+    """Compute one SHA-256 of the shapes and float64 values of arrays, in order."""
     digest = hashlib.sha256()
     for each in arrays:
         digest.update(str(each.shape).encode())
@@ -53,15 +53,15 @@ def array_hash(*arrays: Array) -> str:
 
 
 def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tuple[str, ...]:
-    """Compute a key per run of a table, by which duplicates are found.
+    """Compute a key per run of a table, in order of run; duplicate runs have equal keys.
 
     The key is a hash of the forces, independent of names and slip definitions: two recordings never
-    have exactly equal forces. A run with few samples or constant forces is identified by all forces
-    of its table.
+    have exactly equal forces. The key of a run with fewer than `FEWEST` samples or constant forces
+    is the hash of all forces of the table, with the run's index.
 
     Args:
-        forces: Columns of forces, each of shape (n,).
-        run: Run of each sample, shape (n,).
+        forces: Columns of forces, each of shape (n,) [N].
+        run: Index of the run of each sample, from 0, shape (n,).
         n_runs: Number of runs.
     """
     whole = array_hash(*forces)
@@ -83,7 +83,7 @@ def first_of_each(
         key: Returns the key by which two items are duplicates.
 
     Returns:
-        Unique items, and pairs of each duplicate with the item kept.
+        The items kept, and pairs (duplicate, item kept), both in order.
 
     >>> first_of_each(["a.csv", "b.csv", "A.csv"], key=str.lower)
     (['a.csv', 'b.csv'], [('A.csv', 'a.csv')])
@@ -98,14 +98,14 @@ def first_of_each(
 
 
 def duplicates_note(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str, ...]:
-    """Format a note on duplicates that were dropped.
+    """Format a note on duplicates that were dropped, with the first three pairs.
 
     Args:
         what: Plural noun for the items.
-        repeated: Pairs of each duplicate with the item kept.
+        repeated: Pairs (duplicate, item kept).
 
     Returns:
-        One line, or nothing if there are no duplicates.
+        One line; empty if there are no duplicates.
 
     >>> duplicates_note("tables", [("b.csv", "a.csv")])
     ('1 of the tables is there twice and counts once: b.csv is a.csv',)

@@ -19,8 +19,9 @@ class DataSource:
     """One table file or one run folder.
 
     Attributes:
-        path: The file or the folder.
-        root: Folder named on the command line, or the named file's own.
+        path: The table file or the run folder.
+        root: Folder where the upward search for `columns.toml` ends: the folder named on the
+            command line, or the parent of the named file.
     """
 
     path: Path
@@ -28,11 +29,11 @@ class DataSource:
 
     @property
     def is_run_folder(self) -> bool:
-        """Whether this is a run folder, not a table file."""
+        """Whether the path is a run folder, not a table file."""
         return self.path.is_dir()
 
     def columns_file(self) -> Path | None:
-        """Find the nearest `columns.toml`, from the data's folder upwards to the root."""
+        """Find the nearest `columns.toml`, from the data's folder up to the root; None without."""
         folder = self.path if self.is_run_folder else self.path.parent
         while True:
             if (folder / COLUMNS_FILE).is_file():
@@ -43,17 +44,17 @@ class DataSource:
 
 
 def find_sources(paths: Sequence[Path]) -> list[DataSource]:
-    """Find tables and run folders recursively, without duplicates.
+    """Find table files and run folders recursively; a path reached twice is listed once.
 
     A folder stands for every CSV and Parquet file and every run folder below it, sorted by name.
-    Links are followed; hidden folders and calibration folders are skipped.
+    Links are followed; hidden files and folders and calibration folders are skipped.
 
     Args:
-        paths: Files and folders, as named.
+        paths: Files and folders, as named; `run.json` and `log.mcap` stand for their folder.
 
     Raises:
-        NotFound: A path does not exist.
-        DataError: A folder holds no data.
+        NotFound: A path does not exist, or `paths` is empty.
+        DataError: A named folder holds no data.
     """
     if not paths:
         raise NotFound("no data named; name files or folders of CSV, Parquet or run folders")
@@ -78,11 +79,11 @@ def _sources_at(path: Path) -> list[DataSource]:
 
 
 def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
-    """Yield the tables and run folders below a folder; cyclic links are detected.
+    """Yield a run folder itself, or the tables and run folders below another folder, by name.
 
     Args:
-        folder: Folder to search.
-        entered: Device and inode of the folders already visited; this one is added.
+        folder: Folder to search; one already visited, as by cyclic links, yields nothing.
+        entered: Device and inode of the folders already visited; those of `folder` are added.
     """
     status = folder.stat()
     if (status.st_dev, status.st_ino) in entered:

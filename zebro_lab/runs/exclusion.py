@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Exclude a run from calibrations, or undo that; every reason is kept in the manifest."""
+"""Exclude a run from calibrations, or undo an exclusion; the manifest keeps every reason."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,15 +16,15 @@ NO_REASON: Final = "no reason given"
 
 
 def exclude_run(folder: Path, *, why: str) -> RunManifest:
-    """Exclude a run from every later calibration; its data are kept.
+    """Exclude a run from every later calibration in its manifest, and return that; data are kept.
 
     Args:
         folder: The run folder.
-        why: Reason; earlier reasons are kept in `exclusions`.
+        why: Reason; earlier reasons are kept in `exclusions` of the manifest.
 
     Raises:
-        NotFound: It is no run folder.
-        DataError: Its manifest is damaged, or no reason is given.
+        NotFound: The folder is not a run folder.
+        DataError: The manifest is damaged, or the reason is blank.
     """
     if not why.strip():
         raise DataError("no reason given; say why the run is left out", file=folder)
@@ -32,15 +32,15 @@ def exclude_run(folder: Path, *, why: str) -> RunManifest:
 
 
 def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
-    """Undo the exclusion of a run.
+    """Undo the exclusion of a run in its manifest, and return the new manifest.
 
     Args:
         folder: The run folder.
-        why: Reason, kept with the reasons of the exclusions.
+        why: Reason, kept in `exclusions` of the manifest; `NO_REASON` when None or blank.
 
     Raises:
-        NotFound: It is no run folder.
-        DataError: Its manifest is damaged, or it is not left out.
+        NotFound: The folder is not a run folder.
+        DataError: The manifest is damaged, or the run is not excluded.
     """
     if read_manifest(folder).excluded is None:
         raise DataError("is not left out; there is nothing to undo", file=folder)
@@ -48,7 +48,7 @@ def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
 
 
 def past_reasons(manifest: RunManifest) -> tuple[str, ...]:
-    """Return the reasons of past exclusions, the latest first."""
+    """Return the reasons of past exclusions, the latest first, without the present exclusion."""
     reasons = [each.get("why", NO_REASON) for each in _history(manifest) if each["did"] == EXCLUDED]
     return tuple(reversed(reasons[:-1] if manifest.excluded is not None else reasons))
 
@@ -66,7 +66,7 @@ def _written(folder: Path, did: str, why: str) -> RunManifest:
 
 
 def _history(manifest: RunManifest) -> tuple[Mapping[str, str], ...]:
-    """Return all exclusions, with the present one appended if it was not recorded.
+    """Return all exclusions and their undoing, with the present exclusion appended if missing.
 
     An exclusion made by hand or by an earlier version is not in the manifest's list.
     """

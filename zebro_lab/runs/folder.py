@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Run folders: `DATA/<utc time>_<kind>_<label>/` with `run.json` and `log.mcap`.
 
-Only this module depends on their layout, which docs/formats.md describes.
+Only this module depends on the layout of run folders, which docs/formats.md describes.
 """
 
 import re
@@ -22,19 +22,19 @@ from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_
 LOG_FILE = "log.mcap"
 _BOARD_TOPIC: Final = raw_topic("board")
 STILL_GROWING: Final = 3.0
-"""A log modified more recently than this is being recorded; it is written every second [s]."""
+"""Age below which a log's last change means that it is being recorded; written each second [s]."""
 
 
 @dataclass(frozen=True)
 class SlipRigRun:
-    """A run of the slip rig, as read.
+    """A run of the slip rig, read from its folder.
 
     Attributes:
-        folder: Its folder.
+        folder: Run folder.
         manifest: Content of `run.json`.
-        table: The samples.
-        files: Files read.
-        notes: Notes on how it was read, one line each.
+        table: Samples in SI, forces with the zero offset subtracted.
+        files: Files read: manifest and log.
+        notes: Notes on damage and dropped samples, one line each.
     """
 
     folder: Path
@@ -45,19 +45,19 @@ class SlipRigRun:
 
 
 def require_new(folder: Path) -> None:
-    """Raise AlreadyExists where a run folder is there already."""
+    """Raise AlreadyExists where the path of a new run folder exists."""
     if folder.exists():
         raise AlreadyExists(f"{folder} exists already; give the run another label")
 
 
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
-    """Read a run of the slip rig.
+    """Read the samples of a slip-rig run from its folder.
 
-    A truncated log is read up to its last complete chunk, and a note says so.
+    A truncated log is read up to its last complete chunk, with a note.
 
     Raises:
-        NotFound: There is no manifest or no log.
-        DataError: The run is of another kind, or its log is damaged or not the recorded one.
+        NotFound: The manifest or the log is missing.
+        DataError: The kind, a radius or the log's checksum is wrong, or the log has no samples.
     """
     manifest = read_manifest(folder)
     if manifest.kind != "slip-rig":
@@ -78,17 +78,17 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
 
 
 def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) -> Path:
-    """Create the empty folder of a run to be recorded.
+    """Create the empty folder of a run to be recorded, and return its path.
 
     Args:
-        data_dir: Folder of run folders; made when missing.
-        kind: One of `KINDS`.
-        label: Name of the run.
-        start: When it begins, with its time zone.
+        data_dir: Folder of run folders; created when missing.
+        kind: Kind of the run, one of `KINDS`.
+        label: Label of the run.
+        start: Start of the run, with its time zone.
 
     Raises:
-        AlreadyExists: A run with this start and label exists.
-        RecordingError: Nothing can be written there.
+        AlreadyExists: A run of this kind, start (to the second) and label exists.
+        RecordingError: The folder cannot be created.
     """
     folder = run_path(data_dir, kind, label, start)
     try:
@@ -105,10 +105,10 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
 
 
 def find_runs(data_dir: Path) -> list[Path]:
-    """Find all run folders in a folder, recursively and including itself, sorted by path.
+    """Find all folders with a `run.json`: `data_dir` and any below it, sorted by path.
 
     Raises:
-        NotFound: There is no such folder.
+        NotFound: The folder does not exist.
     """
     if not data_dir.is_dir():
         raise NotFound(f"{data_dir}: no such folder; name one that holds run folders")
@@ -118,12 +118,12 @@ def find_runs(data_dir: Path) -> list[Path]:
 def run_state(folder: Path, manifest: RunManifest) -> str:
     """Return the state of a run: its exit status, `recording` or `recovered`.
 
-    A run without an exit status is `recording` while its log file grows, and `recovered` after the
-    recorder died.
+    A run whose manifest still says `recording` is `recovered` if its log is missing or was not
+    written for `STILL_GROWING` seconds: the recorder died.
 
     Args:
         folder: Run folder.
-        manifest: Its manifest.
+        manifest: Manifest of the run.
     """
     if manifest.exit_status != RECORDING:
         return manifest.exit_status
@@ -133,12 +133,11 @@ def run_state(folder: Path, manifest: RunManifest) -> str:
 
 
 def require_ended(folder: Path) -> None:
-    """Check that a run is not being recorded, so that its manifest can be changed.
-
-    The recorder rewrites the manifest when the run ends.
+    """Raise where a run is being recorded: the recorder rewrites the manifest at the run's end.
 
     Raises:
         NotFound: The folder is not a run folder.
+        DataError: The manifest is damaged.
         RecordingError: The run is being recorded.
     """
     if run_state(folder, read_manifest(folder)) == RECORDING:
@@ -148,7 +147,7 @@ def require_ended(folder: Path) -> None:
 def _slip_rig_table(
     folder: Path, manifest: RunManifest
 ) -> tuple[SlipRigTable, str | None, tuple[str, ...]]:
-    """Read or derive the samples; also return the damage that ends them, and notes."""
+    """Read the samples in SI, or compute them from raw counts; return also log damage and notes."""
     path = folder / LOG_FILE
     if not manifest.profiles:
         log = read_log(path)
@@ -175,11 +174,11 @@ def _require_radii(manifest: RunManifest, file: Path) -> None:
 
 
 def require_recorded(path: Path, manifest: RunManifest) -> None:
-    """Check a log file against the checksum in the manifest.
+    """Check a log file against the SHA-256 in the manifest.
 
     Args:
         path: Log file.
-        manifest: Manifest of its run; without a checksum nothing is checked.
+        manifest: Manifest of the run; without a checksum nothing is checked.
 
     Raises:
         DataError: The SHA-256 checksums differ.
@@ -199,13 +198,13 @@ def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) 
 
 
 def run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
-    """Return the path of a run folder, from start time, kind and label.
+    """Return the path of a run folder: `data_dir/<utc time>_<kind>_<label>`.
 
     Args:
-        data_dir: Folder that holds all runs.
+        data_dir: Folder of run folders.
         kind: Kind of the run.
-        label: Label of the run.
-        start: Start of the run; written in UTC.
+        label: Label of the run; characters unfit for a file name become hyphens.
+        start: Start of the run; converted to UTC, to the second.
     """
     return Path(data_dir) / f"{start.astimezone(UTC):%Y%m%dT%H%M%SZ}_{kind}_{_slug(label)}"
 
@@ -215,5 +214,5 @@ def _slug(label: str) -> str:
 
 
 def epoch_ns(moment: datetime) -> int:
-    """Return nanoseconds since the Unix epoch, with microsecond resolution."""
+    """Convert a moment with a time zone to nanoseconds since the Unix epoch, to the microsecond."""
     return (moment - datetime(1970, 1, 1, tzinfo=UTC)) // timedelta(microseconds=1) * 1000

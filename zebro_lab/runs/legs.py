@@ -24,10 +24,10 @@ def read_leg_log(
     Other names and units are mapped by a `columns.toml`. Angles may be wrapped to one turn.
 
     Args:
-        path: The table; a walk folder, whose path.csv holds the same columns; or a recorded run,
-            whose counts become angles with the profile that it keeps.
-        columns: A `columns.toml` in place of the one beside the table.
-        leg_sign: 1 or -1 for each leg, which its angles are multiplied with; see robot.toml.
+        path: Table file; a walk folder, whose path.csv holds the same columns; or a recorded run,
+            whose counts are decoded with the profile in its folder.
+        columns: A `columns.toml` instead of the one beside the table; ignored for a recorded run.
+        leg_sign: Factor of each leg's angles, 1 or -1, shape (6,); see robot.toml.
 
     Raises:
         NotFound: A file does not exist.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The manifest `run.json` of a run folder: read, check and write it."""
+"""Read, check and write the manifest `run.json` of a run folder."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ SCHEMA_VERSION = 1
 KINDS = ("slip-rig", "walk")
 IMPORTED = "imported"
 RIG = "rig"
-"""Name of the rig's profile in a run folder."""
+"""Name of the rig's profile in a run folder, for all streams of the rig."""
 TABLE = "table"
 """Name of the profile for samples imported from a table, already decoded and cut into runs."""
 RECORDING = "recording"
@@ -29,19 +29,19 @@ RECORDING = "recording"
 
 
 def profile_file(folder: Path, stream: str) -> Path:
-    """Return the path of a stream's profile in a run folder.
+    """Return the path of a stream's profile in a run folder, `profiles/STREAM.toml`.
 
     The run is decoded with this file, so that a wrong profile can be corrected afterwards.
 
     Args:
         folder: Run folder.
-        stream: Name of the stream.
+        stream: Name of the stream; `RIG` for all streams of the rig.
     """
     return folder / PROFILES / f"{stream}.toml"
 
 
 def software_version() -> dict[str, str]:
-    """Return version and commit of this software."""
+    """Return the installed `version` of zebro-lab and its `commit`, each `unknown` if not known."""
     try:
         return {"version": version("zebro-lab"), "commit": "unknown"}
     except PackageNotFoundError:
@@ -50,7 +50,7 @@ def software_version() -> dict[str, str]:
 
 @dataclass(frozen=True, kw_only=True)
 class RunManifest:
-    """Content of the `run.json` of a run, or what is known of it before the run.
+    """Content of the `run.json` of a run; before the run, the entries known by then.
 
     Attributes:
         kind: "slip-rig" or "walk".
@@ -60,30 +60,31 @@ class RunManifest:
         source: "real", "sim:what", "replay:what", or "import:FILE" for an imported file without a
             stated source.
         start: Start, UTC, ISO 8601; empty before the run.
-        stop: Stop, UTC, ISO 8601; None while it is recorded, or if the recorder died.
-        exit_status: "completed", "recording", "imported", or why it ended.
-        software: Version and commit of the recording software.
+        stop: Stop, UTC, ISO 8601; None while the run is recorded, or if the recorder died.
+        exit_status: "completed", "recording", "imported", or why the run ended.
+        software: Version and commit of the recording software, by "version" and "commit".
         constants: Canonical columns that are one number for the rig, SI: radius_leg,
             radius_ground; also zero_normal and zero_traction [N], where the unloaded load cell's
             zero is to be subtracted.
-        streams: Samples recorded, by topic.
+        streams: Number of samples recorded, by topic.
         log_sha256: SHA-256 of `log.mcap`; None if the recorder could not close it.
         excluded: {"why": reason} if the run is excluded from every calibration.
         exclusions: Exclusions and their undoing, in order: {"did": "excluded" or "undone", "why":
             reason, "at": time}.
-        profiles: Name of each device's profile, by stream; the profile itself is in the folder.
-        sources: Source of each stream.
-        counters: Sample counts of each stream: received, lost, damaged and so on, and how many the
-            recorder itself dropped.
+        profiles: Name of each device's profile, by stream; its text is in the folder.
+        sources: Source of each stream, by the stream's name.
+        counters: Numbers of samples received, lost, damaged and so on, and of those that the
+            recorder dropped, by stream.
         clocks: Offset [s], drift [-] and delay [s] of each device's clock against the time of the
-            run, for devices that send their time.
+            run, by stream, for devices that send their time.
         duration: Requested duration ("asked") and the time of the run from which it counts
             ("from"), when every stream had sent its first sample; empty for a run without a set
             duration [s].
         robot: Name of the robot, for a walk.
         truth: True values of a simulated device.
         inputs: SHA-256 of the files that an imported run was made from, by their names.
-        point: The point of an experiment that the run measures, and whether it is good.
+        point: Plan, number and attempt of the experiment's point that the run measures, and
+            whether it is accepted; empty outside experiments.
         schema_version: Version of the manifest's format.
     """
 
@@ -114,7 +115,7 @@ class RunManifest:
 
     @property
     def began(self) -> datetime:
-        """The start as a moment, with its time zone."""
+        """Start of the run as a datetime with its time zone; ValueError before the run."""
         return datetime.fromisoformat(self.start)
 
 
@@ -122,8 +123,8 @@ def read_manifest(folder: Path) -> RunManifest:
     """Read and check a run folder's `run.json`.
 
     Raises:
-        NotFound: There is no manifest.
-        DataError: It is damaged, incomplete, or of another version.
+        NotFound: The manifest does not exist.
+        DataError: The manifest is damaged, incomplete, or of another version.
     """
     file = folder / MANIFEST_FILE
     return _checked(read_json_object(file, of="run folder"), file)
@@ -146,7 +147,7 @@ def write_manifest(folder: Path, manifest: RunManifest) -> Path:
 
 
 def manifest_text(manifest: RunManifest) -> str:
-    """Serialise a manifest as JSON; fields that are None or empty are omitted."""
+    """Format a manifest as JSON text; optional fields that are None or empty are omitted."""
     document = {
         key: value for key, value in asdict(manifest).items()
         if value is not None and (value or key not in _OPTIONAL)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""All streams of a run over time, with gaps and events marked."""
+"""Draw all streams of a run over time, with gaps and events marked."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -21,13 +21,10 @@ _LONGEST_TEXT: Final = 90
 
 @styled
 def raw_streams(run: RunSignals) -> Figure:
-    """Draw every stream of a run, one panel a quantity.
+    """Draw every stream of a run, one panel per quantity, above them the events; return the figure.
 
     Args:
-        run: The run.
-
-    Returns:
-        The figure.
+        run: Signals of the run; a panel without any finite value is left out.
     """
     drawn = [panel for panel in run.panels if _known(panel)]
     rows = len(drawn) + bool(run.events)
@@ -54,11 +51,12 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
 
     Args:
         t: Times, shape (n,) [s].
-        values: Values, shape (n,).
-        columns: Number of intervals.
+        values: Values, shape (n,); NaN counts as 0.
+        columns: Number of intervals of n // columns samples; the samples behind them are kept.
 
     Returns:
-        Times and values, each of shape (2 columns,), in time order; as given if there are no more.
+        Times and values in time order, each of shape (2 columns + n % columns,); as given if n is
+        at most 2 columns.
 
     >>> t = np.arange(1000.0)
     >>> float(extremes(t, np.where(t == 503, 9.0, 0.0), 10)[1].max())
@@ -75,7 +73,7 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
 
 
 def _known(panel: Panel) -> bool:
-    """Return whether a panel has any measured value."""
+    """Return whether any curve of a panel has a finite value."""
     return any(np.isfinite(line).any() for line in panel.lines.values())
 
 
@@ -97,7 +95,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
 
 
 def _broken(t: Array, values: Array, gaps: Array) -> tuple[Array, Array]:
-    """Insert NaN at gaps, so that no line is drawn where there are no samples."""
+    """Insert a NaN value at the middle of each gap, so that no line is drawn across it."""
     at = np.searchsorted(t, gaps[:, 0], side="right")
     return np.insert(t, at, gaps.mean(axis=1)), np.insert(values, at, np.nan)
 
@@ -125,8 +123,8 @@ def _list_events(axes: Axes, events: Sequence[Event]) -> None:
 def _chosen(events: Sequence[Event]) -> list[Event]:
     """Select at most `_MOST_EVENTS` events to label, in time order.
 
-    The first and the last event are always kept. The others are ranked by how often their text
-    occurred before, then warnings first, then by time.
+    The first and the last event are always kept. The events between are ranked by how often their
+    text occurred before, least first, then warnings first, then by time.
     """
     if len(events) <= _MOST_EVENTS:
         return list(events)

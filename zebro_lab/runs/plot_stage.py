@@ -18,11 +18,11 @@ PLOT = picture("plot")
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture of a run.
+    """Written picture of a run.
 
     Attributes:
-        file: The picture.
-        signals: Signals shown.
+        file: Path of the picture.
+        signals: Signals drawn in the picture.
     """
 
     file: Path
@@ -30,17 +30,17 @@ class Drawn:
 
 
 def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
-    """Draw every stream of a run.
+    """Draw every stream of a run and write the picture atomically as PNG.
 
     Args:
         folder: The run folder.
-        out: Picture to write, PNG; beside the run folder, under its name, when None.
+        out: Picture to write; when None, `RUN.png` beside the run folder RUN.
 
     Raises:
-        SettingsError: `out` is no name of a PNG file.
-        AlreadyExists: `out` is no picture of this command.
-        NotFound: It is no run folder, or its log or the picture's folder is missing.
-        DataError: It cannot be read, or holds no samples.
+        SettingsError: `out` does not end in `.png`, or is a folder.
+        AlreadyExists: `out` exists and is not a picture of this command.
+        NotFound: The folder is not a run folder, or the log or the picture's folder is missing.
+        DataError: The run cannot be read, or holds no samples.
     """
     place = folder.absolute()
     file = out or place.with_name(place.name + SUFFIX)

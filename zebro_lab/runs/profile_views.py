@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Make the converters of streams to display messages from the profile that a run folder keeps."""
+"""Convert streams to display messages with the profiles in a run folder."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -18,7 +18,7 @@ def profile_views(file: Path) -> dict[str, StreamView]:
     """Return the converters of all streams that a profile describes, by the streams' names.
 
     Args:
-        file: Profile in a run folder, named `rig` or as its stream: `imu`, `imu1`, `legs`.
+        file: Profile in a run folder; its name selects the kind: `rig`, `imu…`, else legs.
 
     Raises:
         RigError: The profile is invalid.
@@ -36,7 +36,7 @@ def stored_views(folder: Path, profiles: Iterable[str]) -> dict[str, StreamView]
 
     Args:
         folder: The run folder.
-        profiles: Names of its profiles.
+        profiles: Names of the profiles in the run folder, such as `rig` and `imu`.
 
     Raises:
         RigError: A profile is invalid.

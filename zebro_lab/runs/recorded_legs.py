@@ -19,18 +19,20 @@ LEGS = "legs"
 
 
 def is_recorded(path: Path) -> bool:
-    """Return whether a path is a run folder."""
+    """Return whether a path is a run folder: a folder with a `run.json`."""
     return (path / MANIFEST_FILE).is_file()
 
 
 def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     """Read leg angles of a run: `t` [s] and `theta1` to `theta6` [rad], unwrapped.
 
+    Samples whose time does not increase are dropped; a truncated log is read up to the damage.
+
     Args:
         folder: The run folder.
 
     Returns:
-        The angles, and the files they were read from: manifest, profile and log.
+        The angles as a table, and the files read: manifest, profile and log.
 
     Raises:
         NotFound: Manifest, log or profile is missing.

@@ -13,14 +13,14 @@ SWEEP = "sweep"
 
 
 def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]:
-    """Number the sweeps of a recorded run.
+    """Number the sweeps of a recorded run: stretches without jumps of slip, leg disc turning.
 
     Returns:
         Sweep number of each sample, from 1; 0 outside sweeps, shape (n,). Then notes, one line
         each.
 
     Raises:
-        DataError: The leg disc stood all the time, or slip never stopped jumping.
+        DataError: No sample is in a sweep: the leg disc never turned, or slip jumped throughout.
     """
     table, constants = run.table, run.manifest.constants
     speed_leg = table.omega_leg * constants["radius_leg"]

@@ -21,12 +21,12 @@ IMUS = ("imu", "imu1", "imu2")
 
 @dataclass(frozen=True)
 class Tilt:
-    """Roll and pitch measured.
+    """Measured roll and pitch of the body over time.
 
     Attributes:
-        t: Times of the run, increasing, shape (n,) [s].
-        angles: Roll and pitch, shape (n, 2) [rad].
-        files: Files read.
+        t: Time since the start of the run, increasing, shape (n,) [s].
+        angles: Roll and pitch, columns in this order, shape (n, 2) [rad].
+        files: Files read: log and profile.
     """
 
     t: Array
@@ -35,13 +35,13 @@ class Tilt:
 
 
 def read_recorded_tilt(folder: Path) -> Tilt | None:
-    """Read roll and pitch of a run; None if no IMU was recorded.
+    """Read roll and pitch of a run; None without log, IMU profile or samples of that IMU.
 
     Args:
         folder: The run folder.
 
     Raises:
-        DataError: The log or the IMU's profile is damaged.
+        DataError: The log is not MCAP, or the IMU's profile is invalid.
     """
     log = folder / LOG_FILE
     name = next((name for name in IMUS if profile_file(folder, name).is_file()), None)

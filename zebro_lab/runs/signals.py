@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""All streams of a run as time series in SI, with gaps and events."""
+"""Read all streams of a run as time series in SI, with gaps and events."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -28,20 +28,20 @@ from zebro_lab.runs.recorded_legs import LEGS
 
 GAP_STEPS: Final = 5.0
 GAP_LEAST: Final = 0.05
-"""Silence that counts as a gap: so many usual steps between samples, and as long as this [s]."""
+"""An interval is a gap when longer than `GAP_STEPS` median intervals and `GAP_LEAST` [s]."""
 
 
 @dataclass(frozen=True)
 class Panel:
-    """Curves that share an axis.
+    """Curves of one stream that share an axis.
 
     Attributes:
-        title: Stream and quantity.
+        title: Stream and quantity, such as `legs: angles, unwrapped`.
         unit: Unit of the values.
-        t: Time of each sample, shape (n,) [s].
-        lines: Values by name, each of shape (n,); NaN where a device measures none.
-        simulated: The stream is simulated.
-        gaps: Begin and end of every stretch without samples, shape (k, 2) [s].
+        t: Time of each sample since the start of the run, shape (n,) [s].
+        lines: Values by name of the curve, each of shape (n,); NaN where not measured.
+        simulated: Whether the stream is simulated.
+        gaps: Begin and end of each gap, shape (k, 2) [s].
     """
 
     title: str
@@ -54,12 +54,12 @@ class Panel:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened.
+    """Event in the log of a run.
 
     Attributes:
-        t: When [s].
-        text: What.
-        warning: Whether it is unexpected.
+        t: Time since the start of the run [s].
+        text: Description of the event.
+        warning: Whether the event's level is warning or higher.
     """
 
     t: float
@@ -69,15 +69,15 @@ class Event:
 
 @dataclass(frozen=True)
 class RunSignals:
-    """A run as curves.
+    """Curves and events of a run.
 
     Attributes:
         name: Name of the run folder.
-        state: How it ended.
+        state: State of the run, such as `completed`; `excluded: REASON` if it is excluded.
         source: Where the data come from.
         panels: Curves of all streams.
-        events: Events in time order.
-        notes: Notes, one line each.
+        events: Events in the order of the log.
+        notes: Notes on damage and dropped samples, one line each.
     """
 
     name: str
@@ -89,11 +89,11 @@ class RunSignals:
 
 
 def read_signals(folder: Path) -> RunSignals:
-    """Read all streams of a recorded or imported run.
+    """Read all streams of a recorded or imported run as curves, up to a damage of its log.
 
     Raises:
-        NotFound: It is no run folder, or its log is missing.
-        DataError: It cannot be read, or holds no samples.
+        NotFound: The folder is not a run folder, or its log is missing.
+        DataError: Manifest, log or a profile is invalid, or the run holds no samples.
     """
     manifest = read_manifest(folder)
     log = folder / LOG_FILE
@@ -124,7 +124,7 @@ def find_gaps(t: Array, sequence: NDArray[np.int64] | None = None) -> Array:
             is not numbered.
 
     Returns:
-        Begin and end of each gap, shape (k, 2) [s].
+        Begin and end of each gap, the times of the samples around it, shape (k, 2) [s].
     """
     steps = np.diff(t)
     usual = float(np.median(steps[steps > 0])) if np.any(steps > 0) else 0.0
@@ -156,7 +156,7 @@ _Curves = Iterator[tuple[str, str, Array, Mapping[str, Array]]]
 
 
 def _decoded(name: str, place: Path, t: Array, stream: SampleColumns) -> _Curves:
-    """Yield quantity, unit, times and curves of one stream."""
+    """Yield quantity, unit, times [s] and curves of a stream, decoded by the profile at `place`."""
     if name == LEGS:
         yield from _legs(place, t, stream)
     elif name.startswith("imu"):

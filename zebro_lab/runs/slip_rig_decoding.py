@@ -26,22 +26,23 @@ def derive_table(
 ) -> tuple[SlipRigTable, tuple[str, ...]]:
     """Compute speeds and forces of a recorded run from the raw samples of its devices.
 
-    If drives and load cell are separate streams, the slower stream, usually the drives, sets the
-    rows: forces are averaged around the times of the speeds. Interpolating speeds to the times of
-    many forces would turn speed noise into apparent changes of slip that have no effect on force.
-    Forces outside the time range of the speeds are dropped, as the slip is unknown there.
+    With drives and load cell as separate streams and over `_MANY` forces per speed, the rows are
+    the speeds' times, and forces are averaged around them: speeds interpolated to many forces
+    would turn speed noise into changes of slip without effect on force. With fewer forces, the
+    rows are the forces' times and speeds are interpolated. Forces outside the speeds' time range
+    are dropped.
 
     Args:
         folder: The run folder, which has the profile.
-        streams: Raw streams of its log, by topic.
+        streams: Raw streams of the run's log, by topic.
         zero: Zero offsets of the load cell, `zero_normal` and `zero_traction`, to be subtracted;
             0 if absent [N].
 
     Returns:
-        The samples, and notes on what was dropped.
+        The samples with strictly increasing time, and notes on dropped samples.
 
     Raises:
-        DataError: A stream is missing or without a complete sample, or the profile is invalid.
+        DataError: A stream is missing, no sample has speeds and forces, or the profile is invalid.
     """
     file = profile_file(folder, RIG)
     try:
@@ -85,9 +86,10 @@ def _of_two(
 
 
 def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
-    """Average values around given times: each value belongs to the nearest time.
+    """Average values around given times; each value counts for the nearest time.
 
-    Values further away than the median interval are dropped, as samples were lost there.
+    Values further from the nearest time than the median interval of `at` are dropped, and before
+    the first and behind the last time those further than half of it.
 
     Args:
         at: Times to average around, increasing, shape (m,) [s].

@@ -14,13 +14,13 @@ from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 @dataclass(frozen=True)
 class ListedRun:
-    """A line of the list.
+    """One run in the list of runs, as text.
 
     Attributes:
-        name: Name of the folder.
-        state: How it ended, whether it is excluded, or why it cannot be read.
-        duration: Duration, as text.
-        samples: Number of samples per stream, as text.
+        name: Name of the run folder.
+        state: State of the run, its exclusions with reasons, or why it cannot be read.
+        duration: Time from start to stop with unit s; `-` without a stop.
+        samples: Number of samples of each topic; `-` when unknown.
         source: Where the data come from.
     """
 
@@ -32,12 +32,13 @@ class ListedRun:
 
 
 def list_runs(data: Path) -> list[ListedRun]:
-    """List the runs below a folder; one that cannot be read is listed with its error.
+    """List all runs in and below a folder, by path; an unreadable run is listed with its error.
 
-    The log of a run without an end record is read, to count the recovered samples.
+    Samples are numbers from the manifest; of a run in state `recovered` they are counted in the
+    log.
 
     Raises:
-        NotFound: There is no such folder.
+        NotFound: The folder does not exist.
     """
     return [_listed(folder) for folder in find_runs(data)]
 
@@ -58,7 +59,7 @@ def _listed(folder: Path) -> ListedRun:
 
 
 def _with_exclusions(state: str, manifest: RunManifest) -> str:
-    """Append the reasons of present and past exclusions to a run's state."""
+    """Replace the state of an excluded run by its reasons; append past reasons to another's."""
     before = "; ".join(past_reasons(manifest))
     if manifest.excluded is None:
         return f"{state} (was excluded: {before})" if before else state

@@ -41,18 +41,18 @@ def write_table_run(
     """Write samples as a new run folder, atomically.
 
     Args:
-        data_dir: Folder of run folders; made when missing.
-        manifest: Manifest of the run, without what follows from the samples.
+        data_dir: Folder of run folders; created when missing.
+        manifest: Manifest of the run; stop, streams, checksum and profiles are set here.
         samples: Samples of each stream, at least one, by the stream's name.
         profiles: TOML text of each profile, by its name in the run folder.
-        event: Event to log at time 0; none where empty.
-        extra: Called with the draft folder, to write more files before it is renamed.
+        event: Text of an event to log at time 0; empty for none.
+        extra: Called with the draft folder, to write more files before the folder gets its name.
 
     Returns:
         The run folder.
 
     Raises:
-        AlreadyExists: A run with this start and label exists.
+        AlreadyExists: A run of this kind, start and label exists.
     """
     folder = run_path(data_dir, manifest.kind, manifest.label, manifest.began)
     require_new(folder)
@@ -102,10 +102,10 @@ def _write_log(
 
 
 def table_samples(t: Array, values: Array) -> SampleColumns:
-    """Return values in SI in the form of raw samples.
+    """Return values in SI as raw samples without device times, sequence numbers or status.
 
     Args:
-        t: Times, shape (n,) [s].
+        t: Time of each sample since the start of the run, shape (n,) [s].
         values: Values in the order of the device's counts, shape (n, width).
     """
     n = len(t)
@@ -129,17 +129,17 @@ def write_slip_rig_run(
     """Write a run of the slip rig as a new run folder, atomically.
 
     Args:
-        data_dir: Folder of run folders; made when missing.
+        data_dir: Folder of run folders; created when missing.
         table: The samples, at least one.
         manifest: Manifest of the run, with both radii among its constants.
-        extra: Called with the draft folder, to write more files before it is renamed.
+        extra: Called with the draft folder, to write more files before the folder gets its name.
 
     Returns:
         The run folder.
 
     Raises:
-        DataError: There is no sample.
-        AlreadyExists: A run with this start and label exists.
+        DataError: The table is empty.
+        AlreadyExists: A run of this kind, start and label exists.
     """
     if len(table) == 0:
         raise DataError(f"run '{manifest.label}' has no samples to write")
@@ -156,7 +156,7 @@ def write_slip_rig_run(
 
 
 def _profile(t: Array, constants: Mapping[str, float]) -> str:
-    """Return the profile of samples in SI, which decodes them unchanged."""
+    """Return the TOML of a rig profile with scale 1, the radii, and the median rate of `t`."""
     step = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
     return render_table_profile(
         radius_leg=constants["radius_leg"],

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Photo tracking: camera and floor files, annotations, and the track folder."""
+"""Track a robot in photographs: camera and floor files, annotations, and the track folder."""

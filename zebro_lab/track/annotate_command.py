@@ -54,7 +54,7 @@ def annotate(
 
 
 def _annotate(request: AnnotateRequest) -> None:
-    """Write the annotations and print how many there are."""
+    """Add the request's annotations to its file and print how many the file then holds."""
     from zebro_lab.track import annotate_stage
 
     if request.is_empty:

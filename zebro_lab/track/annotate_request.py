@@ -56,6 +56,6 @@ class AnnotateRequest:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to write."""
+        """Whether no annotation is given."""
         return not any((self.corners, self.clicks, self.moves, self.flips, self.deletes,
                         self.order, self.added))  # fmt: skip

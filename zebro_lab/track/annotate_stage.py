@@ -32,7 +32,7 @@ _EXPOSURE = "#"
 
 
 def annotate(request: AnnotateRequest) -> Annotations:
-    """Add annotations to those of the file and write all.
+    """Add annotations to those of `request.out` and write all, atomically.
 
     Args:
         request: New annotations. Corrections of one request are applied in the sequence moves,
@@ -43,7 +43,7 @@ def annotate(request: AnnotateRequest) -> Annotations:
 
     Raises:
         ZebroLabError: A photograph does not exist, or an annotation is invalid.
-        TrackingError: There are no photographs.
+        TrackingError: The folder holds no photographs.
     """
     if request.added is not None and request.out.exists() and request.out.samefile(request.added):
         raise AlreadyExists(f"{request.out} is read as --from; name another --out")
@@ -59,10 +59,10 @@ def annotate(request: AnnotateRequest) -> Annotations:
 
 
 def photo_names(origin: Path) -> tuple[str, ...]:
-    """List the names of photographs; a video or a composite picture has one, its own.
+    """List the file names of the photographs in a folder; of a video or picture its own name.
 
     Raises:
-        NotFound: There is nothing of this name.
+        NotFound: `origin` does not exist.
         TrackingError: The folder holds no photograph.
     """
     if origin.is_dir():
@@ -74,18 +74,19 @@ def photo_names(origin: Path) -> tuple[str, ...]:
 
 def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None,
               reach: int = 100) -> None:  # fmt: skip
-    """Draw a photograph with a grid of pixel coordinates.
+    """Draw a photograph with a grid of pixel coordinates and write it as PNG.
 
     Args:
         origin: Folder of photographs, or a picture.
-        photo: Its name.
-        file: The PNG to write.
-        around: "U,V", to draw only what is near it, enlarged [px].
-        reach: How far from there [px].
+        photo: File name of the photograph.
+        file: The PNG to write; an earlier grid is replaced.
+        around: Pixel "U,V" to enlarge around; None draws the whole photograph.
+        reach: Half the width of the enlarged part [px].
 
     Raises:
-        ZebroLabError: There is no such photograph, or the file is not a grid to replace.
-        PhotoError: It cannot be read.
+        ZebroLabError: The photograph does not exist, `around` is not a pixel, or `file` is not a
+            grid to replace or lies among the photographs.
+        PhotoError: The photograph cannot be read.
     """
     from zebro_lab.plots import save
     from zebro_lab.plots.pixel_grid import pixel_grid

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""`annotations.toml`: a person's annotations of photographs, applied whenever they are tracked.
+"""Read and format `annotations.toml`: a person's annotations of photographs, used in tracking.
 
-Entries are not overwritten: new corrections are appended.
+New corrections are appended; a new template or click replaces the earlier one.
 """
 
 from collections.abc import Mapping
@@ -24,9 +24,9 @@ class Annotations:
     """A person's annotations of photographs.
 
     Attributes:
-        template: Annotation of the robot's top in one photograph, or None.
-        clicks: By photograph, points of the floor by name, where they were clicked [px].
-        corrections: Corrections of the tracker's poses, in the order in which they were made.
+        template: Corners of the robot's top in one photograph, and its size; None without one.
+        clicks: Clicked pixel (u, v) of each floor point, by photograph and the point's name [px].
+        corrections: Corrections of the tracker's poses, in the order in which they are applied.
     """
 
     template: MarkedTop | None = None
@@ -34,7 +34,7 @@ class Annotations:
     corrections: tuple[Correction, ...] = ()
 
     def merged(self, later: "Annotations") -> "Annotations":
-        """Merge with later annotations: template and clicks prevail, corrections are appended."""
+        """Return both: template and clicks of `later` prevail, its corrections are appended."""
         names = {**self.clicks, **later.clicks}
         clicks = {
             photo: {**self.clicks.get(photo, {}), **later.clicks.get(photo, {})} for photo in names
@@ -48,11 +48,11 @@ class Annotations:
 
 
 def read_annotations(file: Path) -> Annotations:
-    """Read and check an `annotations.toml`.
+    """Read and validate an `annotations.toml`.
 
     Raises:
-        NotFound: There is no such file.
-        SettingsError: It is no TOML, or holds an unknown key or an impossible value.
+        NotFound: The file does not exist.
+        SettingsError: The file is not TOML, or holds an unknown key or an impossible value.
     """
     table = read_settings(file, advice="`zebro-lab annotate PHOTOS` writes one")
     template = _template(table.table("template")) if "template" in table else None
@@ -108,7 +108,7 @@ def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
 
 
 def render_annotations(annotations: Annotations) -> str:
-    """Format annotations as commented TOML; inverse of `read_annotations`."""
+    """Format annotations as commented TOML, from which `read_annotations` reads the same."""
     template, values = _HEADING, {}
     if annotations.template is not None:
         template += _TEMPLATE_SECTION

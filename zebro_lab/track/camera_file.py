@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read and write `camera.toml`: the lens, its uncertainty, and its photographs."""
+"""Read and format `camera.toml`: the lens, its standard deviations and its photographs."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,11 +17,11 @@ _CALIBRATION = (
 
 
 def read_camera_file(file: Path) -> Camera:
-    """Read and check the lens of a `camera.toml`.
+    """Read and validate the lens of a `camera.toml`: size, camera matrix, distortion (0 without).
 
     Raises:
-        NotFound: There is no such file.
-        SettingsError: It is no TOML, or holds an unknown key or an impossible value.
+        NotFound: The file does not exist.
+        SettingsError: The file is not TOML, or holds an unknown key or an impossible value.
     """
     table = read_settings(file, advice="`zebro-lab camera calibrate PHOTOS` writes one")
     fx, fy = table.quantities("focal", 2, "dimensionless")
@@ -49,11 +49,11 @@ def _size(table: SettingsTable) -> tuple[int, int]:
 
 
 def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> str:
-    """Format a calibration as commented TOML; inverse of `read_camera_file`.
+    """Format a calibration as commented TOML, from which `read_camera_file` reads the lens.
 
     Args:
         fit: The calibration.
-        photos: SHA-256 of the photographs it is from, by name.
+        photos: SHA-256 of the photographs used in the calibration, by name.
     """
     camera, sd = fit.camera, fit.sd
     return fill_in(_TEMPLATE, {
@@ -74,7 +74,7 @@ def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> 
 
 
 HEADING = "# The camera's lens, in pixels."
-"""First lines of the file, by which it is recognised as written by `camera calibrate`."""
+"""Begin of the file, by which it is recognised as written by `camera calibrate`."""
 _TEMPLATE = (
     HEADING
     + """ The centre of the first pixel is (0, 0), as in OpenCV.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Time origin of a track: the run's start, a given moment, or the first photograph."""
+"""Count photographs' times from the run's start, a given moment, or the first photograph."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -19,9 +19,9 @@ class CountedTimes:
     """Times of photographs relative to the track's origin.
 
     Attributes:
-        times: Times and their standard deviations; None for exposures that are not found yet.
-        description: Their source and origin, in words.
-        notes: Notes for the user, one line each.
+        times: Times and their standard deviations [s]; None for exposures that are not found yet.
+        description: Source and origin of the times, in words.
+        notes: Notes on photographs outside the run or not tied to its time, one line each.
     """
 
     times: PhotoTimes | None
@@ -32,17 +32,20 @@ class CountedTimes:
 def counted_from(
     times: PhotoTimes, *, start: datetime | None, manifest: RunManifest | None, request: TimeRequest
 ) -> CountedTimes:
-    """Subtract the time origin: the given moment, the run's start, or the first photograph.
+    """Subtract the time origin from clock times; leave times of an interval or table as they are.
+
+    The origin is `start`; else the run's start if the camera's clock is tied to the computer's by
+    `request.clock`; else the first photograph, with a note where there is a run.
 
     Args:
-        times: Times of the photographs: since 1970 where they are a clock's, else as given.
-        start: The moment given, by the camera's clock.
-        manifest: The run they belong to.
+        times: Times of the photographs [s]: since 1970 if by a clock, else as given.
+        start: Moment from which to count, by the camera's clock; None without.
+        manifest: Manifest of the photographed run; None without.
         request: How the photographs got their times.
 
     Raises:
         SettingsError: A moment is given, but the photographs' times are not a clock's.
-        TimesError: All photographs were taken long before or after the run.
+        TimesError: All photographs were taken over a minute before or after the run.
     """
     if request.interval is not None or request.table is not None or not _by_a_clock(times):
         return _as_given(times, start, manifest, request)
@@ -64,11 +67,11 @@ def counted_later(*, manifest: RunManifest | None, request: TimeRequest) -> Coun
     """Describe the times of a composite picture's exposures before these are found.
 
     Args:
-        manifest: The run they belong to, or None.
+        manifest: Manifest of the photographed run; None without.
         request: How the exposures get their times.
 
     Returns:
-        No times yet; a description, and a note where they are not tied to the run.
+        No times; a description, and a note where an interval does not tie the times to the run.
     """
     notes = ()
     if manifest is not None and request.table is None:
@@ -77,7 +80,7 @@ def counted_later(*, manifest: RunManifest | None, request: TimeRequest) -> Coun
 
 
 def unknown_start(advice: str) -> tuple[str, ...]:
-    """Note that the photographs' times are not tied to the run's, and what to do about it."""
+    """Return the note, one line, that times are not tied to the run's; `advice` is put into it."""
     return (
         "time is counted from the first photograph; when it was taken within the run is unknown: "
         f"{advice}bring it to the run's clock with `validate --time-offset`",
@@ -104,7 +107,11 @@ def _as_given(
 
 
 def _outside_run(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
-    """Note photographs outside the run's duration; raise if all are far from it."""
+    """Return a note with the number of photographs before or after the run, empty without any.
+
+    Raises:
+        TimesError: All photographs were taken over a minute before or after the run.
+    """
     length = float("inf")
     if manifest.stop is not None:
         length = (datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds()

@@ -73,7 +73,7 @@ def _track(request: TrackRequest) -> None:
 
 
 def track_lines(result: "TrackResult") -> list[str]:
-    """Format the result: what was tracked, how well, what was left out and what was written."""
+    """Format a track as lines: length, times, accuracy, left-out photographs, written files."""
     import numpy as np
 
     from zebro_lab.track.folder import written
@@ -113,7 +113,7 @@ def _preview(request: TrackRequest, file: Path) -> None:
 
 
 def preview_lines(seen: "Preview") -> list[str]:
-    """Format what the first photograph shows."""
+    """Format a preview as lines: marks, camera height, robot, floor distances by tape measure."""
     from math import degrees
 
     lines = [

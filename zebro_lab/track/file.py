@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read poses over time from a table: `track.csv`, `path.csv`, or one with the same columns."""
+"""Read poses over time from a table with the columns of `track.csv` or `path.csv`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,10 +27,10 @@ class TrackFile:
     """Tracked poses with their covariance, source and notes.
 
     Attributes:
-        poses: The poses with their covariance; headings NaN where the table has none.
-        source: Their source: "real", "sim:what", "unknown".
-        file: The file.
-        notes: Notes for the user, one line each.
+        poses: Poses with their covariance, None if unknown; yaw NaN where the table has none.
+        source: Source of the poses: "real", "sim:what", "unknown".
+        file: The table file.
+        notes: Notes on missing yaw or covariance and from reading, one line each.
     """
 
     poses: Poses
@@ -40,7 +40,7 @@ class TrackFile:
 
     @property
     def covariance(self) -> Array:
-        """Covariance of x, y, yaw of each pose, zero where it is unknown, shape (n, 3, 3)."""
+        """Covariance of x, y [m], yaw [rad] of each pose, zero if unknown, shape (n, 3, 3)."""
         known = self.poses.covariance
         return np.zeros((len(self.poses), 3, 3)) if known is None else known
 
@@ -53,9 +53,9 @@ def read_track(path: Path) -> TrackFile:
             triangle of a covariance, `cov_xx` to `cov_yawyaw`; or the folder of a `track.csv`.
 
     Raises:
-        NotFound: There is no such file.
-        DataError: A column is missing, a cell holds no number, time does not increase, or there
-            are too few poses; names file, row and column.
+        NotFound: The table file does not exist.
+        DataError: A column is missing, a cell holds no number, time does not increase, a
+            covariance has a negative eigenvalue, or there are fewer than `FEWEST` poses.
     """
     settle(path)
     file = path / TRACK_CSV if path.is_dir() else path
@@ -63,7 +63,9 @@ def read_track(path: Path) -> TrackFile:
 
 
 def track_of_table(table: RawTable) -> TrackFile:
-    """Validate the poses of a table with the columns of `read_track`.
+    """Convert a table with the columns of `read_track` to poses; validate them.
+
+    The source is the table's, else that in the manifest beside a `track.csv`, else "unknown".
 
     Raises:
         DataError: As in `read_track`.
@@ -87,24 +89,24 @@ def track_of_table(table: RawTable) -> TrackFile:
 
 
 def _tracked_source(file: Path) -> str | None:
-    """Return the source in the manifest of the track folder that holds a file."""
+    """Return the source in the manifest beside a `track.csv`; None for another file or without."""
     if file.name != TRACK_CSV or not (file.parent / MANIFEST).is_file():
         return None
     return str(read_track_manifest(file.parent).get("source", "unknown"))
 
 
 def read_poses(file: Path) -> Poses:
-    """Read a predicted path from a table with the columns of `read_track`, without covariance.
+    """Read poses from a table with the columns of `read_track`; ignore covariance.
 
     Raises:
-        NotFound: There is no such file.
-        DataError: It holds no path.
+        NotFound: The file does not exist.
+        DataError: A column is missing, a cell holds no number, or time does not increase.
     """
     return _poses(read_table_file(file), file)
 
 
 def tum_lines(poses: Poses) -> str:
-    """Format poses as TUM trajectory, `t x y z qx qy qz qw`, for evo; unknown headings are zero."""
+    """Format poses as TUM trajectory, `t x y z qx qy qz qw` a line; z is 0, unknown yaw is 0."""
     yaw = np.nan_to_num(poses.yaw)
     return "".join(
         f"{t:.6f} {x:.6f} {y:.6f} 0 0 0 {np.sin(half):.9f} {np.cos(half):.9f}\n"

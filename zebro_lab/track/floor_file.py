@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read and write `floor.toml`: markers and points on the floor, as measured with a tape."""
+"""Read and format `floor.toml`: markers and points on the floor, as measured with a tape."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -24,11 +24,12 @@ _POSITION_SD, _YAW_SD_DEG, _SIDE_SD = 1e-3, float(np.degrees(0.01)), 2e-4
 
 
 def read_floor_file(file: Path) -> FloorMap:
-    """Read and check a `floor.toml`.
+    """Read and validate a `floor.toml`.
 
     Raises:
-        NotFound: There is no such file.
-        SettingsError: It is no TOML, or holds an unknown key or an impossible value.
+        NotFound: The file does not exist.
+        SettingsError: The file is not TOML, has no marker and no point, or holds an unknown key or
+            an impossible value.
     """
     table = read_settings(file, advice="`zebro-lab camera kit` starts one")
     markers, points = table.table("markers"), table.table("points")
@@ -50,7 +51,7 @@ def read_floor_file(file: Path) -> FloorMap:
 
 
 def _common(table: SettingsTable) -> dict[str, float]:
-    """Read the defaults for marks that do not set a value."""
+    """Read the defaults for marks that do not set a value: side [m] and standard deviations."""
     stated = {
         key: table.quantity(key, unit, above=0.0) for key, unit in _COMMON.items() if key in table
     }
@@ -90,11 +91,11 @@ def _point(points: SettingsTable, name: str, common: Mapping[str, float]) -> Flo
 
 
 def render_floor_file(floor: FloorMap, *, heading: str) -> str:
-    """Format a floor as commented TOML; inverse of `read_floor_file`.
+    """Format a floor as commented TOML, which `read_floor_file` reads.
 
     Args:
-        floor: The floor.
-        heading: Description, as comment lines without their `#`.
+        floor: Markers and points of the floor.
+        heading: Text of the first comment lines, without their `#`.
     """
     lines = [*(f"# {line}".rstrip() for line in heading.splitlines()), *_LEGEND]
     template = "\n".join([*lines, "", 'dictionary = ""', "", "[markers]", ""])

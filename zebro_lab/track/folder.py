@@ -39,19 +39,19 @@ def track_folder(
     """Write a track folder atomically.
 
     The body of the `with` statement adds pictures and other files to the draft. The manifest, which
-    lists them, is written last.
+    lists all files, is written last.
 
     Args:
-        out: Folder to make or to renew.
-        columns: The table `track.csv`: those of `tracking.path.TRACK_COLUMNS` that are known.
-        tum: Lines of a TUM file.
-        source: "real", "sim:what" or "unknown".
+        out: Folder to create, or to replace if it is a track folder.
+        columns: Known columns of `track.csv`, by names of `tracking.path.TRACK_COLUMNS`.
+        tum: Lines of `track.tum`.
+        source: Source of the track: "real", "sim:what" or "unknown".
         settings: Options of the command, as JSON can hold them.
-        inputs: SHA-256 of each file that was read.
-        report: Photographs left out and why, notes, origin of time.
+        inputs: SHA-256 of each file that was read, by path.
+        report: Further manifest entries: left-out photographs, notes, origin of time.
 
     Yields:
-        The draft.
+        Path of the draft folder.
 
     Raises:
         AlreadyExists: `out` is a file, or the result of another command.
@@ -70,13 +70,13 @@ def read_track_manifest(folder: Path) -> Mapping[str, Any]:
     """Read the manifest of a track folder.
 
     Raises:
-        NotFound: There is none.
-        DataError: It is damaged, of a later schema, or that of another command.
+        NotFound: The folder has no manifest.
+        DataError: The manifest is damaged, of a later schema, or of another command.
     """
     settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="track", kinds=(KIND,), schema=SCHEMA)
 
 
 def written(folder: Path) -> Sequence[Path]:
-    """List the files of a track folder that this program wrote."""
+    """List the existing files of a track folder that have names which `track` writes."""
     return [folder / name for name in (*TRACKED.names, MANIFEST) if (folder / name).is_file()]

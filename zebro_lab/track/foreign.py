@@ -31,13 +31,13 @@ TUM_COLUMNS: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
 
 @dataclass(frozen=True)
 class ForeignTrack:
-    """An imported path.
+    """Path tracked by another program, validated.
 
     Attributes:
-        track: Poses and their covariance, checked.
-        more: Further columns of `track.csv` that are known: `t_sigma`, `z_m`.
-        with_covariance: The covariance is known.
-        files: Every file read.
+        track: Poses and their covariance.
+        more: Known further columns of `track.csv`, `t_sigma` [s] and `z_m` [m], shape (n,) each.
+        with_covariance: Whether the covariance is known.
+        files: Every file read: the table and its `columns.toml`.
     """
 
     track: TrackFile
@@ -47,7 +47,7 @@ class ForeignTrack:
 
     @property
     def columns(self) -> Mapping[str, Sequence[float]]:
-        """The table `track.csv`, with the columns that are known."""
+        """Known columns of `track.csv` by name, in the order of `TRACK_UNITS`."""
         poses = self.track.poses
         x, y = poses.position.T.tolist()
         known: dict[str, Sequence[float]] = {"t_s": poses.t.tolist(), "x_m": x, "y_m": y}
@@ -61,26 +61,26 @@ class ForeignTrack:
 
     @property
     def tum(self) -> Sequence[str]:
-        """Lines of a TUM file."""
+        """Lines of `track.tum`; see `tum_lines`."""
         return tum_lines(self.track.poses).splitlines()
 
 
 def is_tum(path: Path) -> bool:
-    """Return whether a file is a TUM trajectory, by its name."""
+    """Return whether a file name ends in `.tum` or `.txt`, as TUM trajectories do."""
     return path.suffix.lower() in TUM_SUFFIXES
 
 
 def track_of_foreign_table(table: RawTable, mapping: MappedColumns, *, zero: float) -> ForeignTrack:
-    """Read a path from a table.
+    """Convert a path in a table of another program to SI and validate it.
 
     Args:
         table: The table.
-        mapping: Names of the columns, over `TRACK_UNITS`; `t`, `x`, `y`, `z` and `yaw` are
-            known too.
-        zero: Time of the table at which the run began [s].
+        mapping: Header, unit and sign of each column of `TRACK_UNITS`; the headers `t`, `x`, `y`,
+            `z` and `yaw` are recognised without an entry.
+        zero: Time of the table at which the run began [s]; subtracted from all times.
 
     Raises:
-        DataError: Time or place is missing, a cell holds no finite number, time does not increase,
+        DataError: Time, x or y is missing, a cell holds no finite number, time does not increase,
             or there are too few poses; names the cell.
     """
     import pandas as pd
@@ -106,8 +106,9 @@ def read_tum(path: Path) -> RawTable:
     """Read a TUM trajectory, `t x y z qx qy qz qw`, as the columns of `track.csv`.
 
     Raises:
-        NotFound: There is no such file.
-        DataError: A line has not eight numbers, or a quaternion not length 1; names the row.
+        NotFound: The file does not exist.
+        DataError: The file is empty, a line has not eight finite numbers, or a quaternion's length
+            differs from 1 by more than 0.05; names the row.
     """
     import pandas as pd
 
@@ -125,7 +126,10 @@ def read_tum(path: Path) -> RawTable:
 
 
 def _seen_as(table: RawTable, mapping: MappedColumns, name: str) -> MappedColumns:
-    """Rename a column from its short name, if the table has that and not the canonical one."""
+    """Map the canonical column `name` to its short header (`t`, `x`, …) if it is not in the table.
+
+    A header named in a `columns.toml` is kept.
+    """
     short = _SHORT.get(name)
     if short is None or mapping.has(table, name) or mapping.mapped[name].name != name:
         return mapping

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read the inputs of tracking: camera, floor, robot, annotations, the run."""
+"""Read and validate the inputs of tracking: camera, floor, robot, annotations, run."""
 
 from dataclasses import dataclass, replace
 
@@ -26,18 +26,18 @@ mean: all are faint, and the floor shows through them (the average of all photog
 
 
 class HowMergedUnknown(SettingsError):
-    """A composite picture needs `--merged`, how its exposures were merged."""
+    """Raised where `--merged` is missing: how the exposures of a composite were merged."""
 
 
 @dataclass(frozen=True)
 class TrackInputs:
-    """The inputs of tracking, as read from files.
+    """Inputs of tracking, read from files.
 
     Attributes:
-        request: Options of the track.
-        scene: Camera, floor, robot and annotations, with the lens as it was calibrated.
-        annotations: A person's annotations of the photographs.
-        manifest: The run they belong to; None for none.
+        request: Options of `zebro-lab track`.
+        scene: Camera, floor, robot and annotations; the lens at the size it was calibrated with.
+        annotations: A person's annotations of the photographs; empty without a file.
+        manifest: Manifest of the photographed run; None without a run.
     """
 
     request: TrackRequest
@@ -46,15 +46,15 @@ class TrackInputs:
     manifest: RunManifest | None
 
     def scene_of(self, sequence: PhotoSequence) -> Scene:
-        """Return the scene with the lens scaled to the photographs' size.
+        """Return the scene with the lens scaled to the size of most of the photographs.
 
         Raises:
-            DataError: They have another shape than those the camera was calibrated with.
+            DataError: The photographs' aspect ratio differs from the calibration's.
         """
         return replace(self.scene, camera=calibrated_for(self.scene.camera, sequence))
 
     def source_of(self, sequence: PhotoSequence) -> str:
-        """Return the photographs' source: the one given, the files' own, or the run's."""
+        """Return the photographs' source: the option, else the files', the run's or "unknown"."""
         if self.request.source is not None:
             return self.request.source
         if sequence.source is not None or self.manifest is None:
@@ -67,6 +67,7 @@ class TrackInputs:
         Raises:
             HowMergedUnknown: It is unknown how the exposures of a composite picture were merged.
             SettingsError: The robot carries no marker and its top is not annotated.
+            PhotoError: A composite picture cannot be read.
         """
         if sequence.is_composite and self.request.merged is None:
             with open_picture(sequence.photos[0].path):
@@ -80,7 +81,7 @@ class TrackInputs:
             )
 
     def counted_times(self, sequence: PhotoSequence) -> CountedTimes:
-        """Compute photographs' times from the track's origin; exposures get theirs once found."""
+        """Count the photographs' times from the track's origin; none yet for a composite's."""
         times, request = sequence.times, self.request.times
         if times is None:
             return counted_later(manifest=self.manifest, request=request)
@@ -90,14 +91,14 @@ class TrackInputs:
 
 
 def read_inputs(request: TrackRequest) -> TrackInputs:
-    """Read and check the inputs of tracking.
+    """Read and validate the files that the options of `zebro-lab track` name.
 
     Args:
-        request: Options of the track.
+        request: Options of `zebro-lab track`.
 
     Raises:
         ZebroLabError: A file is missing or invalid.
-        TrackingError: A marker is both the robot's and one of the floor's.
+        TrackingError: The robot's marker is also one of the floor's.
     """
     manifest = None if request.run is None else read_manifest(request.run)
     described = RobotFile() if request.robot is None else read_robot_file(request.robot)

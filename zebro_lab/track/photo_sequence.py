@@ -39,11 +39,11 @@ class PhotoSequence:
     """Photographs in order of time.
 
     Attributes:
-        photos: The photographs, n of them.
-        times: Their times; None for a composite picture until its exposures are counted.
-        source: "sim:…" where the files say that they are simulated, else None.
-        origin: The folder, the video or the picture given.
-        left_out: Photographs of the folder that are not used, with the reason.
+        photos: The n photographs; for a composite picture the one file.
+        times: Times of the photographs, shape (n,) [s]; None for a composite picture.
+        source: "sim:photographs" if a file's EXIF data say that it is simulated, else None.
+        origin: Folder, video or picture, as given.
+        left_out: Reason by name of each photograph of the folder that is not used.
     """
 
     photos: tuple[Photo, ...]
@@ -54,7 +54,7 @@ class PhotoSequence:
 
     @property
     def is_composite(self) -> bool:
-        """Whether this is one picture with many exposures."""
+        """Whether the photographs are one picture with many exposures."""
         return self.times is None
 
 
@@ -66,23 +66,24 @@ def open_photos(
     progress: Progress | None = None,
     frames: int | None = None,
 ) -> Iterator[PhotoSequence]:
-    """Find the photographs and their times.
+    """Find the photographs and their times, of a folder without the one of the clock.
 
     Frames of a video are kept in a temporary folder until the `with` statement ends.
 
     Args:
         origin: Folder of photographs, video, or one composite picture.
-        request: How they get their times.
+        request: How the photographs get their times.
         progress: Where progress is reported while a video is read, or None.
-        frames: Most frames of a video that are wanted; None for all.
+        frames: Largest number of frames of a video; None for all.
 
     Yields:
-        The photographs.
+        The photographs in order of time.
 
     Raises:
-        NotFound: There is nothing of this name.
-        DataError: Frames of a video cannot be kept.
-        TrackingError: There is no photograph, or times are missing.
+        NotFound: `origin` does not exist.
+        SettingsError: A video is given together with times.
+        DataError: Frames of a video cannot be written to the temporary folder.
+        TrackingError: The folder has no photograph, times are missing, or a file is unreadable.
         TrackStopped: A stop was requested.
     """
     if origin.is_dir():
@@ -98,14 +99,14 @@ def open_photos(
 
 
 def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
-    """Scale the lens to the size of most of the photographs.
+    """Scale the lens to the size of most of the photographs; as given if none is readable.
 
     Args:
         camera: The lens as calibrated.
         sequence: The photographs.
 
     Raises:
-        DataError: Their aspect ratio differs from that of the calibration's photographs.
+        DataError: The photographs' aspect ratio differs from the calibration's.
     """
     sizes = Counter(size for photo in sequence.photos if (size := upright_size(photo.path)))
     if not sizes:
@@ -117,7 +118,7 @@ def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
 
 
 def upright_size(path: Path) -> tuple[int, int] | None:
-    """Return width and height of a picture after EXIF rotation; None if it is no picture [px]."""
+    """Read width and height [px] of a picture after EXIF rotation; None if it is unreadable."""
     try:
         with open_picture(path) as picture:
             width, height = picture.size
@@ -131,11 +132,15 @@ def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
     """Compute the times of a composite picture's exposures from a table or an interval.
 
     Args:
-        names: Names of the exposures, in order of time.
-        request: Interval or table of times.
+        names: Names of the n exposures, in order of time.
+        request: Interval, or table of times by name.
+
+    Returns:
+        Times and standard deviations, shape (n,) each [s].
 
     Raises:
         SettingsError: Neither an interval nor a table was given.
+        TrackingError: The table is invalid or has no time of an exposure.
     """
     times = _given_times([Path(name) for name in names], request)
     if times is None:
@@ -148,7 +153,7 @@ def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
 
 
 def _given_times(paths: Sequence[Path], request: TimeRequest) -> PhotoTimes | None:
-    """Compute times from the table or the interval given; None without either."""
+    """Return the times in the given table, else multiples of the interval; None without either."""
     if request.table is not None:
         return times_from_table(request.table, paths)
     if request.interval is not None:
@@ -177,7 +182,7 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
 
 
 def _without_time(readable: Sequence[Path]) -> Mapping[str, str]:
-    """Find the few pictures without EXIF time where most have one."""
+    """Return a reason for each picture without EXIF time, if under half lack it; else empty."""
     without = [path for path in readable if exif_time(path) is None]
     if 2 * len(without) >= len(readable):
         return {}
@@ -187,7 +192,7 @@ def _without_time(readable: Sequence[Path]) -> Mapping[str, str]:
 
 
 def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
-    """Fill missing times with that of the file before; these files are reported, not tracked."""
+    """Read EXIF times of the readable files; give any other path the time of the one before it."""
     if not readable:
         return PhotoTimes(np.zeros(len(paths)), np.zeros(len(paths)), "none: nothing can be read")
     times = times_from_exif(readable)

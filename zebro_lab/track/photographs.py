@@ -29,12 +29,12 @@ from zebro_lab.track.request import VIDEOS
 
 @dataclass(frozen=True)
 class PlacedPhoto:
-    """A photograph with the camera's pose.
+    """Photograph with the lens and the camera's pose.
 
     Attributes:
-        pixels: BGR, shape (height, width, 3).
-        camera: The lens.
-        pose: Pose of the camera.
+        pixels: Pixels in BGR, shape (height, width, 3).
+        camera: The lens, scaled to the photograph's size.
+        pose: Pose of the camera over the floor.
     """
 
     pixels: NDArray[np.uint8]
@@ -44,13 +44,13 @@ class PlacedPhoto:
     def from_above(
         self, low: Array, high: Array, *, pixels_per_metre: float, height: float = 0.0
     ) -> NDArray[np.uint8]:
-        """Rectify a level rectangle of the scene: draw it as seen from straight above.
+        """Rectify a level rectangle of the scene: compute the view from straight above.
 
         Args:
-            low: Lowest x and y, shape (2,) [m].
-            high: Highest x and y, shape (2,) [m].
-            pixels_per_metre: Scale [px/m].
-            height: Height of the rectangle over the floor [m].
+            low: Lowest x and y in the floor frame, shape (2,) [m].
+            high: Highest x and y in the floor frame, shape (2,) [m].
+            pixels_per_metre: Scale of the result [px/m].
+            height: Height of the rectangle above the floor [m].
 
         Returns:
             BGR picture, as from `rectify_floor`.
@@ -63,16 +63,16 @@ class PlacedPhoto:
 
 @dataclass(frozen=True)
 class TrackedPhotos:
-    """The photographs of a track, with camera, floor and annotations.
+    """Photographs of a track, with camera, floor and annotations.
 
     Attributes:
         t: Time of each pose of the track, shape (n,) [s].
-        names: Its photograph.
+        names: Name of the photograph or exposure of each pose, n names.
         files: File of each photograph, by name.
         camera: The lens, at the size it was calibrated with.
         floor: The floor as refined with the photographs.
-        annotations: A person's annotations of them.
-        simulated: Whether they are simulated.
+        annotations: A person's annotations of the photographs.
+        simulated: Whether the photographs are simulated.
     """
 
     t: Array
@@ -84,10 +84,10 @@ class TrackedPhotos:
     simulated: bool = False
 
     def view(self, name: str) -> PlacedPhoto:
-        """Read a photograph and compute the camera's pose.
+        """Read a photograph and compute the camera's pose from its floor marks and clicks.
 
         Raises:
-            TrackingError: It does not show the floor's marks.
+            TrackingError: The photograph is unreadable or does not show enough marks of the floor.
         """
         file = self.files[name]
         size = upright_size(file) or self.camera.size
@@ -104,11 +104,11 @@ def photos_of_track(track: Path) -> TrackedPhotos:
     """Find the photographs that a track folder was made from.
 
     Args:
-        track: A track folder, or its track.csv.
+        track: Track folder, or its track.csv.
 
     Raises:
-        NotFound: It is no track folder, or photographs or the lens are no longer where they were.
-        DataError: Frames of a video, which are not kept, or a photograph is another one now.
+        NotFound: The folder is not a track folder, or a photograph or `camera.toml` has moved.
+        DataError: The track is of a video, whose frames are not kept, or a photograph has changed.
     """
     folder = track if track.is_dir() else track.parent
     manifest = read_track_manifest(folder)
@@ -128,7 +128,12 @@ def photos_of_track(track: Path) -> TrackedPhotos:
 
 
 def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
-    """Return the file of a photograph; exposures of a composite share theirs."""
+    """Return the unchanged file of a photograph; `NAME#3` is an exposure of the file NAME.
+
+    Raises:
+        NotFound: The file is not among the inputs, or no longer exists.
+        DataError: The file is a video, or its SHA-256 has changed.
+    """
     plain = name.rpartition("#")[0] or name
     file = next((path for path in inputs if path.name == plain), None)
     if file is None or not file.is_file():

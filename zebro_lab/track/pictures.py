@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of a track folder and of its preview."""
+"""Draw the figures of a track folder and of a track's preview."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,14 +28,14 @@ def draw_track(
     folder: Path, track: Track, photo: PlacedPhoto, *, floor: FloorMap,
     detection: Detection | None, title: str, simulated: bool,
 ) -> None:  # fmt: skip
-    """Draw the path over a photograph and over the floor, and the page of residuals.
+    """Write `overlay.png` and `map.png`, the path over photograph and floor, and `residuals.png`.
 
     Args:
         folder: Folder to write the PNG files into.
         track: The track.
-        photo: A photograph to draw over.
+        photo: Photograph to draw over, with the camera's pose.
         floor: The floor as fitted.
-        detection: Markers detected in that photograph; None where none was searched.
+        detection: Markers detected in `photo`; None where none was searched.
         title: Name of the track, appended to each figure's own title.
         simulated: Whether the photographs are simulated; the titles then say so.
     """
@@ -71,13 +71,13 @@ def draw_preview(
     file: IO[bytes], photo: PlacedPhoto, *, floor: FloorMap, detection: Detection, title: str,
     simulated: bool, command: str,
 ) -> None:  # fmt: skip
-    """Draw a photograph with the marks detected and those of the map, projected.
+    """Draw a photograph with the floor's marks, projected from the map, and the robot's marker.
 
     Args:
-        file: Open file for the PNG.
-        photo: The photograph.
+        file: Open file to which the PNG is written.
+        photo: The photograph, with the camera's pose.
         floor: The floor's marks.
-        detection: What was found in the photograph.
+        detection: Marks detected in the photograph; only the robot's marker is drawn.
         title: Title of the figure.
         simulated: Whether the photograph is simulated; the figure then says so.
         command: Command to record in the file's metadata.
@@ -96,12 +96,12 @@ def seen_marks(
     """Compute outlines of the floor's marks, projected from the map, and of the robot's marker.
 
     Args:
-        photo: The photograph.
+        photo: The photograph, with the camera's pose.
         floor: The floor's marks.
-        detection: What was found in the photograph; None for the floor alone.
+        detection: Marks detected in the photograph; None for the floor alone.
 
     Returns:
-        Outlines [px] with labels and colours.
+        Outlines [px] with labels and colours: the floor's, then the robot's if it was detected.
     """
     from zebro_lab.plots.sheet import CYCLE, RED
     from zebro_lab.plots.track import SeenMarks
@@ -124,7 +124,7 @@ def _path_px(track: Track, photo: PlacedPhoto) -> tuple[Array, Array]:
 
 
 def _broken(rows: Array, track: Track) -> Array:
-    """Insert a row of NaN at each gap, so that no line crosses it."""
+    """Insert a row of NaN before each pose that follows a gap, so that no line crosses the gap."""
     return np.insert(rows, np.flatnonzero(track.gap_before), np.nan, axis=0)
 
 

@@ -19,15 +19,17 @@ PREVIEW = picture("track --preview")
 
 
 def preview(request: TrackRequest, file: Path) -> Preview:
-    """Detect marks in the first photograph and draw them.
+    """Detect marks in the first photograph, draw them in a PNG, and return what was found.
+
+    In a composite picture no robot is searched.
 
     Args:
-        request: Options of the track.
-        file: The PNG to write.
+        request: Options of `zebro-lab track`.
+        file: The PNG to write; an earlier preview is replaced.
 
     Raises:
         ZebroLabError: A file or an option is invalid.
-        TrackingError: The photograph cannot be used, or the floor's map does not fit.
+        TrackingError: The photograph is unreadable, or the floor's map does not fit its marks.
     """
     target = require_own(file, PREVIEW, inputs=request.inputs)
     inputs = read_inputs(request)

@@ -34,7 +34,11 @@ def _moment(text: str) -> datetime:
 
 @dataclass(frozen=True)
 class TimeRequest:
-    """Where the times of photographs come from."""
+    """Options for the times of photographs; without any, EXIF times or a video's time stamps.
+
+    Raises:
+        SettingsError: Both an interval and a table are given.
+    """
 
     interval: Annotated[
         float | None,
@@ -64,13 +68,17 @@ class TimeRequest:
 
     @property
     def frame_step(self) -> float:
-        """Least time between two frames of a video; 0 takes all [s]."""
+        """Least time between two frames of a video [s], by default 0.5; 0 takes all frames."""
         return 0.5 if self.every is None else self.every
 
 
 @dataclass(frozen=True)
 class TrackRequest:
-    """Options of `zebro-lab track`."""
+    """Options of `zebro-lab track`.
+
+    Raises:
+        SettingsError: `merged` is given, and `photos` is a folder or a video.
+    """
 
     photos: Annotated[
         Path, Argument(help="Folder of photographs, a video, or one composite picture.")
@@ -139,7 +147,7 @@ class TrackRequest:
 
     @property
     def folder(self) -> Path:
-        """The track folder to write.
+        """The track folder to write: `out`, else `track` in the run folder.
 
         Raises:
             SettingsError: Neither a run nor a folder is named.
@@ -152,22 +160,22 @@ class TrackRequest:
 
     @property
     def standing_height(self) -> float | None:
-        """Height of the body's centre while the robot stands; None for the marker's [m]."""
+        """Height of the body's centre while the robot stands [m]; None: from the marker's."""
         return None if self.body_height is None else quantity_to_si(self.body_height, "m")
 
     @property
     def walking_height_sd(self) -> float:
-        """Standard deviation of that height over a walk [m]."""
+        """Standard deviation of the height of the body's centre over a walk [m]."""
         return quantity_to_si(self.height_sd, "m")
 
     @property
     def named(self) -> tuple[Path, ...]:
-        """Input files given, other than the photographs."""
+        """Input files named by options: camera, floor, robot, annotations, times, clock."""
         files = (self.camera, self.floor, self.robot, self.annotations,
                  self.times.table, self.times.clock)  # fmt: skip
         return tuple(file for file in files if file is not None)
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """All inputs given: photographs, files and run."""
+        """All inputs named by options: photographs, files and run folder."""
         return (self.photos, *self.named, *((self.run,) if self.run is not None else ()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot for tracking, from `robot.toml`: its marker, and the prior on the body's height."""
+"""Derive the robot for tracking from `robot.toml`: marker, and prior on the body's height."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from zebro_lab.robot.marker_print import parse_marker
 from zebro_lab.robot.robot_file import RobotFile
 
 WALKING_HEIGHT_SD = 5e-3
-"""Standard deviation of a walking body's height about its standing height, as legs lift it [m]."""
+"""Standard deviation of a walking body's height about its standing height [m]."""
 
 STEEPEST = 0.05
 """Roll or pitch beyond which a marker on the robot is not level [rad]."""
@@ -21,19 +21,19 @@ STEEPEST = 0.05
 def tracked_robot(
     described: RobotFile, marker: str | None = None, *, prior: BodyPrior
 ) -> MarkedRobot:
-    """Make the robot with its marker from `robot.toml` and options.
+    """Return the robot with its marker from `robot.toml` and options.
 
-    The marker's frame in `robot.toml` has its x along the print's upward direction: a print whose
-    top points ahead has no yaw.
+    In `robot.toml` the marker's x axis is the print's upward direction: a print whose top points
+    ahead has yaw 0.
 
     Args:
-        described: The `robot.toml`.
+        described: Content of `robot.toml`.
         marker: The robot's marker, such as "4x4_50:0:120mm"; None for that of the file.
-        prior: Height and tilt of the body.
+        prior: Prior on height and tilt of the body.
 
     Raises:
-        SettingsError: The marker is invalid.
-        UnitError: Its side is not a length.
+        SettingsError: The marker's place is missing or not level, or the marker is invalid.
+        UnitError: The side in `marker` is not a length.
     """
     place = described.marker
     if place is None:
@@ -67,13 +67,13 @@ def body_prior(
     """Compute the prior on the body's height, from a given height or from the marker's.
 
     Args:
-        described: The `robot.toml`.
-        height: Height of the body's origin; None to take the marker's height while the robot
-            stands less its place on the body [m].
-        height_sd: Standard deviation of it over a walk [m].
+        described: Content of `robot.toml`.
+        height: Height of the body's origin above the floor [m]; None for the marker's height
+            while the robot stands minus the marker's z on the body.
+        height_sd: Standard deviation of the body's height over a walk [m].
 
     Raises:
-        SettingsError: The height is not known, or its standard deviation is none.
+        SettingsError: The height is not known, or its standard deviation is not positive.
     """
     if not height_sd > 0:
         raise SettingsError(f"is {height_sd:g} m; expected more than 0", key="--height-sd")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Track photographs into a track folder."""
+"""Stage of `zebro-lab track`: track photographs into a track folder."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,15 +28,15 @@ from zebro_lab.track.request import TrackRequest
 
 @dataclass(frozen=True)
 class TrackResult:
-    """A written track.
+    """Written track.
 
     Attributes:
         folder: The track folder.
-        tracked: What was found.
-        photos: Number of photographs or exposures.
-        source: "real", "sim:what" or "unknown".
+        tracked: Track, floor fit, left-out photographs and notes.
+        photos: Number of photographs, left-out ones included; of a composite, tracked exposures.
+        source: Source of the photographs: "real", "sim:what" or "unknown".
         times: Source and origin of the times, in words.
-        is_composite: Whether they are exposures of one picture.
+        is_composite: Whether the photographs are exposures of one picture.
     """
 
     folder: Path
@@ -52,7 +52,7 @@ def track(request: TrackRequest, watcher: Progress) -> TrackResult:
 
     Args:
         request: Photographs, files and options.
-        watcher: Where progress is reported.
+        watcher: Progress display, which may also request a stop.
 
     Raises:
         ZebroLabError: A file or an option is invalid.
@@ -86,7 +86,7 @@ def _times_of(
 def _result(
     inputs: TrackInputs, sequence: PhotoSequence, tracked: Tracked, counted: CountedTimes
 ) -> TrackResult:
-    """Make the result, with the photographs left out and notes known before tracking."""
+    """Return the result; add left-out photographs and notes known before tracking to `tracked`."""
     lost = {**sequence.left_out, **tracked.lost}
     tracked = replace(tracked, lost=lost, notes=(*counted.notes, *tracked.notes))
     count = len(sequence.photos) + len(sequence.left_out)

@@ -52,8 +52,8 @@ def judge_run(
     if inside.sum() - anchor < 2:
         raise DataError(
             "poses left to score, without the first if paths start from it: "
-            f"{max(int(inside.sum()) - anchor, 0)}; expected two or more: track more photographs, or "
-            "try --no-anchor",
+            f"{max(int(inside.sum()) - anchor, 0)}; expected two or more: track more photographs "
+            "or try --no-anchor",
             file=track.file,
         )
     if anchor and not np.isfinite(track.poses.yaw[inside][0]):

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Camera calibration, printed tracking kit, and clock to photograph."""
+"""Calibrate a camera, print the tracking kit, and show a clock to photograph."""

@@ -15,11 +15,13 @@ _EXPECTED = (
 
 
 def parse_board(text: str) -> Board:
-    """Parse the description of a calibration board.
+    """Parse `--board`: `kit`, `checkerboard:COLUMNSxROWS:SQUARE`, or a ChArUco board.
+
+    A ChArUco board is `charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY`.
 
     Raises:
         SettingsError: The description is invalid.
-        UnitError: A length is invalid.
+        UnitError: A length has no valid number or unit.
 
     >>> parse_board("checkerboard:9x6:25mm")
     Checkerboard(columns=9, rows=6, square=0.025)

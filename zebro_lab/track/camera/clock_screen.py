@@ -18,11 +18,11 @@ _CLEAR = "\x1b[2J"
 
 
 def show_clock(stopped: Callable[[], bool], *, duration: float | None) -> None:
-    """Show the QR code of the current time until a stop is requested.
+    """Print the QR code of the current time every `RENEWAL` until a stop or for a duration.
 
     Args:
         stopped: Returns whether a stop was requested.
-        duration: Time after which to stop; None for no limit [s].
+        duration: Time after which to stop [s]; None for no limit.
     """
     end = None if duration is None else time.monotonic() + duration
     typer.echo(_CLEAR, nl=False)
@@ -34,10 +34,12 @@ def show_clock(stopped: Callable[[], bool], *, duration: float | None) -> None:
 
 
 def code_lines(t: float) -> str:
-    """Draw the QR code of a moment in half-block characters, two rows a line, black on white.
+    """Return the QR code of a moment as text in half-block characters, black on white.
+
+    Each line holds two rows of the code and its own colour codes (ANSI).
 
     Args:
-        t: Seconds since 1970, UTC [s].
+        t: Time since the Unix epoch [s].
     """
     code = np.asarray(clock_picture(t, module_px=1)) > 127
     if len(code) % 2:

@@ -55,7 +55,7 @@ def calibrate(request: CameraRequest) -> None:
 
 
 def calibration_lines(result: "CameraResult") -> list[str]:
-    """Format the calibration's result: lens, standard deviations, files left out."""
+    """Format a calibration as lines: left-out files, lens ± sd, misfit, coverage, warnings."""
     fit = result.fit
     matrix, sd = fit.camera.matrix, fit.sd
     width, height = fit.camera.size

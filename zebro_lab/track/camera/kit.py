@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Layout of the printed tracking kit, to scale: markers, calibration board, ruler, instructions.
+"""Lay out the printed tracking kit, to scale: markers, calibration board, ruler, instructions.
 
 Pages are lists of shapes in millimetres from the lower left corner of the paper. A marker is drawn
 cell by cell, so that nothing is resampled before it is printed.
@@ -22,7 +22,7 @@ PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
 
 FLOOR_MARKERS = (10, 11, 12, 13)
 FLOOR_SIDE = 150.0
-"""Side of the floor's markers [mm]."""
+"""Side of the black square of the floor's markers [mm]."""
 
 # Not the markers' dictionary, so that a board left in the picture is not taken for the floor.
 BOARD = CharucoBoard(7, 5, 0.035, 0.026, "5x5_50")
@@ -33,7 +33,7 @@ _BAR = 100.0
 
 @dataclass(frozen=True)
 class Rectangle:
-    """A black rectangle.
+    """Black rectangle on a page, measured from the page's lower left corner.
 
     Attributes:
         x: Left edge [mm].
@@ -50,14 +50,14 @@ class Rectangle:
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text.
+    """Line of text on a page, measured from the page's lower left corner.
 
     Attributes:
-        x: Its left end, or its middle if centred [mm].
-        y: Its base line [mm].
+        x: Left end of the line, or its middle if centred [mm].
+        y: Base line of the text [mm].
         text: The text.
-        size: Height of its type [pt].
-        centred: Whether x is its middle.
+        size: Font size [pt].
+        centred: Whether `x` is the middle of the line.
     """
 
     x: float
@@ -69,13 +69,13 @@ class Text:
 
 @dataclass(frozen=True)
 class KitPage:
-    """A page of the kit.
+    """Page of the kit.
 
     Attributes:
-        width: Of the paper [mm].
-        height: Of the paper [mm].
-        rectangles: Black rectangles.
-        texts: Lines of text.
+        width: Width of the paper [mm].
+        height: Height of the paper [mm].
+        rectangles: Black rectangles on the page.
+        texts: Lines of text on the page.
     """
 
     width: float
@@ -85,10 +85,10 @@ class KitPage:
 
 
 def kit_pages(paper: str = "a4") -> tuple[KitPage, ...]:
-    """Lay out the kit: instructions with a ruler, the robot's marker, the floor's, the board.
+    """Lay out the pages: instructions with ruler, robot's marker, four floor markers, board.
 
     Args:
-        paper: A key of `PAPERS`.
+        paper: Size of the paper, a key of `PAPERS`; the board's page is landscape.
 
     Raises:
         SettingsError: The paper is unknown.
@@ -109,7 +109,7 @@ def kit_pages(paper: str = "a4") -> tuple[KitPage, ...]:
 
 
 def starter_floor() -> FloorMap:
-    """Return the floor layout that the instructions advise, to be replaced by measured places."""
+    """Return the four floor markers in a 2 m square, a suggestion to replace by measured places."""
     places = ((0.0, -0.5), (2.0, -0.5), (2.0, 1.5), (0.0, 1.5))
     markers = tuple(
         FloorMarker(number, FLOOR_SIDE / 1e3, x, y)
@@ -124,11 +124,11 @@ def marker_rectangles(
     """Compute a marker's black cells as rectangles, one for each run in rows and in columns.
 
     Args:
-        dictionary: Name of the dictionary.
-        number: Number of the marker.
-        side: Side of its black square [mm].
+        dictionary: Name of the marker's dictionary, such as "4x4_50".
+        number: Number of the marker in the dictionary.
+        side: Side of the marker's black square [mm].
         left: Left edge of the black square [mm].
-        bottom: Lower edge [mm].
+        bottom: Lower edge of the black square [mm].
     """
     black = marker_picture(dictionary, number, 1)[1:-1, 1:-1] < 0.5
     cell = side / len(black)
@@ -147,7 +147,7 @@ def marker_rectangles(
 
 
 def _runs(black: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return start and length of each run of black cells."""
+    """Return (start index, length) of each run of True in a row of cells."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], black.astype(int), [0]))))
     return [(start, end - start) for start, end in edges.reshape(-1, 2).tolist()]
 
@@ -157,8 +157,8 @@ def board_rectangles(board: CharucoBoard, *, left: float, bottom: float) -> tupl
 
     Args:
         board: The board; OpenCV's pattern since 4.6.
-        left: Left edge [mm].
-        bottom: Lower edge [mm].
+        left: Left edge of the board [mm].
+        bottom: Lower edge of the board [mm].
     """
     square, side = 1e3 * board.square, 1e3 * board.marker
     inset = (square - side) / 2

@@ -17,13 +17,13 @@ _INCH = 25.4  # mm
 
 @styled
 def save_pages(pages: Sequence[KitPage], path: str | PathLike[str] | IO[bytes]) -> None:
-    """Write pages as PDF at true scale, a millimetre for a millimetre.
+    """Write pages as PDF at true scale: 1 mm of a page is 1 mm on paper.
 
     The bytes depend on the pages alone: no time stamp is written.
 
     Args:
         pages: The pages.
-        path: File to write, in an existing folder, or an open file.
+        path: File to write, in an existing folder, or a file open in binary mode.
     """
     metadata = {"Creator": "zebro-lab", "Title": "Tracking kit", "CreationDate": None}
     with PdfPages(path, metadata=metadata) as file:
@@ -33,7 +33,7 @@ def save_pages(pages: Sequence[KitPage], path: str | PathLike[str] | IO[bytes]) 
 
 @styled
 def draw_page(page: KitPage) -> Figure:
-    """Draw a page on a figure of the paper's size."""
+    """Draw rectangles and texts of a page on a figure of the paper's size; return the figure."""
     figure = Figure(figsize=(page.width / _INCH, page.height / _INCH), facecolor="white")
     # Axes that fill the paper, in millimetres: nothing is rescaled.
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))

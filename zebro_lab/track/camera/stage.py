@@ -28,12 +28,12 @@ LENS = text_file("camera calibrate", HEADING)
 
 @dataclass(frozen=True)
 class CameraResult:
-    """A written camera calibration.
+    """Written camera calibration.
 
     Attributes:
-        file: The `camera.toml`.
-        fit: The calibration.
-        left_out: Photographs that were not used, with the reason.
+        file: The written `camera.toml`.
+        fit: Lens with standard deviations, misfit and coverage.
+        left_out: Reason by name of each photograph that was not used.
     """
 
     file: Path
@@ -45,8 +45,8 @@ def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult
     """Calibrate the lens from photographs of a board and write `camera.toml`.
 
     Args:
-        request: Folder of photographs, board and options.
-        progress: Where progress is reported.
+        request: Options of `zebro-lab camera calibrate`.
+        progress: Progress display, which may also request a stop.
 
     Raises:
         ZebroLabError: An option is invalid.
@@ -94,17 +94,17 @@ def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
 
 
 def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
-    """Write the printable kit and a starter `floor.toml`.
+    """Write the printable kit as `kit.pdf` and a starter `floor.toml`.
 
     Args:
-        out: Folder to write into.
-        paper: "a4" or "letter".
+        out: Folder to write into; created when missing.
+        paper: Size of the paper, "a4" or "letter".
 
     Returns:
-        The files.
+        The files `kit.pdf` and `floor.toml`.
 
     Raises:
-        AlreadyExists: There is a `floor.toml`, which may hold measurements, or another kit.
+        AlreadyExists: The folder has a `floor.toml`, or a `kit.pdf` with other content.
         SettingsError: The paper is unknown.
     """
     from zebro_lab.track.camera.pictures import save_pages  # matplotlib takes most of a second

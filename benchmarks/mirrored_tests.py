@@ -62,7 +62,7 @@ def broken(module: Module) -> str | None:
         return None
     node, is_method = largest
     lines = module.text.splitlines()
-    doc = docstring_lines(node)
+    doc = docstring_lines(node.body[0])
     first = (doc.stop if doc else node.body[0].lineno) - 1
     head, indent = lines[:first], " " * node.body[0].col_offset
     if not doc and node.body[0].lineno == node.lineno:  # body on the line of its def

@@ -65,15 +65,16 @@ class Module:
 
 
 def docstring_lines(node: ast.AST) -> range:
-    """Return the numbers of a node's docstring's lines."""
-    if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-        first = node.body[0] if node.body else None
-        if (
-            isinstance(first, ast.Expr)
-            and isinstance(first.value, ast.Constant)
-            and isinstance(first.value.value, str)
-        ):
-            return range(first.lineno, (first.end_lineno or first.lineno) + 1)
+    """Return the numbers of the lines of a string that is a statement, as a docstring is.
+
+    That of a module, class or function, or of the constant or attribute above it.
+    """
+    if (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    ):
+        return range(node.lineno, (node.end_lineno or node.lineno) + 1)
     return range(0)
 
 

@@ -24,8 +24,7 @@ from rig.slip_rig.decode import Zero, require_zero
 
 REST_TIMEOUT: Final = 5.0
 """Timeout for the discs to stand after their set-points are zero [s]."""
-UNLOADED: Final = Zero(0.0, 0.0, 0.0)
-"""Zero that is subtracted until the first zero has been measured [N]."""
+UNLOADED: Final = Zero(0.0, 0.0, 0.0)  # subtracted until the first zero has been measured [N]
 
 
 @dataclass(frozen=True)
@@ -81,8 +80,7 @@ def run_plan(
     Raises:
         LimitExceeded: A set-point exceeds a limit, found before motion; or a guard tripped.
         ProfileError: The plan limits a quantity that the rig does not measure.
-        SinkFailed: Measurements could not be stored; the discs were ramped to rest first.
-        PartFailed: A thread of the program failed; the discs were ramped to rest first.
+        SinkFailed, PartFailed: Storing or a thread failed; the discs were ramped to rest first.
         RigError: A guard tripped or a device failed; the drives were de-energised at once.
         ProtocolError: An emergency stop is latched, or a zero has too few readings.
     """

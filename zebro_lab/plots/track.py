@@ -131,10 +131,10 @@ def over_floor(
 
 
 def _label_apart(figure: Figure, axes: Axes, points: Array, labels: Sequence[str]) -> None:
-    """Write every n-th label below its point, with the least n at which none overlap."""
+    """Write every n-th label right below its point, with the least n at which none overlap."""
     texts = [
         axes.annotate(
-            label, (x, y), xytext=(0, -9), textcoords="offset points", ha="center", va="top",
+            label, (x, y), xytext=(6, -3), textcoords="offset points", ha="left", va="top",
             fontsize=7,
         )
         for (x, y), label in zip(points, labels, strict=True)

@@ -155,5 +155,5 @@ def _draw_map(
 
 def _time_labels(track: Track, poses: Array) -> Sequence[str]:
     every = max(1, round(len(track.t) / _MOST_LABELS))
-    labels = iter(f"{t:.3g} s" if k % every == 0 else "" for k, t in enumerate(track.t))
+    labels = iter(f"{t:.1f} s" if k % every == 0 else "" for k, t in enumerate(track.t))
     return ["" if np.isnan(pose[0]) else next(labels) for pose in poses]

@@ -5,21 +5,10 @@ import numpy as np
 import pytest
 
 from rig.errors import ProtocolError
-from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
-from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics, SimulatedRig
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics
 from rig.slip_rig.sweep import SweepPlan
-
-PERFECT = RigImperfections()
-
-
-def world(law="magic-formula", *, plan=None, imperfections=PERFECT, dynamics=None, seed=0):
-    return SimulatedRig(
-        *TWIN_LAWS[law],
-        plan=plan or SweepPlan(),
-        imperfections=imperfections,
-        dynamics=dynamics or RigDynamics(),
-        rng=np.random.default_rng(seed),
-    )
+from support.board_twins import PERFECT, world
 
 
 @pytest.mark.parametrize("law", TWIN_LAWS)

@@ -2,6 +2,7 @@
 """Ids and layouts of the CAN Simple protocol."""
 
 import cantools
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,12 +10,14 @@ from rig.profile import shipped_file
 from rig.slip_rig.can_simple import (
     AXIS_STATE,
     CONTROLLER_MODE,
+    ERRORS,
     ESTIMATES,
     HEARTBEAT,
     INPUT_VELOCITY,
     TEMPERATURES,
     Command,
     can_id,
+    describe_error,
     split_id,
 )
 
@@ -53,3 +56,14 @@ def test_the_shipped_dbc_agrees_with_the_layouts():
         "TransistorTemperature": 41.5,
         "MotorTemperature": 30.25,
     }
+
+
+@pytest.mark.parametrize("firmware", ERRORS)
+def test_every_bit_of_an_axis_error_is_described_and_unknown_ones_by_their_number(firmware):
+    assert describe_error(0, firmware) == ""
+    known = sum(ERRORS[firmware])
+    assert describe_error(known, firmware).split(", ") == list(ERRORS[firmware].values())
+    assert describe_error(0x800 | 0x10000000, firmware).split(", ") == [
+        ERRORS[firmware][0x800],
+        "unknown error 0x10000000",
+    ]

@@ -6,10 +6,12 @@ import pytest
 
 from rig.device import Sample
 from rig.errors import LimitExceeded, ProtocolError
-from rig.slip_rig.decode import Forces, Zero, decode_forces, require_zero, tare
+from rig.slip_rig.decode import Forces, Zero, decode_forces, decode_speeds, require_zero, tare
+from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import load_rig_profile
 
-PROFILE = load_rig_profile("rig-odrive-netft").load_cell
+RIG = load_rig_profile("rig-odrive-netft")
+PROFILE = RIG.load_cell
 
 
 def forces(normal, traction, n=1000, sd=0.01, seed=0):
@@ -35,3 +37,26 @@ def test_a_zero_that_moved_is_refused_and_one_that_stayed_is_not():
 def test_too_few_readings_are_no_zero():
     with pytest.raises(ProtocolError, match="at least 10"):
         tare(decode_forces(PROFILE, [Sample(0.0, 0.0, 0, (0,) * 6)] * 9))
+
+
+def drive_sample(time, drive, motor_speed):
+    return Sample(time, None, None, (0.0, motor_speed), channel=drive.node)
+
+
+def test_the_ground_disc_is_interpolated_to_the_instants_of_the_leg_disc():
+    leg, ground = RIG.drives.leg, RIG.drives.ground
+    ramp = [drive_sample(t, ground, 3.0 * t) for t in (0.5, 1.5, 2.5)]
+    steady = [drive_sample(t, leg, 2.0) for t in (0.0, 1.0, 2.0, 3.0)]
+    speeds = decode_speeds(leg, ground, sorted(ramp + steady, key=lambda each: each.host_time))
+    np.testing.assert_allclose(speeds.time, [0.0, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(speeds.leg, disc_speed(leg, 2.0))
+    held_before, held_after = 1.5, 7.5  # motor's speed at the first and the last sample
+    np.testing.assert_allclose(
+        speeds.ground, [disc_speed(ground, each) for each in (held_before, 3.0, 6.0, held_after)]
+    )
+
+
+def test_speeds_need_samples_of_both_drives():
+    leg, ground = RIG.drives.leg, RIG.drives.ground
+    with pytest.raises(ProtocolError, match=f"drive with node {ground.node}"):
+        decode_speeds(leg, ground, [drive_sample(0.0, leg, 1.0)])

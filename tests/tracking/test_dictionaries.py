@@ -28,3 +28,21 @@ def test_a_misspelt_dictionary_is_named_with_the_nearest():
 def test_names_of_dictionaries_are_opencvs_without_the_prefix():
     assert {"4x4_50", "6x6_250", "apriltag_36h11"} <= set(DICTIONARIES)
     assert dictionary_named("DICT_4X4_50").markerSize == 4
+
+
+def test_a_dictionary_of_ones_own_is_read_from_the_file_that_opencv_writes(tmp_path):
+    own = cv2.aruco.extendDictionary(3, 4, randomSeed=1)
+    path = str(tmp_path / "own.yml")
+    storage = cv2.FileStorage(path, cv2.FILE_STORAGE_WRITE)
+    own.writeDictionary(storage)
+    storage.release()
+    read = dictionary_named(path)
+    assert read.markerSize == 4
+    np.testing.assert_array_equal(read.bytesList, own.bytesList)
+
+
+def test_a_file_without_a_dictionary_says_what_one_holds(tmp_path):
+    (tmp_path / "empty.yml").write_text("%YAML:1.0\n---\nnothing: 1\n")
+    for name in ("empty.yml", "missing.yml"):
+        with pytest.raises(MarkerError, match=rf"{name} holds no dictionary.*nmarkers"):
+            dictionary_named(str(tmp_path / name))

@@ -26,6 +26,12 @@ def test_true_exposures_make_the_picture_likelier_and_others_do_not(reading):
     assert reading.worth(np.concatenate((WALK, WALK[-1:] + 1e-3))) == -np.inf
 
 
+def test_exposures_are_followed_by_their_last_step_to_the_end_of_the_walk(reading):
+    found = np.array(reading.followed([WALK[0], WALK[1]]))
+    assert len(found) == len(WALK)
+    np.testing.assert_allclose(found[:, :2], WALK[:, :2], atol=0.012)
+
+
 def test_a_chain_is_fitted_to_the_walk(reading):
     step = np.array([0.13, 0.005, 0.08, 0.0])
     fitted = reading.fitted(WALK[0], Chain(step, 2, 0))

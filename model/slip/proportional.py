@@ -59,7 +59,9 @@ class ProportionalLaw:
         return np.asarray(load) * self.slope_over_load(slip, *self.coefficients(values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return True in the shape to which load and values broadcast: the shape is never lost.
+        """Return True everywhere, in the shape to which load and values broadcast.
+
+        The curve has the law's shape at every load, for values within their bounds.
 
         Args:
             load: Normal force, positive [N].
@@ -69,6 +71,8 @@ class ProportionalLaw:
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
         """Compute the slip ratio at which the force peaks, the same at every load [-].
+
+        Infinite where the force never falls; in the shape to which load and values broadcast.
 
         Args:
             load: Normal force, positive [N].

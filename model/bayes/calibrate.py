@@ -187,8 +187,8 @@ def _sample(
 def next_look(n_steps: int) -> int:
     """Return the first step from `n_steps` on at which convergence is computed.
 
-    These steps are 100 and, from each to the next, a fifth more. They are fixed, so that a fit that
-    is stopped and resumed ends at the same step as a fit that is not.
+    These steps are 100 and, from each to the next, a fifth more, rounded down. They are fixed, so
+    that a fit that is stopped and resumed ends at the same step as a fit that is not.
 
     Args:
         n_steps: Number of kept steps; the result is this number or larger.

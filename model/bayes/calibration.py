@@ -104,6 +104,9 @@ def conclude(
         source: Source of the samples.
         seconds: Time that sampling took [s].
         rng: Source of randomness of the importance draws.
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
     """
     posterior = fit.posterior
     draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
@@ -147,7 +150,7 @@ def conclude(
 
 
 def _curves(posterior: SlipPosterior, draws: Draws, levels: np.ndarray) -> list[Sequence[Estimate]]:
-    """Estimate the features of the slip curve at each load level [N], up to its largest slip."""
+    """Estimate features of the slip curve at each load level [N], up to the largest slip there."""
     k = len(posterior.law.parameters)
     return [
         curve_estimates(posterior.law, draws.flat[:, :k], load=load, slip_limit=float(limit))

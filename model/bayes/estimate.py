@@ -112,9 +112,8 @@ def curve_estimates(
 ) -> list[Estimate]:
     """Estimate features of the curve at one load from posterior draws.
 
-    In order: B, C, D, E (of a Magic Formula only), peak slip (infinite without a peak), largest
-    traction within the tested slip (it stays known where data end before the peak, D does not),
-    slope of the force at zero slip [N].
+    In order: B, C, D, E (of a Magic Formula only), peak slip (or infinity), largest traction within
+    the tested slip (known even where data end before the peak, unlike D), slope at zero slip [N].
 
     Args:
         law: The slip law, of k parameters.

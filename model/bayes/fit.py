@@ -109,8 +109,7 @@ def explain_numerical_errors(samples: SlipSamples, law: SlipLaw) -> Iterator[Non
         law: The slip law.
 
     Raises:
-        FitError: A `LinAlgError` or `ArithmeticError` was raised: a linear algebra routine failed,
-            or Python's arithmetic (NumPy's only warns) overflowed or divided by zero.
+        FitError: A `LinAlgError` or `ArithmeticError` was raised (NumPy's overflows only warn).
     """
     try:
         yield

@@ -110,7 +110,10 @@ def gradient(log_density: LogDensity, z: Array) -> Array:
 
 
 def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array]:
-    """Compute a log density and its gradient by central differences at one point (d,)."""
+    """Compute a log density and its gradient (d,) by central differences at one point (d,).
+
+    Entries of the gradient are not finite where a step leaves the support.
+    """
     steps = STEP * np.eye(len(z))
     value, *both = log_density(np.concatenate([z[None], z + steps, z - steps]))
     ahead, behind = np.reshape(both, (2, len(z)))
@@ -164,9 +167,8 @@ def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
         starts: Starting points, shape (m, d).
 
     Returns:
-        The distinct modes whose log evidence is within `NEGLIGIBLE` of the largest, in the order of
-        their log densities, the highest first. Distinct are modes more than one standard deviation
-        (Mahalanobis) apart.
+        The modes whose log evidence is within `NEGLIGIBLE` of the largest and which are over one
+        standard deviation (Mahalanobis) apart, by log density, the highest first.
 
     Raises:
         FitError: No start lies inside the support.

@@ -122,7 +122,7 @@ class LoadRule:
 
 
 def load_rule(blocks: SlipBlocks) -> LoadRule:
-    """Compute two loads, with shares, of each block's mean, variance and skewness of load.
+    """Compute two loads and their shares with each block's mean, variance and skewness of load.
 
     Slip at the two loads follows load by the block's regression of slip on load. The load's
     standard deviation counts as 0.1 % of its mean at least.

@@ -68,11 +68,8 @@ class ModeSearch:
     def modes(self, *, progress: Callable[[float], None]) -> list[Mode]:
         """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
 
-        Optimised are the case of no wrongly mounted leg and, of the others, up to `CLIMBED` of the
-        most probable by the scans, within `UNLIKELY` of the best; the rest keep a scan's Gaussian.
-
-        Args:
-            progress: Called with the fraction done, below 1.
+        Of the cases with a wrongly mounted leg up to `CLIMBED`, within `UNLIKELY` of the best, are
+        optimised; others keep a scan's Gaussian. `progress` receives the fraction done, below 1.
 
         Raises:
             WalkError: A walk diverged, or the robot cannot stand at its start.
@@ -167,8 +164,6 @@ class ModeSearch:
 
     def scan(self, plain: Mode, J: Array) -> list[Mode]:
         """Estimate the Gaussian of every case by a scan over the offset of one leg at a time.
-
-        All other parameters follow linearly.
 
         Args:
             plain: Point without a wrongly mounted leg about which the scan is made.

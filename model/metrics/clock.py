@@ -57,8 +57,9 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
         InsufficientData: There are fewer than six poses, no offset brings four of them and half of
             the track (poses and length) within the path's times, the best offset is the first or
             last tried (half the path's duration either side of common middles), its standard
-            deviation is `LARGEST_SD` or more, or an offset farther than `NEAR` of these and 0.1 s
-            away, with as many poses within, has less than `AS_GOOD` times the least misfit.
+            deviation is `LARGEST_SD` or more, or another offset, over `NEAR` standard deviations
+            plus 0.1 s away and with as many poses within or more, has a misfit below `AS_GOOD`
+            times the least.
     """
     if len(track) < FEWEST:
         raise InsufficientData(

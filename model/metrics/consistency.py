@@ -42,7 +42,7 @@ class Consistency:
 
     @property
     def consistent(self) -> bool:
-        """Whether the track's value lies from `low` to `high`."""
+        """Whether the track's value lies from `low` to `high`, ends included."""
         return self.low <= self.value <= self.high
 
 

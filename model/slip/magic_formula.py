@@ -194,7 +194,7 @@ class MagicFormula:
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
         """Compute the slip ratio at which the force peaks, infinite without a peak [-].
 
-        See the function `peak_slip`.
+        There is none for C <= 1, and for E = 1 with a small C; see the function `peak_slip`.
 
         Args:
             load: Normal force, positive [N].

@@ -13,6 +13,8 @@ from model.slip.law import Array, Values
 class ProportionalLaw:
     """Methods of a `SlipLaw` whose traction over load does not depend on load.
 
+    A law adds its name and parameters, both attributes, and the methods `coefficients` and `peak`.
+
     Attributes:
         traction_over_load: Function from slip ratio and the law's coefficients to traction over
             load [-].
@@ -25,6 +27,8 @@ class ProportionalLaw:
     def coefficients(self, values: Values) -> tuple[Array, ...]:
         """Compute the coefficients of `traction_over_load` from parameter values, in its order.
 
+        Each law overrides this method.
+
         Args:
             values: Parameter values, one entry a parameter.
         """
@@ -32,6 +36,8 @@ class ProportionalLaw:
 
     def peak(self, values: Values) -> Array:
         """Compute the slip ratio at which traction peaks, infinite where it never falls [-].
+
+        Each law overrides this method.
 
         Args:
             values: Parameter values, one entry a parameter.

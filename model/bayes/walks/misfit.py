@@ -110,7 +110,7 @@ class WalkMisfit:
 
         Args:
             robot: The robot as described.
-            table: The slip law at the rig's posterior mean.
+            table: The slip law at the posterior mean of its fit to the rig's data.
             walk: The walk.
             spread: Errors of the walking model in one walk.
             rng: Source of randomness, for leg angles that encoder counts leave undetermined.
@@ -244,7 +244,7 @@ class WalkMisfit:
         return total + self._of_step(several[0], rng, threads)
 
     def _of_step(self, legs: LegReference, rng: np.random.Generator, threads: int) -> Array:
-        """Compute the covariance (k, k) of the time step's error: walks at the step, and at half.
+        """Compute the covariance (k, k) of the time step's error, from walks at it and at half.
 
         The walks have small random leg offsets, since the error differs from path to path.
         """
@@ -259,7 +259,7 @@ class WalkMisfit:
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
     def _of_tracker(self, difference: Array) -> Array:
-        """Compute the tracker's noise (k, k): of later poses, and of the first by its lever arm.
+        """Compute the covariance (k, k) of tracker noise, that of the first pose by its lever arm.
 
         Args:
             difference: Predicted minus tracked poses after the first, shape (k,).

@@ -61,7 +61,7 @@ class CaseFound:
         probability: Posterior probability of the case [-].
         offset: Posterior mean of the leg's own plus further offset, without the offset that all
             legs share; zero for no leg [rad].
-        sd: Posterior standard deviation of `offset` [rad].
+        sd: Posterior standard deviation of that offset; zero for no leg [rad].
     """
 
     case: Case

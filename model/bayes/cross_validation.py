@@ -49,7 +49,7 @@ class CrossValidation:
         Run offset and crosstalk are left out, as by `measured_force`.
 
         Args:
-            samples: The samples, n of them, of the same runs.
+            samples: The samples, n of them, of the same runs in the same order.
             law: The slip law.
         """
         predicted = np.empty(len(samples))

@@ -21,10 +21,10 @@ class LoadCell:
     Attributes:
         zero_stability: Scale of the half-normal prior of the standard deviation of the force
             offsets between runs [N].
-        gain_sd: Standard deviation of each channel's relative gain error [-].
-        bias_sd: Standard deviation of the normal channel's zero error [N].
-        crosstalk_sd: Standard deviation of the crosstalk: normal force that the normal channel
-            misses for each newton of traction [-].
+        gain_sd: Standard deviation of each channel's relative gain error, about 0 [-].
+        bias_sd: Standard deviation of the normal channel's zero error, about 0 [N].
+        crosstalk_sd: Standard deviation of the crosstalk, about 0: normal force that the normal
+            channel misses for each newton of traction [-].
     """
 
     zero_stability: float = 0.15

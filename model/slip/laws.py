@@ -44,7 +44,7 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
 
 
 def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:
-    """Raise `DomainError` unless `found` is one of `known`, with these and the nearest, if any."""
+    """Raise `DomainError` unless `found` is one of `known`; it names these and the nearest."""
     if found in known:
         return
     nearest = get_close_matches(found, known, n=1, cutoff=0.3)

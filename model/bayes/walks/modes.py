@@ -68,8 +68,8 @@ class ModeSearch:
     def modes(self, *, progress: Callable[[float], None]) -> list[Mode]:
         """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
 
-        Of the cases with a wrongly mounted leg up to `CLIMBED`, within `UNLIKELY` of the best, are
-        optimised; others keep a scan's Gaussian. `progress` receives the fraction done, below 1.
+        Optimised are the case of no wrongly mounted leg and up to `CLIMBED` others that are within
+        `UNLIKELY` of the best; the rest keep a scan's Gaussian. `progress` gets the share done.
 
         Raises:
             WalkError: A walk diverged, or the robot cannot stand at its start.

@@ -26,7 +26,8 @@ class SlipBlocks:
     """Block means of slip, load and traction, in time order within each run.
 
     Attributes:
-        slip: Best estimate of the block's mean true slip ratio, shape (n,) [-].
+        slip: Best estimate of the block's mean true slip ratio, given the measured ones of its
+            run, shape (n,) [-].
         normal_force: Mean measured normal force, shape (n,) [N].
         traction_force: Mean measured traction force, shape (n,) [N].
         count: Number of samples in the block, shape (n,).
@@ -110,9 +111,10 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
 
     The estimate is the nugget of the variogram: half the variance of the differences at lag 1 and
     2, extrapolated to lag 0, :math:`2\gamma_1 - \gamma_2`. Slow wander and steady sweeps cancel in
-    it. Its sampling variance for white noise is :math:`7\sigma^4/n`; estimates that scatter by no
-    more between runs are replaced by one typical value. Runs of fewer than 8 samples have the
-    typical value. If all runs are that short, the noise variance is zero.
+    it. Its sampling variance for white noise of variance :math:`\sigma^2` is :math:`7\sigma^4/n`
+    with n samples; estimates that scatter by no more between runs are replaced by one typical
+    value, others are shrunk towards it. Runs of fewer than 8 samples have the typical value. If all
+    runs are that short, the noise variance is zero.
 
     Args:
         samples: The samples.
@@ -132,7 +134,7 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
 
 
 def _nugget(slip: Array) -> float:
-    """Estimate one run's nugget, at least 0; 0 for fewer than 8 samples, shape (n,) [-]."""
+    """Estimate one run's nugget [-] from its slip ratios (n,), at least 0; 0 for fewer than 8."""
     if len(slip) < 8:
         return 0.0
     gamma_1 = 0.5 * np.var(slip[1:] - slip[:-1])
@@ -155,9 +157,9 @@ def _median_variance(estimates: Array, freedom: Array) -> float:
 def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array:
     """Shrink estimates towards a typical value in proportion to their sampling error.
 
-    Empirical Bayes: if the estimates scatter by no more than their sampling error, the typical
-    value replaces them; the further they scatter beyond it, the less they are changed. The scatter
-    is the robust one of the median absolute deviation.
+    Empirical Bayes: where the estimates scatter by no more than an estimate's sampling error, the
+    typical value replaces it; the further they scatter beyond it, the less it is changed. The
+    scatter is about the typical value, the robust one of the median absolute deviation.
 
     Args:
         estimates: One estimate a run, shape (n_runs,).
@@ -174,7 +176,8 @@ def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array
 def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
     """Average the samples over blocks of about `length` samples, none across two runs.
 
-    Every sample is used: a run is cut into round(n / length) blocks of nearly equal size.
+    Every sample is used: a run of n samples is cut into round(n / length) blocks, at least one, of
+    nearly equal size. Slip is not the plain mean but that of `_calibrate_slip`.
 
     Args:
         samples: The samples.
@@ -236,9 +239,9 @@ def _calibrate_slip(
 ) -> tuple[Array, Array, Array]:
     r"""Replace each block's measured slip by its expectation given the slips of the whole run.
 
-    Regression calibration: within a run the true block slips spread with variance
-    :math:`\omega^2` around the run's mean :math:`m`, the measured ones with
-    :math:`\omega^2 + \sigma^2/n`, so that
+    Regression calibration: within a run of N samples, in blocks of n, with noise of variance
+    :math:`\sigma^2` in each, the true block slips spread with variance :math:`\omega^2` around the
+    run's mean :math:`m`, the measured ones with :math:`\omega^2 + \sigma^2/n`, so that
     :math:`E[\kappa|\hat\kappa] = m + \lambda(\hat\kappa - m)`,
     :math:`\lambda = \omega^2/(\omega^2 + \sigma^2/n)`. Its error has a part of its own in each
     block, variance :math:`\lambda\sigma^2/n`, and one the run shares,
@@ -262,12 +265,13 @@ def _calibrate_slip(
 def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array) -> Array:
     r"""Estimate the variance of the true slip around its mean in each block, shape (n,) [-].
 
-    Each block's own estimate, the spread s² less the noise :math:`\sigma^2`, is shrunk towards the
-    mean :math:`\bar w` of its run. The weights are its sampling variance
+    Each block's own estimate, the sample variance of its n measured slips (`spread`) less the noise
+    :math:`\sigma^2` (`noise`, one a run), is shrunk towards the mean :math:`\bar w` of its run,
+    itself shrunk towards the median run's. The weights are its sampling variance
     :math:`(2\sigma^4 + 4\bar w\sigma^2)/(n-1)` and the variance :math:`\bar w^2` that slow wander
     has between blocks. Clipping each estimate at zero, or keeping only the large ones, would bias
     the wander upwards where there is only noise. A block with a significantly larger spread
-    contains a jump and keeps its own estimate.
+    contains a jump and keeps its own estimate. Zero if no block has two samples.
     """
     if not (count > 1).any():
         return np.zeros_like(spread)

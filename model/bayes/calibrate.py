@@ -48,10 +48,11 @@ class SamplerSettings:
 
     Attributes:
         ensembles: Number of independent ensembles of walkers.
-        max_steps: Number of sampler moves after which a fit ends without convergence; at least
-            `THIN * FIRST_LOOK` moves are made.
+        max_steps: Number of sampler moves after which a fit ends without convergence, at the next
+            multiple of `THIN * CHUNK`; about `THIN * FIRST_LOOK` moves are made at least.
         block_length: Samples in a block; chosen by `choose_block_length` when None.
-        threads: Number of ensembles that are sampled at once.
+        threads: Number of folds of the cross-validation fitted, and of ensembles sampled, at once;
+            below `FEW_BLOCKS` blocks one ensemble is sampled at a time.
         seed: Seed of the random generators.
     """
 
@@ -77,8 +78,9 @@ def calibrate(
     """Choose a slip law for rig samples, sample its posterior and check the result.
 
     Args:
-        samples: The samples.
-        laws: The laws to choose from, simplest first, by the name they are reported under.
+        samples: The samples, at least one.
+        laws: The laws to choose from, one or more, simplest first, by the name they are reported
+            under.
         load_cell: Prior knowledge of the load cell.
         settings: Settings of the sampler.
         source: Source of the samples, stored in the result.
@@ -91,7 +93,11 @@ def calibrate(
         The calibration, converged or not (see its verdict), and the chains it was computed from.
 
     Raises:
-        ModelError: The samples cannot determine the law, or the fit failed.
+        InsufficientData: There are fewer samples than a law's parameters plus two, traction is
+            constant, or no load exceeds the load cell's zero stability.
+        DomainError: A force exceeds `MOST_FORCE` or is NaN.
+        FitError: A law has no valid curve or no mode, too few of the sampler's starting points lie
+            inside the support, or a numerical routine failed.
         FitStopped: The watcher requested a stop.
     """
     rng = np.random.default_rng(settings.seed)
@@ -118,7 +124,10 @@ def _choose_law(
     rng: np.random.Generator,
     watcher: Watcher,
 ) -> tuple[PreparedFit, LawComparison | None]:
-    """Prepare the fit of each law; return the one `compare` chooses and, of several, its result."""
+    """Prepare the fit of each law; return the one that `compare` chooses, and the comparison.
+
+    The comparison is None for one law. Raises `FitStopped` if a stop is requested before a law.
+    """
     fits: list[PreparedFit] = []
     asked = settings.block_length
     choice = None if asked is None else BlockChoice(asked, None, "as asked for")
@@ -146,7 +155,11 @@ def _sample(
     watcher: Watcher,
     keep: Callable[[Chains], object],
 ) -> tuple[Chains, Convergence]:
-    """Sample, from `earlier` if given, until convergence or the largest number of steps."""
+    """Sample, from `earlier` if given, until convergence or the largest number of steps.
+
+    Progress goes to `watcher`, all chains to `keep` after every `CHUNK` kept steps. Raises
+    `FitStopped`, with the chains so far, if a stop is requested.
+    """
     density = fit.posterior.log_density
     chains = earlier or start_chains(
         density, fit.approximation, ensembles=settings.ensembles, thin=THIN, rng=rng
@@ -174,8 +187,8 @@ def _sample(
 def next_look(n_steps: int) -> int:
     """Return the first step from `n_steps` on at which convergence is computed.
 
-    These steps are 100 and, from each to the next, a fifth more. They are fixed, so that a fit that
-    is stopped and resumed ends at the same step as a fit that is not.
+    These steps are 100 and, from each to the next, a fifth more, rounded down. They are fixed, so
+    that a fit that is stopped and resumed ends at the same step as a fit that is not.
 
     Args:
         n_steps: Number of kept steps; the result is this number or larger.

@@ -38,19 +38,20 @@ class Calibration:
     Attributes:
         fit: Posterior density, Laplace approximations, cross-validation and block length.
         comparison: Comparison of several laws; None if there was only one.
-        draws: Posterior draws.
-        parameters: Posterior of every parameter: the law's, then the measurement's.
-        levels: Loads that were set, shape (m,) [N].
+        draws: Posterior draws, at most `DRAWS_PER_ENSEMBLE` of each ensemble.
+        parameters: Posterior of every parameter, fixed ones included: the law's, then the
+            measurement's.
+        levels: Loads that were set, or quantiles of swept ones, by `load_levels`, shape (m,) [N].
         curves: Posterior of the curve's features, as by `curve_estimates`, at each load level.
         convergence: Convergence diagnostics of the sampler.
         residuals: Analysis of the residuals.
-        agreement: Comparison with importance sampling.
+        agreement: Comparison of the sampler's draws with importance sampling.
         verdict: Whether the fit converged and can be trusted.
         contraction: 1 - posterior over prior variance of each sampled parameter, by name [-].
         r_squared: Fraction of the variance of measured traction explained by predictions of
             left-out runs; None without cross-validation [-].
-        source: Where the data come from: "real", "sim:...", "unknown".
-        seconds: Time that sampling took [s].
+        source: Where the data come from: "real", "sim:...", "unknown" and others.
+        seconds: Time that sampling took, without that of the chains it resumed from [s].
     """
 
     fit: PreparedFit
@@ -92,15 +93,20 @@ def conclude(
 ) -> Calibration:
     """Compute estimates, residuals, checks and verdict from the chains of a fit.
 
+    Residuals and verdict use about `_CHECKED` of the draws.
+
     Args:
         fit: The fit that was sampled.
         comparison: Comparison of several laws; None if there was only one.
         chains: The sampler's chains.
         convergence: Convergence diagnostics of the chains.
-        samples: The samples that were fitted.
+        samples: The samples that were fitted, here for R² of the left-out runs.
         source: Source of the samples.
         seconds: Time that sampling took [s].
         rng: Source of randomness of the importance draws.
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
     """
     posterior = fit.posterior
     draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
@@ -144,7 +150,7 @@ def conclude(
 
 
 def _curves(posterior: SlipPosterior, draws: Draws, levels: np.ndarray) -> list[Sequence[Estimate]]:
-    """Estimate the features of the slip curve at each load level [N], up to its largest slip."""
+    """Estimate features of the slip curve at each load level [N], up to the largest slip there."""
     k = len(posterior.law.parameters)
     return [
         curve_estimates(posterior.law, draws.flat[:, :k], load=load, slip_limit=float(limit))

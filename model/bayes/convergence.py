@@ -26,7 +26,8 @@ class Convergence:
     Attributes:
         burn_in: Kept steps left out at the start.
         length: Kept steps after the burn-in.
-        autocorrelation_time: Integrated autocorrelation time [kept steps].
+        autocorrelation_time: Integrated autocorrelation time of the chains with the burn-in, the
+            largest over the ensembles [kept steps].
         r_hat: Rank-normalised split R-hat between ensembles (never between walkers, which are
             not independent) [-].
         ess_bulk: Effective sample size of the bulk [-].
@@ -43,7 +44,11 @@ class Convergence:
     mcse: Array
 
     def failures(self) -> list[str]:
-        """List the unmet criteria as text, each with its worst value; empty when converged."""
+        """List the unmet criteria as text, each with its worst value; empty when converged.
+
+        Criteria: R-hat at most `MAX_R_HAT`, Monte Carlo error at most `MAX_MCSE`, bulk and tail ESS
+        at least `MIN_ESS`, length at least `MIN_LENGTH` autocorrelation times. NaN counts as met.
+        """
         length = float((self.length / self.autocorrelation_time).min())
         at_most = [
             ("R-hat between ensembles", float(self.r_hat.max()), MAX_R_HAT),
@@ -78,7 +83,10 @@ class Convergence:
         return not self.failures()
 
     def fraction_done(self) -> float:
-        """Compute the smallest ratio of chain length or ESS to its requirement, at most 1 [-]."""
+        """Compute the smallest ratio of chain length or ESS to its requirement, at most 1 [-].
+
+        R-hat and Monte Carlo error are not included: 1 does not mean converged.
+        """
         lengths = self.length / self.autocorrelation_time
         return float(
             min(

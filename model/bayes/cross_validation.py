@@ -46,8 +46,10 @@ class CrossValidation:
     def predict(self, samples: SlipSamples, law: SlipLaw) -> Array:
         """Predict every sample's measured traction by the fit without its run, shape (n,) [N].
 
+        Run offset and crosstalk are left out, as by `measured_force`.
+
         Args:
-            samples: The samples, n of them, of the same runs.
+            samples: The samples, n of them, of the same runs in the same order.
             law: The slip law.
         """
         predicted = np.empty(len(samples))
@@ -61,6 +63,8 @@ class CrossValidation:
 
 def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array) -> Array:
     """Predict measured traction from measured slip and load, without run offset and crosstalk [N].
+
+    A true load below 1e-9 N counts as 1e-9 N.
 
     Args:
         law: The slip law, of k parameters.
@@ -95,6 +99,9 @@ def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -
         posterior: The posterior of all runs, at least two.
         mode: Coordinates of the mode of all runs, where each search starts, shape (d,).
         threads: Number of folds that are fitted at once.
+
+    Raises:
+        FitError: Without a fold's runs `mode` lies outside the posterior's support.
     """
     n_runs = posterior.blocks.n_runs
     n_folds = n_runs if n_runs <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS

@@ -80,7 +80,7 @@ def estimate(parameter: Parameter, draws: Array) -> Estimate:
     """Compute mean, standard deviation and 5, 50 and 95 % quantiles of draws of one quantity.
 
     Draws may be infinite, for example the peak slip of a curve without a peak. The mean is then
-    infinite too, and the standard deviation is NaN.
+    infinite too, the standard deviation is NaN, and a quantile is one of the draws.
 
     Args:
         parameter: The quantity: name, unit and meaning.
@@ -112,8 +112,8 @@ def curve_estimates(
 ) -> list[Estimate]:
     """Estimate features of the curve at one load from posterior draws.
 
-    In order: B, C, D, E (of a Magic Formula only), peak slip, largest traction within the tested
-    slip (it stays known where data end before the peak, D does not), slope at zero slip.
+    In order: B, C, D, E (of a Magic Formula only), peak slip (or infinity), largest traction within
+    the tested slip (known even where data end before the peak, unlike D), slope at zero slip [N].
 
     Args:
         law: The slip law, of k parameters.
@@ -139,8 +139,8 @@ class Agreement:
     """Difference between sampler and importance sampling, the largest over the free parameters.
 
     Attributes:
-        mean: Largest absolute difference of means over the sampler's standard deviation [-].
-        spread: Largest absolute difference of standard deviations over the sampler's [-].
+        mean: Largest absolute difference of means of z over the sampler's standard deviation [-].
+        spread: Largest absolute difference of standard deviations of z over the sampler's [-].
         pareto_k: Tail index of the importance weights; from 0.7 on they are not reliable [-].
     """
 
@@ -159,7 +159,8 @@ def agreement(draws: Draws, weighted: WeightedDraws) -> Agreement:
 
     Args:
         draws: Draws of the sampler.
-        weighted: Draws of the Laplace approximation with importance weights.
+        weighted: Draws of the Laplace approximations, in the same coordinates z, with importance
+            weights.
     """
     z = draws.z.reshape(-1, draws.z.shape[-1])
     mean = weighted.weights @ weighted.z

@@ -56,7 +56,8 @@ def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCe
 
     Args:
         samples: The samples.
-        known: Fields of `LoadCell` that are known, by name; they replace the defaults.
+        known: Fields of `LoadCell` that are known, by name; they replace the defaults. Any other
+            name is a TypeError.
     """
     defaults = {
         "zero_stability": max(0.15, 0.005 * float(np.abs(samples.traction_force).max())),
@@ -89,8 +90,9 @@ def prepare_fit(
     Raises:
         InsufficientData: There are fewer samples than the law's parameters plus two, traction is
             constant, or no load exceeds the load cell's zero stability.
-        DomainError: A force exceeds `MOST_FORCE`.
-        FitError: The priors allow no valid curve, no mode was found, or a matrix was singular.
+        DomainError: A force exceeds `MOST_FORCE` or is NaN.
+        FitError: The priors allow no valid curve, no curve comes near the forces, no start of a
+            search for a mode lies inside the support, or a numerical routine failed.
     """
     _require_enough(samples, law)
     require_forces(samples, load_cell)
@@ -107,7 +109,7 @@ def explain_numerical_errors(samples: SlipSamples, law: SlipLaw) -> Iterator[Non
         law: The slip law.
 
     Raises:
-        FitError: A linear algebra routine failed, a number overflowed or was divided by zero.
+        FitError: A `LinAlgError` or `ArithmeticError` was raised (NumPy's overflows only warn).
     """
     try:
         yield
@@ -166,12 +168,12 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
     """Check that forces are in range, that traction varies and that loads exceed the zero error.
 
     Args:
-        samples: The samples.
+        samples: The samples, at least one.
         cell: Prior knowledge of the load cell.
 
     Raises:
         InsufficientData: Traction is constant, or no load exceeds the cell's zero stability.
-        DomainError: The absolute value of a force exceeds `MOST_FORCE`.
+        DomainError: The absolute value of a force exceeds `MOST_FORCE`, or a force is NaN.
     """
     loads, traction = samples.normal_force, samples.traction_force
     for name, force in (("normal", loads), ("traction", traction)):
@@ -197,7 +199,8 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
 def _implausible(load: float, traction: float) -> str:
     """Return advice when the largest load is below the zero stability, by the largest forces [N].
 
-    The advice is about the unit, the columns, or the zero stability.
+    The advice is about the unit if both are below 1 N, about the columns if traction is more than
+    ten times the load, and else about the zero stability.
     """
     if max(load, traction) < 1:
         return "are the forces in kN? Name their unit in columns.toml, or give the zero stability"
@@ -210,9 +213,9 @@ def _implausible(load: float, traction: float) -> str:
 
 
 def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
-    """Return fixed values by name: run offset and noise correlation zero if no run has two blocks.
+    """Return fixed values by name: run offsets and noise correlation zero if no run has two blocks.
 
-    Empty otherwise.
+    Empty otherwise: all parameters are then sampled.
     """
     if len(blocks) > blocks.n_runs:
         return {}
@@ -222,8 +225,9 @@ def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
 def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
     """Choose starting points of the optimisation in coordinates z, shape (m, d).
 
-    Two are at the least-squares curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks a
-    dozen or two prior draws follow: few data allow several shapes, and one start finds one mode.
+    Two are at the least-squares curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks 12 to
+    23 of 400 prior draws follow, evenly from the best to the worst within the support (fewer if it
+    has fewer than 12): few data allow several shapes, and one start finds one mode.
     """
     blocks, law = posterior.blocks, posterior.law
     values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
@@ -249,7 +253,8 @@ class LawComparison:
 
     Attributes:
         names: Name of each law.
-        log_density: Log predictive density of all left-out runs under each law [-].
+        log_density: Log predictive density of all left-out runs under each law; 0 without
+            cross-validation [-].
         difference: Log predictive density of each law minus the chosen law's [-].
         standard_error: Standard error of that difference, from the scatter between runs [-].
         chosen: Index of the chosen law.
@@ -300,5 +305,5 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
 
 
 def _standard_error(differences: np.ndarray) -> float:
-    """Compute the standard error of the sum of one difference a run, from their scatter."""
+    """Compute the standard error of the sum of one difference a run, from their own scatter."""
     return float(np.sqrt(len(differences)) * np.std(differences))

@@ -28,7 +28,7 @@ class Laplace:
         mode: Coordinates of the mode, shape (d,).
         covariance: Inverse of the negative Hessian of the log density at the mode, with
             eigenvalues of at most 1, shape (d, d).
-        log_density: Log density at the mode.
+        log_density: Log density at the mode, up to the constant of the density that was given.
     """
 
     mode: Array
@@ -53,7 +53,8 @@ class LaplaceMixture:
     """A mixture of Student-t distributions with 8 degrees of freedom, one at each mode.
 
     Attributes:
-        modes: Laplace approximations, whose modes and covariances (as scale matrices) are used.
+        modes: Laplace approximations, m of them in d coordinates, whose modes and covariances (as
+            scale matrices) are used.
     """
 
     modes: tuple[Laplace, ...]
@@ -109,7 +110,10 @@ def gradient(log_density: LogDensity, z: Array) -> Array:
 
 
 def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array]:
-    """Compute a log density and its gradient by central differences at one point (d,)."""
+    """Compute a log density and its gradient (d,) by central differences at one point (d,).
+
+    Entries of the gradient are not finite where a step leaves the support.
+    """
     steps = STEP * np.eye(len(z))
     value, *both = log_density(np.concatenate([z[None], z + steps, z - steps]))
     ahead, behind = np.reshape(both, (2, len(z)))
@@ -163,8 +167,8 @@ def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
         starts: Starting points, shape (m, d).
 
     Returns:
-        The distinct modes whose log evidence is within `NEGLIGIBLE` of the largest, in the order of
-        their log densities, the highest first.
+        The modes whose log evidence is within `NEGLIGIBLE` of the largest and which are over one
+        standard deviation (Mahalanobis) apart, by log density, the highest first.
 
     Raises:
         FitError: No start lies inside the support.
@@ -220,7 +224,10 @@ def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
 
 
 def _climb(log_density: LogDensity, start: Array) -> Array:
-    """Maximise the log density from one start (d,) by L-BFGS-B; return where the search ended."""
+    """Maximise the log density from one start (d,) by L-BFGS-B; return where the search ended.
+
+    The search ends after 300 iterations at the latest.
+    """
 
     def negative(z: Array) -> tuple[float, Array]:
         value, slope = _value_and_gradient(log_density, z)
@@ -232,7 +239,10 @@ def _climb(log_density: LogDensity, start: Array) -> Array:
 
 
 def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array, Array]:
-    """Refine a mode by at most `steps` damped Newton steps; return it and the covariance there."""
+    """Refine a mode by at most `steps` damped Newton steps; return it and the covariance there.
+
+    It ends when neither a whole step nor 0.5, 0.25 or 0.1 of one raises the log density.
+    """
     covariance = _covariance(log_density, z)
     for _ in range(steps):
         slope = gradient(log_density, z)
@@ -251,7 +261,7 @@ def _covariance(log_density: LogDensity, z: Array) -> Array:
 
     Coordinates are standard normal a priori and data only narrow them. An eigenvalue of the
     precision below 1 is therefore a non-convexity of the density or a difference across the edge of
-    the support.
+    the support; it is raised to 1. Entries of the Hessian that are not finite count as 0.
     """
     precision = -hessian(log_density, z)
     precision = np.where(np.isfinite(precision), precision, 0.0)
@@ -291,10 +301,11 @@ def importance_draws(
 ) -> WeightedDraws:
     """Draw from a mixture of Laplace approximations and weight the draws by the posterior.
 
-    Pareto-smoothed importance sampling (Vehtari et al. 2024), a check of the sampler.
+    Pareto-smoothed importance sampling (Vehtari et al. 2024), a check of the sampler. Draws outside
+    the support have practically no weight; at least one has to lie inside.
 
     Args:
-        log_density: Log density of coordinates (w, d).
+        log_density: Log density of coordinates (w, d), -inf out of support.
         proposal: The mixture to draw from.
         n: Number of draws.
         rng: Source of randomness.

@@ -47,8 +47,8 @@ class PredictedForces:
 
     Attributes:
         force: Expected measured block mean of traction, without run offset [N].
-        slope: Derivative of `force` with respect to slip [N].
-        noise: Marginal standard deviation of the correlated noise [N].
+        slope: Slope of `force` over slip, across the spread of slip in the block [N].
+        noise: Marginal standard deviation of the correlated noise, s_0 + s_1 |force| [N].
     """
 
     force: Array
@@ -60,16 +60,16 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
     r"""Compute expected traction, its slope in slip and the standard deviation of noise by block.
 
     The mean of the law over a block is that over its loads, slip following load by regression, plus
-    what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` at
-    :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (three-point Gauss-Hermite, exact to fifth order in
-    :math:`\omega`). The load's rule has two points and the mean, variance and skewness of the
-    block's loads: a bump on a disc makes the loads skewed, and because peak slip depends on load
-    the force is curved in load.
+    what the spread of slip at one load, of standard deviation :math:`\omega`, adds to it,
+    :math:`(f_+ - 2 f_0 + f_-)/6` with the law's forces f at :math:`\kappa \pm \sqrt{3}\,\omega` and
+    :math:`\kappa` (three-point Gauss-Hermite, exact to fifth order in :math:`\omega`). The load's
+    rule has two points and the mean, variance and skewness of the block's loads: a bump on a disc
+    makes the loads skewed, and because peak slip depends on load the force is curved in load.
 
     Crosstalk puts the expected traction into the load, by the slope of force in load. With the
     measured traction there, the density of the traction would have a Jacobian, and an error in that
-    is multiplied by the number of blocks. The two differ by :math:`c\,f_n`, a five-hundredth, of
-    the noise.
+    is multiplied by the number of blocks. The two differ by :math:`c\,f_n`, crosstalk times the
+    slope in load, a five-hundredth, of the noise. True loads below 1e-9 N count as 1e-9 N.
 
     Args:
         blocks: The block means, n of them.
@@ -122,9 +122,10 @@ class LoadRule:
 
 
 def load_rule(blocks: SlipBlocks) -> LoadRule:
-    """Compute two loads, with shares, of each block's mean, variance and skewness of load.
+    """Compute two loads and their shares with each block's mean, variance and skewness of load.
 
-    Slip at the two loads follows load by the block's regression of slip on load.
+    Slip at the two loads follows load by the block's regression of slip on load. The load's
+    standard deviation counts as 0.1 % of its mean at least.
     """
     # A block at a single load gets a small spread, so that the slope in load is defined.
     spread = np.maximum(np.sqrt(blocks.load_variance), 1e-3 * blocks.normal_force)
@@ -145,6 +146,8 @@ def load_rule(blocks: SlipBlocks) -> LoadRule:
 
 def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
     """Compute the log density of each run's measured block means of traction.
+
+    Run offset, shared slip error and noise are integrated out.
 
     Args:
         blocks: The block means.

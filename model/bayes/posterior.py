@@ -19,11 +19,12 @@ class LoadCell:
     """Prior knowledge of the load cell, from its certificate or a check with weights.
 
     Attributes:
-        zero_stability: Scale of the force offset between runs (half-normal) [N].
-        gain_sd: Standard deviation of each channel's relative gain error [-].
-        bias_sd: Standard deviation of the normal channel's zero error [N].
-        crosstalk_sd: Standard deviation of the crosstalk: normal force that the normal channel
-            misses for each newton of traction [-].
+        zero_stability: Scale of the half-normal prior of the standard deviation of the force
+            offsets between runs [N].
+        gain_sd: Standard deviation of each channel's relative gain error, about 0 [-].
+        bias_sd: Standard deviation of the normal channel's zero error, about 0 [N].
+        crosstalk_sd: Standard deviation of the crosstalk, about 0: normal force that the normal
+            channel misses for each newton of traction [-].
     """
 
     zero_stability: float = 0.15
@@ -37,7 +38,7 @@ def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dic
 
     Priors of the law are broad. Only scales come from the data: the median load (for the peak slip)
     and the largest traction (for the noise). Priors of the load cell's errors are as narrow as
-    `load_cell` says. An unknown parameter of a law has a broad prior over its support.
+    `load_cell` says. Any other parameter of a law has a broad prior over its support, by `_vague`.
 
     Args:
         law: The slip law.
@@ -128,7 +129,8 @@ class SlipPosterior:
     def coordinates(self, values: Mapping[str, float]) -> Array:
         """Map values by name to coordinates (d,); 0, the prior median, for names that are absent.
 
-        Values of fixed parameters are ignored.
+        Values of fixed parameters are ignored; a value outside its prior's support gives an
+        infinite coordinate or NaN.
         """
         return np.array(
             [
@@ -141,7 +143,7 @@ class SlipPosterior:
     def log_prior(self, z: Array) -> Array:
         """Compute the log prior density at z (w, d), shape (w,).
 
-        -inf where the law is not valid at one of the loads of `_check_loads`.
+        -inf where the law is not valid (see `SlipLaw.valid`) at one of the loads of `_check_loads`.
         """
         k = len(self.law.parameters)
         with np.errstate(all="ignore"):  # an optimiser may try coordinates beyond any number
@@ -167,11 +169,11 @@ class SlipPosterior:
         return np.where(np.isfinite(log_density), log_density, -np.inf)
 
     def run_log_likelihood(self, z: Array) -> Array:
-        """Compute the log density of each run's blocks given z (w, d), shape (w, n_runs)."""
+        """Compute the log likelihood of each run's blocks given z (w, d), shape (w, n_runs)."""
         return run_log_likelihood(self.blocks, self.law, self.values(z))
 
     def without_runs(self, left_out: NDArray[np.bool_]) -> "SlipPosterior":
-        """Return the posterior with the same priors, without the data of some runs.
+        """Return the posterior with the same priors and fixed values, without data of some runs.
 
         Args:
             left_out: Whether to leave out each run, shape (n_runs,).

@@ -24,6 +24,8 @@ def least_squares_values(
 ) -> Array:
     """Fit a law's parameters to block means by robust least squares from many starts.
 
+    Of `N_TRIALS` prior draws and the prior median the best `N_CLIMBS` are optimised.
+
     Args:
         blocks: The block means.
         law: The slip law.
@@ -119,15 +121,19 @@ def choose_block_length(
     """Choose how many samples to average in a block, from residuals of a preliminary fit.
 
     A block is at least one autocorrelation time of the residuals long, long enough that the slip
-    sensors' noise averages to a tenth of the curve's slip scale, and that there are at most 3,000
-    blocks; but a run of median length keeps 5 blocks, and the standard deviation of slip in a block
-    stays within 0.3 slip scales. The last two limits come first.
+    sensors' noise averages to a tenth of the curve's slip scale (the slip at which its initial
+    slope reaches its largest force), and that there are at most 3,000 blocks. Two limits override
+    these: a run of median length keeps 5 blocks, and the standard deviation of true slip in nine of
+    ten blocks is at most 0.3 slip scales. The length is 1 at least.
 
     Args:
         samples: The samples.
         law: The slip law of the preliminary fit.
         priors: Priors of the law's parameters by name.
         rng: Source of randomness of the preliminary fit.
+
+    Raises:
+        FitError: The preliminary fit failed, as `least_squares_values` says.
     """
     run_length = int(np.median([part.stop - part.start for part in samples.slices()]))
     longest = max(1, run_length // MIN_BLOCKS_PER_RUN)
@@ -154,6 +160,8 @@ def choose_block_length(
 def _slip_scale(law: SlipLaw, values: Array, load: float) -> float:
     """Compute the slip at which a line of the initial slope reaches the largest force [-].
 
+    That is the largest force at slip ratios of 1e-4 to 1.
+
     Args:
         law: The slip law.
         values: Parameters of the law, shape (k,).
@@ -165,11 +173,11 @@ def _slip_scale(law: SlipLaw, values: Array, load: float) -> float:
 
 
 def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> int:
-    """Halve a block length until slip wanders little in nine of ten blocks, or it is 1.
+    """Halve a block length until true slip varies little within nine of ten blocks, or it is 1.
 
     Args:
         samples: The samples.
-        length: Longest number of samples in a block.
+        length: Number of samples in a block to start from, the longest.
         largest_spread: Limit of the slip's standard deviation within a block [-].
     """
     while length > 1:

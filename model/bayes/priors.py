@@ -21,11 +21,17 @@ class Prior(Protocol):
     """Prior distribution of one parameter; methods map arrays of any shape elementwise."""
 
     def value(self, z: ArrayLike) -> Array:
-        """Map standard normal coordinates z to values, the prior's quantiles at Phi(z)."""
+        """Map standard normal coordinates z to values, the prior's quantiles at Phi(z).
+
+        Phi is the standard normal's distribution function.
+        """
         ...
 
     def coordinate(self, value: ArrayLike) -> Array:
-        """Map values to standard normal coordinates z, the inverse of `value`."""
+        """Map values to standard normal coordinates z, the inverse of `value`.
+
+        Outside the prior's support the result is infinite or NaN.
+        """
         ...
 
     def describe(self) -> str:

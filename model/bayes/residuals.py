@@ -22,19 +22,21 @@ class Residuals:
     """Residuals of the fit, and tests on them.
 
     Attributes:
-        whitened: Residual of each block divided by its predictive standard deviation given the
-            blocks before it in its run; white N(0, 1) if the model holds, shape (n,).
-        lag_one: Correlation of successive whitened residuals within runs [-].
-        run_score: Each run's mean residual over its predictive standard deviation, shape
-            (n_runs,) [-].
+        whitened: Residual of each block less its expectation given the blocks before it in its run,
+            over its standard deviation given these; white N(0, 1) if the model holds, shape (n,).
+        lag_one: Correlation of successive whitened residuals within runs; 0 if no run has two
+            blocks [-].
+        run_score: Each run's mean residual over its predictive standard deviation, that of the
+            parameters included, shape (n_runs,) [-].
         inside: Fraction of run means within their predictive 90 % interval [-].
         inside_p: Two-sided binomial p-value of that fraction against 90 % [-].
         misfit: Root-mean-square residual that is a function of slip and load, over the largest
-            predicted traction; repeated measurements do not average it away [-].
-        misfit_p: p-value of the F test of `misfit` against the scatter between runs [-].
+            predicted traction; repeated measurements do not average it away; 0 if no two runs
+            share a slip and load [-].
+        misfit_p: p-value of the F test of `misfit` against the scatter between runs; then 1 [-].
         r_squared: Fraction of the variance of the fitted block means that is explained [-].
         rmse: Root-mean-square residual of block means [N].
-        rmse_over_load: Root-mean-square of each block's residual over its load [-].
+        rmse_over_load: Root-mean-square of each block's residual over its measured load [-].
     """
 
     whitened: Array
@@ -56,6 +58,9 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
         blocks: The block means.
         law: The slip law, of k parameters.
         values: Posterior draws of law and measurement parameters, shape (w, k + 8).
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
     """
     predicted = predict_blocks(blocks, law, values)
     residual = blocks.traction_force - predicted.force.mean(axis=0)
@@ -84,7 +89,8 @@ def _covariance_factors(
 ) -> list[Array]:
     """Return the lower Cholesky factor of each run's covariance, shape (blocks, blocks) [N].
 
-    It is the covariance of noise, run offset and slip errors at the parameters' posterior mean.
+    It is the covariance of noise, run offset and slip errors, at the posterior means of the noise's
+    standard deviation and correlation, the offset's standard deviation, and the slope.
 
     The matrix is built densely from its definition and not by the likelihood's filter, as a check
     of the filter.
@@ -104,7 +110,7 @@ def _covariance_factors(
 
 
 def _whiten(blocks: SlipBlocks, residual: Array, factors: list[Array]) -> Array:
-    """Divide each run's residuals by its lower Cholesky factor, shape (n,) [-]."""
+    """Solve L x = r for each run, r its residuals and L its lower Cholesky factor, (n,) [-]."""
     parts = np.split(residual, blocks.run_starts()[1:-1])
     return np.concatenate(
         [solve_triangular(L, r, lower=True) for L, r in zip(factors, parts, strict=True)]
@@ -116,7 +122,8 @@ def _run_scores(
 ) -> Array:
     """Divide each run's mean residual by its predictive standard deviation, (n_runs,) [-].
 
-    `run_spread` is the standard deviation of its predicted mean over the draws (n_runs,) [N].
+    That is the root of the squares of `run_spread`, the standard deviation of its predicted mean
+    over the draws (n_runs,) [N], and of the mean's scatter by the covariance with these `factors`.
     """
     sizes = np.diff(blocks.run_starts())
     scatter = np.array([np.linalg.norm(L.sum(axis=0)) for L in factors]) / sizes
@@ -182,9 +189,9 @@ def largest_slips(blocks: SlipBlocks) -> Array:
 def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
     """Split the residual into a part that repeats along the curve and the scatter between runs.
 
-    One-way analysis of variance: the groups are bins of slip at each load, a group's replicates
-    the means of the runs in it. Returns the standard deviation of the repeating part [N] and the
-    p-value of the F test; 0 and 1 if no group has two runs.
+    One-way analysis of variance: the groups are `SLIP_BINS` bins of slip at each of `load_levels`,
+    a group's replicates the means of the runs in it. Returns the standard deviation of the
+    repeating part [N] and the p-value of the F test; 0 and 1 if no group has two runs.
     """
     level = nearest_level(np.maximum(blocks.normal_force, 1e-9), load_levels(blocks))
     edges = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, SLIP_BINS + 1)[1:-1]))

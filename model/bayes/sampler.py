@@ -36,9 +36,9 @@ class Chains:
     """History of the ensembles, with the state from which sampling can continue.
 
     Attributes:
-        z: Kept coordinates, shape (ensembles, steps, walkers, d).
+        z: Kept coordinates, the starts first, shape (ensembles, steps, walkers, d).
         log_density: Log density at `z`, shape (ensembles, steps, walkers).
-        accepted: Fraction of proposals accepted so far, shape (ensembles,) [-].
+        accepted: Fraction of proposals accepted so far; 0 before the first, shape (ensembles,) [-].
         thin: Sampler moves for each kept step.
         random_keys: State of each ensemble's Mersenne Twister, shape (ensembles, 624).
         random_positions: Position in that state, shape (ensembles,).
@@ -70,10 +70,10 @@ def start_chains(
     thin: int,
     rng: np.random.Generator,
 ) -> Chains:
-    """Draw every walker's start from the mixture at the posterior's modes.
+    """Draw every walker's start from the mixture at the posterior's modes, inside the support.
 
     Args:
-        log_density: Log density of coordinates (w, d).
+        log_density: Log density of coordinates (w, d), -inf out of support.
         approximation: The mixture of Student-t distributions at the posterior's modes.
         ensembles: Number of independent ensembles.
         thin: Sampler moves for each kept step.
@@ -116,12 +116,14 @@ def advance(
     approximation: LaplaceMixture | None = None,
     threads: int = 2,
 ) -> Chains:
-    """Continue sampling every ensemble, the ensembles shared among threads.
+    """Continue sampling every ensemble from its last kept step, the ensembles shared among threads.
 
-    The result depends on the chains alone, not on the number of threads or of calls.
+    The random numbers continue from the state in the chains: the result does not depend on the
+    number of threads or of calls.
 
     Args:
-        log_density: Log density of coordinates (w, d); numpy and numba release the GIL in it.
+        log_density: Log density of coordinates (w, d), never NaN; numpy and numba release the GIL
+            in it.
         chains: Chains so far.
         steps: Number of kept steps to add, each of `chains.thin` moves.
         approximation: Mixture that proposes `JUMP_SHARE` of the moves, so that walkers jump between
@@ -129,7 +131,7 @@ def advance(
         threads: Number of ensembles that are sampled at once.
 
     Returns:
-        The longer chains.
+        The chains with the steps added.
 
     Raises:
         DomainError: The number of steps is below one.

@@ -122,7 +122,10 @@ def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
 
 
 def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
-    """Check that whitened residuals of successive blocks are hardly correlated."""
+    """Check that whitened residuals of successive blocks are hardly correlated.
+
+    The limit is `MAX_LAG_ONE`, or more for few blocks; passed if no run has two blocks.
+    """
     name = "residuals are white"
     pairs = len(blocks) - blocks.n_runs
     if pairs == 0:
@@ -138,7 +141,10 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
 
 
 def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
-    """Check that about 90 % of run means lie inside their predictive 90 % intervals."""
+    """Check that about 90 % of run means lie inside their predictive 90 % intervals.
+
+    Passed if the two-sided binomial p-value is above `MIN_P`: more may fail it as well as fewer.
+    """
     return Check(
         "run means are predicted",
         residuals.inside_p > MIN_P,
@@ -150,7 +156,10 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
 
 
 def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks) -> Check:
-    """Check that the misfit that all runs share is small or not significant."""
+    """Check that the misfit that all runs share is small or not significant.
+
+    It fails above `MAX_MISFIT` of the peak force with a p-value below `MISFIT_P`.
+    """
     return Check(
         "the law fits the shape of the curve",
         not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
@@ -162,7 +171,10 @@ def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks
 
 
 def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> Check:
-    """Check that run offsets explain little variance and are within three prior scales [N]."""
+    """Check that run offsets explain little variance and are within three prior scales [N].
+
+    Their share of the variance, with that of the fitted curve, is at most `MAX_OFFSET_SHARE`.
+    """
     tau = float(values[:, -1].mean())
     # Also what varies within runs, as slip is swept: an offset cannot stand in for that.
     curve = float(np.std(predict_blocks(blocks, law, values).force.mean(axis=0)))
@@ -182,8 +194,8 @@ def _weak(
 ) -> dict[str, str]:
     """Return the law's weakly identified parameters by name, with the reason as text.
 
-    Weak are a contraction below `MIN_CONTRACTION` and, of a law with a shape factor, shape and
-    friction if `slip_reach` is below `MIN_REACH`.
+    Weak are sampled parameters with a contraction below `MIN_CONTRACTION` and, of a law with a
+    shape factor, shape and friction if `slip_reach` is below `MIN_REACH`.
     """
     names = [parameter.name for parameter in law.parameters]
     weak = {
@@ -205,6 +217,8 @@ def _weak(
 
 def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
     """Compute the largest tested slip over the median peak slip, the largest of all loads [-].
+
+    0 at loads where the median curve has no peak.
 
     Args:
         blocks: The block means.

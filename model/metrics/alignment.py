@@ -31,8 +31,12 @@ def align(predicted: Poses, tracked: Poses) -> RigidMotion:
     wrong start and a wrong heading, so aligned errors never stand alone.
 
     Args:
-        predicted: Predicted poses x, one path.
-        tracked: Tracked poses y at the same times, one path.
+        predicted: Predicted poses, positions x_i, one path.
+        tracked: Tracked poses, positions y_i, at the same times, one path.
+
+    Returns:
+        Rotation R by an angle within [-pi, pi], 0 if either path stays in one place, and
+        translation p.
     """
     x, y = predicted.position, tracked.position
     a, b = x - x.mean(axis=0), y - y.mean(axis=0)

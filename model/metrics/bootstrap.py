@@ -12,7 +12,7 @@ LEVEL = 0.9  # probability of the central interval
 
 
 class Interval(NamedTuple):
-    """A mean with its central 90 % interval, in the unit of the values.
+    """A mean over runs with its central 90 % bootstrap interval, in the unit of the values.
 
     Attributes:
         mean: Mean over runs.
@@ -32,7 +32,7 @@ def bootstrap_mean(values: Array, *, rng: np.random.Generator, draws: int = 4000
     ten different resamples: the interval is then rough, and too narrow.
 
     Args:
-        values: One value a run, shape (runs,).
+        values: One value a run, shape (runs,); with a NaN among them all results are NaN.
         rng: Source of randomness.
         draws: Number of resamples.
 

@@ -43,19 +43,23 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
         \hat\tau = \arg\min_\tau \min_{s, R, p}
             \frac{1}{2 n_\tau - 4} \sum_i |s R\,x(t_i + \tau) + p - y_i|^2
 
-    over the tracked poses :math:`y_i` whose shifted times lie within the path x. The scale s
-    absorbs a wrong speed, which would otherwise appear as a clock offset. The standard deviation is
-    the larger of two: by least squares with two independent errors a block, since errors of a
-    predicted path are correlated in time, and by the jackknife over `BLOCKS` blocks.
+    over the :math:`n_\tau` tracked positions :math:`y_i` whose shifted times lie within those of
+    the path x, with scale s, rotation R and shift p. The scale absorbs a wrong speed, which would
+    otherwise appear as a clock offset. The standard deviation is the larger of two: by least
+    squares with two independent errors in each of `BLOCKS` blocks of consecutive poses, since
+    errors of a predicted path are correlated in time, and by the jackknife over these blocks.
 
     Args:
         track: The track, six poses or more.
         path: The path, sampled densely.
 
     Raises:
-        InsufficientData: There are fewer than six poses, no offset brings enough of the track
-            within the path, the best offset is at the end of the search, its standard deviation is
-            `LARGEST_SD` or more, or another offset fits about as well.
+        InsufficientData: There are fewer than six poses, no offset brings four of them and half of
+            the track (poses and length) within the path's times, the best offset is the first or
+            last tried (half the path's duration either side of common middles), its standard
+            deviation is `LARGEST_SD` or more, or another offset, over `NEAR` standard deviations
+            plus 0.1 s away and with as many poses within or more, has a misfit below `AS_GOOD`
+            times the least.
     """
     if len(track) < FEWEST:
         raise InsufficientData(
@@ -104,17 +108,18 @@ def _require_one(offsets: Array, misfit: Array, value: float, least: float) -> N
 
 
 def _possible(track: Poses, path: Poses) -> Array:
-    """Return offsets, `STEP` apart, that shift the track's middle time into the path's [s]."""
+    """Return offsets, `STEP` apart, that put the track's middle time within the path's [s]."""
     middle = 0.5 * (track.t[0] + track.t[-1])
     reach = 0.5 * (path.t[-1] - path.t[0])
     return 0.5 * (path.t[0] + path.t[-1]) - middle + np.arange(-reach, reach + STEP, STEP)
 
 
 def _misfit(track: Poses, path: Poses, offset: float, *, share: float = SHARE) -> float:
-    """Compute the squared distances after the fit over the degrees of freedom at an offset [m2].
+    """Compute the misfit at an offset: squared distances over their degrees of freedom [m2].
 
-    Infinite if fewer than four poses, or less than `share` of the track's poses or of its length,
-    lie within the path's times.
+    The distances are those that remain when the path is moved, turned and scaled to fit. Infinite
+    if fewer than four poses, or less than `share` of the track's poses or of its length, lie within
+    the path's times.
     """
     at = track.t + offset
     inside = (at >= path.t[0]) & (at <= path.t[-1])
@@ -136,7 +141,8 @@ def _centred(poses: Poses) -> NDArray[np.complex128]:
 def _parabola(offsets: Array, misfit: Array, best: int) -> tuple[float, float]:
     """Fit a parabola at the least misfit; return its minimum [s] and second derivative [m2/s2].
 
-    Without a finite positive second derivative the offset at `best` and zero are returned.
+    It passes through the misfits [m2] at index `best` and its two neighbours. Without a finite
+    positive second derivative the offset at `best` and zero are returned.
     """
     before, here, after = misfit[best - 1 : best + 2]
     second = (before - 2 * here + after) / STEP**2
@@ -148,7 +154,8 @@ def _parabola(offsets: Array, misfit: Array, best: int) -> tuple[float, float]:
 def _sd_of_fit(misfit: float, curvature: float) -> float:
     """Compute the offset's standard deviation by least squares with two errors a block [s].
 
-    Infinite if the misfit's second derivative `curvature` is not positive.
+    From the least misfit [m2] and its second derivative `curvature` [m2/s2]; infinite if that is
+    not positive.
     """
     return float(np.sqrt(2 * misfit / (2 * BLOCKS * curvature))) if curvature > 0 else np.inf
 
@@ -156,7 +163,8 @@ def _sd_of_fit(misfit: float, curvature: float) -> float:
 def _sd_of_blocks(track: Poses, path: Poses, offsets: Array) -> float:
     """Compute the jackknife's standard deviation of the offset, leaving out each block [s].
 
-    Infinite if without some block the least misfit is at the end of `offsets`.
+    Infinite if without some block the least misfit is at either end of `offsets` [s], as when no
+    offset keeps all other poses of the track within the path's times.
     """
     found = []
     for block in np.array_split(np.arange(len(track)), BLOCKS):

@@ -25,12 +25,13 @@ class Consistency:
     """One statistic of a track, with the interval of that statistic over the ensemble's draws.
 
     Attributes:
-        name: One of `STATISTICS`.
+        name: One of `STATISTICS`; nees: normalised error squared over its dimension; along, cross
+            (to the left of the direction of travel), yaw: error, ensemble mean minus track.
         value: The statistic of the track [-] for nees, [m] for along and cross, [rad] for yaw.
         low: Lower end of the draws' central 95 % interval, in the same unit.
         high: Upper end of the draws' central 95 % interval, in the same unit.
-        p_value: Two-sided p-value: twice the share of draws at least as far out as the track, on
-            the side with fewer of them, at most 1 [-].
+        p_value: Two-sided p-value: twice the share of draws, the track counted among them, at
+            least as far out as the track, on the side with fewer of them, at most 1 [-].
     """
 
     name: str
@@ -41,7 +42,7 @@ class Consistency:
 
     @property
     def consistent(self) -> bool:
-        """Whether the track's value lies from `low` to `high`."""
+        """Whether the track's value lies from `low` to `high`, ends included."""
         return self.low <= self.value <= self.high
 
 
@@ -55,13 +56,16 @@ def consistency(
     r"""Compare statistics of a track with the same statistics of draws with tracker noise.
 
     Statistics: the mean over time of the normalised error squared
-    :math:`e_i^T P_i^{-1} e_i / k`, which is about 1, larger where the ensemble is too narrow and
-    smaller where it is too wide; and the signed mean over time of the error (ensemble mean minus
-    track) along, across and of yaw, which distinguish a wrong speed from a wrong heading.
+    :math:`e_i^T P_i^{-1} e_i / k`, with e_i the track minus the ensemble's mean and P_i the
+    covariance of the draws with noise, which is about 1, larger where the ensemble is too narrow
+    and smaller where it is too wide; and the signed mean over time of the error (ensemble mean
+    minus track) along and to the left of the mean's direction of travel, and of yaw, which
+    distinguish a wrong speed from a wrong heading.
 
     Args:
         draws: x, y, yaw of every draw at the track's times, shape (m, n, 3) [m, m, rad].
-        observed: Tracked x, y, yaw, shape (n, 3) [m, m, rad]; with any yaw NaN, k is 2.
+        observed: Tracked x, y, yaw, shape (n, 3) [m, m, rad]; k is 3, or 2 (x and y) with any NaN
+            yaw.
         covariance: The tracker's covariance at each time, shape (n, 3, 3).
         rng: Source of randomness of the tracker's noise.
 
@@ -93,7 +97,8 @@ def nees(points: Array, draws: Array) -> Array:
         draws: The ensemble's m draws of the points at the same times, shape (m, n, k).
 
     Returns:
-        :math:`e^T P^{-1} e / k`, with mean and covariance P of the ensemble, shape (p, n) [-].
+        :math:`e^T P^{-1} e / k`, with e the point minus the ensemble's mean and P the ensemble's
+        covariance at that time, shape (p, n) [-].
     """
     mean = draws.mean(axis=0)
     away = draws - mean
@@ -107,7 +112,7 @@ def nees(points: Array, draws: Array) -> Array:
 def _statistics(points: Array, draws: Array) -> Array:
     """Compute the statistics of p paths (p, n, k) against an ensemble (m, n, k).
 
-    Rows of the result, shape (k + 1, p): NEES over its dimension k [-]; mean over time of the
+    Rows of the result, shape (k + 1, p): mean over time of NEES / k [-]; mean over time of the
     ensemble's mean minus the path along the mean's direction of travel and to the left of it [m];
     mean over time of the ensemble's mean yaw minus the path's [rad], only if k = 3.
     """

@@ -19,7 +19,8 @@ class Difference:
         median: Median of the difference, in the quantities' unit.
         low: 5 % quantile of the difference.
         high: 95 % quantile of the difference.
-        probability: Probability that the second quantity is larger than the first [-].
+        probability: Probability that the second quantity is larger than the first, with half of
+            the ties [-].
     """
 
     median: float
@@ -39,7 +40,8 @@ def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Diff
     .. math::
         P(b > a) = \frac{1}{n m} \sum_{i, j} \left( [b_j > a_i] + \tfrac12 [b_j = a_i] \right)
 
-    over all pairs; quantiles are of the differences of `DRAWS` pairs drawn at random.
+    over all pairs, [ ] being 1 where it holds and else 0; the 5, 50 and 95 % quantiles are of the
+    differences of `DRAWS` pairs drawn at random.
 
     Args:
         first: Draws of a, shape (n,).

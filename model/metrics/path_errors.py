@@ -47,9 +47,10 @@ class RelativeError:
 
     Attributes:
         distance: Distance travelled between the two poses of a pair [m].
-        pairs: Number of pairs of poses that are this distance apart.
-        position: Root mean square error of position [m]; NaN without pairs or headings.
-        yaw: Root mean square error of heading [rad]; NaN without pairs or headings.
+        pairs: Number of pairs of poses that are this distance apart, to a tenth of it.
+        position: Root mean square error of the displacement from the first pose of a pair, in its
+            frame, to the second [m]; NaN without pairs or if a heading is missing.
+        yaw: Root mean square error of the turn between them [rad]; NaN likewise.
     """
 
     distance: float
@@ -74,13 +75,15 @@ class PathErrors:
         yaw: Root mean square error of heading; NaN if a heading is missing [rad].
         largest: Largest distance of a predicted from a tracked position [m].
         final_distance: Distance of the last predicted from the last tracked position [m].
-        final_yaw: Last predicted minus last tracked heading, in [-pi, pi) [rad].
+        final_yaw: Last predicted minus last tracked heading, in [-pi, pi), or NaN [rad].
         ate_aligned: Root mean square distance after alignment over SE(2) [m].
-        alignment_yaw: Angle by which alignment rotated the predicted path [rad].
+        alignment_yaw: Angle by which alignment rotated the predicted path, positive left [rad].
         alignment_shift: Distance by which alignment moved the first predicted pose [m].
         relative: Relative pose errors, one for each of `DISTANCES`.
-        radius: Turning radius of the predicted and of the tracked path, positive to the left [m].
-        yaw_rate: Mean yaw rate of the predicted and of the tracked path [rad/s].
+        radius: Turning radius of the predicted and of the tracked path, positive to the left;
+            infinite if straight, NaN if a heading is missing or for fewer than four poses [m].
+        yaw_rate: Mean yaw rate of the predicted and of the tracked path, positive to the left; NaN
+            if a heading is missing [rad/s].
     """
 
     poses: int
@@ -171,8 +174,9 @@ def path_errors(predicted: Poses, tracked: Poses) -> PathErrors:
 def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> RelativeError:
     r"""Compute the relative pose error over a distance, starting at every pose in turn.
 
-    For poses i and j of the track about that distance apart along it, the error is that of
-    :math:`(T_i^{-1} T_j)^{-1} \hat T_i^{-1} \hat T_j`, T tracked and :math:`\hat T` predicted.
+    For poses i and j of the track about that distance apart along it (see `pairs_by_distance`), the
+    error is that of :math:`(T_i^{-1} T_j)^{-1} \hat T_i^{-1} \hat T_j`, T tracked and
+    :math:`\hat T` predicted. NaN without such pairs, or if any heading is missing.
 
     Args:
         predicted: Predicted poses at the track's times.
@@ -196,7 +200,8 @@ def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indic
         distance: Distance wanted [m]; pairs that miss it by more than a tenth are left out.
 
     Returns:
-        Indices of the first and of the second pose of each pair, each of shape (pairs,).
+        Indices of the first and of the second pose of each pair, each of shape (pairs,), possibly
+        empty.
     """
     gap = np.abs(travelled[None, :] - travelled[:, None] - distance)
     gap[np.tril_indices(len(travelled))] = np.inf

@@ -36,7 +36,7 @@ class EnsembleScores:
 
 
 def centred(draws: Array, observed: Array) -> Array:
-    """Shift observed headings by whole turns to within half a turn of the ensemble's mean heading.
+    """Shift observed headings by whole turns to within half a turn of the draws' mean heading.
 
     Args:
         draws: x, y, yaw of every draw at every time, shape (m, n, 3) [m, m, rad].
@@ -70,7 +70,7 @@ def ensemble_scores(draws: Array, observed: Array) -> EnsembleScores:
     """Compute mean scores of an ensemble against a track at the same times.
 
     Energy score and CRPS are the unbiased ("fair") estimates for a finite ensemble; for a single
-    draw they are its distance and absolute error.
+    draw they are its distance and absolute error. Tracked yaw may differ by whole turns.
 
     Args:
         draws: x, y, yaw of every draw at every time, the tracker's noise included where it is
@@ -99,6 +99,8 @@ def ensemble_scores(draws: Array, observed: Array) -> EnsembleScores:
 def crps(draws: Array, observed: Array) -> Array:
     r"""Compute the continuous ranked probability score :math:`E|X-y| - E|X-X'|/2`.
 
+    X and X' are two different draws, y is the observed value; the result is NaN where y is.
+
     Args:
         draws: Values of every draw, shape (m, ...).
         observed: Observed values, shape (...).
@@ -117,6 +119,8 @@ def crps(draws: Array, observed: Array) -> Array:
 
 def energy_score(draws: Array, observed: Array) -> Array:
     r"""Compute the energy score :math:`E|X-y| - E|X-X'|/2` of points, the multivariate CRPS.
+
+    X and X' are two different draws of a point, y is the observed one, | | the Euclidean length.
 
     Args:
         draws: Points of every draw, shape (m, n, d).

@@ -25,15 +25,16 @@ def fitted_radius(poses: Poses) -> float:
     .. math::
         p_i = c + a (\sin\psi_i, -\cos\psi_i) + b (\cos\psi_i, \sin\psi_i)
 
-    Linear least squares over centre c, a and b; the radius is :math:`\sqrt{a^2 + b^2}` with the
-    sign of a, and b/a is the tangent of the angle from the heading to the path. Holds for any turn,
-    also beyond a full one, where the chord between the first and the last pose is of no use.
+    for position p_i and heading psi_i; linear least squares over centre c, a and b. The radius is
+    :math:`\sqrt{a^2 + b^2}` with the sign of a, and b/a is the tangent of the angle from the
+    heading to the path. Holds for any turn, also beyond a full one, where the chord between the
+    first and the last pose is of no use.
 
     Args:
         poses: One path of four or more poses.
 
     Returns:
-        Radius, positive for a left turn; infinite if the headings span less than 5 degrees;
+        Radius, positive for a left turn; plus infinity if the headings span less than 5 degrees;
         NaN if a heading is missing or there are fewer than four poses [m].
     """
     if not poses.has_yaw or len(poses) < 4:

@@ -39,9 +39,9 @@ def brush(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike, q: ArrayLike = 1.0) -
         \frac{f}{F_n} = \operatorname{sgn}(\sigma)\, \mu_s
             \bigl[3\psi (1 - \psi)^2 + q\,(3\psi^2 - 2\psi^3)\bigr]
 
-    The first term is the force of the bristles that stick, the second that of those that slide.
-    With q = 1 it is Pacejka's mu (3 psi - 3 psi² + psi³). Odd, slope K at zero slip, constant at
-    q·mu_s from full sliding on; once continuously differentiable.
+    with psi of `sliding_share`. The first term is the force of the bristles that stick, the second
+    that of those that slide. With q = 1 it is Pacejka's mu (3 psi - 3 psi² + psi³). Odd, slope K at
+    zero slip, constant at q·mu_s from full sliding (psi = 1) on; once continuously differentiable.
 
     Args:
         sigma: Material slip ratio [-].
@@ -67,7 +67,8 @@ def brush_slope(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike, q: ArrayLike = 
     .. math::
         \frac{f'}{F_n} = K (1 - \psi) \bigl(1 - (3 - 2q)\psi\bigr)
 
-    Zero at the peak, psi = 1/(3 - 2q), and from full sliding, psi = 1, on.
+    with psi of `sliding_share`. Zero at the peak, psi = 1/(3 - 2q), and from full sliding, psi = 1,
+    on.
 
     Args:
         sigma: Material slip ratio [-].
@@ -103,7 +104,7 @@ def static_friction_from_peak(mu: ArrayLike, q: ArrayLike) -> Array:
 
 @dataclass(frozen=True)
 class Brush(ProportionalLaw):
-    """The brush model as a slip law, with bristle stiffness and friction proportional to load.
+    """The brush model as a slip law, its force proportional to load at every slip ratio.
 
     It is derived for theoretical slip, the material slip of `SlipDefinition.MATERIAL`. Slip of
     another definition must be converted first.

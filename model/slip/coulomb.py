@@ -62,7 +62,7 @@ def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: A
         q: Kinetic over static friction [-].
 
     Returns:
-        Friction over static friction, in (q, 1], even in `kappa` [-].
+        Friction over static friction, from q to 1, even in `kappa` [-].
     """
     q = np.asarray(q)
     return q + (1 - q) * np.exp(-(_slip_past_breakaway(kappa, kappa_c, kappa_s) ** 2))
@@ -76,8 +76,9 @@ def coulomb_stribeck(
     .. math::
         f / F_n = \mu\, \sigma(\kappa/\kappa_c)\, \beta(\kappa)
 
-    Rises with slope K at zero slip, peaks at mu where the slip is kappa_c, falls to q·mu. Odd,
-    analytic at zero slip and once continuously differentiable everywhere.
+    with kappa_c of `breakaway_slip`, sigma of `regularised_sign` and beta of `stribeck_fall`. Rises
+    with slope K at zero slip, peaks at mu where the slip is kappa_c, falls to q·mu. Odd, analytic
+    at zero slip and once continuously differentiable everywhere.
 
     Args:
         kappa: Slip ratio [-].
@@ -107,8 +108,8 @@ def coulomb_stribeck_slope(
     .. math::
         \frac{f'}{F_n} = K (1 - u^2) - 2 \mu (1 - q) \frac{z}{\kappa_s} e^{-z^2}
 
-    The first term is non-zero only below the peak, the second only beyond it; both vanish at
-    kappa_c.
+    with u of `regularised_sign` and z of `stribeck_fall`, for kappa >= 0; even. The first term is
+    non-zero only below the peak, the second only beyond it; both vanish at kappa_c.
 
     Args:
         kappa: Slip ratio [-].
@@ -125,7 +126,7 @@ def coulomb_stribeck_slope(
 
 
 def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike) -> Array:
-    """Compute z, slip beyond break-away over Stribeck slip, clipped to [0, 40]."""
+    """Compute z, absolute slip ratio less kappa_c, over Stribeck slip kappa_s, within [0, 40]."""
     # Beyond 40 Stribeck slips exp(-z²) is zero in double precision; the bound keeps infinite slip
     # (a locked leg by material slip) from giving inf·0.
     past = (np.abs(np.asarray(kappa)) - np.asarray(kappa_c)) / np.asarray(kappa_s)

@@ -16,7 +16,8 @@ class SlipCurve:
     Attributes:
         law: The slip law, of k parameters.
         values: Posterior mean of the law's parameters, shape (k,).
-        covariance: Posterior covariance of the law's parameters, shape (k, k).
+        covariance: Posterior covariance of the law's parameters, shape (k, k); zero for the
+            thesis's curve, which has none.
         definition: Slip definition that the values were fitted in.
         load_range: Smallest and largest load that was tested [N].
         slip_range: Smallest and largest slip ratio that was tested [-].
@@ -42,6 +43,7 @@ class SlipCurve:
 
         Raises:
             DefinitionMismatch: `definition` is not the curve's.
+            ValueError: `definition` is no name of a slip definition.
         """
         require_definition(definition, self.definition)
         return self.law.force(slip, load, self.values)

@@ -16,7 +16,9 @@ from model.slip.law import Array
 
 
 class SlipDefinition(StrEnum):
-    """What a slip ratio is divided by.
+    """Definition of a slip ratio: what the difference of the two surface speeds is divided by.
+
+    v_l is the speed of the leg's surface at the contact, v_g that of the ground.
 
     Attributes:
         MATERIAL: (v_l - v_g) / v_l, Eq. (4-44): the rig's; Pacejka's theoretical slip. 1 when the
@@ -40,7 +42,7 @@ def slip_ratio(
     Args:
         speed_leg: v_l = omega_l·r_l, Eq. (4-43) [m/s].
         speed_ground: v_g = omega_g·r_g, Eq. (4-43) [m/s].
-        definition: Slip definition, which names the divisor.
+        definition: Slip definition, which names the divisor; ValueError for an unknown name.
 
     Returns:
         Slip ratio [-]; where the divisor is zero infinite, or NaN if both speeds are zero.
@@ -71,11 +73,13 @@ def convert_slip(
         target: Definition of the result.
 
     Returns:
-        Slip ratio in `target`'s definition, infinite at the limits named in `SlipDefinition` [-].
+        Slip ratio in `target`'s definition, infinite at the limits named in `SlipDefinition`; NaN
+        stays NaN [-].
 
     Raises:
         DomainError: The definitions differ and a slip ratio lies outside the range of `source`'s (a
             disc would turn backwards).
+        ValueError: A definition's name is unknown.
 
     >>> float(convert_slip(0.5, "material", "travel"))
     1.0
@@ -107,7 +111,8 @@ def walk_slip_from_material(slip: ArrayLike, leg_angle: ArrayLike) -> Array:
         \kappa_{walk} = \frac{\kappa_{rig}}{1 + \sin\theta - \kappa_{rig}}
 
     Eq. (4-31) divides by the hip-relative speed of the contact point, not by the material's flow
-    through the contact, so the same contact has a different number there.
+    through the contact, so the same contact has a different number there. Infinite where the slip
+    is 1 + sin(theta).
 
     Args:
         slip: Material slip ratio, Eq. (4-44) [-].
@@ -129,6 +134,7 @@ def require_definition(found: SlipDefinition | str, expected: SlipDefinition | s
 
     Raises:
         DefinitionMismatch: The two definitions differ.
+        ValueError: One of them is no name of a slip definition.
     """
     if SlipDefinition(found) is not SlipDefinition(expected):
         raise DefinitionMismatch(str(found), str(expected))

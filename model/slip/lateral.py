@@ -46,9 +46,9 @@ def lateral_slip(alpha: ArrayLike) -> Array:
     Eq. (4-24) takes.
 
     Args:
-        alpha: Slip angle [rad].
+        alpha: Slip angle, from -pi/2 to pi/2 [rad].
 
     Returns:
-        Lateral slip ratio in [-1, 1] [-].
+        Lateral slip ratio, from -1 to 1 [-].
     """
     return np.asarray(alpha, dtype=float) / (np.pi / 2)

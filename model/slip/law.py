@@ -78,11 +78,13 @@ class SlipLaw(Protocol):
         ...
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return at which loads the curve has the law's shape, for values inside the support.
+        """Return where the curve has the law's shape: one peak at most, and no change of sign.
+
+        The result broadcasts against `load` and `values`.
 
         Args:
             load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
+            values: Parameter values within their bounds, one entry a parameter.
         """
         ...
 

@@ -24,7 +24,8 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
 
     Args:
         name: A key of `LAWS`.
-        options: Fields of the law's class, such as `curvature` of the Magic Formula.
+        options: Fields of the law's class, such as `curvature` of the Magic Formula; their values
+            are not checked.
 
     Returns:
         The law.
@@ -43,7 +44,7 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
 
 
 def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:
-    """Raise `DomainError` with the nearest known name unless `found` is one of `known`."""
+    """Raise `DomainError` unless `found` is one of `known`; it names these and the nearest."""
     if found in known:
         return
     nearest = get_close_matches(found, known, n=1, cutoff=0.3)

@@ -20,8 +20,9 @@ def magic_formula(
         f = D \sin\bigl(C \arctan(B\kappa - E (B\kappa - \arctan B\kappa))\bigr)
 
     The thesis's text lost the two pairs of brackets; its listing has them. Odd in `kappa` and
-    `D`; slope B·C·D at the origin. For E <= 1 the arctangent's argument grows with slip and
-    |f| <= |D|; above, the curve turns over and changes sign at large slip.
+    `D`; slope B·C·D at the origin. For E <= 1 the outer arctangent's argument grows with slip, and
+    up to C = 2 the curve keeps its sign; for E > 1 it turns over and changes sign at large slip.
+    NaN at infinite slip unless E < 0.
 
     Args:
         kappa: Slip ratio [-].
@@ -50,6 +51,8 @@ def magic_formula_slope(
         f' = D \cos(C \arctan\varphi)\, \frac{C}{1+\varphi^2}\, \varphi', \qquad
         \varphi' = B\Bigl(1 - E\,\frac{(B\kappa)^2}{1+(B\kappa)^2}\Bigr)
 
+    with phi the argument of the outer arctangent in `magic_formula`.
+
     Args:
         kappa: Slip ratio [-].
         B: Stiffness factor [-].
@@ -70,7 +73,7 @@ def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
     .. math::
         E = \frac{B x_m - \tan\frac{\pi}{2C}}{B x_m - \arctan B x_m}
 
-    Holds for C > 1 (below, the curve has no peak). E tends to minus infinity as x_m tends to 0.
+    Holds for C > 1 (below, the curve has no peak). E tends to minus infinity as x_m tends to 0 [-].
     E <= 1, so that x_m is the only peak, needs tan(pi/2C) >= arctan(B x_m): at every x_m only if
     C < 1.56472; the thesis's 1.564 is 0.0007 below.
 
@@ -121,7 +124,11 @@ class MagicFormula:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The parameters K, C, mu and those of the law's options, in the order of `values`."""
+        """The parameters in the order of `values`: K, C, mu and those of the options.
+
+        These are x_m/Fn for the curvature "peak" or E for "constant"; then, with
+        `load_sensitivity`, the exponents of mu and of K.
+        """
         return (
             *_COMMON,
             *((_CURVATURE[self.curvature],) if isinstance(self.curvature, str) else ()),
@@ -132,7 +139,7 @@ class MagicFormula:
         """Compute the Magic Formula's coefficients B, C, D, E at a load from parameter values.
 
         Args:
-            load: Normal force [N].
+            load: Normal force, positive [N].
             values: Parameter values, one entry a parameter.
 
         Returns:
@@ -174,7 +181,9 @@ class MagicFormula:
         return magic_formula_slope(slip, *self.coefficients(load, values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return at which loads E <= 1, so that the curve has one peak and keeps its sign.
+        """Return where E <= 1, so that the curve has one peak and keeps its sign.
+
+        The result has the shape of E: of the values alone, or (), unless E depends on load.
 
         Args:
             load: Normal force, positive [N].
@@ -183,7 +192,9 @@ class MagicFormula:
         return self.coefficients(load, values)[3] <= 1.0
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks, infinite without a peak (C <= 1) [-].
+        """Compute the slip ratio at which the force peaks, infinite without a peak [-].
+
+        There is none for C <= 1, and for E = 1 with a small C; see the function `peak_slip`.
 
         Args:
             load: Normal force, positive [N].
@@ -197,7 +208,8 @@ def peak_slip(B: ArrayLike, C: ArrayLike, E: ArrayLike) -> Array:
     r"""Compute the slip ratio of the Magic Formula's peak, the inverse of Eq. (4-27) [-].
 
     Solves Bx - E (Bx - arctan Bx) = tan(pi/2C) by bisection, since the left side grows with x for
-    E <= 1. Infinite where C <= 1, or where E = 1 keeps the left side below the right.
+    E <= 1; for E > 1 the result has no meaning. Infinite where C <= 1, where E = 1 keeps the left
+    side below the right, and where Bx would exceed 1e9.
 
     Args:
         B: Stiffness factor [-].

@@ -13,6 +13,8 @@ from model.slip.law import Array, Values
 class ProportionalLaw:
     """Methods of a `SlipLaw` whose traction over load does not depend on load.
 
+    A law adds its name and parameters, both attributes, and the methods `coefficients` and `peak`.
+
     Attributes:
         traction_over_load: Function from slip ratio and the law's coefficients to traction over
             load [-].
@@ -25,6 +27,8 @@ class ProportionalLaw:
     def coefficients(self, values: Values) -> tuple[Array, ...]:
         """Compute the coefficients of `traction_over_load` from parameter values, in its order.
 
+        Each law overrides this method.
+
         Args:
             values: Parameter values, one entry a parameter.
         """
@@ -32,6 +36,8 @@ class ProportionalLaw:
 
     def peak(self, values: Values) -> Array:
         """Compute the slip ratio at which traction peaks, infinite where it never falls [-].
+
+        Each law overrides this method.
 
         Args:
             values: Parameter values, one entry a parameter.
@@ -59,7 +65,9 @@ class ProportionalLaw:
         return np.asarray(load) * self.slope_over_load(slip, *self.coefficients(values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return True in the shape to which load and values broadcast: the shape is never lost.
+        """Return True everywhere, in the shape to which load and values broadcast.
+
+        The curve has the law's shape at every load, for values within their bounds.
 
         Args:
             load: Normal force, positive [N].
@@ -69,6 +77,8 @@ class ProportionalLaw:
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
         """Compute the slip ratio at which the force peaks, the same at every load [-].
+
+        Infinite where the force never falls; in the shape to which load and values broadcast.
 
         Args:
             load: Normal force, positive [N].

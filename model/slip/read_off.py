@@ -141,9 +141,11 @@ def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
         Peak force, slip of the peak, asymptote and initial slope.
 
     Raises:
-        DomainError: The arrays do not describe a curve; or the curve has no peak within its range,
-            fewer than three samples on the rise, ends before twice the peak's slip, or is still
-            falling there.
+        DomainError: The arrays are not 1-D and of one length, have fewer than two samples or one
+            that is not finite, or slip is negative or not increasing; or the curve has no positive
+            peak within its range, fewer than three samples beyond zero slip before it passes half
+            the peak, ends before twice the peak's slip, has fewer than two samples in the outer
+            half of its slip range, or ends more than 5 % of the peak away from the asymptote.
     """
     kappa, f = _as_curve(slip, force)
     x_m, D = _vertex(kappa, f)
@@ -164,13 +166,18 @@ def read_off(slip: ArrayLike, force: ArrayLike) -> Coefficients:
         B, C, D and E.
 
     Raises:
-        DomainError: See `curve_features` and `coefficients_from_features`.
+        DomainError: The curve does not meet the requirements of `curve_features`, or its features
+            give an asymptote outside 0 to the peak or E > 1.
     """
     return coefficients_from_features(curve_features(slip, force))
 
 
 def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
-    """Convert slip and force to arrays (n,); raise `DomainError` unless finite, slip increasing."""
+    """Convert slip and force to arrays (n,); raise `DomainError` if they are no curve.
+
+    A curve is 1-D arrays of one length, finite, of two samples or more, with slip increasing from
+    zero or above.
+    """
     kappa, f = np.asarray(slip, dtype=float), np.asarray(force, dtype=float)
     if kappa.ndim != 1 or kappa.shape != f.shape:
         raise DomainError(
@@ -188,7 +195,10 @@ def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
 
 
 def _vertex(kappa: Array, f: Array) -> tuple[float, float]:
-    """Return slip ratio and force of the peak: a parabola's through top sample and neighbours."""
+    """Return slip ratio and force [N] of the peak, of a parabola through top sample and neighbours.
+
+    Raises `DomainError` if the top sample is the first or the last, or is not positive.
+    """
     top = int(np.argmax(f))
     if top in (0, len(f) - 1) or f[top] <= 0:
         raise DomainError(
@@ -204,7 +214,10 @@ def _vertex(kappa: Array, f: Array) -> tuple[float, float]:
 
 
 def _initial_slope(kappa: Array, f: Array, D: float) -> float:
-    """Return the slope at zero slip [N], of an odd quintic fitted up to half the peak force D."""
+    """Return the slope at zero slip [N], of an odd quintic fitted up to half the peak force D.
+
+    Raises `DomainError` for fewer than three samples there, one at zero slip not counted.
+    """
     end = int(np.argmax(f > D / 2))
     rise = slice(1 if kappa[0] == 0 else 0, end)
     reach, count = kappa[end], len(kappa[rise])
@@ -218,7 +231,11 @@ def _initial_slope(kappa: Array, f: Array, D: float) -> float:
 
 
 def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
-    """Extrapolate the force to infinite slip [N], linearly in 1/slip from the outer half."""
+    """Extrapolate the force to infinite slip [N], linearly in 1/slip from the outer half.
+
+    Raises `DomainError` if the curve ends before twice the peak's slip `x_m`, has fewer than two
+    samples in that half, or ends more than 5 % of the peak force D away from the result.
+    """
     tail = kappa >= kappa[-1] / 2
     if kappa[-1] < 2 * x_m or np.count_nonzero(tail) < 2:
         raise DomainError(

@@ -42,16 +42,17 @@ def fit_walks(
 
     Args:
         robot: The robot as described.
-        table: The slip law at the rig's posterior mean.
+        table: The slip law at the posterior mean of its fit to the rig's data.
         walks: The tracked walks, one or more.
         prior: The prior.
         rng: Source of randomness of all draws, also of leg angles between encoder counts.
         threads: Number of walks computed at once.
-        progress: Called with the fraction done, 0 to 1.
+        progress: Called with the fraction done, from 0; ends below 1 if few rounds suffice.
 
     Raises:
-        InsufficientData: There is no walk, or IMU and walk share too little time.
-        WalkError: A walk diverged.
+        InsufficientData: There is no walk, or IMU and walk share less than a second.
+        WalkError: A walk diverged, the robot cannot stand at its start, or there is an IMU and the
+            leg angles are a periodic gait.
     """
     if not walks:
         raise InsufficientData("no walk to fit; name one or more with a track")
@@ -130,11 +131,14 @@ class WalkFit:
     def without(self, walk: int) -> WalkPosterior:
         """Return the posterior of all walks but one: the same draws, with new weights.
 
+        Steering and stride are drawn anew, and `best` is searched anew.
+
         Args:
-            walk: Index of the walk that is left out.
+            walk: Index of the walk that is left out; one out of range leaves none out.
 
         Raises:
             InsufficientData: The fit has only one walk.
+            WalkError: A walk at the new mode diverged, or the robot cannot stand at its start.
         """
         if len(self._names) < 2:
             raise InsufficientData("one walk leaves none to predict it from; name two or more")
@@ -169,7 +173,8 @@ class WalkFit:
         """Draw steering and stride given all else; return all parameters, shape (m, 14).
 
         `z` (m, 12), `mean` (m, 2) and `covariance` (m, 2, 2) are in standard normal coordinates;
-        the result is in the units of the prior.
+        the result is in the units of the parameters, the further offset of a wrongly mounted leg
+        last.
         """
         noise = self._rng.standard_normal((len(z), 2, 1))
         scale = self._density.prior.scale
@@ -197,10 +202,11 @@ class WalkFit:
     ) -> tuple[Array, tuple[float, ...]]:
         """Maximise a case's posterior from several starts; return the mode and all walks' misfits.
 
-        The mean is not used. On a kink of the posterior the mean lies on the side on which the walk
-        does not change, and its walk differs from the draws' walks. On a kink an optimisation may
-        also end early, so the best of several is refined at the finer step. The mode is in the
-        prior's units; a misfit is the mean squared whitened residual [-].
+        Only the walks `keep` are fitted. The mean is not used. On a kink of the posterior the mean
+        lies on the side on which the walk does not change, and its walk differs from the draws'
+        walks. On a kink an optimisation may also end early, so the best of several is refined at
+        the finer step. The mode is in the units of the parameters; a misfit is the mean squared
+        whitened residual [-].
         """
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]

@@ -61,7 +61,7 @@ class WeightedCaseDraws:
 
     Attributes:
         z: Draws in standard normal coordinates, shape (n, d).
-        case: Index of each draw's case, shape (n,).
+        case: Index of each draw's case among those that were sampled, shape (n,).
         weight: Weight of each draw, with sum one, shape (n,) [-].
         log_proposal: Log proposal density at each draw up to a constant, shape (n,).
     """
@@ -85,7 +85,8 @@ def weighted_draws(
 
     Args:
         modes: Gaussian of each case, in the order of the cases' indices.
-        log_density: Log posterior density at points (m, d) of cases (m,), shape (m,).
+        log_density: Log posterior density at points (m, d) of cases (m,), shape (m,), up to a
+            constant; called once a round.
         rng: Source of randomness.
         progress: Called with the fraction of the largest number of rounds done.
     """
@@ -187,7 +188,10 @@ def _draw(bumps: Sequence[_Bumps], rng: np.random.Generator) -> tuple[Array, NDA
 
 
 def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> Array:
-    """Compute a round's log proposal density at points (n, d) of cases (n,), up to a constant."""
+    """Compute a round's log proposal density at points (n, d) of cases (n,), up to a constant.
+
+    -inf at points of a case without proposals in the round.
+    """
     log = np.full(len(z), -np.inf)
     total = sum(each.shares.sum() for each in bumps)
     d = z.shape[1]

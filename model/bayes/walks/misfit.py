@@ -48,10 +48,10 @@ class TrackedWalk:
     Attributes:
         name: Name of the walk.
         legs: Leg angles from time zero on.
-        t: Times of the tracked poses by the clock of the leg angles; the prediction starts from the
-            first pose, shape (n,) [s].
+        t: Times of the tracked poses by the clock of the leg angles, increasing from zero or later;
+            the prediction is moved onto the first pose, shape (n,) [s].
         states: Tracked x, y [m] and yaw [rad], shape (n, 3).
-        covariance: The tracker's covariance of each pose, shape (n, 3, 3).
+        covariance: The tracker's covariance of x, y and yaw of each pose, shape (n, 3, 3).
         tilt: Roll and pitch by the robot's IMU; None without an IMU.
 
     Raises:
@@ -80,9 +80,9 @@ class WalkMisfit:
 
     Attributes:
         robot: The robot as described.
-        table: The slip law at the rig's posterior mean.
+        table: The slip law at the posterior mean of its fit to the rig's data.
         walk: The tracked walk, n poses.
-        options: How walks are computed.
+        options: Time step and contacts with which walks are computed.
         root: Whitening matrix: inverse of the lower Cholesky factor of the covariance of the
             differences, shape (k, k), with k = 3 (n - 1).
         tilt: Roll and pitch by the IMU, for comparison with walks; None without an IMU.
@@ -110,15 +110,16 @@ class WalkMisfit:
 
         Args:
             robot: The robot as described.
-            table: The slip law at the rig's posterior mean.
+            table: The slip law at the posterior mean of its fit to the rig's data.
             walk: The walk.
             spread: Errors of the walking model in one walk.
             rng: Source of randomness, for leg angles that encoder counts leave undetermined.
             threads: Number of walks computed at once.
 
         Raises:
-            WalkError: A walk diverged.
-            InsufficientData: IMU and walk share too little time.
+            WalkError: A walk diverged, the robot cannot stand at its start, or there is an IMU and
+                the leg angles are a periodic gait.
+            InsufficientData: IMU and walk share less than a second.
         """
         plain = WalkDraw(robot, middle(walk.legs), table)
         chosen = ensemble_step([plain], duration=float(walk.t[-1]))
@@ -137,12 +138,15 @@ class WalkMisfit:
 
     @property
     def size(self) -> int:
-        """Number of residuals of the poses and of roll and pitch."""
+        """Number of residuals: three for each pose but the first, and those of roll and pitch."""
         return len(self.root) + (0 if self.tilt is None else self.tilt.measured.size)
 
     @property
     def count(self) -> float:
-        """Effective number of independent residuals; roll and pitch count as one stride."""
+        """Effective number of independent residuals.
+
+        Those of the poses count in full, those of roll and pitch as many as one stride has.
+        """
         return len(self.root) + (0.0 if self.tilt is None else self.tilt.count)
 
     def residuals(self, state: LegState, *, threads: int) -> Array:
@@ -153,10 +157,11 @@ class WalkMisfit:
             threads: Number of walks computed at once.
 
         Returns:
-            Residuals of the poses, then of roll and pitch, shape (m, size) [-].
+            Residuals of the poses after the first, then of roll and pitch if there is an IMU, shape
+            (m, size) [-].
 
         Raises:
-            WalkError: A walk diverged.
+            WalkError: A walk diverged, or the robot cannot stand at its start.
         """
         walked = self._walked_with(state, threads)
         paths = bent(walked.poses, distance=state.stride, curvature=state.steering)
@@ -172,7 +177,7 @@ class WalkMisfit:
             threads: Number of walks computed at once.
 
         Raises:
-            WalkError: A walk diverged.
+            WalkError: A walk diverged, or the robot cannot stand at its start.
         """
         walked = self._walked_with(state, threads)
         no = np.zeros(len(state))
@@ -203,7 +208,7 @@ class WalkMisfit:
         return self._walked(draws, threads)
 
     def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PlanarWalk:
-        """Walk every draw at `_times`; roll and pitch are returned if there is an IMU."""
+        """Compute every draw's walk at `_times`, with roll and pitch if there is an IMU."""
         return walk_ensemble(
             draws, self._times(), options=self.options, threads=threads, tilt=self.tilt is not None
         )
@@ -215,9 +220,9 @@ class WalkMisfit:
         return np.linspace(0.0, end, max(round(end / step), 2) + 1)
 
     def _difference(self, paths: Poses) -> Array:
-        """Start m paths at the first tracked pose; subtract the later ones, shape (m, 3 (n - 1)).
+        """Move m paths onto the first tracked pose; return predicted minus later tracked poses.
 
-        Columns are x, y [m] and wrapped yaw [rad] of one pose after the other.
+        The shape is (m, 3 (n - 1)): x, y [m] and wrapped yaw [rad] of one pose after the other.
         """
         states = states_at(paths, self.walk.t)
         states = moved_onto(states, states[:, 0], self.walk.states[0])
@@ -239,7 +244,7 @@ class WalkMisfit:
         return total + self._of_step(several[0], rng, threads)
 
     def _of_step(self, legs: LegReference, rng: np.random.Generator, threads: int) -> Array:
-        """Compute the covariance of the time step's error from walks at the step and at half of it.
+        """Compute the covariance (k, k) of the time step's error, from walks at it and at half.
 
         The walks have small random leg offsets, since the error differs from path to path.
         """
@@ -254,7 +259,7 @@ class WalkMisfit:
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
     def _of_tracker(self, difference: Array) -> Array:
-        """Compute the covariance of tracker noise: of each pose, and of the first by its lever arm.
+        """Compute the covariance (k, k) of tracker noise, that of the first pose by its lever arm.
 
         Args:
             difference: Predicted minus tracked poses after the first, shape (k,).
@@ -284,7 +289,8 @@ class WalkMisfit:
     def _of_contacts(self, spread: ModelSpread, threads: int) -> Array:
         """Compute the covariance (k, k) due to uncertain stiffness and damping of contacts.
 
-        Each is moved by one standard deviation up and down. The effect depends on the gait: where
+        Each is moved by one standard deviation of its logarithm up and down, and half the
+        difference of the paths is taken as the error. The effect depends on the gait: where
         four legs are on the ground, contact stiffness determines how they share the load, and so
         the turn.
         """

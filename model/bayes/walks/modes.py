@@ -68,11 +68,11 @@ class ModeSearch:
     def modes(self, *, progress: Callable[[float], None]) -> list[Mode]:
         """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
 
-        Args:
-            progress: Called with the fraction done, 0 to 1.
+        Optimised are the case of no wrongly mounted leg and up to `CLIMBED` others that are within
+        `UNLIKELY` of the best; the rest keep a scan's Gaussian. `progress` gets the share done.
 
         Raises:
-            WalkError: A walk diverged.
+            WalkError: A walk diverged, or the robot cannot stand at its start.
         """
         plain, J = self.climb(None, np.zeros(WRONG + 1))
         progress(0.1)
@@ -108,6 +108,9 @@ class ModeSearch:
 
         Returns:
             Residuals of one walk after the other, shape (m, n) [-].
+
+        Raises:
+            WalkError: A walk diverged, or the robot cannot stand at its start.
         """
         values = z * self.prior.scale
         return np.concatenate(
@@ -128,7 +131,7 @@ class ModeSearch:
         return float((self.residuals(z[None], case)[0] ** 2).sum() + z @ z)
 
     def climb(self, case: Case, z: Array) -> tuple[Mode, Array]:
-        """Find the mode of a case by Gauss-Newton with a line search.
+        """Find the mode of a case by Gauss-Newton with a line search, `MOST_MOVES` moves at most.
 
         Args:
             case: The wrongly mounted leg, or None.
@@ -136,6 +139,9 @@ class ModeSearch:
 
         Returns:
             The mode as a Gaussian, and the Jacobian of the residuals at the mode, shape (n, 14).
+
+        Raises:
+            WalkError: A walk diverged, or the robot cannot stand at its start.
         """
         r, J = self._linearised(z, case)
         for _ in range(MOST_MOVES):
@@ -222,7 +228,10 @@ class ModeSearch:
         return Mode(case, z, np.asarray(covariance, dtype=float), evidence + log_probability)
 
     def _linearised(self, z: Array, case: Case) -> tuple[Array, Array]:
-        """Compute residuals (n,) at z (14,), and their Jacobian (n, 14) by central differences."""
+        """Compute residuals (n,) at z (14,), and their Jacobian (n, 14) by central differences.
+
+        Without a wrongly mounted leg the column of its further offset is zero.
+        """
         step = DIFFERENCE / self.prior.scale
         if case is None:  # without a wrongly mounted leg its offset moves nothing
             step = step[:WRONG]

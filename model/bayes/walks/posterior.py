@@ -61,7 +61,7 @@ class CaseFound:
         probability: Posterior probability of the case [-].
         offset: Posterior mean of the leg's own plus further offset, without the offset that all
             legs share; zero for no leg [rad].
-        sd: Posterior standard deviation of `offset` [rad].
+        sd: Posterior standard deviation of that offset; zero for no leg [rad].
     """
 
     case: Case
@@ -77,16 +77,18 @@ class WalkPosterior:
 
     Attributes:
         prior: The prior.
-        walks: Names of the walks, in the order of the cases' walk indices.
+        walks: Names of all walks of the fit, one left out included, in the order of the cases' walk
+            indices.
         cases: The cases: each a wrongly mounted leg, or None.
         values: Draws of the parameters in the order of `NAMES`, then the further offset of a
-            wrongly mounted leg, shape (n, 14), in the prior's units.
+            wrongly mounted leg, shape (n, 14), in the units of `model.bayes.walks.prior.UNITS` and
+            rad.
         case: Index into `cases` of each draw, shape (n,).
         weight: Weight of each draw, with sum one, shape (n,) [-].
         best: Parameters at the mode of the likeliest case, in the order of `values`, shape (14,).
         best_case: The likeliest case.
-        misfit: Mean squared whitened residual of each walk at `best`; about 1 or less if the model
-            holds [-].
+        misfit: Mean squared whitened residual of each walk, one left out included, at `best`; about
+            1 or less if the model holds [-].
     """
 
     prior: WalkPrior
@@ -115,7 +117,8 @@ class WalkPosterior:
         Args:
             n: Number of draws.
             rng: Source of randomness.
-            walk: Index of the walk that the states are for; None for a walk to come.
+            walk: Index of the walk that the states are for; None for a walk to come, in which only
+                a leg wrongly mounted in all walks has its further offset.
         """
         chosen = rng.choice(len(self.weight), size=n, p=self.weight)
         return state_in(self.values[chosen], self.case[chosen], self.cases, walk=walk)
@@ -124,7 +127,8 @@ class WalkPosterior:
         """Return one state of the legs, at the mode of the likeliest case.
 
         Args:
-            walk: Index of the walk that the state is for; None for a walk to come.
+            walk: Index of the walk that the state is for; None for a walk to come, in which only a
+                leg wrongly mounted in all walks has its further offset.
         """
         return legs_of(self.best[None], self.best_case, walk=walk)
 
@@ -140,7 +144,10 @@ class WalkPosterior:
         return values
 
     def contractions(self) -> tuple[Contraction, ...]:
-        """Compute prior and posterior moments of every parameter over all cases, by `NAMES`."""
+        """Compute prior and posterior moments of every parameter over all cases, as in `NAMES`.
+
+        A leg's offset includes the further offset of a leg wrongly mounted in all walks.
+        """
         values = self.with_wrong_legs()
         mean = self.weight @ values
         sd = np.sqrt(self.weight @ (values - mean) ** 2)
@@ -169,8 +176,8 @@ class WalkPosterior:
     def of_floor_alone(self, *, rng: np.random.Generator) -> "WalkPosterior":
         """Return the posterior for another robot on the same floor.
 
-        Only the parameters `FLOOR` keep their draws; all other parameters are drawn from the prior,
-        no leg is wrongly mounted, and `best` is zero but for `FLOOR`.
+        Only the parameters `FLOOR` keep their draws, with the same weights; all other parameters
+        are drawn from the prior, no leg is wrongly mounted, and `best` is zero but for `FLOOR`.
 
         Args:
             rng: Source of randomness of the prior's draws.

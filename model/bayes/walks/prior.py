@@ -82,7 +82,8 @@ class WalkPrior:
         spread: Standard deviations of the walking model's errors, drawn anew in each walk.
 
     Raises:
-        DomainError: A standard deviation is not positive or `wrong` is not a probability.
+        DomainError: A standard deviation is not positive, or `wrong` is not between 0 and 1, both
+            excluded.
     """
 
     offset_sd: float = float(np.radians(0.2))
@@ -98,7 +99,7 @@ class WalkPrior:
     spread: ModelSpread = field(default_factory=ModelSpread)
 
     def __post_init__(self) -> None:
-        """Check that standard deviations are positive and that `wrong` is a probability."""
+        """Check that standard deviations are positive, and `wrong` is above 0 and below 1."""
         names = (*NAMES, "wrong_leg")
         bad = [f"{name} {sd:g}" for name, sd in zip(names, self.scale, strict=True) if not sd > 0]
         if bad:
@@ -164,7 +165,11 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
         values: Parameters in the order of `NAMES`, then the further offset of a wrongly mounted
             leg, shape (m, 14); grip and slip stiffness as logarithms, post-peak drop about `FALL`.
         case: The wrongly mounted leg, or None.
-        walk: Index of the walk; None for a walk to come.
+        walk: Index of the walk; None for a walk to come, in which only a leg wrongly mounted in all
+            walks has its further offset.
+
+    Returns:
+        The state; offsets include the common one, the post-peak drop is held within `FALLS`.
     """
     offset = leg_offsets(values, case, walk=walk)
     grip, stiffness, fall, common, arc, steering, stride = values[:, N_LEGS:WRONG].T
@@ -187,7 +192,8 @@ def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
     Args:
         values: Parameters in the order of `NAMES`, then the further offset, shape (m, 14).
         case: The wrongly mounted leg, or None.
-        walk: Index of the walk; None for a walk to come.
+        walk: Index of the walk; None for a walk to come, in which only a leg wrongly mounted in all
+            walks has its further offset.
 
     Returns:
         Offsets, shape (m, 6) [rad].

@@ -26,6 +26,8 @@ class Terms:
 
     The last axes are steering, then stride, in units of their prior standard deviations.
 
+    r_0 are the whitened residuals without steering and stride, D their derivatives by the two.
+
     Attributes:
         square: :math:`r_0^T r_0` of each walk, shape (m, walks).
         slope: :math:`D^T r_0`, shape (m, walks, 2).
@@ -41,8 +43,9 @@ class Terms:
         """Compute the terms of one walk.
 
         Args:
-            residuals: Whitened residuals without steering and stride, shape (m, k).
-            bends: Derivatives of the residuals by steering and stride, shape (m, k, 2).
+            residuals: Whitened residuals without steering and stride, r_0, shape (m, k).
+            bends: Derivatives D of the residuals by steering and stride, in units of their prior
+                standard deviations, shape (m, k, 2).
         """
         transposed = np.swapaxes(bends, 1, 2)
         return cls(
@@ -77,12 +80,18 @@ class Terms:
         return -0.5 * (self.square.sum(axis=1) - explained) - 0.5 * np.linalg.slogdet(A)[1]
 
     def conditional(self) -> tuple[Array, Array]:
-        """Compute mean (m, 2) and covariance (m, 2, 2) of steering and stride given each draw."""
+        """Compute mean (m, 2) and covariance (m, 2, 2) of steering and stride given each draw.
+
+        They are in units of the prior standard deviations, given all walks of these terms.
+        """
         covariance = np.linalg.inv(np.eye(2) + self.curvature.sum(axis=1))
         return -(covariance @ self.slope.sum(axis=1)[..., None])[..., 0], covariance
 
     def squares_at(self, y: Array) -> Array:
-        """Compute each walk's sum of squared residuals (m, walks) at steering and stride (m, 2)."""
+        """Compute each walk's sum of squared residuals (m, walks) at steering and stride (m, 2).
+
+        These are in units of their prior standard deviations.
+        """
         linear = (self.slope * y[:, None]).sum(axis=2)
         return self.square + 2 * linear + np.einsum("mi,mwij,mj->mw", y, self.curvature, y)
 

@@ -46,6 +46,8 @@ class MeasuredTilt:
 class TiltMisfit:
     """Roll and pitch of an IMU, averaged over k intervals for comparison with paths.
 
+    Intervals of `TIME` without samples of both are left out.
+
     Attributes:
         mean: Matrix that averages a path's n samples over the intervals, shape (k, n).
         measured: Measured roll and pitch averaged over each interval, minus their mean over all
@@ -87,6 +89,9 @@ class TiltMisfit:
 
     def residuals(self, tilt: Array) -> Array:
         """Compute residuals (m, 2 k) [-], predicted minus measured, of m paths.
+
+        Predicted and measured means over the intervals are without their mean over all intervals;
+        the difference is divided by `SD` times the root of the number of strides.
 
         Args:
             tilt: Roll and pitch of the paths, shape (m, n, 2) [rad].

@@ -36,4 +36,4 @@ class FitError(ModelError, RuntimeError):
 
 
 class WalkError(ModelError, RuntimeError):
-    """A walk diverged, or its robot or leg angles do not suit the model; the message says which."""
+    """A walk diverged, or robot, leg angles or options do not suit the model; the message tells."""

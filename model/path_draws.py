@@ -18,12 +18,13 @@ STATES = ("x", "y", "yaw")
 def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
     r"""Stretch and bend paths: :math:`d s' = (1 + \epsilon) ds, \; d\psi' = d\psi + \kappa\, ds`.
 
-    The first pose of each path stays where it is.
+    The first pose of each path stays where it is; s is the distance before stretching. The result
+    has no covariance.
 
     Args:
         paths: Paths of m draws.
-        distance: Relative error of distance of each path, shape (m,) [-].
-        curvature: Curvature added to each path, positive to the left, shape (m,) [rad/m].
+        distance: epsilon, relative error of distance of each path, shape (m,) [-].
+        curvature: kappa, added to the curvature of each path, positive to the left, (m,) [rad/m].
     """
     step = np.diff(paths.position, axis=1)
     forward = step[..., 0] + 1j * step[..., 1]

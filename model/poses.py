@@ -98,13 +98,16 @@ class Poses:
 
     @property
     def travelled(self) -> Array:
-        """Distance travelled up to each pose of one path, along straight lines, shape (n,) [m]."""
+        """Distance travelled up to each pose of one path, along straight lines, shape (n,) [m].
+
+        One zero for a path without poses.
+        """
         steps = np.linalg.norm(np.diff(self.position, axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
     def length(self) -> float:
-        """Length of the line through all poses of one path [m]."""
+        """Length of the line through all poses of one path; 0 with fewer than two poses [m]."""
         return float(self.travelled[-1]) if len(self) else 0.0
 
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "Poses":
@@ -132,7 +135,8 @@ class Poses:
             The poses at those times, without covariance.
 
         Raises:
-            DomainError: A time lies outside the path's times: nothing is extrapolated.
+            DomainError: A time lies outside the path's times (nothing is extrapolated), or the
+                times do not increase strictly.
         """
         at = np.asarray(t, dtype=float)
         if len(at) and (at.min() < self.t[0] or at.max() > self.t[-1]):

@@ -75,7 +75,8 @@ def walk_draws(
         legs: Leg angles from time zero on; of a quantised log `MOST_MOTIONS` motions at most are
             drawn, and repeated in turn beyond.
         tables: Draws of the slip law, repeated in turn when fewer than those of the state.
-        state: Draws of the legs' state; grip, slip stiffness and post-peak drop scale the law.
+        state: Draws of the legs' state. Offsets and arc change the robot; grip, slip stiffness and
+            post-peak drop scale the law; steering and stride are for `predict_paths`.
         rng: Source of randomness of the motions.
     """
     drawn = motions(legs, min(len(state), MOST_MOTIONS), rng)
@@ -118,7 +119,8 @@ def ensemble_step(
         threads: Number of draws walked at once.
 
     Raises:
-        WalkError: A walk diverged.
+        DomainError: There is no draw, or the duration is not finite.
+        WalkError: A walk diverged, or a robot cannot stand at its start.
     """
     t = np.linspace(0.0, max(duration, STEPS[0]), COMPARED_TIMES)
     means: dict[float, Array] = {}
@@ -157,7 +159,8 @@ def predict_paths(
         progress: Called with the fraction done, 0 to 1.
 
     Raises:
-        WalkError: A walk diverged.
+        DomainError: There is no draw, or times are negative or do not increase.
+        WalkError: A walk diverged, or a robot cannot stand at its start.
     """
     draws = with_contacts(draws, error, rng=rng)
     if options is None:

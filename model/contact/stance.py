@@ -76,7 +76,7 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
         The stance; other legs may be below the ground, the centre of mass outside the triangle.
 
     Raises:
-        DomainError: The three legs lie on one line.
+        DomainError: The three legs' lowest points lie on one line seen from above.
     """
     three = np.asarray(legs, dtype=np.intp)
     points, up, seen = np.empty((N_LEGS, 3)), np.empty(3), np.empty((N_LEGS, 2))
@@ -102,7 +102,8 @@ def resting_stance(robot: Robot, theta: Array) -> Stance:
         theta: Leg angles, shape (6,) [rad].
 
     Raises:
-        DomainError: No three legs support the centre of mass.
+        DomainError: No three legs have the centre of mass inside their triangle and every other
+            leg on or above the ground.
     """
     three = np.empty(3, np.intp)
     rest(theta, robot.hips, robot.leg_radius, robot.toe_beyond, three)
@@ -185,7 +186,8 @@ def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
     """Compute the orientation of the body that stands on three given legs.
 
     A turn of the body moves the lowest points along arcs that are level there. Fixed-point
-    iteration between the points and the plane through them therefore converges in a few rounds.
+    iteration between the points and the plane through them therefore converges in a few rounds; it
+    stops after 60, converged or not.
 
     Args:
         theta: Leg angles, shape (6,) [rad].
@@ -249,7 +251,8 @@ def rest(theta, hips, radius, toe_beyond, legs):
         hips: Hip positions in the body frame, shape (6, 3) [m].
         radius: Radius of the legs' arcs [m].
         toe_beyond: Angle of the arcs beyond a half circle [rad].
-        legs: Filled: indices of the legs, -1 when no three support the robot, shape (3,).
+        legs: Filled: indices of the legs, shape (3,); -1 when no three hold the centre of mass
+            inside their triangle with every other leg on or above the ground.
     """
     points, up, seen = np.empty((6, 3)), np.empty(3), np.empty((6, 2))
     legs[:] = -1

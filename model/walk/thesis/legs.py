@@ -78,7 +78,8 @@ class SwitchedLegs:
         """Create legs that switch speed by angle from a cyclic gait, and start as it does at zero.
 
         Raises:
-            DomainError: The gait has pauses or offsets, or angles that the class does not accept.
+            DomainError: The gait, of six legs, has pauses or offsets, or angles that the class does
+                not accept.
         """
         if np.any(gait.pause) or np.any(gait.offset):
             raise DomainError(

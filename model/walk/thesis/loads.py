@@ -50,7 +50,8 @@ def static_loads(points, weight, loads):
         \hat f_k = m g\,\frac{d_{Bk}}{d_k}
 
     with the distances of the body's centre, the origin here, and of contact k from the line through
-    the other two contacts; a third of the weight each where the contacts lie on one line.
+    the other two contacts; a third of the weight each where the contacts lie on one line. With the
+    centre outside the triangle the sum is larger than the weight.
 
     Args:
         points: Contact points seen from above, shape (3, 2 or more) [m].
@@ -136,7 +137,7 @@ def solve_on_edges(c, slopes, total, most, loads):
         slopes: Coefficients of f, shape (2, 3) [rad/(s2 N)].
         total: Sum of f [N].
         most: Upper bound of each f; the lower is zero [N].
-        loads: Filled: f of the minimum, shape (3,) [N].
+        loads: Filled: f of the minimum, shape (3,) [N]; left as it is where no f has this sum.
     """
     best = np.inf
     for i in range(3):
@@ -158,7 +159,7 @@ def solve_on_edges(c, slopes, total, most, loads):
 
 @compiled
 def normal_forces(balance, traction, total, most, loads):
-    """Solve Eq. (4-22) for the normal forces of three legs by Gauss-Newton, in place.
+    """Solve Eq. (4-22) for the normal forces of three legs by 60 Gauss-Newton rounds at most.
 
     Args:
         balance: Contacts and wanted accelerations; see `Balance`.

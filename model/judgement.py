@@ -79,7 +79,7 @@ class TiltJudged:
     """Comparison of predicted roll and pitch with those that an IMU measured.
 
     Attributes:
-        errors: Bias and root mean squares of predicted minus measured.
+        errors: Bias and root mean squares of predicted minus measured, and the measured swing.
         t: Times of the IMU within the walk, shape (n,) [s].
         predicted: Predicted roll and pitch, interpolated at `t`, shape (n, 2) [rad].
         measured: Roll and pitch by the IMU, shape (n, 2) [rad].
@@ -183,7 +183,7 @@ def _judge_band(
 
 
 def _standing(seen: Poses) -> Poses:
-    """Return a path, as one draw, that stays at the first tracked pose at the times of `seen`."""
+    """Return a path, as one draw, that stays at the first of the tracked poses `seen`."""
     n = len(seen)
     position = np.broadcast_to(seen.position[0], (1, n, 2))
     return Poses(seen.t, position, np.full((1, n), seen.yaw[0]))

@@ -178,6 +178,8 @@ def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
 def contact_angle(phi: Numbers, toe_beyond: float = 0.0) -> Numbers:
     """Compute the angle of a leg's lowest point: phi on its arc, -toe_beyond (toe), pi (hip) [rad].
 
+    Which of the three it is, `leg_state` says.
+
     Args:
         phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
         toe_beyond: Angle of the arc beyond a half circle, negative for a shorter arc [rad].

@@ -121,5 +121,5 @@ def mean_path(paths: Poses) -> Poses:
 
 
 def _from_zero(steps: Array) -> Array:
-    """Return the cumulative sum of steps along axis 1, starting at zero."""
+    """Return the cumulative sum along axis 1, starting at zero: (m, n - 1) becomes (m, n)."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)

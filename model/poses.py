@@ -66,6 +66,9 @@ class Poses:
         Args:
             t: Times, shape (n,) [s].
             states: x, y and unwrapped yaw, shape (n, 3) or (draws, n, 3) [m, m, rad].
+
+        Raises:
+            DomainError: As for the class.
         """
         return cls(t, states[..., :2], states[..., 2])
 

@@ -37,8 +37,8 @@ class ModelSpread:
 
     Stiffness and damping of the contacts matter for gaits that stand on more legs than statics can
     load, or whose legs take over at unequal heights, and hardly for other gaits. Both are therefore
-    drawn. `distance` and `curvature`, the same for every gait, are root mean squares of the
-    differences from an independent engine's walks.
+    drawn. The defaults of `distance` and `curvature`, the same for every gait, are root mean
+    squares of the differences from an independent engine's walks.
 
     Attributes:
         distance: Standard deviation of the relative error of distance [-].
@@ -149,7 +149,7 @@ def predict_paths(
     """Compute the path of every draw, bent by its steering, its stride and a drawn model error.
 
     Args:
-        draws: Inputs of m walks; stiffness and damping of the contacts are drawn anew.
+        draws: Inputs of m walks; `with_contacts` draws stiffness and damping of the contacts.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
         state: The legs' state of each draw, of which steering and stride are used here.
         error: Standard deviations of the walking model's error.

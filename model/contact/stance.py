@@ -23,7 +23,7 @@ _SETTLED = 1e-14
 
 @dataclass(frozen=True)
 class Stance:
-    """The robot standing on three legs, at rest.
+    """The robot standing on three legs, at rest; its centre of mass is the body's centre.
 
     Attributes:
         legs: Indices of the three legs, shape (3,).
@@ -143,7 +143,7 @@ def plane_normal(points, legs, up):
     Args:
         points: Lowest point of each leg in the body frame, shape (6, 3) [m].
         legs: Indices of the three legs, shape (3,).
-        up: Overwritten with the normal, shape (3,) [-]; kept when the points lie on a line.
+        up: Overwritten with the normal, shape (3,) [-]; kept when infinity is returned.
 
     Returns:
         Largest change of a component of `up` [-]; infinity when the points lie on a line seen from
@@ -164,7 +164,7 @@ def plane_normal(points, legs, up):
 
 @compiled
 def seen_from_above(points, up, seen):
-    """Project points along the vertical to x along the heading and y to the left.
+    """Project points along the vertical to x along the heading and y to the left, from the centre.
 
     Args:
         points: Points in the body frame, shape (6, 3) [m].
@@ -200,7 +200,7 @@ def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
         seen: Filled: the points seen from above, shape (6, 2) [m].
 
     Returns:
-        False when the three legs lie on a line, else True.
+        False when the three legs' points lie on a line seen from above, else True.
     """
     up[0], up[1], up[2] = 0.0, 0.0, 1.0
     for _ in range(_TURNS):

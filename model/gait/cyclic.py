@@ -38,13 +38,13 @@ class CyclicReference:
     Attributes:
         touchdown: Touchdown angles, shape (n,) [rad].
         liftoff: Lift-off angles, beyond touchdown by less than a turn, shape (n,) [rad].
-        ground_time: Times from touchdown to lift-off, shape (n,) [s].
-        flight_time: Times from lift-off to touchdown, the pause included, shape (n,) [s].
+        ground_time: Times tau_g from touchdown to lift-off, shape (n,) [s].
+        flight_time: Times tau_f from lift-off to touchdown, the pause included, shape (n,) [s].
         phase: Share of the period by which each leg is past touchdown at time zero; 1 more puts
             the leg a turn ahead, shape (n,) [-].
         inner: Indices of the legs on the inner side of a turn; only stored. Empty where no side was
             named; `tripod_reference` sets the side of `direction` for a straight walk too.
-        pause: How long a leg waits at lift-off before its flight, shape (n,) [s].
+        pause: How long, tau_w, a leg waits at lift-off before its flight, shape (n,) [s].
         offset: Angle added to each leg's angle of the equation above, shape (n,) [rad].
 
     Raises:

@@ -31,10 +31,10 @@ class EventTimes:
     liftoff: Array
 
     def stance_intervals(self, span: tuple[float, float]) -> Intervals:
-        """Pair each touchdown of a leg with the lift-off of the next cycle.
+        """Pair each touchdown of a leg with the lift-off of the next cycle; the last has none.
 
         Args:
-            span: Start and end; intervals are cut there [s].
+            span: Start and end; intervals are cut there, and left out outside [s].
 
         Returns:
             One array of stance intervals, rows (start, end), shape (k, 2), for each leg [s].

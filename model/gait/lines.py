@@ -253,7 +253,8 @@ def knots(
 ) -> Array:
     """Compute the knots of the piecewise linear angle, where each line passes into the next.
 
-    The first and the last knot are at the log's ends, but for rounding up to keep times in order.
+    The first and the last knot are at the log's ends. A time before that of the knot before it is
+    raised to it.
 
     Args:
         lines: The lines.
@@ -323,7 +324,10 @@ def _add(found, n, t, angle):
 
 @compiled
 def _stay(changes, change):
-    """Return start, end [s] and angle [rad] of the constant count before a change (an index)."""
+    """Return start, end [s] and angle [rad] of the constant count before a change (an index > 0).
+
+    Start and end are halfway between the samples around the count's two changes.
+    """
     early = 0.5 * (changes.early[change - 1] + changes.late[change - 1])
     return early, 0.5 * (changes.early[change] + changes.late[change]), changes.after[change - 1]
 
@@ -342,5 +346,5 @@ def _when(lines, i, angle):
 
 @compiled
 def _own_end(begin, end):
-    """Return `end`, less a twelfth of the changes, at least one, if there are `OWN` or more."""
+    """Return `end`, less a twelfth of the changes from `begin` on, at least one, from `OWN` on."""
     return end - max(1, (end - begin) // 12) if end - begin >= OWN else end

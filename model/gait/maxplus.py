@@ -116,6 +116,9 @@ def plus(A: Array) -> Array:
 def star(A: Array) -> Array:
     r"""Compute the Kleene star :math:`A^* = E \oplus A \oplus A^{\otimes 2} \oplus \ldots`, (n, n).
 
+    Args:
+        A: Square matrix, shape (n, n).
+
     Raises:
         DomainError: A circuit has a positive sum.
     """

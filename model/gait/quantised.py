@@ -92,7 +92,7 @@ class CountedLeg:
         )  # fmt: skip
 
     def angles(self, t: Array, step: float, rng: np.random.Generator | None) -> Array:
-        """Compute the leg angle along the fitted lines, or along a draw of them.
+        """Compute the leg angle on the fitted lines or a draw of them, constant outside the log.
 
         Args:
             t: Times, shape (n,) [s].

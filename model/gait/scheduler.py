@@ -44,9 +44,10 @@ def straight_system(
                \begin{bmatrix} \mathcal{E} & \mathcal{E} \\ \tau_g \otimes E \oplus Q & \mathcal{E}
                \end{bmatrix} \otimes x(k-1)
 
-    A leg touches down tau_f after lift-off. It lifts off once it has stood for tau_g and the group
-    before its own has stood for tau_Delta, whichever is later: tau_g is the least time on the
-    ground. With m groups the cycle time is
+    with the identity E and zero matrix of `model.gait.maxplus`, P and Q of `precedence`. A leg
+    touches down tau_f after lift-off. It lifts off once it has stood for tau_g and the group before
+    its own has stood for tau_Delta, whichever is later: tau_g is the least time on the ground. With
+    m groups the cycle time is
 
     .. math::
         \lambda = \max\bigl(\tau_g + \tau_f,\ m\,(\tau_f + \tau_\Delta)\bigr) .

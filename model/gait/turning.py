@@ -27,6 +27,7 @@ def turning_system(
                \begin{bmatrix} E & \mathcal{E} \\ \tau_g \otimes N \oplus T & E \end{bmatrix}
                \otimes x(k-1)
 
+    with touchdowns t and lift-offs l in x, the identity E and zero matrix of `model.gait.maxplus`.
     The thesis gives the four event equations of 2-3-3 and leaves the matrices to its predecessor's
     report. They follow from two demands.
 

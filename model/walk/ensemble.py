@@ -85,7 +85,8 @@ def walk_ensemble(
         progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
     Returns:
-        The paths of all draws, from x, y and yaw zero, interpolated linearly at `t`.
+        The paths of all draws, from x, y and yaw zero, interpolated linearly at `t`, constant after
+        a walk's last step.
 
     Raises:
         DomainError: There is no draw or no time, or times are negative, not finite or do not
@@ -125,7 +126,7 @@ def _tilt_of(path: PlanarWalk) -> Array:
 
 
 def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
-    """Raise `DomainError` unless there is a draw and times increase from zero or later."""
+    """Raise `DomainError` unless there is a draw, and a time, and times increase from zero on."""
     if not draws:
         raise DomainError("an ensemble of no draws has no paths; expected at least one")
     if t.ndim != 1 or not len(t) or not (t[0] >= 0 and np.all(np.diff(t) > 0)):

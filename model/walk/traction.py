@@ -180,7 +180,10 @@ def _proportional_to_load(law: SlipLaw, values: Values, loads: Array) -> bool:
 
 
 def _grid(curve_scale: float) -> tuple[float, Array]:
-    """Return x_0, a tenth of the slip at which the law bends, and the columns' w, shape (257,)."""
+    """Return x_0, a tenth of the slip `curve_scale` at which a law bends, and the columns' w.
+
+    w is evenly spaced from 0 to that of slip `LARGEST_SLIP`, shape (257,).
+    """
     scale = 0.1 * curve_scale
     return scale, np.linspace(0, np.arcsinh(LARGEST_SLIP / scale), N_SLIPS)
 

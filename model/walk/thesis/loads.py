@@ -83,7 +83,7 @@ def leg_force(axes, forward, left, up, force):
 
 @compiled
 def accelerations(balance, traction, loads, excess, slopes):
-    """Compute roll and pitch acceleration less `balance.wanted`, and their derivatives by load.
+    """Compute roll and pitch acceleration by contact forces, less `balance.wanted`, and gradients.
 
     Args:
         balance: The contacts; see `Balance`.

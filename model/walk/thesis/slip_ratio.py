@@ -80,8 +80,9 @@ def find_slip(machine, manner, traction, legs, three, q, v, balance):
 
     v_R of Eq. (4-32) and v_T of Eq. (4-37) are the same, minus the rate of phi times the hip's
     height. The ground speed is that at the hip for a leg on its toe, else at the contact; lateral
-    slip is the body's, the same for all legs. For a law by slip velocity, slip is velocity over the
-    table's `speed_scale`.
+    slip is the body's, the same for all legs. Slip has the sign of the equations on the toe and
+    with `manner.mend_slip`, else the listing's. For a law by slip velocity, slip is velocity over
+    the table's `speed_scale`.
 
     Args:
         machine: The robot.

@@ -166,7 +166,7 @@ def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[
 
 
 def _side_heights(robot: Robot, theta: Array) -> Array:
-    """Compute mean hip heights [m] of a level body by tripod (row) and side (left, right)."""
+    """Compute mean hip heights [m] of a level body by tripod (2 rows) and side (left, right)."""
     phi = wrap_angle(np.pi / 2 - theta)
     height = np.asarray(hip_height(phi, robot.leg_radius, robot.toe_beyond))
     return np.array(

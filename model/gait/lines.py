@@ -346,5 +346,5 @@ def _when(lines, i, angle):
 
 @compiled
 def _own_end(begin, end):
-    """Return `end`, less a twelfth of the changes from `begin` on, at least one, from `OWN` on."""
+    """Return `end`, less a twelfth of the changes since `begin`, at least one, if `OWN` or more."""
     return end - max(1, (end - begin) // 12) if end - begin >= OWN else end

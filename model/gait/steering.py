@@ -197,7 +197,8 @@ def tripod_angles(
 
     Args:
         inner_touchdown: Touchdown angle of the inner legs [rad].
-        steering_factor: s, outer over inner stance angle [-].
+        steering_factor: s, outer over inner stance angle; without effect where no missing angle
+            depends on it, as with a given outer touchdown and no given lift-off [-].
         leg_arc: Angle of the leg's arc [rad].
         inner_liftoff: Lift-off angle of the inner legs; Eq. (2-17) when None [rad].
         outer_touchdown: Touchdown angle of the outer legs; Eq. (2-19) when None [rad].

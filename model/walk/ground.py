@@ -14,7 +14,8 @@ from model.slip.law import Array
 class Ground(NamedTuple):
     """Heights on a square grid, with bilinear interpolation; constant if the grid has one height.
 
-    It is a named tuple because numba accepts one directly.
+    Beyond the grid the height of its edge continues. It is a named tuple because numba accepts one
+    directly.
 
     Attributes:
         x: Position of the grid's first row [m].

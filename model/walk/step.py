@@ -36,6 +36,8 @@ BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     """Advance the body's state by one linearly implicit step.
 
+    A contact without load in the step before, or of a leg that rolls, starts with a slack bristle.
+
     Args:
         body: The robot.
         table: The slip law.

@@ -29,7 +29,7 @@ class Balance(NamedTuple):
 
     Attributes:
         arms: Contact points from the body's centre, inertial frame, shape (3, 3) [m].
-        axes: Forward, left and up of the contact frames, shape (3, 3) [-].
+        axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].
         slip: Longitudinal and lateral slip of each leg, shape (3, 2) [-].
         inertia: Moments of inertia about roll and pitch axes, shape (2,) [kg m2].
         wanted: Roll and pitch acceleration that contact moments have to produce, (2,) [rad/s2].
@@ -83,7 +83,7 @@ def leg_force(axes, forward, left, up, force):
 
 @compiled
 def accelerations(balance, traction, loads, excess, slopes):
-    """Compute roll and pitch acceleration by contact forces, less `balance.wanted`, and gradients.
+    """Compute roll and pitch acceleration by contacts less `balance.wanted`, and load derivatives.
 
     Args:
         balance: The contacts; see `Balance`.

@@ -73,7 +73,7 @@ def anchored(
         rng: Source of randomness of the drawn poses.
 
     Raises:
-        DomainError: The time of the pose lies outside the paths' times.
+        DomainError: The time of the pose lies outside the paths' times, or the pose is not finite.
     """
     if not paths.t[0] <= at <= paths.t[-1]:
         raise DomainError(

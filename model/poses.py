@@ -188,9 +188,9 @@ def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
 def travel_direction(poses: Poses) -> Array:
     """Compute the direction of travel at each pose of one path, shape (n,) [rad].
 
-    It is the direction from the pose before to the pose after, or at an end from or to that pose.
-    Where the two are within `STANDING`, the last direction before is repeated, or the first after;
-    zero if the robot never moves.
+    It is the direction from the pose before to the pose after; at the ends one of the two is the
+    pose itself. Where they are within `STANDING`, the last direction before is repeated, or the
+    first after; zero if the robot never moves.
     """
     before = np.maximum(np.arange(len(poses)) - 1, 0)
     after = np.minimum(np.arange(len(poses)) + 1, len(poses) - 1)

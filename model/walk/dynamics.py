@@ -220,9 +220,10 @@ def start_state(
 
 
 def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
-    """Return the largest ground height within the robot's reach of the start's x and y [m].
+    """Return the largest of the grid's heights within the robot's reach of the start [m].
 
-    Reach: the furthest hip plus twice the leg's radius, along x and y; beyond the grid its edge.
+    Reach, along x and y each: distance of the furthest hip plus twice the leg's radius. Where it
+    goes beyond the grid, the grid's edge counts.
     """
     far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
     m, n = ground.height.shape

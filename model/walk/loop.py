@@ -73,8 +73,8 @@ def run_steps(
         dt: Length of a step [s].
         pose: Filled at each step's end: position and quaternion, shape (n, 7).
         legs: Filled at each step's end: normal force, traction (world x, y), slip velocity (world
-            x, y) and slip ratio of each leg, shape (n, 6, 6); in the air 0, the ratio NaN unless
-            rolling. Or shape (0, 6, 6) not to keep them.
+            x, y) and slip ratio of each leg, shape (n, 6, 6), or (0, 6, 6) not to keep them; a leg
+            in the air has 0, and the ratio is NaN unless a leg rolls on the ground.
 
     Returns:
         Number of steps computed: n, or fewer where the state stopped being finite.

@@ -76,7 +76,8 @@ def _settled_strides(
 ) -> list[Array]:
     """Integrate strides of n steps until one moves the body as the stride before, or `most` are.
 
-    As: within `SETTLED` of its length, or of the leg's radius if shorter, and `SETTLED_TURN`.
+    Settled: forward and left, its move differs from the one before by less than `SETTLED` of its
+    length (at least the leg's radius), and its turn by less than `SETTLED_TURN`.
 
     Returns:
         x, y and yaw of each stride's n + 1 instants, shape (n + 1, 3) each [m, m, rad]; a stride's

@@ -11,11 +11,11 @@ class DomainError(ModelError, ValueError):
 
 
 class DefinitionMismatch(ModelError, ValueError):
-    """Slip ratios were given in another definition than the computation expects.
+    """Slip ratios, or a slip curve, have another definition than the computation expects.
 
     Attributes:
-        found: Definition of the slip ratios that were given.
-        expected: Definition that the law's parameters were fitted with.
+        found: Definition of the slip ratios, or the curve, that were given.
+        expected: Definition that the computation takes: a curve's, for slip ratios given to it.
     """
 
     def __init__(self, found: str, expected: str) -> None:
@@ -36,4 +36,4 @@ class FitError(ModelError, RuntimeError):
 
 
 class WalkError(ModelError, RuntimeError):
-    """A walk diverged, or its robot or leg angles do not suit the model; the message says which."""
+    """A walk diverged, or robot, leg angles or options do not suit the model; the message tells."""

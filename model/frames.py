@@ -62,7 +62,8 @@ def roll_pitch_yaw(rotation: Array) -> Array:
         rotation: Rotation matrices from body to inertial frame, shape (..., 3, 3).
 
     Returns:
-        Roll in [-pi, pi], pitch in [-pi/2, pi/2] and yaw in [-pi, pi], shape (..., 3) [rad].
+        Roll in [-pi, pi], pitch in [-pi/2, pi/2] and yaw in [-pi, pi], shape (..., 3) [rad]; with
+        a pitch of pi/2 either way the rotation does not determine roll and yaw.
     """
     R = rotation
     return np.stack(
@@ -93,6 +94,8 @@ def transform(rotation: Array, position: ArrayLike) -> Array:
 def body_from_hip(theta: float, hip: ArrayLike) -> Array:
     """Return the homogeneous transform from hip to body frame, Eq. (3-11), shape (4, 4).
 
+    A rotation by theta about y, then a shift to the hip.
+
     Args:
         theta: Leg angle [rad].
         hip: Position of the hip in the body frame, shape (3,) [m].
@@ -102,6 +105,10 @@ def body_from_hip(theta: float, hip: ArrayLike) -> Array:
 
 def hip_from_contact(phi: float, contact: float, *, roll: float, radius: float) -> Array:
     """Return the homogeneous transform from contact to hip frame, Eq. (3-14), (3-16), (4, 4).
+
+    A rotation Ry(phi - pi/2) Rx(-roll), then a shift to the leg's lowest point. The contact frame
+    is level with roll and pitch of `thesis_attitude` without yaw; with those of `attitude`, only if
+    one of the two is zero.
 
     Args:
         phi: Angle of the lowest point of the leg's full circle [rad].

@@ -43,8 +43,9 @@ class Judged:
         name: `PREDICTION`, `STAND_STILL` or a baseline's name.
         path: The single path; moved to the first tracked pose if paths are anchored.
         errors: Errors of the single path.
-        scores: Scores of the ensemble with tracker noise; without draws, of the single path, whose
-            energy score is its distance and whose CRPS is its absolute error.
+        scores: Scores of the prediction's draws with tracker noise; of a baseline, standing still
+            or a prediction without draws, those of the single path, whose energy score is its mean
+            distance and whose CRPS is its mean absolute error.
         consistency: Consistency of the track with the ensemble; empty for a single path and for
             fewer than `FEWEST_DRAWS` draws.
     """
@@ -64,7 +65,8 @@ class Judgement:
         track: The tracked poses that were scored: those within the predicted path's time, without
             the first of them if paths are anchored at it.
         rows: The prediction first, then the baselines, last a robot that stands still.
-        band: The draws that were scored, as anchored; None without draws.
+        band: The draws that were scored, before tracker noise is added; if paths are anchored,
+            each moved to a draw of the first tracked pose. None without draws.
     """
 
     track: Poses
@@ -77,7 +79,7 @@ class TiltJudged:
     """Comparison of predicted roll and pitch with those that an IMU measured.
 
     Attributes:
-        errors: Bias and root mean squares of predicted minus measured.
+        errors: Bias and root mean squares of predicted minus measured, and the measured swing.
         t: Times of the IMU within the walk, shape (n,) [s].
         predicted: Predicted roll and pitch, interpolated at `t`, shape (n, 2) [rad].
         measured: Roll and pitch by the IMU, shape (n, 2) [rad].
@@ -97,13 +99,14 @@ def judge(
     Args:
         prediction: The prediction.
         track: The track, by the prediction's clock; without a covariance it is taken as exact.
-        anchor: Start every path from the first tracked pose, which is then not scored.
+        anchor: Move every path to the first tracked pose within the predicted path's time, draws
+            to draws of it by its covariance; that pose is then not scored.
         rng: Source of randomness of tracker noise.
 
     Raises:
-        InsufficientData: Fewer than two tracked poses to score lie within a path's time, or
-            `anchor` is set and the first tracked pose has no heading.
-        DomainError: `anchor` is set and a path does not reach the first tracked pose's time.
+        InsufficientData: Fewer than two tracked poses to score lie within the time of the predicted
+            path or of a baseline, or `anchor` is set and the first tracked pose has no heading.
+        DomainError: `anchor` is set and a baseline or the draws do not cover that pose's time.
     """
     seen = track.part(overlap(track, prediction.path))
     target = seen.part(slice(1, None) if anchor else slice(None))
@@ -160,7 +163,7 @@ def _judge_band(
 ) -> Judged:
     """Replace the scores of a single path by those of an ensemble with tracker noise.
 
-    Consistency is added if there are enough draws.
+    Consistency is added if there are `FEWEST_DRAWS` draws or more.
 
     Args:
         single: Errors and scores of the single path.
@@ -180,7 +183,7 @@ def _judge_band(
 
 
 def _standing(seen: Poses) -> Poses:
-    """Return a path, as one draw, that stays at the first tracked pose at the times of `seen`."""
+    """Return a path, as one draw, that stays at the first of the tracked poses `seen`."""
     n = len(seen)
     position = np.broadcast_to(seen.position[0], (1, n, 2))
     return Poses(seen.t, position, np.full((1, n), seen.yaw[0]))

@@ -125,8 +125,8 @@ def lowest_angle(theta: Numbers, roll: Numbers, pitch: Numbers) -> Numbers:
 
     With R = Rz(yaw) Ry(pitch) Rx(roll) phi does not depend on the heading; the thesis's does
     (`thesis_lowest_angle`), because its roll turns about an axis fixed to the ground. Written with
-    the arctangent of two arguments, it holds upside down too; with the leg's plane level no point
-    is lowest.
+    the arctangent of two arguments, it holds upside down too; with the leg's plane level (a roll of
+    90 degrees) no point is lowest, and phi is arbitrary.
 
     Args:
         theta: Leg angle [rad].
@@ -178,6 +178,8 @@ def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
 def contact_angle(phi: Numbers, toe_beyond: float = 0.0) -> Numbers:
     """Compute the angle of a leg's lowest point: phi on its arc, -toe_beyond (toe), pi (hip) [rad].
 
+    Which of the three it is, `leg_state` says.
+
     Args:
         phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
         toe_beyond: Angle of the arc beyond a half circle, negative for a shorter arc [rad].
@@ -215,7 +217,8 @@ def hip_height(phi: Numbers, radius: float, toe_beyond: float = 0.0) -> Numbers:
         \begin{cases} r + r\cos\varphi & \text{rolling} \\ 2 r \cos\varphi & \text{toe of a half
         circle} \\ 0 & \text{hip} \end{cases}
 
-    Eq. (3-37) without its factor :math:`\cos\theta_r`, for any arc; see `plane_cosine`.
+    with phi_c = `contact_angle(phi)`: Eq. (3-37) without its factor :math:`\cos\theta_r`, for any
+    arc; see `plane_cosine`.
 
     Args:
         phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
@@ -235,7 +238,8 @@ def hip_height_rate(
     r"""Compute the time derivative of `hip_height`, Eq. (3-38) without its cos(roll) [m/s].
 
     .. math::
-        \dot z_h = -r \dot\varphi\,(\sin\varphi + \sin(\varphi - \varphi_c))
+        \dot z_h = -r \dot\varphi\,(\sin\varphi + \sin(\varphi - \varphi_c)), \qquad
+        \varphi_c = \texttt{contact\_angle}(\varphi)
 
     Args:
         phi: Angle of the lowest point of the leg's full circle [rad].
@@ -254,7 +258,8 @@ def hip_height_acceleration(
     .. math::
         \ddot z_h = -r \dot\varphi^2\,(\cos\varphi + [\text{not rolling}]\cos(\varphi - \varphi_c))
 
-    While the leg rolls its contact moves along the arc with phi, so the second term is zero.
+    with phi_c = `contact_angle(phi)`. While the leg rolls its contact moves along the arc with phi,
+    so the second term is zero; on the toe and on the hip [not rolling] is 1.
 
     Args:
         phi: Angle of the lowest point of the leg's full circle [rad].

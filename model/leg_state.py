@@ -100,7 +100,8 @@ def scaled_table(
     Args:
         table: The law.
         grip: Factor on traction, peak and toe included [-].
-        stiffness: Factor on slip stiffness; slips are scaled by grip over stiffness [-].
+        stiffness: Factor on slip stiffness; slips, and the slip velocity over which traction on a
+            toe sets in, are scaled by grip over stiffness [-].
         fall: Factor on how far traction falls beyond its peak; 0 keeps it at the peak [-].
     """
     table = _with_fall(table, fall)

@@ -18,12 +18,13 @@ STATES = ("x", "y", "yaw")
 def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
     r"""Stretch and bend paths: :math:`d s' = (1 + \epsilon) ds, \; d\psi' = d\psi + \kappa\, ds`.
 
-    The first pose of each path stays where it is.
+    The first pose of each path stays where it is; s is the distance before stretching. The result
+    has no covariance.
 
     Args:
         paths: Paths of m draws.
-        distance: Relative error of distance of each path, shape (m,) [-].
-        curvature: Curvature added to each path, positive to the left, shape (m,) [rad/m].
+        distance: epsilon, relative error of distance of each path, shape (m,) [-].
+        curvature: kappa, added to the curvature of each path, positive to the left, (m,) [rad/m].
     """
     step = np.diff(paths.position, axis=1)
     forward = step[..., 0] + 1j * step[..., 1]
@@ -72,7 +73,7 @@ def anchored(
         rng: Source of randomness of the drawn poses.
 
     Raises:
-        DomainError: The time of the pose lies outside the paths' times.
+        DomainError: The time of the pose lies outside the paths' times, or the pose is not finite.
     """
     if not paths.t[0] <= at <= paths.t[-1]:
         raise DomainError(
@@ -120,5 +121,5 @@ def mean_path(paths: Poses) -> Poses:
 
 
 def _from_zero(steps: Array) -> Array:
-    """Return the cumulative sum of steps along axis 1, starting at zero."""
+    """Return the cumulative sum along axis 1, starting at zero: (m, n - 1) becomes (m, n)."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)

@@ -66,6 +66,9 @@ class Poses:
         Args:
             t: Times, shape (n,) [s].
             states: x, y and unwrapped yaw, shape (n, 3) or (draws, n, 3) [m, m, rad].
+
+        Raises:
+            DomainError: As for the class.
         """
         return cls(t, states[..., :2], states[..., 2])
 
@@ -98,13 +101,16 @@ class Poses:
 
     @property
     def travelled(self) -> Array:
-        """Distance travelled up to each pose of one path, along straight lines, shape (n,) [m]."""
+        """Distance travelled up to each pose of one path, along straight lines, shape (n,) [m].
+
+        One zero for a path without poses.
+        """
         steps = np.linalg.norm(np.diff(self.position, axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
     def length(self) -> float:
-        """Length of the line through all poses of one path [m]."""
+        """Length of the line through all poses of one path; 0 with fewer than two poses [m]."""
         return float(self.travelled[-1]) if len(self) else 0.0
 
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "Poses":
@@ -132,7 +138,8 @@ class Poses:
             The poses at those times, without covariance.
 
         Raises:
-            DomainError: A time lies outside the path's times: nothing is extrapolated.
+            DomainError: A time lies outside the path's times (nothing is extrapolated), or the
+                times do not increase strictly.
         """
         at = np.asarray(t, dtype=float)
         if len(at) and (at.min() < self.t[0] or at.max() > self.t[-1]):
@@ -181,8 +188,9 @@ def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
 def travel_direction(poses: Poses) -> Array:
     """Compute the direction of travel at each pose of one path, shape (n,) [rad].
 
-    It is the direction from the pose before to the pose after. Where these are within `STANDING`,
-    the last direction before is repeated, or the first after; zero if the robot never moves.
+    It is the direction from the pose before to the pose after; at the ends one of the two is the
+    pose itself. Where they are within `STANDING`, the last direction before is repeated, or the
+    first after; zero if the robot never moves.
     """
     before = np.maximum(np.arange(len(poses)) - 1, 0)
     after = np.minimum(np.arange(len(poses)) + 1, len(poses) - 1)

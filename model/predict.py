@@ -37,8 +37,8 @@ class ModelSpread:
 
     Stiffness and damping of the contacts matter for gaits that stand on more legs than statics can
     load, or whose legs take over at unequal heights, and hardly for other gaits. Both are therefore
-    drawn. `distance` and `curvature`, the same for every gait, are root mean squares of the
-    differences from an independent engine's walks.
+    drawn. The defaults of `distance` and `curvature`, the same for every gait, are root mean
+    squares of the differences from an independent engine's walks.
 
     Attributes:
         distance: Standard deviation of the relative error of distance [-].
@@ -75,7 +75,8 @@ def walk_draws(
         legs: Leg angles from time zero on; of a quantised log `MOST_MOTIONS` motions at most are
             drawn, and repeated in turn beyond.
         tables: Draws of the slip law, repeated in turn when fewer than those of the state.
-        state: Draws of the legs' state; grip, slip stiffness and post-peak drop scale the law.
+        state: Draws of the legs' state. Offsets and arc change the robot; grip, slip stiffness and
+            post-peak drop scale the law; steering and stride are for `predict_paths`.
         rng: Source of randomness of the motions.
     """
     drawn = motions(legs, min(len(state), MOST_MOTIONS), rng)
@@ -118,7 +119,8 @@ def ensemble_step(
         threads: Number of draws walked at once.
 
     Raises:
-        WalkError: A walk diverged.
+        DomainError: There is no draw, or the duration is not finite.
+        WalkError: A walk diverged, or a robot cannot stand at its start.
     """
     t = np.linspace(0.0, max(duration, STEPS[0]), COMPARED_TIMES)
     means: dict[float, Array] = {}
@@ -147,7 +149,7 @@ def predict_paths(
     """Compute the path of every draw, bent by its steering, its stride and a drawn model error.
 
     Args:
-        draws: Inputs of m walks; stiffness and damping of the contacts are drawn anew.
+        draws: Inputs of m walks; `with_contacts` draws stiffness and damping of the contacts.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
         state: The legs' state of each draw, of which steering and stride are used here.
         error: Standard deviations of the walking model's error.
@@ -157,7 +159,8 @@ def predict_paths(
         progress: Called with the fraction done, 0 to 1.
 
     Raises:
-        WalkError: A walk diverged.
+        DomainError: There is no draw, or times are negative or do not increase.
+        WalkError: A walk diverged, or a robot cannot stand at its start.
     """
     draws = with_contacts(draws, error, rng=rng)
     if options is None:

@@ -39,8 +39,9 @@ class Robot:
         leg_offset: True minus reported angle of each leg, shape (6,) [rad].
 
     Raises:
-        DomainError: A length, mass or inertia is not positive, the arc is not from 90 to below 360
-            degrees, or an array has another shape or is not finite.
+        DomainError: Mass, leg radius, a size of the body or a moment of inertia is not positive and
+            finite, the arc is not from 90 to below 360 degrees, or an array has another shape or is
+            not finite.
     """
 
     hips: Array = field(default_factory=_source_hips)

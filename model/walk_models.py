@@ -30,7 +30,7 @@ class ModelRun:
     """Inputs of a walking model.
 
     Attributes:
-        robot: The robot.
+        robot: The robot; its leg offsets are added to the angles.
         reference: Leg angles over time, from time zero on.
         slip: The slip law; None for a model without slip.
         duration: Time walked [s].
@@ -76,8 +76,8 @@ def baseline_paths(
     The thesis's model walks with the thesis's slip curve, the others without slip.
 
     Args:
-        robot: The robot.
-        reference: True leg angles; walked from time zero to the last sample.
+        robot: The robot; its leg offsets are added to the angles: none for true angles.
+        reference: Leg angles; walked from time zero to the last sample.
         direction: Side the gait turns to; only the thesis's model uses it.
         start: Added to the paths' times [s].
 
@@ -115,7 +115,7 @@ def _dynamics(run: ModelRun) -> WalkPath:
 
 
 def _thesis(run: ModelRun) -> WalkPath:
-    """Walk by the thesis's model; the slip ratio is mended unless a cyclic gait is walked."""
+    """Walk by the thesis's model, with `ThesisOptions.mend_slip` unless a cyclic gait is walked."""
     from model.walk.thesis import ThesisOptions, walk_thesis
 
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)

@@ -21,23 +21,24 @@ def next_stance(
 
     A leg in flight that would be on or below the ground touches down, Eq. (3-27). The new stance
     includes such a leg, leaves no leg below the ground and has the centre of mass inside its
-    triangle, the most level if several do, the nearest to it if none does; legs that then do not
-    reach the ground lift off.
+    triangle, the most level if several do, the nearest to it if none does. If no leg touches down,
+    the robot stays on three legs of `contact`, those with the centre of mass deepest inside. Legs
+    that then do not reach the ground lift off.
 
     Args:
         robot: The robot.
         theta: Leg angles after the step, shape (6,) [rad].
         contact: Indices of the legs that touched the ground before, three or more.
-        always_balanced: Also let the robot topple onto other legs when the centre of mass leaves
-            the triangle while no leg touches down. The thesis's text describes both; its sequence,
-            Eq. (3-33), is computed without.
+        always_balanced: If the centre of mass is outside the triangle so found, touchdown or not,
+            let the robot topple: choose in the same way among all triples of legs. The thesis's
+            text describes both; its sequence, Eq. (3-33), is computed without.
 
     Returns:
         The stance; `Stance.standing` is the new contact state.
 
     Raises:
-        DomainError: All legs of `contact` lie on one line, or no three legs leave every leg above
-            the ground.
+        DomainError: All legs of `contact` lie on one line or are fewer than three, or no three of
+            the legs to choose from leave every other leg on or above the ground.
     """
     before = _widest(robot, theta, contact)
     touched = np.flatnonzero(_touchdowns(before, contact))
@@ -77,7 +78,11 @@ def _touchdowns(stance: Stance, contact: Contact) -> NDArray[np.bool_]:
 
 
 def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance:
-    """Select the most level feasible stance that holds the robot, else that nearest to holding."""
+    """Select the most level feasible stance that holds the robot, else that nearest to holding.
+
+    Feasible: no leg is below the ground; raise `DomainError` if no triple is. Holds: the centre of
+    mass is inside the triangle.
+    """
     feasible = [stance for stance in _stances(robot, theta, triples) if stance.feasible]
     if not feasible:
         angles = ", ".join(f"{angle:.4g}" for angle in theta)

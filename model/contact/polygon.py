@@ -20,7 +20,8 @@ def side_products(point: Array, triangle: Array) -> Array:
         triangle: Contact points seen from above, shape (3, 2) [m].
 
     Returns:
-        Product for the side opposite each corner, shape (3,); negative beyond that side.
+        Product for the side opposite each corner, shape (3,); negative beyond that side, all zero
+        when the corners lie on a line.
     """
     products = np.empty(3)
     for corner in range(3):
@@ -65,6 +66,8 @@ for _function in (side_products, depth_in_triangle):
 def contains(point: Array, triangle: Array) -> bool:
     """Return whether a point lies in a triangle or on its edge, Eq. (3-30) to (3-32).
 
+    True for every point when the corners lie on a line.
+
     Args:
         point: The point seen from above, shape (2,) [m].
         triangle: The corners seen from above, shape (3, 2) [m].
@@ -87,7 +90,8 @@ def lifting_corner(point: Array, triangle: Array) -> int | None:
         triangle: Contact points seen from above, shape (3, 2) [m].
 
     Returns:
-        Row of the leg in `triangle`; None when the point is inside the triangle or on its edge.
+        Row of the leg in `triangle`; None when the point is inside the triangle or on its edge, or
+        when the corners lie on a line.
     """
     products = side_products(point, triangle)
     worst = int(np.argmin(products))

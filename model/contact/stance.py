@@ -23,7 +23,7 @@ _SETTLED = 1e-14
 
 @dataclass(frozen=True)
 class Stance:
-    """The robot standing on three legs, at rest.
+    """The robot standing on three legs, at rest; its centre of mass is the body's centre.
 
     Attributes:
         legs: Indices of the three legs, shape (3,).
@@ -76,7 +76,7 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
         The stance; other legs may be below the ground, the centre of mass outside the triangle.
 
     Raises:
-        DomainError: The three legs lie on one line.
+        DomainError: The three legs' lowest points lie on one line seen from above.
     """
     three = np.asarray(legs, dtype=np.intp)
     points, up, seen = np.empty((N_LEGS, 3)), np.empty(3), np.empty((N_LEGS, 2))
@@ -102,7 +102,8 @@ def resting_stance(robot: Robot, theta: Array) -> Stance:
         theta: Leg angles, shape (6,) [rad].
 
     Raises:
-        DomainError: No three legs support the centre of mass.
+        DomainError: No three legs have the centre of mass inside their triangle and every other
+            leg on or above the ground.
     """
     three = np.empty(3, np.intp)
     rest(theta, robot.hips, robot.leg_radius, robot.toe_beyond, three)
@@ -142,7 +143,7 @@ def plane_normal(points, legs, up):
     Args:
         points: Lowest point of each leg in the body frame, shape (6, 3) [m].
         legs: Indices of the three legs, shape (3,).
-        up: Overwritten with the normal, shape (3,) [-]; kept when the points lie on a line.
+        up: Overwritten with the normal, shape (3,) [-]; kept when infinity is returned.
 
     Returns:
         Largest change of a component of `up` [-]; infinity when the points lie on a line seen from
@@ -163,7 +164,7 @@ def plane_normal(points, legs, up):
 
 @compiled
 def seen_from_above(points, up, seen):
-    """Project points along the vertical to x along the heading and y to the left.
+    """Project points along the vertical to x along the heading and y to the left, from the centre.
 
     Args:
         points: Points in the body frame, shape (6, 3) [m].
@@ -185,7 +186,8 @@ def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
     """Compute the orientation of the body that stands on three given legs.
 
     A turn of the body moves the lowest points along arcs that are level there. Fixed-point
-    iteration between the points and the plane through them therefore converges in a few rounds.
+    iteration between the points and the plane through them therefore converges in a few rounds; it
+    stops after 60, converged or not.
 
     Args:
         theta: Leg angles, shape (6,) [rad].
@@ -198,7 +200,7 @@ def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
         seen: Filled: the points seen from above, shape (6, 2) [m].
 
     Returns:
-        False when the three legs lie on a line, else True.
+        False when the three legs' points lie on a line seen from above, else True.
     """
     up[0], up[1], up[2] = 0.0, 0.0, 1.0
     for _ in range(_TURNS):
@@ -249,7 +251,8 @@ def rest(theta, hips, radius, toe_beyond, legs):
         hips: Hip positions in the body frame, shape (6, 3) [m].
         radius: Radius of the legs' arcs [m].
         toe_beyond: Angle of the arcs beyond a half circle [rad].
-        legs: Filled: indices of the legs, -1 when no three support the robot, shape (3,).
+        legs: Filled: indices of the legs, shape (3,); -1 when no three hold the centre of mass
+            inside their triangle with every other leg on or above the ground.
     """
     points, up, seen = np.empty((6, 3)), np.empty(3), np.empty((6, 2))
     legs[:] = -1

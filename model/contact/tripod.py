@@ -52,7 +52,7 @@ def switch_by_listing(heights: Array, contact: NDArray[np.bool_], inner: int) ->
     The inner legs in flight take over as soon as any of their hips is higher than any of the
     standing inner legs' hips; the outer side follows, so that always one whole tripod stands. In
     the listing a tie switches to the legs in flight. At the start of a matched gait, where heights
-    are equal but for rounding, the rounding then decides. Here a tie changes nothing.
+    are equal but for rounding, the rounding then decides. Here a tie, to 1e-12 m, changes nothing.
 
     Args:
         heights: Hip heights above each leg's lowest point, shape (6,) [m].

@@ -29,7 +29,8 @@ class CyclicReference:
         \dot\theta_f = \frac{2\pi - (\theta_{LO} - \theta_{TD})}{\tau_f - \tau_w}
 
     with u the time since the leg's last touchdown, its k-th: Eq. (2-20) to (2-22), with a pause
-    tau_w. `dataclasses.replace` gives any gait pauses and offsets.
+    tau_w. With a phase from 0 to below 1 the last touchdown up to time zero has k = 0.
+    `dataclasses.replace` gives any gait pauses and offsets.
 
     Every array has one entry a leg, and a number stands for all legs. The robot has six; the class
     takes any number of legs.
@@ -37,12 +38,13 @@ class CyclicReference:
     Attributes:
         touchdown: Touchdown angles, shape (n,) [rad].
         liftoff: Lift-off angles, beyond touchdown by less than a turn, shape (n,) [rad].
-        ground_time: Times from touchdown to lift-off, shape (n,) [s].
-        flight_time: Times from lift-off to touchdown, the pause included, shape (n,) [s].
+        ground_time: Times tau_g from touchdown to lift-off, shape (n,) [s].
+        flight_time: Times tau_f from lift-off to touchdown, the pause included, shape (n,) [s].
         phase: Share of the period by which each leg is past touchdown at time zero; 1 more puts
             the leg a turn ahead, shape (n,) [-].
-        inner: Indices of the legs on the inner side of a turn; empty for a straight walk.
-        pause: How long a leg waits at lift-off before its flight, shape (n,) [s].
+        inner: Indices of the legs on the inner side of a turn; only stored. Empty where no side was
+            named; `tripod_reference` sets the side of `direction` for a straight walk too.
+        pause: How long, tau_w, a leg waits at lift-off before its flight, shape (n,) [s].
         offset: Angle added to each leg's angle of the equation above, shape (n,) [rad].
 
     Raises:
@@ -134,7 +136,10 @@ class CyclicReference:
         return replace(self, **swapped, inner=tuple(sorted(other[leg] for leg in self.inner)))
 
     def angles(self, t: ArrayLike) -> Array:
-        """Compute the unwrapped leg angles at times t, (m,) or a number, [s]: (m, n) [rad]."""
+        """Compute the unwrapped leg angles, `offset` included, at times t [s].
+
+        Shape (m, n) [rad] for m times, (1, n) for a number.
+        """
         turns, since = self._since_touchdown(t)
         ground = self.touchdown + self.ground_speed * since
         flown = np.maximum(since - self.ground_time - self.pause, 0.0)
@@ -150,7 +155,7 @@ class CyclicReference:
         return np.where(stands, self.ground_speed, np.where(flies, self.flight_speed, 0.0))
 
     def stance_intervals(self, span: tuple[float, float]) -> Intervals:
-        """Compute the intervals in which each leg's angle less `offset` is on the ground.
+        """Compute when each leg, by its angle less `offset`, is from touchdown to lift-off.
 
         Args:
             span: Start and end; intervals are cut there [s].
@@ -164,7 +169,10 @@ class CyclicReference:
         return event_intervals(down, down + self.ground_time, span)
 
     def _since_touchdown(self, t: ArrayLike) -> tuple[Array, Array]:
-        """Return the number of touchdowns so far and the time since the last [s], (m, n) each."""
+        """Return the number k of the last touchdown and the time since it [s], (m, n) each.
+
+        Times within 1e-11 of a period of touchdown, lift-off or the end of a pause are moved to it.
+        """
         # Times on a kink must not fall before it by rounding: the speed there is that after it.
         cycles = np.atleast_1d(np.asarray(t, dtype=float))[:, None] / self.period + self.phase
         turns = np.floor(cycles + _KINK)

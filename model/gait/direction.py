@@ -28,5 +28,9 @@ def inner_legs(direction: Direction) -> tuple[int, ...]:
 
 
 def is_inner(direction: Direction) -> NDArray[np.bool_]:
-    """Return whether each leg is on the side that the robot turns to, shape (6,)."""
+    """Return whether each leg is on the side that the robot turns to, shape (6,).
+
+    Raises:
+        DomainError: The direction is neither left nor right.
+    """
     return np.isin(np.arange(N_LEGS), inner_legs(direction))

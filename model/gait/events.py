@@ -31,10 +31,10 @@ class EventTimes:
     liftoff: Array
 
     def stance_intervals(self, span: tuple[float, float]) -> Intervals:
-        """Pair each touchdown of a leg with the lift-off of the next cycle.
+        """Pair each touchdown of a leg with the lift-off of the next cycle; the last has none.
 
         Args:
-            span: Start and end; intervals are cut there [s].
+            span: Start and end; intervals are cut there, and left out outside [s].
 
         Returns:
             One array of stance intervals, rows (start, end), shape (k, 2), for each leg [s].
@@ -70,17 +70,24 @@ class EventSystem:
 
     @cached_property
     def matrix(self) -> Array:
-        r"""The explicit form, :math:`x(k) = A_0^* \otimes A_1 \otimes x(k-1)`, (2n, 2n) [s]."""
+        r"""Matrix of the explicit form, :math:`A_0^* \otimes A_1`, shape (2n, 2n) [s].
+
+        With it :math:`x(k) = A_0^* \otimes A_1 \otimes x(k-1)`. Raises `DomainError` if events of
+        one cycle wait for each other in a circle.
+        """
         return solve_implicit(self.A0, self.A1)
 
     @cached_property
     def cycle_time(self) -> float:
-        """Cycle time of the steady state: the eigenvalue of `matrix` [s]."""
+        """Cycle time of the steady state, the eigenvalue of `matrix`; -inf without repeats [s]."""
         return eigenvalue(self.matrix)
 
     @cached_property
     def steady_state(self) -> EventTimes:
-        """Event times of one cycle of the steady state, (1, n) each; repeat every `cycle_time`."""
+        """Event times of one cycle of the steady state, (1, n) each; repeat every `cycle_time`.
+
+        Raises `DomainError` if events do not repeat.
+        """
         return _events(eigenvector(self.matrix)[None])
 
     def events(self, cycles: int, *, start: ArrayLike | None = None) -> EventTimes:
@@ -94,7 +101,8 @@ class EventSystem:
             Events of cycles 0 to `cycles`.
 
         Raises:
-            DomainError: The start does not have two events a leg.
+            DomainError: The start does not have two events a leg, or events of one cycle wait for
+                each other in a circle.
         """
         x = np.zeros(2 * self.n_legs) if start is None else np.asarray(start, dtype=float)
         if x.shape != (2 * self.n_legs,):
@@ -119,7 +127,7 @@ def scheduled_reference(
 ) -> CyclicReference:
     """Compute periodic leg angles, linear between the events of a schedule's steady state.
 
-    Time zero is the first touchdown of the first group.
+    Time zero is the first touchdown of the first group; every leg has a phase from 0 to 1.
 
     Args:
         system: The scheduler.
@@ -131,7 +139,8 @@ def scheduled_reference(
         Leg angles; their period is the system's cycle time.
 
     Raises:
-        DomainError: A lift-off angle does not exceed touchdown by less than a turn.
+        DomainError: A lift-off angle does not exceed touchdown by less than a turn, there is not
+            one angle a leg, or the system has no steady state.
     """
     period = system.cycle_time
     down, up = system.steady_state.touchdown[0], system.steady_state.liftoff[0]
@@ -154,10 +163,12 @@ def events_reference(
 ) -> SampledReference:
     """Interpolate leg angles linearly between given events, periodic or not.
 
-    Each leg rests at its touchdown angle before its first touchdown and after its last.
+    Each leg rests at its touchdown angle, plus whole turns, before its first touchdown and after
+    its last. Angles grow by 2 pi from one touchdown to the next.
 
     Args:
-        events: Touchdowns and lift-offs of six legs, in order.
+        events: Touchdowns and lift-offs of six legs, in order; the first row's lift-offs, which
+            precede the first touchdowns, are not used.
         touchdown: Touchdown angles, a number or shape (6,) [rad].
         liftoff: Lift-off angles, a number or shape (6,) [rad].
 
@@ -166,7 +177,7 @@ def events_reference(
 
     Raises:
         DomainError: A lift-off angle does not exceed touchdown by less than a turn, a leg's events
-            are out of order, or the legs are not six.
+            are out of order, all events are at one time, or the legs are not six.
     """
     cycles, n_legs = events.touchdown.shape
     down, up = (np.broadcast_to(np.asarray(a, dtype=float), n_legs) for a in (touchdown, liftoff))
@@ -184,7 +195,7 @@ def events_reference(
 
 
 def _require_order(times: Array) -> None:
-    """Raise `DomainError` unless the times of each leg (column) increase."""
+    """Raise `DomainError` unless the times of each leg (column) increase strictly."""
     late = np.argwhere(np.diff(times, axis=0) <= 0)
     if len(late):
         event, leg = late[0]

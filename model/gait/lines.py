@@ -66,6 +66,9 @@ class Log(NamedTuple):
 def split(changes: Changes, half: float) -> NDArray[np.intp]:
     """Split the changes of count into the fewest successive groups that a straight line passes.
 
+    A line passes a change if it lies, at the sample before, within `half` of the angle counted
+    before, and at the sample after, of that after. Its speed is at most `FASTEST` either way.
+
     Args:
         changes: The changes, at least one.
         half: Half a count plus the tolerance of a line [rad].
@@ -89,7 +92,8 @@ def _reach(changes, start, half):
     """Return the index of the first change that no line through all changes from `start` on passes.
 
     The number of changes if there is none. A line passes a change when the line lies, at the sample
-    before, within `half` of the angle before, and at the sample after, of the angle after.
+    before, within `half` of the angle before, and at the sample after, of the angle after; speeds
+    are tried up to `FASTEST`.
     """
     early, late, before, after = changes
     n = len(early)
@@ -129,7 +133,8 @@ def _reach(changes, start, half):
 def fitted(changes: Changes, first: NDArray[np.intp], place: Array) -> Lines:
     """Fit a line by least squares to the times and angles of each group of changes.
 
-    Speed is zero for a single change; the last changes of long groups are left out (`_own_end`).
+    The angle of a change is halfway between its counts. Speed is zero for a single change; the last
+    changes of groups of `OWN` or more are left out (`_own_end`).
 
     Args:
         changes: The changes.
@@ -163,6 +168,9 @@ def drawn(
 ) -> Lines:
     """Move lines towards lines fitted to other times of the changes, while they pass every change.
 
+    A line moves at most onto the other one, and that far if it misses a change before the move.
+    Changes that `_own_end` leaves out may be missed.
+
     Args:
         lines: Lines from `fitted` with each change halfway between its samples.
         changes: The changes.
@@ -189,7 +197,8 @@ def _room(lines, other, i, changes, first, half):
     """Return how far line i can move towards `other` and pass all its changes, share from 0 to 1.
 
     The share is 1 where line i itself does not pass them: then the leg did not move along a
-    straight line, and each change is known only on its own.
+    straight line, and each change is known only on its own. Changes that `_own_end` leaves out of
+    the fit may be missed.
     """
     room = 1.0
     for k in range(first[i], _own_end(first[i], first[i + 1])):
@@ -210,8 +219,9 @@ def _room(lines, other, i, changes, first, half):
 def rests(lines: Lines, changes: Changes, first: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Detect whether a leg rested between each line and the next.
 
-    A leg rested if, while the count stayed the same, the first line reaches that angle before the
-    next line leaves it, by more than half the time between the two changes.
+    The count stayed the same from the first line's last change to the next line's first. A leg
+    rested if in that time the first line reaches the middle of this count before the next line
+    leaves it, by more than half of that time; not if a line has no speed.
 
     Args:
         lines: The lines, k of them.
@@ -243,6 +253,9 @@ def knots(
 ) -> Array:
     """Compute the knots of the piecewise linear angle, where each line passes into the next.
 
+    The first and the last knot are at the log's ends. A time before that of the knot before it is
+    raised to it.
+
     Args:
         lines: The lines.
         changes: The changes of count.
@@ -272,8 +285,9 @@ def knots(
 def _junction(lines, i, early, late, angle, rested, found, n):
     """Add the knots between line i and the next to `found`; return the number of knots so far.
 
-    The ends of a plateau, if the leg rested; the lines' intersection, if that is near the time in
-    which the count stayed the same; else both lines at the ends of that time.
+    The ends of a plateau at `angle`, if the leg rested; the lines' intersection, if that is less
+    than 1.5 times its length outside the time from `early` to `late`, in which the count stayed the
+    same; else line i at `early` and the next line at `late`.
     """
     if rested:
         n = _add(found, n, _when(lines, i, angle), angle)
@@ -290,9 +304,10 @@ def _junction(lines, i, early, late, angle, rested, found, n):
 
 @compiled
 def _end(lines, i, t, theta, rest, half, found, n):
-    """Add the knots at a log's end t: on line i, or at rest up to the line; return the number.
+    """Add the knots at a log's first or last time t to `found`; return the number of all knots.
 
-    The number is that of all knots in `found`.
+    One knot on line i, if at t it is within `half` of the angle theta counted there, or has no
+    speed. Else the leg rests there, at theta + rest: one knot at t, one where the line passes it.
     """
     if abs(_at(lines, i, t) - theta) <= half or lines.speed[i] == 0:
         return _add(found, n, t, _at(lines, i, t))
@@ -309,7 +324,10 @@ def _add(found, n, t, angle):
 
 @compiled
 def _stay(changes, change):
-    """Return start, end [s] and angle [rad] of the constant count before a change (an index)."""
+    """Return start, end [s] and angle [rad] of the constant count before a change (an index > 0).
+
+    Start and end are halfway between the samples around the count's two changes.
+    """
     early = 0.5 * (changes.early[change - 1] + changes.late[change - 1])
     return early, 0.5 * (changes.early[change] + changes.late[change]), changes.after[change - 1]
 
@@ -328,5 +346,5 @@ def _when(lines, i, angle):
 
 @compiled
 def _own_end(begin, end):
-    """Return `end`, less a twelfth of the changes, at least one, if there are `OWN` or more."""
+    """Return `end`, less a twelfth of the changes since `begin`, at least one, if `OWN` or more."""
     return end - max(1, (end - begin) // 12) if end - begin >= OWN else end

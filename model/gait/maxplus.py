@@ -48,7 +48,7 @@ def otimes(a: ArrayLike, b: ArrayLike) -> Array:
         b: A number, a matrix of shape (m, p) or a vector of shape (m,).
 
     Raises:
-        DomainError: The shapes do not match.
+        DomainError: The shapes do not match, or `a` is a vector.
 
     >>> otimes([[0.0, 2.0], [EPSILON, 1.0]], [3.0, 0.0]).tolist()
     [3.0, 1.0]
@@ -116,6 +116,9 @@ def plus(A: Array) -> Array:
 def star(A: Array) -> Array:
     r"""Compute the Kleene star :math:`A^* = E \oplus A \oplus A^{\otimes 2} \oplus \ldots`, (n, n).
 
+    Args:
+        A: Square matrix, shape (n, n).
+
     Raises:
         DomainError: A circuit has a positive sum.
     """
@@ -130,7 +133,8 @@ def solve_implicit(A: Array, b: Array) -> Array:
         b: A vector of shape (n,) or a matrix of shape (n, p).
 
     Raises:
-        DomainError: A circuit has a positive sum: no event could ever happen.
+        DomainError: A circuit has a positive sum, so that no event could ever happen, or the shapes
+            do not match.
 
     >>> waits = np.array([[EPSILON, EPSILON], [2.0, EPSILON]])
     >>> solve_implicit(waits, np.array([1.0, 0.0])).tolist()
@@ -167,15 +171,15 @@ def eigenvalue(A: Array) -> float:
 
 
 def eigenvector(A: Array) -> Array:
-    r"""Compute the eigenvector that x(k) = A ⊗ x(k - 1) converges to from x = 0.
+    r"""Compute the eigenvector of the steady state that x(k) = A ⊗ x(k - 1) has from x = 0.
 
     .. math::
         A \otimes v = \lambda \otimes v, \qquad
         v = \bigoplus_{c} [A_\lambda^*]_{\cdot c} \otimes \bigoplus_j [A_\lambda^*]_{cj}
 
-    with A_lambda = A - lambda, over its critical nodes c, those on a circuit of mean lambda. Where
-    the critical circuits are not connected the eigenvector is not unique; this one is the earliest
-    that follows events which all begin at zero.
+    with A_lambda = A - lambda, over its critical nodes c, those on a circuit of mean lambda. If
+    x(k) - k lambda converges, it does to v. Where the critical circuits are not connected the
+    eigenvector is not unique; this one follows from events which all begin at zero.
 
     Args:
         A: Square matrix, shape (n, n).

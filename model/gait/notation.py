@@ -104,8 +104,8 @@ def parse_gait(text: str, n_legs: int | None = None) -> Gait:
         The gait, its groups in the order of the text.
 
     Raises:
-        DomainError: The text is not in group notation, its legs are not 1 to n, once each, or n is
-            not `n_legs`.
+        DomainError: The text is not in group notation, a group is empty, its legs are not 1 to n,
+            once each, or n is not `n_legs`.
 
     >>> print(parse_gait("{1,4} < {2,5} < {3,6}"))
     {1,4} ≺ {2,5} ≺ {3,6}
@@ -117,7 +117,10 @@ def parse_gait(text: str, n_legs: int | None = None) -> Gait:
 
 
 def _parse_group(part: str, text: str) -> tuple[int, ...]:
-    """Parse the leg numbers of one group, such as {1,4,5}; `text` is for the error's message."""
+    """Parse the leg numbers of one group, such as {1,4,5}, in their order; {} has none.
+
+    Raise `DomainError` if it is no such group; `text` is the whole gait, for the message.
+    """
     match = _GROUP.fullmatch(part)
     if match is None:
         raise DomainError(

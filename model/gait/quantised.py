@@ -45,7 +45,7 @@ class CountedLeg:
 
     @classmethod
     def of(cls, t: Array, theta: Array, step: float) -> "CountedLeg | None":
-        """Fit the fewest straight lines that pass every change of count.
+        """Split the changes of count into the fewest groups that a line passes; fit a line to each.
 
         Args:
             t: Times of the samples, shape (n,) [s].
@@ -67,6 +67,8 @@ class CountedLeg:
 
     def drawn(self, step: float, rng: np.random.Generator) -> Lines:
         """Draw lines that still pass every change, by random deviations from `lines`.
+
+        A line that does not pass its changes is moved all the same (`model.gait.lines.drawn`).
 
         Twenty changes confine a line to a small polygon of offset and speed, far smaller than
         twenty independent errors would leave. A direction is therefore taken from changes that fall
@@ -90,13 +92,13 @@ class CountedLeg:
         )  # fmt: skip
 
     def angles(self, t: Array, step: float, rng: np.random.Generator | None) -> Array:
-        """Compute the leg angle along the fitted lines, or along a draw of them.
+        """Compute the leg angle on the fitted lines or a draw of them, constant outside the log.
 
         Args:
             t: Times, shape (n,) [s].
             step: Angle of one count [rad].
-            rng: Source of randomness, to draw lines and the angle of rest; None for the fitted
-                lines, with rests at the middle of a count.
+            rng: Source of randomness, to draw lines and the angle of rest, within 0.4 counts of a
+                count's middle; None for the fitted lines, with rests at the middle.
 
         Returns:
             Leg angles, shape (n,) [rad].
@@ -144,6 +146,10 @@ class QuantisedLog:
         Returns:
             The angles, less a constant offset: whether counts are rounded or truncated, half a
             count, is not known here.
+
+        Raises:
+            DomainError: The times do not increase, there are fewer than two, or the legs are not
+                six.
         """
         columns = [
             self._still(theta, rng) if leg is None else leg.angles(self.t, self.step, rng)
@@ -152,7 +158,10 @@ class QuantisedLog:
         return SampledReference(self.t, np.column_stack(columns))
 
     def _still(self, theta: Array, rng: np.random.Generator | None) -> Array:
-        """Return the counts of a leg that never moves, shifted by a draw within half a count."""
+        """Return the counts of a leg that never moves, all shifted by one draw within half a count.
+
+        Unchanged if `rng` is None.
+        """
         half = 0.5 * self.step
         return theta + (0.0 if rng is None else rng.uniform(-half, half))
 
@@ -164,8 +173,9 @@ def find_step(theta: Array) -> float | None:
         theta: Unwrapped angles, shape (n, legs) [rad].
 
     Returns:
-        The step [rad]; None with fewer than 8 changes, if 2 % or more are not multiples, or if the
-        step is not between 0.001 rad and 10 degrees.
+        The step [rad]; None with fewer than 8 changes (over 1e-4 rad from sample to sample), if 2 %
+        or more of them are no multiple to within 2 %, or if the step is not between 0.001 rad and
+        10 degrees.
 
     >>> counted = np.radians(3.6) * np.arange(20.0).round()[:, None]
     >>> float(np.degrees(find_step(counted)).round(3))

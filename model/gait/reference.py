@@ -74,7 +74,10 @@ class SampledReference:
         return _between(t, theta, at)
 
     def speeds(self, t: ArrayLike) -> Array:
-        """Compute the slope of the angles just after times t [s], zero outside, (n, 6) [rad/s]."""
+        """Compute the slope of the angles just after times t [s], shape (n, 6) [rad/s].
+
+        Zero before the first time and from the last one on.
+        """
         at = np.atleast_1d(np.asarray(t, dtype=float))
         index = np.searchsorted(self.t, at, side="right") - 1
         slopes = np.diff(self.theta, axis=0) / np.diff(self.t)[:, None]

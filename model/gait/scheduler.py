@@ -17,6 +17,8 @@ def precedence(gait: Gait, double_stance: float) -> tuple[Array, Array]:
         [P]_{pq} = \tau_\Delta \text{ for } p \in \ell_{j+1},\ q \in \ell_j, \qquad
         [Q]_{pq} = \tau_\Delta \text{ for } p \in \ell_1,\ q \in \ell_m
 
+    and epsilon, minus infinity, elsewhere: lift-off of leg p (row) after touchdown of leg q.
+
     Args:
         gait: Groups l_1 to l_m.
         double_stance: tau_Delta, the time that a group and its successor stand together [s].
@@ -42,9 +44,10 @@ def straight_system(
                \begin{bmatrix} \mathcal{E} & \mathcal{E} \\ \tau_g \otimes E \oplus Q & \mathcal{E}
                \end{bmatrix} \otimes x(k-1)
 
-    A leg touches down tau_f after lift-off. It lifts off once it has stood for tau_g and the group
-    before its own has stood for tau_Delta, whichever is later: tau_g is the least time on the
-    ground. With m groups the cycle time is
+    with the identity E and zero matrix of `model.gait.maxplus`, P and Q of `precedence`. A leg
+    touches down tau_f after lift-off. It lifts off once it has stood for tau_g and the group before
+    its own has stood for tau_Delta, whichever is later: tau_g is the least time on the ground. With
+    m groups the cycle time is
 
     .. math::
         \lambda = \max\bigl(\tau_g + \tau_f,\ m\,(\tau_f + \tau_\Delta)\bigr) .
@@ -56,7 +59,8 @@ def straight_system(
         double_stance: tau_Delta [s].
 
     Raises:
-        DomainError: A time is negative, or a leg has no time in flight or on the ground.
+        DomainError: A time is negative or not finite, or a leg has no time in flight or on the
+            ground.
     """
     require_times(ground_time=ground_time, flight_time=flight_time, double_stance=double_stance)
     n = gait.n_legs
@@ -69,7 +73,10 @@ def straight_system(
 
 
 def require_times(**times: float) -> None:
-    """Raise `DomainError` unless ground and flight time are positive and others not negative."""
+    """Raise `DomainError` unless times are finite, `ground_time` and `flight_time` positive.
+
+    Times of other names may be zero, but not negative.
+    """
     for name, value in times.items():
         least = "more than zero" if name in ("ground_time", "flight_time") else "zero or more"
         if not (np.isfinite(value) and (value > 0 or (value == 0 and least == "zero or more"))):

@@ -75,7 +75,13 @@ def require_stance_angles(touchdown: Array, liftoff: Array) -> None:
 
 
 def _leg_intervals(t: Array, past_touchdown: Array, stance_angle: float) -> Array:
-    """Return rows (start, end) in which an angle modulo a turn is below the stance angle [s]."""
+    """Return rows (start, end), shape (k, 2), of the times on the ground of one leg [s].
+
+    Args:
+        t: Times, increasing, shape (m,) [s].
+        past_touchdown: Leg angle less touchdown angle, linear between the times, (m,) [rad].
+        stance_angle: Stance angle; modulo a turn, smaller angles are on the ground [rad].
+    """
     knots = np.unique(
         np.concatenate(
             [
@@ -94,7 +100,7 @@ def _leg_intervals(t: Array, past_touchdown: Array, stance_angle: float) -> Arra
 
 
 def _crossings(t: Array, angle: Array) -> Array:
-    """Compute the times at which an angle, linear between samples, is a whole number of turns."""
+    """Compute the times [s] at which an angle, linear between samples, is a multiple of 2 pi."""
     turns = angle / (2 * np.pi)
     levels = np.arange(np.ceil(turns.min()), np.floor(turns.max()) + 1)
     found = [_level_crossings(t, turns - level) for level in levels]

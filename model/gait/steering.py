@@ -73,8 +73,8 @@ def ideal_liftoff(touchdown: ArrayLike, leg_arc: float = np.pi) -> Array:
     .. math::
         \theta_{LO} = \pi + \tfrac{A - \pi}{2} - \arcsin\frac{h_{TD}/r}{2\sin(A/2)} ,
 
-    or :math:`\pi - \theta_{TD}` where that is still on the arc: legs longer than a half circle
-    that touch down late.
+    with h_TD the hip height at touchdown, or :math:`\pi - \theta_{TD}` where that is still on the
+    arc: legs longer than a half circle that touch down late.
 
     Args:
         touchdown: Touchdown angles, before the one at which the hip is highest [rad].
@@ -127,6 +127,9 @@ def largest_steering_factor(inner_touchdown: float, leg_arc: float = np.pi) -> f
         inner_touchdown: Touchdown angle of the inner legs [rad].
         leg_arc: A, angle of the leg's arc [rad].
 
+    Raises:
+        DomainError: The touchdown angle is not between -90 degrees and the highest hip's.
+
     >>> round(largest_steering_factor(np.radians(50.0)), 3)
     3.971
     """
@@ -152,7 +155,8 @@ def solve_outer_touchdown(
         leg_arc: A, angle of the leg's arc [rad].
 
     Raises:
-        DomainError: No touchdown angle gives this steering factor.
+        DomainError: The steering factor is not positive, or too large for the inner touchdown
+            angle; or that angle has no ideal lift-off.
     """
     if not steering_factor > 0:
         raise DomainError(
@@ -193,7 +197,8 @@ def tripod_angles(
 
     Args:
         inner_touchdown: Touchdown angle of the inner legs [rad].
-        steering_factor: s, outer over inner stance angle [-].
+        steering_factor: s, outer over inner stance angle; without effect where no missing angle
+            depends on it, as with a given outer touchdown and no given lift-off [-].
         leg_arc: Angle of the leg's arc [rad].
         inner_liftoff: Lift-off angle of the inner legs; Eq. (2-17) when None [rad].
         outer_touchdown: Touchdown angle of the outer legs; Eq. (2-19) when None [rad].
@@ -234,13 +239,13 @@ def tripod_reference(
     Args:
         angles: Touchdown and lift-off angles of both sides.
         cycle_time: tau_c [s].
-        direction: Side to which the robot turns.
+        direction: Side to which the robot turns; the result's `inner`, also at steering factor 1.
 
     Returns:
         Leg angles.
 
     Raises:
-        DomainError: The cycle time is not positive, or the direction unknown.
+        DomainError: The cycle time is not positive and finite, or the direction unknown.
     """
     inner = is_inner(direction)
     return CyclicReference(

@@ -45,11 +45,11 @@ def suriana_reference(
         direction: Side to which the robot turns.
 
     Returns:
-        Leg angles.
+        Leg angles; their `inner` is empty if the turn time is 0.
 
     Raises:
-        DomainError: The turn time is negative, another time not positive, the direction unknown, or
-            lift-off does not exceed touchdown by less than a turn.
+        DomainError: The turn time is negative, another time not positive, one not finite, the
+            direction unknown, or lift-off does not exceed touchdown by less than a turn.
     """
     if not turn_time >= 0:
         raise DomainError(

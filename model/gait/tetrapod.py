@@ -31,15 +31,15 @@ def tetrapod_reference(
         touchdown: Touchdown angle [rad].
         liftoff: Lift-off angle [rad].
         cycle_time: tau_c [s].
-        middle_start: Angle of legs 2 and 5 at time zero, Eq. (5-6), or None for the one that keeps
-            the rhythm: halfway between touchdown and lift-off [rad].
+        middle_start: Angle of legs 2 and 5 at time zero, from touchdown to lift-off, Eq. (5-6), or
+            None for the one that keeps the rhythm: halfway between the two [rad].
 
     Returns:
         Leg angles.
 
     Raises:
         DomainError: Lift-off does not exceed touchdown by less than a turn, `middle_start` is not
-            between the two, or the cycle time is not positive.
+            from touchdown to lift-off, or the cycle time is not positive and finite.
     """
     ground_time, flight_time = 2 * cycle_time / 3, cycle_time / 3
     share = 0.5

@@ -27,6 +27,7 @@ def turning_system(
                \begin{bmatrix} E & \mathcal{E} \\ \tau_g \otimes N \oplus T & E \end{bmatrix}
                \otimes x(k-1)
 
+    with touchdowns t and lift-offs l in x, the identity E and zero matrix of `model.gait.maxplus`.
     The thesis gives the four event equations of 2-3-3 and leaves the matrices to its predecessor's
     report. They follow from two demands.
 
@@ -51,14 +52,15 @@ def turning_system(
     cycles, which makes the explicit matrix irreducible, with one cycle time whatever the start.
 
     A leg's own circuit takes tau_g + tau_f + tau_p on either side: one period for all. The circuit
-    through the m groups takes tau_f + tau_p + tau_Delta for each that has an outer leg. Hence
+    through the m groups takes tau_f + tau_p + tau_Delta for each that has an outer leg, and
+    tau_f + tau_Delta for each other one. Hence, with an outer leg in every group,
 
     .. math::
         \lambda = \max\bigl(\tau_g + \tau_f + \tau_p,\ m\,(\tau_f + \tau_p + \tau_\Delta)\bigr) ,
 
     and where the second is larger all legs stand longer by the difference. A tripod with
-    tau_g = tau_f thus needs 2 tau_f + 2 tau_p + 2 tau_Delta. With tau_p = 0 it is
-    `straight_system`.
+    tau_g = tau_f thus needs 2 tau_f + 2 tau_p + 2 tau_Delta. With tau_p = 0 the event times are
+    those of `straight_system`.
 
     Args:
         gait: Groups of legs.
@@ -69,8 +71,8 @@ def turning_system(
         double_stance: tau_Delta, the time that a group and its successor stand together [s].
 
     Raises:
-        DomainError: A time is negative, a leg has no time in flight or on the ground, or an inner
-            leg does not exist.
+        DomainError: A time is negative or not finite, a leg has no time in flight or on the ground,
+            or an inner leg does not exist.
     """
     require_times(ground_time=ground_time, flight_time=flight_time, double_stance=double_stance)
     require_times(turn_time=turn_time)

@@ -17,7 +17,7 @@ class Body(NamedTuple):
     """A robot as arrays for compiled code; see `Robot`.
 
     Attributes:
-        hips: Hip positions, shape (6, 3) [m].
+        hips: Hip positions in the body frame, shape (6, 3) [m].
         leg_radius: Radius of the legs' arcs [m].
         toe_cos: Cosine of the arcs' angle beyond a half circle [-].
         toe_sin: Sine of the arcs' angle beyond a half circle [-].
@@ -75,9 +75,10 @@ class Work(NamedTuple):
         normal: Normal of the ground, shape (14, 3) [-].
         gap: Distance over the ground, negative below it, shape (14,) [m].
         flow: Radius of the arc where a leg rolls, else zero, shape (14,) [m].
-        kind: HIP, ROLLING or TOE, shape (14,).
+        kind: HIP, ROLLING or TOE; TOE for corners, shape (14,).
         load: Normal force, zero in the air, shape (14,) [N].
-        secant: Traction over slip velocity, zero where a bristle holds, shape (14,) [N s/m].
+        secant: Traction over slip velocity, zero in the air and where a bristle holds, (14,)
+            [N s/m].
         R: Rotation of the body, body to world, shape (3, 3).
         A: Matrix of the step's linear system, lower half, shape (6, 6).
         b: Right side of the system, then its solution: final v [m/s] and w [rad/s], shape (6,).

@@ -52,6 +52,8 @@ def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
 def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap, state, flow):
     """Compute the lowest point of each leg, the body's corners, and their gaps to the ground.
 
+    A leg's lowest point is that towards the mean plane of the ground under its hip (`plane_under`).
+
     Args:
         body: Robot as arrays; see `Body`.
         ground: The ground.
@@ -68,7 +70,8 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
         flow: Filled: arc radius where a leg rolls, else zero, shape (14,) [m].
 
     Returns:
-        Number of contacts computed: 14, or 6 where the body is more than `NEAR` above all ground.
+        Number of contacts computed: 14, or 6 if every corner is more than `NEAR` above the highest
+        ground; the rows of the corners are then left as they are.
     """
     for i in range(N_LEGS):
         hip = body.hips[i]

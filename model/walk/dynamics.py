@@ -68,7 +68,7 @@ class Start:
         yaw: Heading [rad].
         height: z of the body's centre, from which the level body drops; None to start settled on
             the legs [m].
-        velocity: Velocity of the body, in either case [m/s].
+        velocity: Velocity of the body's centre, in either case [m/s].
     """
 
     x: float = 0.0
@@ -104,6 +104,7 @@ def walk(
 
     Returns:
         The path; its first sample is the start, with the slip and forces of the first step's end.
+        Slip ratios, of a leg that rolls, are material ones; NaN for others.
 
     Raises:
         DomainError: The duration is not finite or rounds to no step.
@@ -117,7 +118,7 @@ def walk(
 
 
 def step_times(duration: float, dt: float) -> Array:
-    """Compute the times 0, dt, 2 dt, ... of all steps, as many as fit the duration when rounded.
+    """Compute the times 0, dt, 2 dt, ... of all steps; the duration is rounded to whole steps.
 
     Args:
         duration: Time walked [s].
@@ -191,15 +192,17 @@ def start_state(
 ) -> State:
     """Compute the initial state: the robot settled on its legs, or level at the start's height.
 
+    Angular velocity and bristles are zero. A robot that its legs do not hold settles on its body.
+
     Args:
         robot: The robot.
         theta: Leg angles to stand on, shape (6,) [rad].
-        options: Stiffness and damping of contacts.
+        options: Stiffness and damping of contacts; its step is not used.
         ground: The ground.
         start: Initial pose and velocity.
 
     Raises:
-        WalkError: The robot cannot stand: settling diverged.
+        WalkError: Settling diverged, as with leg angles that are not finite.
     """
     half = 0.5 * start.yaw
     highest = _highest_under(robot, ground, start)
@@ -217,7 +220,11 @@ def start_state(
 
 
 def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
-    """Return the largest ground height on the grid within the robot's reach of the start [m]."""
+    """Return the largest of the grid's heights within the robot's reach of the start [m].
+
+    Reach, along x and y each: distance of the furthest hip plus twice the leg's radius. Where it
+    goes beyond the grid, the grid's edge counts.
+    """
     far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
     m, n = ground.height.shape
     i = (np.array([start.x - far, start.x + far]) - ground.x) / ground.step
@@ -236,7 +243,9 @@ def _settled(
 ) -> State:
     """Simulate 1 s on motionless legs and sticky ground; move the body back to its x, y and yaw.
 
-    The state is overwritten; its velocity is the initial one again, its angular velocity zero.
+    The state is overwritten and returned: its height as settled over the ground at x and y, roll
+    and pitch as settled, its velocity the initial one, angular velocity and bristles zero. Raise
+    `WalkError` if it diverges.
     """
     x, y = state.p[:2]
     yaw = 2 * np.arctan2(state.q[3], state.q[0])
@@ -261,7 +270,10 @@ def _settled(
 
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
-    """Convert poses (n + 1, 7) and the legs' rows of `run_steps`, (n, 6, 6), to a path."""
+    """Convert poses (n + 1, 7) and the legs' rows of `run_steps`, (n, 6, 6), to a path.
+
+    The first sample takes the legs' row of the first step's end, each other one that of its step.
+    """
     orientation = roll_pitch_yaw(pose[:, 3:])
     legs = np.concatenate([legs[:1], legs])
     load: NDArray[np.float64] = legs[..., 0]

@@ -29,7 +29,7 @@ class WalkDraw:
     """One draw of all inputs of a walk.
 
     Attributes:
-        robot: The robot, with the draw's leg offsets.
+        robot: The robot, with the draw's leg offsets and leg arc.
         reference: Leg angles over time.
         table: The slip law.
         stiffness: Factor on the contact stiffness of an ensemble's options [-].
@@ -85,10 +85,12 @@ def walk_ensemble(
         progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
     Returns:
-        The paths of all draws, interpolated linearly at `t`.
+        The paths of all draws, from x, y and yaw zero, interpolated linearly at `t`, constant after
+        a walk's last step.
 
     Raises:
-        DomainError: There is no draw or no time, or times are negative or do not increase.
+        DomainError: There is no draw or no time, or times are negative, not finite or do not
+            increase.
         WalkError: A walk failed (the message says of which draw), or `tilt` with a periodic gait.
     """
     _require_draws(draws, t)
@@ -115,7 +117,7 @@ def walk_ensemble(
 
 
 def _tilt_of(path: PlanarWalk) -> Array:
-    """Return roll and pitch as rows, shape (2, n) [rad]; raise `WalkError` if not kept."""
+    """Return roll and pitch as rows, shape (2, n) [rad]; raise `WalkError` if the path has none."""
     if path.tilt is None:
         raise WalkError(
             "roll and pitch of a gait walked by strides are not kept; sample its leg angles"
@@ -124,7 +126,7 @@ def _tilt_of(path: PlanarWalk) -> Array:
 
 
 def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
-    """Raise `DomainError` unless there is a draw and times increase from zero or later."""
+    """Raise `DomainError` unless there is a draw, and a time, and times increase from zero on."""
     if not draws:
         raise DomainError("an ensemble of no draws has no paths; expected at least one")
     if t.ndim != 1 or not len(t) or not (t[0] >= 0 and np.all(np.diff(t) > 0)):
@@ -141,7 +143,7 @@ def planar_walk(
     options: DynamicsOptions = DEFAULT_OPTIONS,
     tilt: bool = False,
 ) -> PlanarWalk:
-    """Compute the planar path of one draw on flat ground, sampled at every step.
+    """Compute the planar path of one draw on flat ground from x, y and yaw zero, at every step.
 
     Args:
         draw: The draw to walk.

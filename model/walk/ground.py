@@ -14,7 +14,8 @@ from model.slip.law import Array
 class Ground(NamedTuple):
     """Heights on a square grid, with bilinear interpolation; constant if the grid has one height.
 
-    It is a named tuple because numba accepts one directly.
+    Beyond the grid the height of its edge continues. It is a named tuple because numba accepts one
+    directly.
 
     Attributes:
         x: Position of the grid's first row [m].
@@ -50,8 +51,8 @@ def sample_ground(
         step: Distance between samples, well below a leg's radius [m].
 
     Raises:
-        DomainError: The area is no wider than a step, or the heights have another shape than the
-            positions or are not finite.
+        DomainError: The area is no wider than a step, the step is not positive, or the heights have
+            another shape than the positions or are not finite.
     """
     if not (x[1] - x[0] > step > 0 and y[1] - y[0] > step):
         raise DomainError(f"ground from x {x} to y {y} in steps of {step:g} m has no area")

@@ -73,8 +73,8 @@ def run_steps(
         dt: Length of a step [s].
         pose: Filled at each step's end: position and quaternion, shape (n, 7).
         legs: Filled at each step's end: normal force, traction (world x, y), slip velocity (world
-            x, y) and slip ratio (NaN unless rolling) of each leg, shape (n, 6, 6); or shape
-            (0, 6, 6) not to keep them.
+            x, y) and slip ratio of each leg, shape (n, 6, 6), or (0, 6, 6) not to keep them; a leg
+            in the air has 0, and the ratio is NaN unless a leg rolls on the ground.
 
     Returns:
         Number of steps computed: n, or fewer where the state stopped being finite.
@@ -142,7 +142,7 @@ def _keep_pose(out, state):
 
 @inlined
 def _keep_legs(out, contacts, state, work, speed):
-    """Fill a row, shape (6, 6), with each leg's forces and slip as in `run_steps`; 0 in the air."""
+    """Fill a row, shape (6, 6), of `run_steps`; a leg in the air has 0 and slip ratio NaN."""
     R, point = work.R, work.point
     bristle = BRISTLE_STIFFNESS * contacts.stiffness
     for i in range(N_LEGS):

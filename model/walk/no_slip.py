@@ -7,8 +7,10 @@ r"""Kinematic walking models without slip, from leg angles and the legs' geometr
 .. math::
     v + \omega \times q_i + \dot\theta_i\, e_y \times (p_i - h_i) = 0 .
 
-Vertically three legs determine height, roll and pitch rate exactly. Horizontally two equations a
-leg for three unknowns cannot all hold when a robot turns, and are solved by least squares.
+with the body's velocity v and angular velocity omega, contact q_i from the body's centre, contact
+p_i and hip h_i in the body frame, leg speed theta_dot_i and the body's y axis e_y. Vertically three
+legs determine height, roll and pitch rate exactly. Horizontally two equations a leg for three
+unknowns cannot all hold when a robot turns, and are solved by least squares.
 
 `walk_wheels` is the predecessor's model, section 2-4: six wheels of radius 2r that do not steer.
 The text says 4r, but its hip speed is 2 r theta_dot, and with that its results follow.
@@ -165,6 +167,8 @@ def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
 def move(skeleton, theta, speed, wheels, motion):
     """Compute the motion of the body at every instant from leg angles and speeds.
 
+    The robot stays on the three legs of the instant before while they hold it, else rests anew.
+
     Args:
         skeleton: The robot's geometry.
         theta: Leg angles, shape (n, 6) [rad].
@@ -282,7 +286,8 @@ def vertical_rates(seen, own, legs):
         legs: Indices of the three legs, shape (3,).
 
     Returns:
-        Angular velocity about forward and about left [rad/s].
+        Angular velocity about forward and about left [rad/s], by which the three points rise
+        equally fast; height takes up the rest.
     """
     a, b, c = legs
     # v_z + w_x y - w_y x + own_z = 0 for each; differences leave w_x and w_y.
@@ -301,7 +306,7 @@ def roll_wheels(hips, r, speed, contact, twist, slip):
         r: Radius of the legs' arcs [m].
         speed: Leg speeds, shape (6,) [rad/s].
         contact: Whether a leg is on the ground, 1 or 0, shape (6,).
-        twist: Filled: forward and leftward velocity [m/s] and yaw rate [rad/s], shape (3,).
+        twist: Filled: forward velocity, leftward velocity (zero) [m/s], yaw rate [rad/s], (3,).
         slip: Filled for legs on the ground: velocity over it, forward and left, (6, 2) [m/s].
     """
     count, mean_y, mean_v = 0.0, 0.0, 0.0

@@ -25,7 +25,7 @@ class WalkPath:
             to the left of the heading; zero in the air, NaN on the ground where a model has none,
             shape (n, 6, 2) [m/s].
         slip_ratio: Longitudinal slip ratio in the model's own definition; NaN in the air and
-            where a model has none, shape (n, 6) [-].
+            where a model has none, as on the toe in the project's model, shape (n, 6) [-].
         normal_force: Normal force of the ground on each leg; zero in the air, NaN on the ground
             where a model has none, shape (n, 6) [N].
         traction_force: Traction force of the ground on each leg, forward and to the left of the

@@ -23,7 +23,7 @@ def rotation_matrix(q, R):
 
 @inlined
 def rotate(q, w, dt):
-    """Rotate an orientation quaternion by one step at constant angular velocity; normalise it.
+    """Rotate an orientation by one step dt at constant angular velocity; normalise the quaternion.
 
     Args:
         q: Unit quaternion (w, x, y, z), updated in place, shape (4,).

@@ -22,7 +22,8 @@ class Slip:
     Attributes:
         law: A slip law with values from a calibration or the thesis, or Coulomb friction by slip
             velocity.
-        source: Origin of the law: "real", "sim:...", "assumed", "thesis", "unknown".
+        source: Where the law's data come from: "assumed" for Coulomb friction, "thesis", or the
+            source of the calibration's data, "real", "sim:..." or others of `docs/conventions.md`.
     """
 
     law: SlipCurve | VelocityCoulomb
@@ -34,6 +35,9 @@ class Slip:
         Args:
             weight: Weight of the robot [N].
             toe: Traction of a leg on its toe, see `law_table`.
+
+        Raises:
+            DomainError: The curve loses its law's shape at these loads, or `toe` is unknown.
         """
         if isinstance(self.law, VelocityCoulomb):
             return self.law.table(weight=weight, toe=toe)
@@ -58,13 +62,14 @@ class Slip:
 
     @property
     def tested_loads(self) -> tuple[float, float] | None:
-        """Smallest and largest load of the law's measurements [N]; None for Coulomb friction."""
+        """Smallest and largest load of the curve's measurements [N]; None for `VelocityCoulomb`."""
         return None if isinstance(self.law, VelocityCoulomb) else self.law.load_range
 
     def loads_below_tested(self, path: WalkPath) -> float | None:
         """Compute the share of a path's leg contacts with less load than the smallest tested [-].
 
-        A contact is one leg at one sample; 0 without contacts, None for Coulomb friction.
+        A contact is one leg at one sample; 0 without contacts or without forces (NaN), None for
+        Coulomb friction by slip velocity.
         """
         if self.tested_loads is None:
             return None

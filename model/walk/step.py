@@ -8,8 +8,10 @@ and traction of every contact are taken there, linear in them,
     N_i' = -k (g_i + \Delta t\, n_i \cdot J_i v') - c\, n_i \cdot (J_i v' + u_i), \qquad
     T_i' = -G_i (J_i v' + u_i)_t,
 
-with gap g, normal n, contact Jacobian J, the leg's own velocity u at its contact, and the secant
-G of the slip law. This gives a symmetric positive definite 6x6 system. A few iterations determine
+with stiffness k and damping c of contact i, gap g, normal n, contact Jacobian J, the leg's own
+velocity u at its contact, and the secant G of the slip law. A prime marks the step's end, v' stands
+for v and w there, and the index t for the part along the ground. This gives a symmetric positive
+definite 6x6 system. A few iterations determine
 which contacts press and what G is. No contact pulls, and traction opposes slip whatever the step.
 The step is therefore stable at any length, unlike the explicit step of the thesis.
 """
@@ -33,6 +35,8 @@ BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of
 @inlined
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     """Advance the body's state by one linearly implicit step.
+
+    A contact without load in the step before, or of a leg that rolls, starts with a slack bristle.
 
     Args:
         body: The robot.
@@ -128,8 +132,8 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
 def bristle_pull(table, contacts, stretch, load, x, y, z):
     """Compute the force over stretch of a toe's bristle after a further slip of (x, y, z).
 
-    It is the bristle's stiffness, or less where the force would exceed the largest traction: the
-    bristle then slides at that limit.
+    It is the bristle's stiffness, 0.1 of the contact's, or less where the force would exceed the
+    largest traction, `toe_traction` times load: the bristle then slides at that limit.
 
     Args:
         table: The slip law.
@@ -194,7 +198,10 @@ def leg_turn(R, speed, w, i):
 
 @inlined
 def _stretch_bristle(table, contacts, state, work, i, dt):
-    """Add the step's slip to contact i's bristle; shorten the stretch to that of full traction."""
+    """Add the step's slip to contact i's bristle; cut the stretch off at that of full traction.
+
+    Nothing is done for a contact without load or a leg that rolls.
+    """
     if work.load[i] == 0.0 or work.kind[i] == ROLLING:
         return
     point, m = work.point, work.normal[i]

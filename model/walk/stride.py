@@ -76,6 +76,9 @@ def _settled_strides(
 ) -> list[Array]:
     """Integrate strides of n steps until one moves the body as the stride before, or `most` are.
 
+    Settled: forward and left, its move differs from the one before by less than `SETTLED` of its
+    length (at least the leg's radius), and its turn by less than `SETTLED_TURN`.
+
     Returns:
         x, y and yaw of each stride's n + 1 instants, shape (n + 1, 3) each [m, m, rad]; a stride's
         first pose is the last pose of the stride before. At most `MAX_STRIDES` strides.

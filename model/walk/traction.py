@@ -33,7 +33,8 @@ class TractionTable(NamedTuple):
         step: Distance of columns in w [-].
         phi: Traction over load, shape (m, n) [-].
         slope: Derivative of phi with respect to w, shape (m, n) [-].
-        toe: Largest traction over load of a leg on its toe, by load, shape (m,) [-].
+        toe: Largest traction over load of a leg on its toe (if `by_velocity`, of every contact of
+            the project's model), by load, shape (m,) [-].
         by_velocity: Whether x is slip velocity over `speed_scale` instead of a slip ratio.
         speed_scale: Slip velocity over which traction on a toe (or a velocity law) sets in, and
             least speed of the arc that a slip velocity is divided by [m/s].
@@ -63,7 +64,7 @@ class VelocityCoulomb:
         speed_scale: Slip velocity v_0 at which traction is 71 % of mu N [m/s].
 
     Raises:
-        DomainError: Friction or velocity scale is not positive.
+        DomainError: Friction or velocity scale is not above zero.
     """
 
     friction: float
@@ -85,6 +86,9 @@ class VelocityCoulomb:
                 traction over load [N].
             toe: "bristle" for a toe that sticks like a spring up to mu N; with "saturated" and
                 "peak" a toe follows the law.
+
+        Raises:
+            DomainError: The toe law is not one of `TOE_LAWS`.
         """
         _require_toe(toe)
         scale, w = _grid(1.0)
@@ -124,8 +128,9 @@ def law_table(
             arc that a slip velocity is divided by [m/s].
 
     Raises:
-        DomainError: The law loses its shape at one of these loads (`SlipLaw.valid`), or the toe law
-            is not one of `TOE_LAWS`.
+        DomainError: The law loses its shape at a load from 0.02 to 2 times the weight, even if it
+            is proportional to load (`SlipLaw.valid`), or the toe law is not one of `TOE_LAWS`.
+        ValueError: The slip definition is unknown.
     """
     _require_toe(toe)
     loads = weight * np.geomspace(*LOAD_RANGE, N_LOADS)
@@ -175,13 +180,19 @@ def _proportional_to_load(law: SlipLaw, values: Values, loads: Array) -> bool:
 
 
 def _grid(curve_scale: float) -> tuple[float, Array]:
-    """Return x_0, a tenth of the slip at which the law bends, and the columns' w, shape (257,)."""
+    """Return x_0, a tenth of the slip `curve_scale` at which a law bends, and the columns' w.
+
+    w is evenly spaced from 0 to that of slip `LARGEST_SLIP`, shape (257,).
+    """
     scale = 0.1 * curve_scale
     return scale, np.linspace(0, np.arcsinh(LARGEST_SLIP / scale), N_SLIPS)
 
 
 def _converted(x: Array, definition: SlipDefinition) -> Array:
-    """Convert material slips x, which may exceed 1, to a definition; x above 1 is not reduced."""
+    """Convert material slips x >= 0, which may exceed 1, to another definition.
+
+    From 1 on the result is that of just below 1, or x itself if larger.
+    """
     # A leg dragged sideways can slip faster than its arc passes: there the law is saturated.
     below_one = convert_slip(np.minimum(x, 1 - 1e-9), SlipDefinition.MATERIAL, definition)
     return np.where(x < 1, below_one, np.maximum(x, below_one))

@@ -71,12 +71,16 @@ def hermite(phi, slope, j, a, step):
 def traction_secant(table, state, load, slip_speed, flow_speed):
     """Compute traction over slip velocity of one contact [N s/m].
 
+    A leg that rolls follows the table at slip ratio v over sqrt(u^2 + v_0^2), with slip speed v,
+    flow speed u and v_0 = `speed_scale`. Any other contact, and every one if the law is
+    `by_velocity`, has load times `toe_traction` over sqrt(v^2 + v_0^2).
+
     Args:
         table: The tabulated law.
         state: ROLLING; or TOE or HIP, which have the traction of a toe.
         load: Normal force [N].
         slip_speed: Speed of the material contact point over the ground [m/s].
-        flow_speed: Speed at which the leg's arc passes the contact [m/s].
+        flow_speed: Speed at which the leg's arc passes the contact, if it rolls [m/s].
     """
     v0 = table.speed_scale  # also keeps finite the slip ratio of a leg that does not turn
     if table.by_velocity or state != ROLLING:

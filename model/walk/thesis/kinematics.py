@@ -27,10 +27,12 @@ class Legs(NamedTuple):
         phi: Angle of the lowest point of each leg's circle, shape (6,) [rad].
         phi_rate: Rate of phi, shape (6,) [rad/s].
         height: Height of each hip above its leg's lowest point, in the leg's plane, (6,) [m].
-        height_rate: Rate of that height at the stance speed of the leg, shape (6,) [m/s].
-        height_acceleration: Second derivative of that height, shape (6,) [m/s2].
+        height_rate: Rate of that height at the stance speed of the leg, without rotation of the
+            body, shape (6,) [m/s].
+        height_acceleration: Second derivative of that height at constant phi_rate, (6,) [m/s2].
         point: Lowest point of each leg in the inertial frame, shape (6, 3) [m].
-        hip: Hip from the body's position one step ago, inertial frame, shape (6, 3) [m].
+        hip: Position of each hip in the inertial frame, computed with the body's position one step
+            ago and its orientation now, shape (6, 3) [m].
     """
 
     phi: Array
@@ -124,7 +126,8 @@ def side_mean(values, contact, side):
 def roll_rate(machine, manner, legs, sides, roll):
     """Compute the kinematic roll rate: inner minus outer rate of hip height, over the track.
 
-    Eq. (3-41), with means over the legs on the ground.
+    Eq. (3-41), with means over the legs on the ground; divided by cos(roll) and multiplied by
+    `manner.roll_sign`.
 
     Args:
         machine: The robot.
@@ -145,8 +148,9 @@ def roll_rate(machine, manner, legs, sides, roll):
 def reset(machine, manner, legs, sides, q, v):
     """Set roll, pitch and the rates of height and roll from hip heights at a change of contacts.
 
-    Eq. (3-40), (3-41): roll from the difference of mean inner and outer hip height, pitch zero;
-    with `manner.reset_height` height too, to the mean of both sides.
+    Eq. (3-40), (3-41): roll from the difference of mean inner and outer hip height, times
+    `manner.roll_sign`, pitch zero; with `manner.reset_height` height too, to the mean of both
+    sides. The rate of height is the mean of both sides' rates.
 
     Args:
         machine: The robot.

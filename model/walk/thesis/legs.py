@@ -77,6 +77,9 @@ class SwitchedLegs:
     def of(cls, gait: CyclicReference) -> "SwitchedLegs":
         """Create legs that switch speed by angle from a cyclic gait, and start as it does at zero.
 
+        Args:
+            gait: Gait of six legs.
+
         Raises:
             DomainError: The gait has pauses or offsets, or angles that the class does not accept.
         """

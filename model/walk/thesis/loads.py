@@ -29,7 +29,7 @@ class Balance(NamedTuple):
 
     Attributes:
         arms: Contact points from the body's centre, inertial frame, shape (3, 3) [m].
-        axes: Forward, left and up of the contact frames, shape (3, 3) [-].
+        axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].
         slip: Longitudinal and lateral slip of each leg, shape (3, 2) [-].
         inertia: Moments of inertia about roll and pitch axes, shape (2,) [kg m2].
         wanted: Roll and pitch acceleration that contact moments have to produce, (2,) [rad/s2].
@@ -50,7 +50,8 @@ def static_loads(points, weight, loads):
         \hat f_k = m g\,\frac{d_{Bk}}{d_k}
 
     with the distances of the body's centre, the origin here, and of contact k from the line through
-    the other two contacts; a third of the weight each where the contacts lie on one line.
+    the other two contacts; a third of the weight each where the contacts lie on one line. With the
+    centre outside the triangle the sum is larger than the weight.
 
     Args:
         points: Contact points seen from above, shape (3, 2 or more) [m].
@@ -82,7 +83,7 @@ def leg_force(axes, forward, left, up, force):
 
 @compiled
 def accelerations(balance, traction, loads, excess, slopes):
-    """Compute roll and pitch acceleration less `balance.wanted`, and their derivatives by load.
+    """Compute roll and pitch acceleration by contacts less `balance.wanted`, and load derivatives.
 
     Args:
         balance: The contacts; see `Balance`.
@@ -136,7 +137,7 @@ def solve_on_edges(c, slopes, total, most, loads):
         slopes: Coefficients of f, shape (2, 3) [rad/(s2 N)].
         total: Sum of f [N].
         most: Upper bound of each f; the lower is zero [N].
-        loads: Filled: f of the minimum, shape (3,) [N].
+        loads: Filled: f of the minimum, shape (3,) [N]; left as it is where no f has this sum.
     """
     best = np.inf
     for i in range(3):
@@ -158,7 +159,7 @@ def solve_on_edges(c, slopes, total, most, loads):
 
 @compiled
 def normal_forces(balance, traction, total, most, loads):
-    """Solve Eq. (4-22) for the normal forces of three legs by Gauss-Newton, in place.
+    """Solve Eq. (4-22) for the normal forces of three legs by 60 Gauss-Newton rounds at most.
 
     Args:
         balance: Contacts and wanted accelerations; see `Balance`.

@@ -36,13 +36,12 @@ def walk_slip(leg_speed, ground_speed, signed):
         \kappa = \frac{v_T - v_H}{v_H} \text{ on the toe}
 
     with absolute values in the denominators, cut off at ±100; zero where both speeds are. Rolling,
-    the listing takes
-    sign(v_R) (v_R - |v_C|) for the numerator. This is the same while robot and legs go forward, but
-    a leg that turns back very slowly gets full traction.
+    the listing takes sign(v_R) (v_R - |v_C|) for the numerator. This is the same while robot and
+    legs go forward, but a leg that turns back very slowly gets full traction.
 
     Args:
         leg_speed: Speed of the leg's surface, v_R or v_T [m/s].
-        ground_speed: Speed of the robot over the ground, v_C or v_H [m/s].
+        ground_speed: Forward speed of the body's point at the contact, v_C, or hip, v_H [m/s].
         signed: Whether to take the difference as in the equation above instead of the listing's.
     """
     if leg_speed == 0.0 and ground_speed == 0.0:
@@ -58,7 +57,8 @@ def walk_slip(leg_speed, ground_speed, signed):
 def lateral_walk_slip(axes, v, signed):
     """Compute lateral slip, the slip angle over pi/2, of the body's velocity, Listing A.21 [-].
 
-    Eq. (4-41), (4-42). The listing has the wrong sign for a body that goes backward.
+    Eq. (4-41), (4-42): from -1 to 1, positive when the body moves to the right and forward, zero
+    without leftward velocity. The listing has the wrong sign for a body that goes backward.
 
     Args:
         axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].
@@ -79,7 +79,10 @@ def find_slip(machine, manner, traction, legs, three, q, v, balance):
     """Compute the lever arms and slip ratios of the three legs that carry load.
 
     v_R of Eq. (4-32) and v_T of Eq. (4-37) are the same, minus the rate of phi times the hip's
-    height. For a law by slip velocity, slip is velocity over the table's `speed_scale`.
+    height. The ground speed is that at the hip for a leg on its toe, else at the contact; lateral
+    slip is the body's, the same for all legs. Slip has the sign of the equations on the toe and
+    with `manner.mend_slip`, else the listing's. For a law by slip velocity, slip is velocity over
+    the table's `speed_scale`.
 
     Args:
         machine: The robot.

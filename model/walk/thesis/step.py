@@ -71,7 +71,8 @@ class Record(NamedTuple):
     Attributes:
         state: x, y, z [m], roll, pitch and yaw of Eq. (3-7) [rad], shape (n, 6).
         contact: Whether a leg carries load, shape (n, 6).
-        kappa: Longitudinal slip of a leg that carries load, else NaN, shape (n, 6) [-].
+        kappa: Longitudinal slip of a leg that carries load, as `find_slip` computes it, else NaN,
+            shape (n, 6) [-].
         normal: Normal force, zero without contact, shape (n, 6) [N].
         forward: Traction force forward, zero without contact, shape (n, 6) [N].
         left: Traction force to the left, zero without contact, shape (n, 6) [N].
@@ -96,7 +97,7 @@ def three_legs(sides, legs, q, three):
         sides: Whether a leg is on the ground, shape (6,).
         legs: Kinematics of the legs.
         q: Coordinates, the first two the body's x and y [m], shape (6,).
-        three: Overwritten with the indices of the legs, shape (3,).
+        three: Overwritten with the indices of the legs, ascending, shape (3,).
     """
     down = 0
     for i in range(6):
@@ -222,7 +223,8 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         record: Filled: every `manner.every`-th sample.
 
     Returns:
-        Number of steps computed: all, or those before one in which a rate reached `RUNAWAY`.
+        Number of steps computed: all, or those before one in which a rate reached `RUNAWAY` or
+        became NaN.
     """
     legs = Legs(
         np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(6),

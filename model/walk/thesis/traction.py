@@ -59,7 +59,10 @@ def law_traction(law: SlipLaw, values: Values, *, weight: float) -> Traction:
 
 
 def table_traction(table: TractionTable) -> Traction:
-    """Wrap a tabulated law for the thesis's model; a law by slip velocity gets v_R - v_C."""
+    """Wrap a tabulated law for the thesis's model.
+
+    A law by slip velocity gets v_R - v_C, or v_T - v_H on the toe, over its scale (`find_slip`).
+    """
     return Traction(False, 0.0, 2.0, 0.0, 0.0, table)
 
 

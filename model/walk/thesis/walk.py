@@ -99,7 +99,8 @@ def walk_thesis(
         options: Settings of the model.
 
     Returns:
-        The path from t = 0 on; forces of a sample are those of the step that begins there.
+        The path from t = 0, x = y = 0 and rest; forces of a sample are those of the step that
+        begins there. Roll, pitch and yaw are converted to those of `attitude`.
         `slip_ratio` is the thesis's, Eq. (4-31), or slip velocity over its scale for a law by
         velocity; `slip_velocity` is NaN on the ground, as the model has no velocity of the
         material contact point.
@@ -147,8 +148,9 @@ def _require_tripod(motion: LegMotion, dt: float) -> None:
 def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[np.bool_], Array]:
     """Compute the initial stance legs and pose of a robot on one tripod, without pitch.
 
-    Mean inner minus mean outer hip height, over the track, gives the roll. The tripod with the
-    higher inner hips after the first step stands: at the start of a matched gait they are equal.
+    Mean inner minus mean outer hip height, over the track, gives the roll (by its arctangent, times
+    `manner.roll_sign`), the mean of both the height. The tripod with the higher inner hips after
+    the first step stands: at the start of a matched gait they are equal.
 
     Returns:
         Mask of the stance legs, shape (6,); x, y, z [m], roll, pitch and yaw [rad], shape (6,).
@@ -164,7 +166,7 @@ def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[
 
 
 def _side_heights(robot: Robot, theta: Array) -> Array:
-    """Compute mean hip heights [m] of a level body by tripod (row) and side (left, right)."""
+    """Compute mean hip heights [m] of a level body by tripod (2 rows) and side (left, right)."""
     phi = wrap_angle(np.pi / 2 - theta)
     height = np.asarray(hip_height(phi, robot.leg_radius, robot.toe_beyond))
     return np.array(

@@ -76,7 +76,7 @@ def baseline_paths(
     The thesis's model walks with the thesis's slip curve, the others without slip.
 
     Args:
-        robot: The robot; its leg offsets are added to the angles: none for true angles.
+        robot: The robot; its leg offsets are added to the angles, so 0 where angles are true.
         reference: Leg angles; walked from time zero to the last sample.
         direction: Side the gait turns to; only the thesis's model uses it.
         start: Added to the paths' times [s].

@@ -47,7 +47,7 @@ class Convergence:
         """List the unmet criteria as text, each with its worst value; empty when converged.
 
         Criteria: R-hat at most `MAX_R_HAT`, Monte Carlo error at most `MAX_MCSE`, bulk and tail ESS
-        at least `MIN_ESS`, length at least `MIN_LENGTH` autocorrelation times. NaN counts as met.
+        at least `MIN_ESS`, length at least `MIN_LENGTH` autocorrelation times. NaN counts as unmet.
         """
         length = float((self.length / self.autocorrelation_time).min())
         at_most = [
@@ -59,14 +59,9 @@ class Convergence:
             ("tail effective sample size", float(self.ess_tail.min()), MIN_ESS),
             ("chain length in autocorrelation times", length, MIN_LENGTH),
         ]
-        return [
-            *(f"{rule} is {x:.3f}, wanted <= {limit:g}" for rule, x, limit in at_most if x > limit),
-            *(
-                f"{rule} is {x:.0f}, wanted >= {limit:g}"
-                for rule, x, limit in at_least
-                if x < limit
-            ),
-        ]
+        high = [(f"{rule} is {x:.3f}", "<=", m) for rule, x, m in at_most if not x <= m]
+        low = [(f"{rule} is {x:.0f}", ">=", m) for rule, x, m in at_least if not x >= m]
+        return [f"{found}, wanted {sign} {limit:g}" for found, sign, limit in high + low]
 
     def summary(self) -> str:
         """Format the worst value of each diagnostic as one line of text."""

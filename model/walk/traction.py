@@ -134,8 +134,9 @@ def law_table(
     """
     _require_toe(toe)
     loads = weight * np.geomspace(*LOAD_RANGE, N_LOADS)
-    if not np.all(law.valid(loads, values)):
-        worst = float(loads[~np.asarray(law.valid(loads, values))][0])
+    valid = np.broadcast_to(law.valid(loads, values), loads.shape)
+    if not valid.all():
+        worst = float(loads[~valid][0])
         raise DomainError(
             f"the parameters of '{law.name}' lose the law's shape at a load of {worst:g} N, which "
             f"a robot of {weight:g} N puts on a leg; calibrate over these loads"

@@ -168,11 +168,20 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
     """Return the start date of a run, the files' time at that date [s], and notes.
 
     The date is `given` for time 0; else `first` read as Unix time, if large enough; else now.
+
+    Raises:
+        SettingsError: A date is given, but `first` is a Unix time.
     """
+    began = _FIRST + timedelta(seconds=first) if first >= _UNIX else None
+    if given is not None and began is not None:
+        raise SettingsError(
+            f"times are seconds since 1970 already: the first is {began.isoformat()}; leave out "
+            "--start, or count times from 0",
+            key="--start",
+        )
     if given is not None:
         return given.astimezone(UTC), 0.0, ()
-    if first >= _UNIX:
-        began = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=first)
+    if began is not None:
         return began, first, (f"times are taken as seconds since 1970: begun {began.isoformat()}",)
     now = datetime.now(UTC)
     note = f"the time of the recording is unknown; its start is set to now, {now.isoformat()}"

@@ -134,7 +134,7 @@ def predict_from(
     single = predict_paths(
         drawn, t, state=likely, error=EXACT, rng=rng, threads=1, options=FINE
     ).draws(0)
-    described = SampledReference(t, angles.angles(t) + robot.leg_offset)
+    reference = SampledReference(t, angles.angles(t))
     direction = "left" if single.yaw[-1] >= single.yaw[0] else "right"
-    baselines, notes = baseline_paths(robot, described, direction=direction)
+    baselines, notes = baseline_paths(robot, reference, direction=direction)
     return PredictionFile(Prediction(single, band, baselines), walk.source, walk.files, notes)

@@ -121,3 +121,12 @@ def test_the_summary_gives_the_worst_coordinates_figures():
     text = found.summary()
     assert f"R-hat {found.r_hat.max():.3f}" in text
     assert f"bulk ESS {found.ess_bulk.min():.0f}" in text
+
+
+@pytest.mark.parametrize("name", ["autocorrelation_time", "r_hat", "ess_bulk", "ess_tail", "mcse"])
+def test_a_diagnostic_that_cannot_be_computed_is_not_met(name):
+    found = assess(chains(walks()))
+    unknown = np.full_like(getattr(found, name), np.nan)
+    failures = replace(found, **{name: unknown}).failures()
+    assert len(failures) == 1
+    assert " is nan, wanted " in failures[0]

@@ -41,6 +41,11 @@ def test_a_law_proportional_to_load_has_one_row():
     assert len(TABLE.log_load) > 1
 
 
+def test_a_law_without_its_shape_at_any_load_is_refused():
+    with pytest.raises(DomainError, match=r"'magic-formula.*' lose the law's shape at a load of 0"):
+        law_table(LAWS[1][0], np.array([20.0, 1.5, 0.4, 1.5]), weight=WEIGHT)
+
+
 @pytest.mark.parametrize("toe", TOE_LAWS)
 def test_a_toe_that_slides_fast_has_the_traction_its_law_says(toe):
     table = law_table(LAWS[0][0], SOURCE, weight=WEIGHT, toe=toe)

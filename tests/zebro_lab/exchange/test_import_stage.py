@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Files that others recorded become run folders that every stage reads like recorded ones."""
 
-from datetime import datetime
+from datetime import UTC, datetime
 
 import numpy as np
 import pandas as pd
@@ -70,6 +70,8 @@ def test_times_since_1970_tell_when_a_run_began(files, tmp_path):
     folder = taken(tmp_path, legs=files / "legs.csv").folders[0]
     assert read_manifest(folder).start == "2026-03-04T05:06:07+00:00"
     assert read_leg_log(folder).reference.t[0] == pytest.approx(0.0, abs=1e-6)
+    with pytest.raises(SettingsError, match=r"^--start: .* since 1970 .* 2026-03-04.*leave out"):
+        taken(tmp_path, legs=files / "legs.csv", start=datetime(2026, 3, 4, tzinfo=UTC))
 
 
 def test_files_that_share_no_time_are_told_of(files, tmp_path):

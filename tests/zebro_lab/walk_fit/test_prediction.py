@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Walks inform legs and floor, and a walk is predicted from what others said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from model.bayes.walks.misfit import middle
 from model.bayes.walks.prior import WalkPrior
 from model.errors import ModelError
+from model.gait.reference import SampledReference
 from support.tracked_walks import write_walk
 from support.walk_posteriors import posterior_of
 from zebro_lab.calibration.slip_argument import parse_slip
@@ -58,6 +62,22 @@ def test_steering_of_the_posterior_turns_the_predicted_path(walk):
 
     steered = end(posterior_of(None, steering=0.1)) - end(posterior_of(None))
     assert steered == pytest.approx(0.1 * 1.0, rel=0.2)
+
+
+def test_offsets_of_the_legs_count_once_in_the_baselines(walk):
+    true = middle(walk.legs)
+    offset = np.radians([8.0, 0.0, 0.0, -5.0, 0.0, 0.0])
+    robot = replace(walk.robot.robot, leg_offset=offset)
+    reported = SampledReference(walk.legs.t, true.angles(walk.legs.t) - offset)
+
+    def baseline(robot, legs):
+        named = replace(walk, robot=replace(walk.robot, robot=robot), legs=legs)
+        found = predict_from(posterior_of(None), named, SLIP, rng=np.random.default_rng(1))
+        return found.prediction.baselines["no-slip"].states
+
+    exact = SampledReference(walk.legs.t, true.angles(walk.legs.t))
+    expected = baseline(walk.robot.robot, exact)
+    np.testing.assert_allclose(baseline(robot, reported), expected, atol=1e-6)
 
 
 class Fit:

@@ -32,7 +32,7 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
         folder: The run folder.
 
     Returns:
-        The angles as a table, and the files read: manifest, profile and log.
+        The angles as a table, and the files read: log, profile and manifest.
 
     Raises:
         NotFound: Manifest, log or profile is missing.
@@ -57,7 +57,7 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     columns = {name: pd.Series(values) for name, values in _angles(stream, profile).items()}
     source = manifest.sources.get(LEGS, manifest.source)
     table = RawTable(log, columns, source=source, notes=notes)
-    return table, (folder / MANIFEST_FILE, profile, log)
+    return table, (log, profile, folder / MANIFEST_FILE)
 
 
 def _angles(stream: SampleColumns, profile_path: Path) -> dict[str, np.ndarray]:

@@ -8,6 +8,8 @@ import pytest
 
 from support.written_runs import make_run
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.provenance import file_hash
+from zebro_lab.runs.exclusion import exclude_run, take_in_again
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.runs.signals import read_signals
 
@@ -27,7 +29,7 @@ def test_angles_are_unwrapped_at_increasing_times(recorded):
     for leg in range(1, 7):
         expected = np.interp(t, shown.t, shown.lines[f"leg {leg}"])
         np.testing.assert_allclose(table.numbers(f"theta{leg}"), expected, atol=1e-12)
-    assert [file.name for file in files] == ["run.json", "legs.toml", "log.mcap"]
+    assert [file.name for file in files] == ["log.mcap", "legs.toml", "run.json"]
     assert (table.source, table.notes) == ("sim:zebro", ())
     assert is_recorded(recorded)
     assert not is_recorded(recorded.parent)
@@ -39,6 +41,15 @@ def test_a_log_cut_short_is_read_so_far_with_a_note(folder):
     table, _ = read_recorded_legs(folder)
     assert len(table) > 10
     assert "log.mcap is cut short" in table.notes[0]
+
+
+def test_the_first_file_read_tells_a_walk_also_after_it_was_excluded_for_a_while(folder):
+    hashes = [file_hash(file) for file in read_recorded_legs(folder)[1]]
+    exclude_run(folder, why="a trial")
+    take_in_again(folder)
+    again = [file_hash(file) for file in read_recorded_legs(folder)[1]]
+    assert again[0] == hashes[0]
+    assert again[-1] != hashes[-1]
 
 
 @pytest.mark.parametrize("name", ["log.mcap", "profiles/legs.toml"])

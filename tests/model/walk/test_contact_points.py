@@ -5,7 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model.leg import HIP, ROLLING, TOE
-from model.walk.contact_points import lowest_point
+from model.robot import Robot
+from model.walk.arrays import body_arrays, new_work
+from model.walk.contact_points import find_contacts, lowest_point
+from model.walk.ground import FLAT
 
 R = 0.035
 ARC = st.floats(90.0, 359.0).map(np.radians)
@@ -61,3 +64,44 @@ def test_a_turning_legs_depth_never_jumps(arc_deg):
     found = (lowest(a, 0.1, np.radians(arc_deg)) for a in theta)
     depth = np.array([point @ down for point, down, _ in found])
     assert np.abs(np.diff(depth)).max() <= 2 * R * (theta[1] - theta[0])
+
+
+def contacts(height, theta, speed):
+    """Find the contacts of a level robot with its centre above the origin of flat ground."""
+    work = new_work()
+    found = [work.place, work.velocity, work.normal, work.gap, work.kind, work.flow]
+    n = find_contacts(
+        body_arrays(ROBOT), FLAT, np.array([0.0, 0.0, height]), np.eye(3), theta, speed, *found
+    )
+    return n, found
+
+
+ROBOT = Robot()
+DOWNWARD = np.full(6, 1.2)
+
+
+def test_gaps_of_a_level_robot_are_its_height_less_legs_and_body():
+    length, width, depth = ROBOT.body_size
+    height = depth / 2 + 0.005
+    n, (place, _, normal, gap, state, flow) = contacts(height, DOWNWARD, np.zeros(6))
+    assert n == 14
+    reach = ROBOT.leg_radius * (1 + np.sin(DOWNWARD))
+    np.testing.assert_allclose(gap[:6], height + ROBOT.hips[:, 2] - reach)
+    np.testing.assert_allclose(place[:6, 1], ROBOT.hips[:, 1])
+    assert set(state[:6]) == {ROLLING}
+    np.testing.assert_allclose(flow, [ROBOT.leg_radius] * 6 + [0.0] * 8)
+    np.testing.assert_allclose(normal, np.tile([0.0, 0.0, 1.0], (14, 1)))
+    corners = np.abs(place[6:])
+    np.testing.assert_allclose(corners, np.tile([length / 2, width / 2, depth / 2], (8, 1)))
+    np.testing.assert_allclose(np.sort(gap[6:]), np.repeat([0.005, 0.005 + depth], 4))
+
+
+def test_corners_high_above_the_ground_are_not_computed():
+    assert contacts(0.05 + ROBOT.body_size[2], DOWNWARD, np.zeros(6))[0] == 6
+
+
+def test_the_contacts_velocity_is_the_leg_s_turning_about_the_hip():
+    speed = np.arange(1.0, 7.0)
+    _, (place, velocity, *_) = contacts(0.05, DOWNWARD, speed)
+    turning = np.cross(speed[:, None] * [0.0, 1.0, 0.0], place[:6] - ROBOT.hips)
+    np.testing.assert_allclose(velocity[:6], turning, atol=1e-12)

@@ -55,9 +55,9 @@ class Convergence:
             ("chain length in autocorrelation times", length, MIN_LENGTH),
         ]
         return [
-            *(f"{rule} is {x:.3f}, wanted <= {limit:g}" for rule, x, limit in at_most if x > limit),
+            *(f"{rule} is {x:.3f}, limit {limit:g}" for rule, x, limit in at_most if x > limit),
             *(
-                f"{rule} is {x:.0f}, wanted >= {limit:g}"
+                f"{rule} is {x:.0f}, at least {limit:g} needed"
                 for rule, x, limit in at_least
                 if x < limit
             ),

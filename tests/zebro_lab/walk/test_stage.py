@@ -106,5 +106,5 @@ def test_a_walk_of_more_steps_than_memory_holds_is_refused(model, tmp_path):
 def test_robot_written_out_is_the_robot_asked_for(tmp_path):
     file = write_robot(tmp_path / "robot.toml", ModelRequest(arc_deg=200.0))
     assert np.degrees(read_robot_file(file).robot.leg_arc) == pytest.approx(200)
-    with pytest.raises(AlreadyExists, match="edit it, or name another"):
+    with pytest.raises(AlreadyExists, match="edit it, or choose another"):
         write_robot(file, ModelRequest())

@@ -83,7 +83,7 @@ def test_model_that_slips_needs_a_law_and_one_that_does_not_says_so(tmp_path):
     with pytest.raises(SettingsError, match="--slip: missing"):
         walk(request(tmp_path / "out", slip=None), Nobody())
     walked = walk(request(tmp_path / "out", model="no-slip"), Nobody())
-    assert "--slip coulomb:0.4 not used" in walked.notes[0]
+    assert "--slip coulomb:0.4 is not used" in walked.notes[0]
 
 
 @pytest.mark.parametrize("bad", [{"dt": 0.0}, {"dt": -1.0}, {"dt": float("nan")}, {"dt": 100.0}])

@@ -4,10 +4,41 @@
 numba stores a compiled function beside its source and compiles it again when that file changes, but
 not when a file that it calls changes. What is stored names the modules of the functions that it
 calls and of the named tuples that it takes: it cannot be loaded when one of these has been renamed
-or moved. After such an edit, remove the `__pycache__` folders of `model`.
+or moved. Therefore all that is stored beside the sources is deleted when one of them has changed.
 """
 
+from contextlib import suppress
+from hashlib import sha256
+from pathlib import Path
+
 import numba
+
+
+def delete_stale_loops(package: Path) -> None:
+    """Delete numba's cache in a package's folder if a source with compiled functions has changed.
+
+    A digest of these sources is kept in the package's `__pycache__`. Constants that a compiled
+    function takes from other sources are not in it.
+
+    Args:
+        package: Folder of the package.
+    """
+    digest = sha256()
+    for path in sorted(package.rglob("*.py")):
+        source = path.read_bytes()
+        if b"numba" in source or b"model.compiled" in source:
+            digest.update(str(path.relative_to(package)).encode() + source)
+    known = package / "__pycache__" / "compiled_sources.sha256"
+    with suppress(OSError):  # a folder that cannot be written: numba's cache is elsewhere
+        if known.is_file() and known.read_text() == digest.hexdigest():
+            return
+        for stored in package.rglob("*.nb[ic]"):
+            stored.unlink(missing_ok=True)
+        known.parent.mkdir(exist_ok=True)
+        known.write_text(digest.hexdigest())
+
+
+delete_stale_loops(Path(__file__).parent)
 
 compiled = numba.njit(cache=True, nogil=True, error_model="numpy")
 """Decorator for numeric functions: compiled, cached on disk, without the GIL, 1/0 is infinite."""

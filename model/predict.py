@@ -57,7 +57,10 @@ class ModelSpread:
         """Check that the standard deviations are finite and not negative."""
         for name in ("distance", "curvature", "contacts"):
             if not (getattr(self, name) >= 0 and np.isfinite(getattr(self, name))):
-                raise DomainError(f"{name} of the model's error is {getattr(self, name):g}")
+                raise DomainError(
+                    f"{name} of the model's error is {getattr(self, name):g}; expected a finite "
+                    "number of zero or more"
+                )
 
 
 def walk_draws(

@@ -59,9 +59,10 @@ class Convergence:
             ("tail effective sample size", float(self.ess_tail.min()), MIN_ESS),
             ("chain length in autocorrelation times", length, MIN_LENGTH),
         ]
-        high = [(f"{rule} is {x:.3f}", "<=", m) for rule, x, m in at_most if not x <= m]
-        low = [(f"{rule} is {x:.0f}", ">=", m) for rule, x, m in at_least if not x >= m]
-        return [f"{found}, wanted {sign} {limit:g}" for found, sign, limit in high + low]
+        return [
+            *(f"{rule} is {x:.3f}, limit {m:g}" for rule, x, m in at_most if not x <= m),
+            *(f"{rule} is {x:.0f}, at least {m:g} needed" for rule, x, m in at_least if not x >= m),
+        ]
 
     def summary(self) -> str:
         """Format the worst value of each diagnostic as one line of text."""

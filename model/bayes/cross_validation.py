@@ -62,19 +62,24 @@ class CrossValidation:
 
 
 def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array) -> Array:
-    """Predict measured traction from measured slip and load, without run offset and crosstalk [N].
+    """Predict measured traction from measured slip and load, without run offset [N].
+
+    As in `model.bayes.likelihood`, crosstalk counts to first order: the predicted traction, not the
+    measured one, corrects the load.
 
     A true load below 1e-9 N counts as 1e-9 N.
 
     Args:
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, of which gains and load bias are used, (k + 8,).
+        values: Law and measurement parameters, of which gains, load bias and crosstalk are used,
+            shape (k + 8,).
         slip: Slip ratio, shape (n,) [-].
         normal_force: Measured normal force, shape (n,) [N].
     """
     k = len(law.parameters)
-    g_t, g_n, b_n = values[k : k + 3]
+    g_t, g_n, b_n, c = values[k : k + 4]
     load = np.maximum((1 + g_n) * normal_force - b_n, 1e-9)
+    load = np.maximum(load + c * (1 + g_t) * law.force(slip, load, values[:k]), 1e-9)
     return (1 + g_t) * law.force(slip, load, values[:k])
 
 

@@ -284,7 +284,7 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
     if len(lengths) > 1:
         raise DomainError(
             f"the laws were fitted to {' and '.join(map(str, lengths))} blocks; expected the same "
-            "blocks; hand the first fit's block_choice to the others"
+            "blocks; pass the first fit's block_choice to the others"
         )
     validations = [fit.cross_validation for fit in fits]
     n_runs = fits[0].posterior.blocks.n_runs

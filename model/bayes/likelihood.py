@@ -14,10 +14,10 @@ Offset, shared slip error and noise are integrated out exactly by a Kalman filte
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from model.bayes.blocks import SlipBlocks
+from model.compiled import compiled
 from model.slip.law import Array, Parameter, SlipLaw
 
 NUISANCE = (
@@ -179,7 +179,7 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
     return run_log_likelihood(blocks, law, values).sum(axis=1)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho, tau):
     """Compute each run's log density by a Kalman filter, offset and shared slip error integrated.
 

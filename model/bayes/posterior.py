@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import NUISANCE, run_log_likelihood
-from model.bayes.priors import BelowOne, HalfNormal, LogNormal, Normal, Prior, Uniform
+from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.slip.law import Array, Parameter, SlipLaw
 
 
@@ -53,7 +53,7 @@ def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dic
         "friction": LogNormal(0.6, 0.7),
         "stribeck_slip": LogNormal(0.1, 1.0),
         "peak_slip_per_load": LogNormal(0.1 / load_scale, 1.0),
-        "curvature": BelowOne(1.0, 1.0),
+        "curvature": Below(1.0, 1.0, 1.0),
         "friction_load_exponent": Normal(0.0, 0.2),
         "stiffness_load_exponent": Normal(0.0, 0.3),
         "gain_traction": Normal(0.0, load_cell.gain_sd),
@@ -71,12 +71,15 @@ def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dic
 def _vague(parameter: Parameter) -> Prior:
     """Choose a broad prior by a parameter's bounds: uniform between two finite bounds.
 
-    Log-normal (median 1, spread 1.5) if the lower bound is 0, else standard normal.
+    With one finite bound the distance from it is log-normal (median 1, spread 1.5); standard normal
+    without bounds.
     """
     if np.isfinite([parameter.lower, parameter.upper]).all():
         return Uniform(parameter.lower, parameter.upper)
-    if parameter.lower == 0:
-        return LogNormal(1.0, 1.5)
+    if np.isfinite(parameter.lower):
+        return LogNormal(1.0, 1.5, parameter.lower)
+    if np.isfinite(parameter.upper):
+        return Below(parameter.upper, 1.0, 1.5)
     return Normal(0.0, 1.0)
 
 

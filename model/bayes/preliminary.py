@@ -58,7 +58,7 @@ def least_squares_values(
     ranked = sorted(filter(valid, trials), key=lambda z: float(np.abs(misfit(z)).sum()))
     if not ranked:
         raise FitError(
-            f"no parameters that the priors of '{law.name}' allow give it its shape at loads of "
+            f"no parameters within the priors of the law '{law.name}' are valid at loads of "
             f"{loads[0]:g} to {loads[-1]:g} N; check the unit of the load"
         )
     try:

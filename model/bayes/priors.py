@@ -66,52 +66,57 @@ class Normal:
 
 @dataclass(frozen=True)
 class LogNormal:
-    """Log-normal prior: positive, with a Gaussian logarithm.
+    """Log-normal prior: above a lower bound, with a Gaussian logarithm of the distance from it.
 
     Attributes:
-        median: Median, in the parameter's unit.
-        spread: Standard deviation of the natural logarithm [-].
+        median: Median of the distance, in the parameter's unit.
+        spread: Standard deviation of the natural logarithm of the distance [-].
+        lower: Lower bound, in the parameter's unit.
     """
 
     median: float
     spread: float
+    lower: float = 0.0
 
     def value(self, z: ArrayLike) -> Array:
-        """Map standard normal coordinates z to values, median exp(spread z)."""
-        return self.median * np.exp(self.spread * np.asarray(z))
+        """Map standard normal coordinates z to values, lower + median exp(spread z)."""
+        return self.lower + self.median * np.exp(self.spread * np.asarray(z))
 
     def coordinate(self, value: ArrayLike) -> Array:
         """Map values to standard normal coordinates z, the inverse of `value`."""
-        return np.log(np.asarray(value) / self.median) / self.spread
+        return np.log((np.asarray(value) - self.lower) / self.median) / self.spread
 
     def describe(self) -> str:
         """Format the distribution's family and parameters as text."""
-        return f"lognormal(median {self.median:g}, spread {self.spread:g})"
+        bound = f"{self.lower:g} + " if self.lower else ""
+        return f"{bound}lognormal(median {self.median:g}, spread {self.spread:g})"
 
 
 @dataclass(frozen=True)
-class BelowOne:
-    """Prior below 1 by a log-normal gap: for the curvature factor E, which must not exceed 1.
+class Below:
+    """Prior below an upper bound by a log-normal gap: for the curvature factor E, at most 1.
 
     Attributes:
-        gap: Median of 1 - value [-].
-        spread: Standard deviation of the natural logarithm of 1 - value [-].
+        upper: Upper bound, in the parameter's unit.
+        gap: Median of upper - value, in the parameter's unit.
+        spread: Standard deviation of the natural logarithm of upper - value [-].
     """
 
+    upper: float
     gap: float
     spread: float
 
     def value(self, z: ArrayLike) -> Array:
-        """Map standard normal coordinates z to values, 1 - gap exp(-spread z)."""
-        return 1.0 - self.gap * np.exp(-self.spread * np.asarray(z))
+        """Map standard normal coordinates z to values, upper - gap exp(-spread z)."""
+        return self.upper - self.gap * np.exp(-self.spread * np.asarray(z))
 
     def coordinate(self, value: ArrayLike) -> Array:
         """Map values to standard normal coordinates z, the inverse of `value`."""
-        return -np.log((1.0 - np.asarray(value)) / self.gap) / self.spread
+        return -np.log((self.upper - np.asarray(value)) / self.gap) / self.spread
 
     def describe(self) -> str:
         """Format the distribution's family and parameters as text."""
-        return f"1 - lognormal(median {self.gap:g}, spread {self.spread:g})"
+        return f"{self.upper:g} - lognormal(median {self.gap:g}, spread {self.spread:g})"
 
 
 @dataclass(frozen=True)

@@ -208,7 +208,7 @@ def _jump_to(
 def _kept(stored: Array | None) -> Array:
     """Return what the sampler stored; raise `FitError` if that is nothing."""
     if stored is None:
-        raise FitError("the sampler kept no step although it was asked to store them")
+        raise FitError("the sampler stored no steps; expected all of them")
     return stored
 
 

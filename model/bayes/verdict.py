@@ -129,7 +129,7 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
     name = "residuals are white"
     pairs = len(blocks) - blocks.n_runs
     if pairs == 0:
-        return Check(name, True, "not to be tested, no run has two blocks", "")
+        return Check(name, True, "not tested: no run has two blocks", "")
     limit = max(MAX_LAG_ONE, 2.6 / np.sqrt(pairs))  # white noise exceeds it once in 100
     return Check(
         name,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Touchdown and lift-off by a search over contact states, section 3-5-2."""
 
+from contextlib import suppress
 from itertools import combinations
 
 import numpy as np
@@ -97,16 +98,9 @@ def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance
 
 
 def _stances(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> list[Stance]:
-    """Stand on each triple of legs whose hips span a triangle."""
-    return [stand(robot, theta, legs=three) for three in triples if spans(robot, three)]
-
-
-def spans(robot: Robot, legs: NDArray[np.intp]) -> bool:
-    """Return whether the hips of three legs span a triangle seen from above.
-
-    Args:
-        robot: The robot.
-        legs: Indices of the legs, shape (3,).
-    """
-    a, b, c = robot.hips[legs, :2]
-    return abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0]) > ON_GROUND
+    """Stand on each triple of legs whose feet span a triangle seen from above."""
+    stances = []
+    for three in triples:
+        with suppress(DomainError):  # the feet lie on one line
+            stances.append(stand(robot, theta, legs=three))
+    return stances

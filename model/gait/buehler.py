@@ -112,8 +112,8 @@ def _require_clock(
     """Raise `DomainError` unless 0 < ground time < cycle time and 0 < stance angle < turn."""
     if not 0 < ground_time < cycle_time:
         raise DomainError(
-            f"ground time {ground_time:g} s of a cycle of {cycle_time:g} s; expected more than "
-            "zero, and less than the cycle"
+            f"the ground time is {ground_time:g} s of a cycle of {cycle_time:g} s; expected more "
+            "than zero, and less than the cycle"
         )
     if not 0 < stance_angle < turn:
         raise DomainError(

@@ -42,10 +42,12 @@ class Gait:
     def __post_init__(self) -> None:
         """Check groups and that each leg is in one; sort the legs within their groups."""
         if not self.groups:
-            raise DomainError("a gait without groups; write one such as {1,4,5} < {2,3,6}")
+            raise DomainError("the gait has no groups of legs; write one such as {1,4,5} < {2,3,6}")
         for number, group in enumerate(self.groups, start=1):
             if not group:
-                raise DomainError(f"group {number} of the gait is empty; name its legs or drop it")
+                raise DomainError(
+                    f"group {number} of the gait is empty; write its legs, or leave it out"
+                )
         _require_each_leg_once([leg for group in self.groups for leg in group])
         object.__setattr__(self, "groups", tuple(tuple(sorted(group)) for group in self.groups))
 
@@ -82,9 +84,9 @@ def _require_each_leg_once(legs: list[int]) -> None:
     """Raise `DomainError` unless the leg numbers are 1 to n, once each."""
     twice = sorted(leg for leg, count in Counter(legs).items() if count > 1)
     if twice:
-        raise DomainError(f"leg {twice[0]} stands in the gait twice; every leg steps once a cycle")
+        raise DomainError(f"leg {twice[0]} is in the gait twice; expected every leg once")
     if min(legs) < 1:
-        raise DomainError(f"leg {min(legs)} in the gait; legs are numbered from 1")
+        raise DomainError(f"the gait contains leg {min(legs)}; expected leg numbers from 1")
     missing = sorted(set(range(1, max(legs) + 1)) - set(legs))
     if missing:
         raise DomainError(
@@ -124,7 +126,7 @@ def _parse_group(part: str, text: str) -> tuple[int, ...]:
     match = _GROUP.fullmatch(part)
     if match is None:
         raise DomainError(
-            f"{part!r} in the gait {text!r} is no group; write leg numbers in braces with < "
+            f"{part!r} in the gait {text!r} is not a group; write leg numbers in braces with < "
             "between groups, such as {1,4,5} < {2,3,6}"
         )
     inside = match[1].strip()
@@ -132,7 +134,7 @@ def _parse_group(part: str, text: str) -> tuple[int, ...]:
     for leg in legs:
         if not leg.isdecimal():
             raise DomainError(
-                f"{leg!r} in group {part} of the gait is no leg number; legs are numbered from 1"
+                f"{leg!r} in group {part} of the gait is not a leg number; expected 1 or more"
             )
     return tuple(int(leg) for leg in legs)
 

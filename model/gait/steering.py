@@ -161,7 +161,7 @@ def solve_outer_touchdown(
     if not steering_factor > 0:
         raise DomainError(
             f"steering factor is {steering_factor:g}; expected more than zero: 1 goes straight, "
-            "and the other way is a direction"
+            "choose the side with direction"
         )
     largest = largest_steering_factor(inner_touchdown, leg_arc)
     if steering_factor >= largest:

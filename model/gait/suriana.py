@@ -53,7 +53,7 @@ def suriana_reference(
     """
     if not turn_time >= 0:
         raise DomainError(
-            f"turn time is {turn_time:g} s; expected zero or more: the other way is a direction"
+            f"turn time is {turn_time:g} s; expected zero or more: choose the side with direction"
         )
     inner = is_inner(direction)
     ground = np.where(inner, ground_time + turn_time, ground_time)

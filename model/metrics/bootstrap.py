@@ -40,7 +40,7 @@ def bootstrap_mean(values: Array, *, rng: np.random.Generator, draws: int = 4000
         InsufficientData: There are fewer than two runs.
     """
     if len(values) < 2:
-        raise InsufficientData(f"{len(values)} run; a spread over runs needs two or more")
+        raise InsufficientData(f"found {len(values)} run; the spread over runs needs two or more")
     chosen = rng.integers(len(values), size=(draws, len(values)))
     low, high = np.quantile(values[chosen].mean(axis=1), [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     return Interval(float(values.mean()), float(low), float(high))

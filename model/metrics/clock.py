@@ -69,7 +69,10 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
     misfit = np.array([_misfit(track, path, each) for each in offsets])
     best = int(np.argmin(misfit))
     if not np.isfinite(misfit[best]) or best in (0, len(offsets) - 1):
-        raise InsufficientData("track and path fit nowhere within each other; give the offset")
+        raise InsufficientData(
+            "no clock offset makes track and path overlap enough, or the best is at the end of the "
+            "search; give the offset"
+        )
     value, curvature = _parabola(offsets, misfit, best)
     near = value + np.arange(-1.0, 1.0 + STEP, STEP)
     at = track.t + value

@@ -52,9 +52,9 @@ def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Diff
         InsufficientData: A quantity has no draws, or a draw is not finite.
     """
     if not (len(first) and len(second)):
-        raise InsufficientData("a quantity without draws has no difference")
+        raise InsufficientData("a quantity has no draws; a difference needs at least one of each")
     if not (np.isfinite(first).all() and np.isfinite(second).all()):
-        raise InsufficientData("draws that are no finite numbers have no difference")
+        raise InsufficientData("a quantity has draws that are not finite; expected finite numbers")
     order = np.sort(first)
     below = np.searchsorted(order, second, side="left")
     not_above = np.searchsorted(order, second, side="right")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Slip laws whose traction is the load times a function of slip alone."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import ClassVar
 
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from model.slip.law import Array, Values
 
 
-class ProportionalLaw:
+class ProportionalLaw(ABC):
     """Methods of a `SlipLaw` whose traction over load does not depend on load.
 
     A law adds its name and parameters, both attributes, and the methods `coefficients` and `peak`.
@@ -24,6 +25,7 @@ class ProportionalLaw:
     traction_over_load: ClassVar[Callable[..., Array]]
     slope_over_load: ClassVar[Callable[..., Array]]
 
+    @abstractmethod
     def coefficients(self, values: Values) -> tuple[Array, ...]:
         """Compute the coefficients of `traction_over_load` from parameter values, in its order.
 
@@ -32,8 +34,8 @@ class ProportionalLaw:
         Args:
             values: Parameter values, one entry a parameter.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def peak(self, values: Values) -> Array:
         """Compute the slip ratio at which traction peaks, infinite where it never falls [-].
 
@@ -42,7 +44,6 @@ class ProportionalLaw:
         Args:
             values: Parameter values, one entry a parameter.
         """
-        raise NotImplementedError
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
         """Compute the traction force, load times `traction_over_load` [N].

@@ -132,7 +132,10 @@ def step_times(duration: float, dt: float) -> Array:
     """
     n = round(duration / dt) if duration > 0 and np.isfinite(duration) else 0
     if n < 1:
-        raise DomainError(f"duration is {duration:g} s; expected at least a step of {dt:g} s")
+        raise DomainError(
+            f"the duration is {duration:g} s; expected a finite time that rounds to at least one "
+            f"step of {dt:g} s"
+        )
     return dt * np.arange(n + 1, dtype=float)
 
 

@@ -128,7 +128,7 @@ def _tilt_of(path: PlanarWalk) -> Array:
 def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
     """Raise `DomainError` unless there is a draw, and a time, and times increase from zero on."""
     if not draws:
-        raise DomainError("an ensemble of no draws has no paths; expected at least one")
+        raise DomainError("no draws were given; expected at least one")
     if t.ndim != 1 or not len(t) or not (t[0] >= 0 and np.all(np.diff(t) > 0)):
         raise DomainError(
             f"times wanted of an ensemble are {np.array2string(t, threshold=6)} s; expected them "

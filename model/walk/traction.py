@@ -215,4 +215,4 @@ def _column_slopes(phi: Array, w: Array) -> Array:
 def _require_toe(toe: str) -> None:
     """Raise `DomainError` unless a toe law is one of `TOE_LAWS`."""
     if toe not in TOE_LAWS:
-        raise DomainError(f"'{toe}' is no toe law; there are {', '.join(TOE_LAWS)}")
+        raise DomainError(f"'{toe}' is not a toe law; expected one of {', '.join(TOE_LAWS)}")

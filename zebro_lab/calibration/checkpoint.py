@@ -18,7 +18,7 @@ _ARRAYS = (
     "fingerprint", "z", "log_density", "accepted", "thin", "random_keys", "random_positions",
 )  # fmt: skip
 _MOST_BYTES = 1 << 30
-_NONE, _ADVICE = "is no checkpoint of this program", "remove it and start anew"
+_NONE, _ADVICE = "is not a checkpoint of zebro-lab", "delete it and run without --resume"
 
 
 def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
@@ -76,7 +76,7 @@ def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
         chains = Chains(**{**arrays, "thin": int(arrays["thin"])})
     if found != fingerprint:
         raise DataError(
-            "belongs to other data or settings; give the same ones, or run without --resume",
+            "is of a fit with other data or settings; give --resume with those, or run without it",
             file=path,
         )
     return chains

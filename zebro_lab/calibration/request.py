@@ -17,7 +17,7 @@ class CalibrationRequest:
     ] = ()
     out: Annotated[Path, Option(help="Calibration folder to write.")] = Path("calibration")
     columns: Annotated[
-        Path | None, Option(help="columns.toml to use in place of those beside the tables.")
+        Path | None, Option(help="columns.toml to use instead of those beside the tables.")
     ] = None
     slip_definition: Annotated[
         str | None,

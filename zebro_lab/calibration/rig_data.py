@@ -188,7 +188,7 @@ def _require_one_definition(parts: Sequence[RigPart]) -> None:
         if part.slip.definition is not first.slip.definition:
             raise DataError(
                 f"slip is '{part.slip.definition}' here and '{first.slip.definition}' in "
-                f"{first.path}; calibrate them apart or ask for one slip definition",
+                f"{first.path}; calibrate them apart or choose one with --slip-definition",
                 file=part.path,
             )
 
@@ -200,7 +200,7 @@ def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None
     if len(samples) < least:
         raise DataError(
             f"{len(samples)} samples in all, expected at least {least}; record more"
-            + ("" if trials else ", or say [runs] each_row = true if rows are averaged trials"),
+            + ("" if trials else ", or set runs.each_row in columns.toml if rows are trials"),
             file=where,
         )
     if np.ptp(samples.slip) <= _CONSTANT_SLIP:
@@ -214,7 +214,7 @@ def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None
         raise DataError(
             f"slip ratio stays at {samples.slip.mean():.4g} within its sensors' noise of "
             f"{noise:.2g}; a curve needs several set-points, add other runs"
-            + ("" if trials else ", or say [runs] each_row = true if every row is a trial"),
+            + ("" if trials else ", or set runs.each_row in columns.toml if rows are trials"),
             file=where,
         )
 
@@ -264,4 +264,4 @@ def _time_note(parts: Sequence[RigPart]) -> list[str]:
     timed = sum(part.time is not None for part in parts)
     if timed in (0, len(parts)):
         return []
-    return [f"{len(parts) - timed} of {len(parts)} files have no time: no times are used"]
+    return [f"{len(parts) - timed} of {len(parts)} files have no time, so no times are used"]

@@ -68,7 +68,7 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
         return NamedSlip(_coulomb(text, numbers), "assumed", text)
     path = settle(Path(text))
     if not path.exists():
-        raise NotFound(f"--slip: '{text}' is no file or folder; expected {EXPECTED_SLIP}")
+        raise NotFound(f"--slip: '{text}' is not a file or folder; expected {EXPECTED_SLIP}")
     return _calibrated(text, path, with_walks=with_walks)
 
 

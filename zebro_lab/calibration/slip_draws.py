@@ -14,7 +14,7 @@ from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
 POSTERIOR = "posterior.nc"
-_ADVICE = f"calibrate again, or name a slip.toml without a {POSTERIOR} beside it"
+_ADVICE = f"calibrate again, or choose a slip.toml with no {POSTERIOR} in its folder"
 MOST_TABLES = 200  # a table costs as much as 1 s of simulated walk, and paths hardly differ by it
 
 

@@ -33,7 +33,7 @@ def validate(request: ValidateRequest) -> None:
     n_predicted, n_tracks = len(request.predicted), len(request.track)
     if n_predicted != n_tracks or not (request.runs or n_predicted):
         raise typer.BadParameter(
-            f"{n_predicted} --predicted and {n_tracks} --track; name as many of both, or "
+            f"{n_predicted} --predicted and {n_tracks} --track; give the same number of both, or "
             "run folders"
         )
     if request.estimate_offset and request.time_offset:

@@ -32,11 +32,11 @@ class ValidateRequest:
         bool,
         Option(
             "--anchor/--no-anchor",
-            help="Start each path from the first tracked pose, or leave it where it is.",
+            help="Start each path from the first tracked pose, or leave it where it was predicted.",
         ),
     ] = True
     time_offset: Annotated[
-        float, Option(help="Offset added to the track's times, whose clock is behind by that [s].")
+        float, Option(help="Time by which the track's clock is behind, added to its times [s].")
     ] = 0.0
     estimate_offset: Annotated[
         bool,

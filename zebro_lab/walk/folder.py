@@ -144,7 +144,7 @@ def read_walk(path: Path) -> WalkPath:
     settle(path)
     file = path / PATH_CSV if path.is_dir() else path
     if not file.exists():
-        raise NotFound(f"{file}: no such file; name a folder that walk or predict wrote")
+        raise NotFound(f"{file}: no such file; choose a folder that walk or predict wrote")
     table = read_table_file(file)
     numbers = np.column_stack([
         table.finite(name, may_be_empty=block.may_be_empty)

@@ -108,7 +108,7 @@ def _leg_state(
     if request.offset_sd_deg is not None:
         raise SettingsError(
             f"the walks of {informed.folder} determine the legs' offsets; leave the option out, or "
-            "name a slip.toml without walks/ beside it",
+            "choose a slip.toml with no walks/ in its folder",
             key="--offset-sd-deg",
         )
     return informed.draw(request.draws, rng=rng)
@@ -156,7 +156,7 @@ def read_draws(folder: Path) -> Poses:
         DataError: The file is damaged, shapes do not match, or times do not increase.
     """
     file = folder / DRAWS
-    arrays = read_arrays(file, ("t", "poses"), advice="predict with --draws 500 writes it")
+    arrays = read_arrays(file, ("t", "poses"), advice="run predict with --draws 500 to create it")
     t, poses = arrays["t"], arrays["poses"]
     if t.ndim != 1 or poses.ndim != 3 or poses.shape[1:] != (len(t), 3) or 0 in poses.shape:
         raise DataError(

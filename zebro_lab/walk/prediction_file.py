@@ -59,7 +59,7 @@ def read_prediction(path: Path) -> PredictionFile:
     poses = read_poses(file)
     folder = file.parent
     if file.name != PATH_CSV or not (folder / MANIFEST).is_file():
-        note = f"{path.name}: no walk folder, so no baseline but '{STAND_STILL}'"
+        note = f"{path.name}: not a walk folder, so '{STAND_STILL}' is the only baseline"
         return PredictionFile(Prediction(poses), "unknown", (file,), (note,))
     manifest = read_walk_manifest(folder)
     has_draws = (folder / DRAWS).is_file()
@@ -70,7 +70,7 @@ def read_prediction(path: Path) -> PredictionFile:
         Prediction(poses, draws, baselines),
         str(manifest.get("source", "unknown")),
         (file, *([folder / DRAWS] if has_draws else [])),
-        (*notes, *(() if has_draws else ("no draws: predict with --draws 500 for a band",))),
+        (*notes, *(() if has_draws else ("no draws, so no band: run predict with --draws 500",))),
         walk,
     )
 

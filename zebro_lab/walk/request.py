@@ -42,7 +42,9 @@ class BandRequest:
     def __post_init__(self) -> None:
         """Raise `SettingsError` for a single draw or a negative standard deviation."""
         if self.draws < 2 and self.draws != 0:
-            raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
+            raise SettingsError(
+                f"is {self.draws}; a band needs 2 or more, such as 200", key="--draws"
+            )
         if self.draws and any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
             raise SettingsError("a standard deviation is negative", key="--start-sd")
 
@@ -71,7 +73,7 @@ class ModelRequest:
     ] = "saturated"
     robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
     arc_deg: Annotated[
-        float | None, Option(help="Arc of the legs, 180 to 200, in place of the robot's [deg].")
+        float | None, Option(help="Arc of the legs, 180 to 200, instead of the robot's [deg].")
     ] = None
     dt: Annotated[
         float | None, Option(min=0.0, help="Time step [s]; default: that of the model.")
@@ -130,7 +132,7 @@ class PredictRequest:
         Option(help="Walk folder to write; default: RUN/prediction for a run, else prediction."),
     ] = None
     columns: Annotated[
-        Path | None, Option(help="columns.toml to use in place of that beside LEGLOG.")
+        Path | None, Option(help="columns.toml to use instead of the one beside LEGLOG.")
     ] = None
     direction: Annotated[
         Side, Option(help="Side the gait turns to; used by --model thesis only.")

@@ -74,5 +74,5 @@ def write_robot(file: Path, request: ModelRequest) -> Path:
         SettingsError: The robot file or the arc has an invalid value.
     """
     if file.exists():
-        raise AlreadyExists(f"{file} exists already; edit it, or name another")
+        raise AlreadyExists(f"{file} exists already; edit it, or choose another file name")
     return atomic_write_text(file, render_robot_file(robot_of(request)))

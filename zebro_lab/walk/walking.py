@@ -130,9 +130,9 @@ def _slip_for(model: WalkModel, text: str | None) -> tuple[NamedSlip | None, tup
     """Parse `--slip` for a model; also return a note if the model does not use it."""
     slip = None if text is None else parse_slip(text)
     if slip is None and model.slips:
-        raise SettingsError(f"missing: this model slips; name {EXPECTED_SLIP}", key="--slip")
+        raise SettingsError(f"missing: give {EXPECTED_SLIP}", key="--slip")
     if slip is not None and not model.slips:
-        return None, (f"the model '{model.name}' does not slip: --slip {slip.text} not used",)
+        return None, (f"the model '{model.name}' has no slip: --slip {slip.text} is not used",)
     return slip, ()
 
 

@@ -52,7 +52,7 @@ def fit_walks_on_file(
         ModelError: `walks` is empty, or a walk diverged.
     """
     if not walks:
-        raise InsufficientData("no walk to fit; name one or more with a track")
+        raise InsufficientData("no walk was given; expected one or more with a track")
     robot = walks[0].robot.robot
     return fit_walks(
         robot,

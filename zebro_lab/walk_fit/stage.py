@@ -105,11 +105,11 @@ def _fit(
 
 def _slip_of(request: WalksRequest, calibration: Path) -> Path:
     if not request.walks:
-        raise SettingsError("missing: no walk to fit", key="--walks")
+        raise SettingsError("missing: no walk was given to fit", key="--walks")
     slip_toml = settle(calibration) / SLIP_TOML
     if not slip_toml.is_file():
         raise NotFound(
-            f"{slip_toml}: no such file; name rig data to calibrate from, or the --out of a "
+            f"{slip_toml}: no such file; give rig data to calibrate from, or the --out of a "
             "finished calibration"
         )
     return slip_toml

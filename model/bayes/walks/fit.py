@@ -55,7 +55,7 @@ def fit_walks(
             leg angles are a periodic gait.
     """
     if not walks:
-        raise InsufficientData("no walk to fit; name one or more with a track")
+        raise InsufficientData("no walk was given; expected one or more with a track")
     report = progress or (lambda _: None)
     misfits = []
     for i, walk in enumerate(walks):
@@ -141,7 +141,7 @@ class WalkFit:
             WalkError: A walk at the new mode diverged, or the robot cannot stand at its start.
         """
         if len(self._names) < 2:
-            raise InsufficientData("one walk leaves none to predict it from; name two or more")
+            raise InsufficientData("one walk cannot be predicted from others; give two or more")
         return self._of([i for i in range(len(self._names)) if i != walk])
 
     def _of(self, keep: Sequence[int]) -> WalkPosterior:

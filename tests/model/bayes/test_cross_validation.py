@@ -98,7 +98,16 @@ def test_a_perfect_load_cell_measures_the_law():
     )
 
 
-def test_without_crosstalk_and_wander_the_prediction_is_the_likelihoods(posterior):
+def test_crosstalk_is_undone_before_the_law_is_used():
+    slip, load = np.linspace(-0.2, 0.5, 9), np.linspace(2.0, 9.0, 9)
+    traction = LAW.force(slip, load, LAW_VALUES)
+    crosstalk = 0.05
+    values = np.array([*LAW_VALUES, 0.0, 0.0, 0.0, crosstalk, *np.zeros(4)])
+    found = measured_force(LAW, values, slip, load - crosstalk * traction)
+    np.testing.assert_allclose(found, traction, rtol=1e-3)
+
+
+def test_without_wander_the_prediction_is_the_likelihoods(posterior):
     blocks = replace(
         posterior.blocks,
         slip_wander=np.zeros(len(posterior.blocks)),
@@ -108,11 +117,11 @@ def test_without_crosstalk_and_wander_the_prediction_is_the_likelihoods(posterio
         slip_load_covariance=np.zeros(len(posterior.blocks)),
         run_slip_error=np.zeros(posterior.blocks.n_runs),
     )
-    values = np.array([*LAW_VALUES, 0.01, -0.02, 0.1, 0.0, 0.05, 0.01, 0.3, 0.1])
-    found = measured_force(LAW, values, blocks.slip, blocks.normal_force)
-    np.testing.assert_allclose(
-        found, predict_blocks(blocks, LAW, values[None]).force[0], rtol=1e-6, atol=1e-9
-    )
+    for crosstalk, tolerance in ((0.0, 1e-6), (0.005, 1e-5)):
+        values = np.array([*LAW_VALUES, 0.01, -0.02, 0.1, crosstalk, 0.05, 0.01, 0.3, 0.1])
+        found = measured_force(LAW, values, blocks.slip, blocks.normal_force)
+        expected = predict_blocks(blocks, LAW, values[None]).force[0]
+        np.testing.assert_allclose(found, expected, rtol=tolerance, atol=1e-9)
 
 
 # --- leaving runs out

@@ -199,6 +199,8 @@ class Linear:
         Parameter("lift", "a", "dimensionless", 0.0, np.inf, "positive"),
         Parameter("lean", "b", "dimensionless", -np.inf, np.inf, "any"),
         Parameter("blend", "c", "dimensionless", -1.0, 3.0, "bounded"),
+        Parameter("least", "d", "dimensionless", 2.0, np.inf, "at least 2"),
+        Parameter("most", "e", "dimensionless", -np.inf, -0.5, "at most -0.5"),
     )
 
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from model.bayes.priors import BelowOne, HalfNormal, LogNormal, Normal, Uniform
+from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Uniform
 
 NAMED = (
     (Normal(0.3, 2.0), stats.norm(0.3, 2.0)),
@@ -13,13 +13,13 @@ NAMED = (
     (HalfNormal(0.15), stats.halfnorm(scale=0.15)),
     (Uniform(-0.5, 0.99), stats.uniform(-0.5, 1.49)),
 )
-PRIORS = (*(prior for prior, _ in NAMED), BelowOne(1.0, 1.0), BelowOne(0.2, 0.5))
+PRIORS = (*(prior for prior, _ in NAMED), Below(1.0, 1.0, 1.0), Below(1.0, 0.2, 0.5))
 SUPPORTS = {
     Normal: (-np.inf, np.inf),
     LogNormal: (0.0, np.inf),
     HalfNormal: (0.0, np.inf),
     Uniform: (-0.5, 0.99),
-    BelowOne: (-np.inf, 1.0),
+    Below: (-np.inf, 1.0),
 }
 every_prior = pytest.mark.parametrize("prior", PRIORS, ids=lambda prior: prior.describe())
 Z = st.floats(-5.0, 5.0)
@@ -54,11 +54,11 @@ def test_a_standard_normal_becomes_the_named_distribution(prior, named):
 
 def test_below_one_is_one_minus_a_log_normal():
     probability = np.array([0.001, 0.05, 0.5, 0.95, 0.999])
-    gap = 1 - BelowOne(0.4, 0.8).value(stats.norm.ppf(probability))
+    gap = 1 - Below(1.0, 0.4, 0.8).value(stats.norm.ppf(probability))
     np.testing.assert_allclose(gap, stats.lognorm(s=0.8, scale=0.4).isf(probability))
 
 
-@pytest.mark.parametrize("prior", [LogNormal(10.0, 1.5), BelowOne(0.2, 1.0), HalfNormal(0.15)])
+@pytest.mark.parametrize("prior", [LogNormal(10.0, 1.5), Below(1.0, 0.2, 1.0), HalfNormal(0.15)])
 def test_coordinate_zero_is_the_median(prior):
     below = prior.value(np.random.default_rng(0).standard_normal(100_000)) < prior.value(0.0)
     assert below.mean() == pytest.approx(0.5, abs=0.005)

@@ -75,11 +75,11 @@ def test_fit_without_fault_is_trusted():
 
 
 CONVERGENCE_FAULTS = {
-    "R-hat between ensembles is 1.020, wanted <= 1.01": {"r_hat": np.array([1.0, 1.02])},
+    "R-hat between ensembles is 1.020, limit 1.01": {"r_hat": np.array([1.0, 1.02])},
     "Monte Carlo error over posterior spread is 0.060": {"mcse": np.array([0.01, 0.06])},
-    "bulk effective sample size is 399, wanted >= 400": {"ess_bulk": np.array([5e3, 399.0])},
-    "tail effective sample size is 120, wanted >= 400": {"ess_tail": np.array([120.0, 5e3])},
-    "chain length in autocorrelation times is 40, wanted >= 50": {"length": 400},
+    "bulk effective sample size is 399, at least 400 needed": {"ess_bulk": np.array([5e3, 399.0])},
+    "tail effective sample size is 120, at least 400 needed": {"ess_tail": np.array([120.0, 5e3])},
+    "chain length in autocorrelation times is 40, at least 50 needed": {"length": 400},
 }
 
 

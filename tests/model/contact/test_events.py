@@ -50,3 +50,13 @@ def test_a_leg_that_reaches_the_ground_replaces_one_that_stood():
 def test_legs_that_cannot_carry_are_refused():
     with pytest.raises(DomainError, match="contact legs 1, 3, 5"):
         next_stance(ROBOT, np.full(6, np.pi / 2), contact=(0, 2, 4))
+
+
+def test_three_feet_on_one_line_leave_the_stance_to_the_other_legs():
+    hips = ROBOT.hips.copy()
+    hips[2] = hips[:2].mean(axis=0) - [0.02, 0.0, 0.0]  # between legs 1 and 2, 0.02 m behind them
+    robot = Robot(hips=hips)
+    theta = np.full(6, np.radians(100.0))
+    # The toe of leg 3 is 0.02 m further forward than those of legs 1 and 2: on their line.
+    theta[2] = np.arccos(np.cos(theta[0]) + 0.02 / (2 * robot.leg_radius))
+    assert next_stance(robot, theta, contact=tuple(range(6))).depth > 0

@@ -48,15 +48,15 @@ def test_each_leg_knows_its_group():
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("", "no group"),
-        ("1,4,5 < 2,3,6", "no group"),
-        ("{1,4,5 < {2,3,6}", "no group"),
-        ("{1,4,5} {2,3,6}", "no group"),
-        ("{1,4,5} < ", "no group"),
-        ("{1,4,5} > {2,3,6}", "no group"),
+        ("", "not a group"),
+        ("1,4,5 < 2,3,6", "not a group"),
+        ("{1,4,5 < {2,3,6}", "not a group"),
+        ("{1,4,5} {2,3,6}", "not a group"),
+        ("{1,4,5} < ", "not a group"),
+        ("{1,4,5} > {2,3,6}", "not a group"),
         ("{1,2} < {}", "group 2 of the gait is empty"),
-        ("{1,4,4} < {2,3,6}", "leg 4 stands in the gait twice"),
-        ("{1,4,5} < {2,3,5,6}", "leg 5 stands in the gait twice"),
+        ("{1,4,4} < {2,3,6}", "leg 4 is in the gait twice"),
+        ("{1,4,5} < {2,3,5,6}", "leg 5 is in the gait twice"),
         ("{1,4} < {2,3,6}", "leg 5 is missing"),
         ("{0,1}", "leg 0"),
         ("{1,a}", "'a' in group {1,a}"),
@@ -71,5 +71,5 @@ def test_errors_name_the_fault(text, fault):
 
 
 def test_gait_without_groups_is_refused():
-    with pytest.raises(DomainError, match="without groups"):
+    with pytest.raises(DomainError, match="no groups"):
         Gait(())

@@ -64,5 +64,5 @@ def test_right_turn_is_no_later_mirror_image_of_a_left_one():
 
 
 def test_negative_turn_time_is_refused():
-    with pytest.raises(DomainError, match="the other way is a direction"):
+    with pytest.raises(DomainError, match="choose the side with direction"):
         suriana_reference(DOWN, UP, ground_time=0.8, flight_time=0.8, turn_time=-0.1)

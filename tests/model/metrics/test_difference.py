@@ -42,7 +42,7 @@ def test_far_apart_is_clear():
 
 def test_no_draws_and_no_numbers_are_refused():
     rng = np.random.default_rng(1)
-    with pytest.raises(InsufficientData, match="without draws"):
+    with pytest.raises(InsufficientData, match="has no draws"):
         difference(np.empty(0), np.ones(2), rng=rng)
     with pytest.raises(InsufficientData, match="finite"):
         difference(np.array([np.nan]), np.ones(2), rng=rng)

@@ -59,5 +59,5 @@ def test_a_log_has_no_stride():
 
 @pytest.mark.parametrize("duration", [0.0, -1.0, np.nan, np.inf])
 def test_a_walk_of_no_time_is_refused(duration):
-    with pytest.raises(DomainError, match="expected at least a step"):
+    with pytest.raises(DomainError, match="expected a finite time that rounds to at least"):
         walk_by_strides(ROBOT, TURN, SLIP, duration=duration, options=OPTIONS)

@@ -84,7 +84,9 @@ def test_parameters_that_lose_the_laws_shape_are_refused_with_the_load():
 
 
 def test_an_unknown_toe_law_is_refused_by_name():
-    with pytest.raises(DomainError, match="'spring' is no toe law; there are saturated, peak"):
+    with pytest.raises(
+        DomainError, match="'spring' is not a toe law; expected one of saturated, peak"
+    ):
         law_table(*LAWS[0], weight=WEIGHT, toe="spring")
 
 

@@ -67,7 +67,7 @@ def test_file_holds_no_pickle(tmp_path):
 
 def test_pickle_in_its_place_is_refused_unread(tmp_path):
     np.savez(tmp_path / FILE, fingerprint=np.array([object()], dtype=object))
-    with pytest.raises(DataError, match="is no checkpoint of this program"):
+    with pytest.raises(DataError, match="is not a checkpoint of zebro-lab"):
         load_checkpoint(tmp_path, fingerprint=MARK)
 
 
@@ -79,7 +79,7 @@ def test_absent_checkpoint_names_the_file_and_what_to_do(tmp_path):
 
 def test_checkpoint_of_another_fit_is_refused(tmp_path):
     save_checkpoint(tmp_path, chains(), fingerprint=MARK)
-    with pytest.raises(DataError, match="belongs to other data or settings"):
+    with pytest.raises(DataError, match="is of a fit with other data or settings"):
         load_checkpoint(tmp_path, fingerprint="0" * 64)
 
 
@@ -88,7 +88,7 @@ def test_checkpoint_without_a_part_is_refused(tmp_path):
     with np.load(path) as stored:
         arrays = {name: stored[name] for name in stored.files if name != "random_keys"}
     np.savez(path, **arrays)
-    with pytest.raises(DataError, match="is no checkpoint of this program"):
+    with pytest.raises(DataError, match="is not a checkpoint of zebro-lab"):
         load_checkpoint(tmp_path, fingerprint=MARK)
 
 

@@ -188,7 +188,7 @@ def test_missing_time_in_one_file_is_noted(tmp_path):
     write(tmp_path, louder(given_slip()).drop(columns="t"), "b.csv")
     data = read_rig_data([tmp_path])
     assert data.samples.time is None
-    assert "1 of 2 files have no time: no times are used" in data.notes
+    assert "1 of 2 files have no time, so no times are used" in data.notes
 
 
 def test_unknown_slip_definition_is_a_settings_error(tmp_path):

@@ -150,7 +150,7 @@ def test_stop_before_sampling_writes_nothing(request_for, tmp_path):
 
 
 def test_checkpoint_of_other_settings_is_refused(uninterrupted, request_for):
-    with pytest.raises(ValueError, match="belongs to other data or settings"):
+    with pytest.raises(ValueError, match="is of a fit with other data or settings"):
         calibrate(request_for(uninterrupted, resume=True, seed=2), Watcher())
 
 

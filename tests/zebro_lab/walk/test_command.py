@@ -52,7 +52,7 @@ ERRORS = {
     "lift-off before touchdown": (("--liftoff-deg", 40), "lift off at 40 degrees"),
     "option of another gait": (("--tau-turn", 0.1), "--tau-turn: means nothing to the gait 'trip"),
     "no such robot": (("--robot", "none.toml"), "none.toml: no such file"),
-    "no slip law": (("--slip", "ice"), "--slip: 'ice' is no file or folder"),
+    "no slip law": (("--slip", "ice"), "--slip: 'ice' is not a file or folder"),
     "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is not a friction law"),
     "no time": (("--duration", 0), "finite duration longer than one step"),
     "no arc": (("--arc-deg", 10), "leg_arc is 10 degrees"),

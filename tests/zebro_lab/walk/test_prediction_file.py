@@ -39,5 +39,5 @@ def test_a_table_of_poses_has_no_baseline_but_the_robot_that_stands_still(tmp_pa
     found = read_prediction(tmp_path / "poses.csv")
     np.testing.assert_array_equal(found.prediction.path.position[:, 0], [0.0, 0.1, 0.2])
     assert (found.walk, found.source) == (None, "unknown")
-    assert "no walk folder, so no baseline but" in found.notes[0]
+    assert "is the only baseline" in found.notes[0]
     assert found.files == (tmp_path / "poses.csv",)

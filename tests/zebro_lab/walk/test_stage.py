@@ -83,7 +83,7 @@ def test_model_that_slips_needs_a_law_and_one_that_does_not_says_so(tmp_path):
     with pytest.raises(SettingsError, match="--slip: missing"):
         walk(request(tmp_path / "out", slip=None), Nobody())
     walked = walk(request(tmp_path / "out", model="no-slip"), Nobody())
-    assert "--slip coulomb:0.4 not used" in walked.notes[0]
+    assert "--slip coulomb:0.4 is not used" in walked.notes[0]
 
 
 @pytest.mark.parametrize("bad", [{"dt": 0.0}, {"dt": -1.0}, {"dt": float("nan")}, {"dt": 100.0}])
@@ -106,5 +106,5 @@ def test_a_walk_of_more_steps_than_memory_holds_is_refused(model, tmp_path):
 def test_robot_written_out_is_the_robot_asked_for(tmp_path):
     file = write_robot(tmp_path / "robot.toml", ModelRequest(arc_deg=200.0))
     assert np.degrees(read_robot_file(file).robot.leg_arc) == pytest.approx(200)
-    with pytest.raises(AlreadyExists, match="edit it, or name another"):
+    with pytest.raises(AlreadyExists, match="edit it, or choose another"):
         write_robot(file, ModelRequest())

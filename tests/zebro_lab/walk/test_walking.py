@@ -33,7 +33,7 @@ def test_a_model_that_slips_needs_a_law_and_one_that_does_not_leaves_it_out():
         walked()
     found = walked(model="no-slip", slip="coulomb:0.4")
     assert found.slip is None
-    assert "does not slip" in found.notes[0]
+    assert "has no slip" in found.notes[0]
 
 
 def test_the_thesis_s_model_says_what_to_do_with_a_curve_of_another_definition(monkeypatch):

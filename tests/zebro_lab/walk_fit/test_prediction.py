@@ -24,7 +24,7 @@ from zebro_lab.walk_fit.tracked_walks import read_walk_on_file
 
 
 def test_no_walks_are_refused_as_the_model_refuses_them():
-    with pytest.raises(ModelError, match="no walk to fit"):
+    with pytest.raises(ModelError, match="no walk was given"):
         fit_walks_on_file([], parse_slip("thesis"), prior=WalkPrior(), rng=np.random.default_rng(1))
 
 

@@ -64,7 +64,7 @@ def compare_calibrations(
 
 def _curve_of(slip: NamedSlip) -> SlipCurve:
     if not isinstance(slip.law, SlipCurve):
-        raise DataError("is an assumed friction, no calibration", file=Path(slip.text))
+        raise DataError("is an assumed friction, not a calibration", file=Path(slip.text))
     return slip.law
 
 

@@ -13,6 +13,6 @@ class CompareRequest:
     """Options of `zebro-lab compare`."""
 
     first: Annotated[Path, Argument(metavar="A", help="Calibration folder or run folder.")]
-    second: Annotated[Path, Argument(metavar="B", help="Another of the same kind.")]
+    second: Annotated[Path, Argument(metavar="B", help="Second folder, of the same kind as A.")]
     out: Annotated[Path, Option(help="Folder to write.")] = Path("comparison")
     seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1

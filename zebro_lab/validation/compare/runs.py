@@ -52,7 +52,7 @@ def compare_runs(
     if not quantities:
         raise DataError(
             f"has {_what(runs[1])}, the first has {_what(runs[0])}: nothing is common to both; "
-            "track or predict the other, too",
+            "track or predict the same in both",
             file=second,
         )
     return Comparison(

@@ -65,7 +65,7 @@ def _kind(path: Path) -> str:
     if is_walked(path):
         return "run"
     raise NotFound(
-        f"{path} holds no {SLIP_TOML}, track/ or prediction/ with draws; name two folders that "
+        f"{path} holds no {SLIP_TOML}, track/ or prediction/ with draws; choose two folders that "
         "calibrate-slip wrote, or two runs"
     )
 
@@ -74,7 +74,7 @@ def _names(first: Path, second: Path) -> tuple[str, str]:
     """Return the shortest distinct last parts of two paths; raise if the paths are equal."""
     one, other = shortest_distinct([first.absolute(), second.absolute()])
     if one == other:
-        raise SettingsError(f"{first} is compared with itself; name another")
+        raise SettingsError(f"{first} is compared with itself; choose another folder as B")
     return one, other
 
 

@@ -91,7 +91,7 @@ def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
     t = np.array([stamp[0] for stamp in stamps if stamp is not None])
     step = np.array([stamp[1] for stamp in stamps if stamp is not None])
     # A clock that stores "00" in every photograph has whole seconds only.
-    if step.max() < 1.0 and not np.allclose(t % 1.0, 0.0):
+    if step.max(initial=0.0) < 1.0 and not np.allclose(t % 1.0, 0.0):
         return PhotoTimes(t + step / 2, step / math.sqrt(12), "EXIF with fractions of a second")
     fit = fit_interval(t)
     if fit is None:

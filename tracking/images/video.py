@@ -89,5 +89,7 @@ def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Imag
             continue
         last = t
         yield Image(f"{name}#{number}", np.asarray(pixels, dtype=np.uint8), t, FRAME_TIME_SD)
-    if number < 0:
-        raise PhotoError(name, "the video has no frames; copy it again or record another")
+    if np.isinf(last):
+        raise PhotoError(
+            name, "no frame of the video can be decoded; copy it again or record another"
+        )

@@ -82,7 +82,8 @@ def open_photos(
     Raises:
         NotFound: `origin` does not exist.
         SettingsError: A video is given together with times.
-        DataError: Frames of a video cannot be written to the temporary folder.
+        DataError: The folder holds only the photograph of the clock, or frames of a video cannot be
+            written to the temporary folder.
         TrackingError: The folder has no photograph, times are missing, or a file is unreadable.
         TrackStopped: A stop was requested.
     """
@@ -164,6 +165,10 @@ def _given_times(paths: Sequence[Path], request: TimeRequest) -> PhotoTimes | No
 def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     clock = None if request.clock is None else request.clock.resolve()
     paths = tuple(path for path in find_photos(folder) if path.resolve() != clock)
+    if not paths:
+        raise DataError(
+            "holds no photograph but that of --clock; expected photographs of the walk", file=folder
+        )
     left_out: Mapping[str, str] = {}
     times = _given_times(paths, request)
     if times is None:

@@ -2,6 +2,7 @@
 """Read photographs with limits of size, and report damaged files."""
 
 import re
+import traceback
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -87,8 +88,8 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
 
     Raises:
         PhotoError: When the file is missing, not a regular file, empty, HEIC or of an unknown
-            format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for any exception
-            raised inside the `with` block.
+            format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for what Pillow
+            raises inside the `with` block. Other exceptions of the block are raised unchanged.
     """
     _refuse_unreadable(path)
     try:
@@ -106,11 +107,18 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
         most = 2 * (PIL.Image.MAX_IMAGE_PIXELS or MOST_PIXELS)
         raise PhotoError(path.name, _too_large(f"more than {most / 1e6:.0f}")) from error
     except Exception as error:  # Pillow raises many kinds of exceptions for damaged files
+        if not (isinstance(error, OSError) or _raised_by_pillow(error)):
+            raise
         said = " ".join(str(error).split()) or type(error).__name__
         raise PhotoError(
             path.name,
             f"cannot be decoded ({said[:200]}); the file is cut short or damaged: copy it again",
         ) from error
+
+
+def _raised_by_pillow(error: Exception) -> bool:
+    frames = traceback.walk_tb(error.__traceback__)
+    return any(frame.f_globals.get("__name__", "").startswith("PIL.") for frame, _ in frames)
 
 
 def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:

@@ -108,7 +108,8 @@ def photos_of_track(track: Path) -> TrackedPhotos:
 
     Raises:
         NotFound: The folder is not a track folder, or a photograph or `camera.toml` has moved.
-        DataError: The track is of a video, whose frames are not kept, or a photograph has changed.
+        DataError: The track is of a video, whose frames are not kept, or a photograph or
+            `camera.toml` has changed.
     """
     folder = track if track.is_dir() else track.parent
     manifest = read_track_manifest(folder)
@@ -146,10 +147,13 @@ def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
 
 
 def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
-    for path in inputs:
+    for path, digest in inputs.items():
         if path.suffix == ".toml" and path.is_file():
             try:
-                return read_camera_file(path)
+                camera = read_camera_file(path)
             except SettingsError:  # the floor's or the robot's
                 continue
+            if file_hash(path) != digest:
+                raise DataError("has changed: it is not the camera file of this track", file=path)
+            return camera
     raise NotFound(f"{folder}: the camera.toml of this track is not where it was")

@@ -52,7 +52,7 @@ class RobotMarker:
 
     def __post_init__(self) -> None:
         if not self.side > 0:
-            raise MarkerError(f"the robot's marker has side {self.side} m; expected more than 0")
+            raise MarkerError(f"the robot's marker has side {self.side} m; expected more than 0 m")
 
     @property
     def points_body(self) -> Array:

@@ -72,7 +72,7 @@ def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> t
     """Find exposures by the robot's marker, or without one by the exposure of annotated top."""
     size = scene.body_size
     if size is None:
-        raise CompositeError("the length and width of the robot's body are not known")
+        raise CompositeError("the length and width of the robot's body (body_size) are not known")
     pixels = read_pixels(photo.path, size=scene.camera.size)
     view = seen.fit.pose_of(photo.name)
     # The floor's markers are similar to the robot's, so they are masked.
@@ -94,9 +94,9 @@ def _rough_note(exposures: Sequence[Exposure]) -> list[str]:
     if rough < _MANY_ROUGH * len(exposures):
         return []
     return [
-        f"{rough} of {len(exposures)} exposures are placed only roughly, if they are exposures at "
-        "all: look at overlay.png; the exposure whose top is marked must show whole, and body_size "
-        "in robot.toml must be the robot's"
+        f"{rough} of {len(exposures)} exposures could not be aligned: they are placed only roughly "
+        "or are not the robot: look at overlay.png, check body_size in robot.toml, and without a "
+        "marker annotate an exposure that is fully visible"
     ]
 
 

@@ -55,7 +55,12 @@ def break_file(path, kind):
 
 @pytest.mark.parametrize(
     ("kind", "message"),
-    [("empty", "0 bytes"), ("cut", "cut short"), ("text", "not a picture"), ("heic", "HEIC")],
+    [
+        ("empty", "0 bytes"),
+        ("cut", "cut short"),
+        ("text", "not a readable picture"),
+        ("heic", "HEIC"),
+    ],
 )
 def test_a_bad_file_is_named_with_its_fault(tmp_path, kind, message):
     path = tmp_path / "p7.jpg"
@@ -129,7 +134,7 @@ def test_a_picture_that_would_take_a_gigabyte_is_refused_unread(width, height, t
 def test_a_picture_of_another_program_is_not_handed_to_it(tmp_path):
     file = tmp_path / "a.jpg"
     PIL.Image.new("RGB", (64, 64)).save(file, format="PPM")
-    with pytest.raises(PhotoError, match="not a picture"):
+    with pytest.raises(PhotoError, match="not a readable picture"):
         read_pixels(file)
 
 

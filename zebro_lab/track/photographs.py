@@ -140,7 +140,7 @@ def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
     if file is None or not file.is_file():
         raise NotFound(f"{file or plain}: the photograph is not where it was when it was tracked")
     if file.suffix.lower() in VIDEOS:
-        raise DataError("frames of a video are not kept", file=file)
+        raise DataError("is a video, whose frames are not kept", file=file)
     if file_hash(file) != inputs[file]:
         raise DataError("is another photograph than the one that was tracked", file=file)
     return file

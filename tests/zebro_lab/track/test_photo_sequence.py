@@ -111,7 +111,7 @@ def test_frames_of_a_video_keep_their_own_times_and_leave_no_files(tmp_path):
 def test_a_video_takes_no_times_of_others(tmp_path):
     (tmp_path / "walk.mp4").touch()
     with (
-        pytest.raises(SettingsError, match="--interval: not with a video"),
+        pytest.raises(SettingsError, match="--interval: leave out for a video"),
         open_photos(tmp_path / "walk.mp4", TimeRequest(interval=2.0)),
     ):
         pass

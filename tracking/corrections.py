@@ -122,7 +122,7 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     """
     kind = str(entry.get("kind", ""))
     if kind not in _KINDS:
-        raise CorrectionError(f"correction '{kind}' is unknown; expected {', '.join(_KINDS)}")
+        raise CorrectionError(f"kind '{kind}' is unknown; expected {', '.join(_KINDS)}")
     values = {key: value for key, value in entry.items() if key != "kind"}
     names = [field.name for field in fields(_KINDS[kind])]
     for key in values:
@@ -154,7 +154,7 @@ def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
     if photo not in found:
         near = difflib.get_close_matches(photo, found, n=1)
         hint = f"; did you mean '{near[0]}'?" if near else ""
-        raise CorrectionError(f"no robot is known in a photograph '{photo}'{hint}")
+        raise CorrectionError(f"a correction names '{photo}', of which there is no pose{hint}")
     return found[photo]
 
 
@@ -184,7 +184,7 @@ def _moved(
 
 def _ordered(found: Mapping[str, PoseObservation], order: Order) -> dict[str, PoseObservation]:
     if len(set(order.photos)) < len(order.photos):
-        raise CorrectionError("an order names a photograph twice; each can be taken only once")
+        raise CorrectionError("a correction of kind 'order' names a photograph twice; name it once")
     named = [_known(found, photo) for photo in order.photos]
     slots = sorted((seen.t, seen.t_sd) for seen in named)
     again = {

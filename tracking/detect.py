@@ -80,8 +80,8 @@ def detect(
     if len(robots) > 1:
         raise PhotoError(
             photo,
-            f"the robot's marker {robot.marker.marker_id} is seen {len(robots)} times; cover the "
-            f"others, or if this is a composite picture, track it as one",
+            f"the robot's marker {robot.marker.marker_id} is seen {len(robots)} times, expected "
+            f"once; cover its other prints, or track a composite picture alone with --merged",
         )
     if floor.markers and not on_floor:
         raise PhotoError(photo, _no_floor(pixels, floor))
@@ -124,7 +124,7 @@ def _no_floor(pixels: NDArray[np.uint8], floor: FloorMap) -> str:
     message = f"none of the floor's markers ({expected} of '{floor.dictionary}') is seen"
     other = guess_dictionary(pixels)
     if other is not None and other != floor.dictionary.lower():
-        return f"{message}; the picture has markers of '{other}': correct the dictionary"
+        return f"{message}; the picture has markers of '{other}': correct dictionary in floor.toml"
     return f"{message}; check that they lie flat, unshaded and inside the picture"
 
 

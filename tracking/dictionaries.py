@@ -44,8 +44,8 @@ def _dictionary_of_file(path: str) -> cv2.aruco.Dictionary:
     storage = cv2.FileStorage(path, cv2.FILE_STORAGE_READ)
     if not (storage.isOpened() and dictionary.readDictionary(storage.root())):
         raise MarkerError(
-            f"{path} holds no dictionary of markers; expected nmarkers, markersize and marker_0, "
-            f"marker_1, ... as cv2.aruco.Dictionary.writeDictionary writes them"
+            f"{path} does not exist or is not a dictionary of markers; expected nmarkers, "
+            f"markersize and marker_0, marker_1, ... as cv2.aruco.Dictionary.writeDictionary writes"
         )
     return dictionary
 

@@ -52,7 +52,7 @@ class RobotMarker:
 
     def __post_init__(self) -> None:
         if not self.side > 0:
-            raise MarkerError(f"the robot's marker has side {self.side} m; expected more than 0")
+            raise MarkerError(f"the robot's marker has side {self.side} m; expected more than 0 m")
 
     @property
     def points_body(self) -> Array:
@@ -86,17 +86,11 @@ class BodyPose:
             independent from photograph to photograph, shape (6, 6).
         camera_covariance: Covariance of `state` from the error of the camera's pose, which the
             photographs of a stand share, shape (6, 6).
-        misfit_px: Root mean square distance of points from their projection [px]; 0 of a pose
-            from `tracking.body.align`.
-        cost: Minimum of the sum in the module's docstring; of a pose from `tracking.body.align`
-            the effective number of independent colour values instead [-].
     """
 
     state: Array
     covariance: Array
     camera_covariance: Array
-    misfit_px: float
-    cost: float
 
     @property
     def planar(self) -> Array:
@@ -177,14 +171,7 @@ def fit_pose(
     spread = np.linalg.inv(J.T @ J)
     # The state follows the camera: d state = -(J'J)^-1 J' (d residual / d camera) d camera.
     follow = -spread @ J.T @ problem.by_camera(fit.x)
-    missed = project(camera, view, problem.points_world(fit.x)) - problem.corners_px
-    return BodyPose(
-        _wrapped(fit.x),
-        spread,
-        follow @ view.covariance @ follow.T,
-        float(np.sqrt(2 * np.mean(missed**2))),
-        float(2 * fit.cost),
-    )
+    return BodyPose(_wrapped(fit.x), spread, follow @ view.covariance @ follow.T)
 
 
 def _wrapped(state: Array) -> Array:

@@ -126,8 +126,8 @@ def _checked(t: ArrayLike, poses: ArrayLike, covariance: ArrayLike) -> tuple[Arr
     if late.size:
         k = int(late[0])
         raise PathError(
-            f"times must increase; sample {k + 1} is at {times[k + 1]:g} s, the one before it at "
-            f"{times[k]:g} s; delete or order the photographs"
+            f"pose {k + 2} is at {times[k + 1]:g} s and the one before it at {times[k]:g} s; times "
+            f"must increase: correct them (--times), or delete one (`zebro-lab annotate --delete`)"
         )
     return times, measured, spread
 

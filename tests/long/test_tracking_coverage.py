@@ -192,7 +192,7 @@ def template(seed: int) -> BodyTemplate:
     pixels, window = photograph(truth, kind, rng)
     fit = refine_floor(place.lens, true_floor(), [see_floor(GOOD, rng)])
     state = np.array([truth.x, truth.y, truth.z, 0.0, 0.0, truth.yaw])
-    pose = BodyPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
+    pose = BodyPose(state, np.zeros((6, 6)), np.zeros((6, 6)))
     return make_template(pasted(pixels, window), place.lens, fit.stands[0].pose, pose=pose,
                          plate=PLATE)  # fmt: skip
 

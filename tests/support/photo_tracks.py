@@ -23,9 +23,10 @@ def write_photo_track(tmp_path):
     table = truth.rename(columns={"t": "t_s", "x": "x_m", "y": "y_m", "yaw": "yaw_rad"})
     table[["t_s", "x_m", "y_m", "yaw_rad", "photo"]].to_csv(folder / "track.csv", index=False)
     shutil.copy(DATA / "floor.toml", folder / "floor.toml")
+    camera = shutil.copy(DATA / "camera.toml", tmp_path / "camera.toml")
     for name in SHOWN:
         shutil.copy(DATA / "photos" / name, tmp_path / name)
-    read = [DATA / "floor.toml", DATA / "camera.toml", *(tmp_path / name for name in SHOWN)]
+    read = [DATA / "floor.toml", camera, *(tmp_path / name for name in SHOWN)]
     manifest = {
         "schema": 1, "kind": "track", "source": "sim:photographs",
         "inputs": {str(file): file_hash(file) for file in read},

@@ -131,5 +131,5 @@ def test_one_pose_is_its_own_path():
 
 
 def test_times_that_do_not_increase_are_named():
-    with pytest.raises(PathError, match="sample 2 is at 1 s"):
+    with pytest.raises(PathError, match="pose 3 is at 1 s"):
         smooth([0, 1, 1], np.zeros((3, 3)), covariance=np.tile(COV, (3, 1, 1)))

@@ -57,8 +57,7 @@ class Alignment:
     """The robot's pose by template alignment, with score and likelihood.
 
     Attributes:
-        pose: Pose of the robot with covariances; `misfit_px` is 0 and `cost` the effective number
-            of independent colour values.
+        pose: Pose of the robot with covariances.
         score: Correlation of the colours of photograph and template over all channels, each less
             its mean; after the high-pass filter if things shine through; 0 of a rough pose [-].
         log_likelihood: Log likelihood of the photograph's colours, up to a constant common to all
@@ -222,7 +221,7 @@ class _Job:
         wrapped[5] = np.arctan2(np.sin(state[5]), np.cos(state[5]))
         effective = residual.size / self.correlated
         covariance = spread[:6, :6] + self.floor
-        pose = BodyPose(wrapped, covariance, camera_covariance[:6, :6], 0.0, effective)
+        pose = BodyPose(wrapped, covariance, camera_covariance[:6, :6])
         log_likelihood = -0.5 * effective * float(np.log(max(noise.mean(), 1e-6)))
         return Alignment(pose, score, log_likelihood)
 

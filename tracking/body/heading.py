@@ -53,9 +53,10 @@ def resolve_headings(
     odds = best - _score_reversed(options, choice, scores, links)
     if candidates and odds < LEAST_LOG_ODDS:
         raise AmbiguousHeading(
-            f"head and tail of the robot cannot be told apart: odds of {np.exp(odds):.1f} to 1 "
-            f"over {len(candidates)} photographs, expected at least 1000 to 1; put a mark on its "
-            f"nose, include the nose in the template (front_margin), or flip by hand",
+            f"head and tail of the robot cannot be distinguished: the headings found in "
+            f"{len(candidates)} photographs are likelier than reversed by {np.exp(odds):.1f} to 1, "
+            f"expected at least 1000 to 1; mark the robot's nose, or raise front_margin in "
+            f"annotations.toml so that the template includes the nose",
             float(np.exp(odds)),
         )
     return tuple(ways[k] for ways, k in zip(options, choice, strict=True))

@@ -17,6 +17,7 @@ from tracking.body.align import Alignment, align
 from tracking.body.plane import Plane
 from tracking.body.template import BodyTemplate
 from tracking.camera.lens import Array, Camera, CameraPose, to_floor
+from tracking.errors import FloorError
 from tracking.pose import BodyPrior
 
 ACCEPTED_SCORE = 0.7
@@ -133,6 +134,9 @@ def floor_in_view(
     Returns:
         Lowest and highest x, y, each of shape (2,) [m], of the plane within three camera heights
         of the camera.
+
+    Raises:
+        FloorError: The camera sees no such point: it is mounted too low, or not tilted down.
     """
     width, rows = camera.size
     edge = np.array(
@@ -140,8 +144,14 @@ def floor_in_view(
     )
     seen = to_floor(camera, view, edge, height)
     # Floor near the horizon would make the raster unbounded and shows no robot.
-    distance = np.linalg.norm(seen - view.position[:2], axis=1)
-    seen = seen[np.isfinite(distance) & (distance < 3 * view.position[2])]
+    reached = 3 * view.position[2]
+    seen = seen[np.linalg.norm(seen - view.position[:2], axis=1) < reached]
+    if not len(seen):
+        raise FloorError(
+            f"the camera, {view.position[2]:.2f} m high, sees no place at the height of the "
+            f"robot's top ({height:.2f} m) within {reached:.2f} m (three times its own height), "
+            "where the robot is searched; mount the camera higher or tilt it down"
+        )
     low, high = seen.min(axis=0), seen.max(axis=0)
     if near is not None:
         middle = np.asarray(near, dtype=float)[:2]

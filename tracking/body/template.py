@@ -41,7 +41,8 @@ class TopPlate:
     def __post_init__(self) -> None:
         if not (self.length > 0 and self.width > 0):
             raise BodyError(
-                f"the top plate is {self.length} m x {self.width} m; expected positive sides"
+                f"the robot's top is {self.length:g} m long and {self.width:g} m wide; expected "
+                f"a length and a width above 0 m"
             )
 
     @property
@@ -149,15 +150,16 @@ def make_template(
     if plate.length / step < 16:
         raise BodyError(
             f"the robot's top is {plate.length / step:.0f} px long in the annotated photograph; "
-            f"at least 16 are needed: go nearer or use photographs of more pixels"
+            f"expected at least 16: put the camera nearer or take photographs with more pixels"
         )
     points = _grid(plate, step)
     seen = project(camera, view, points.reshape(-1, 3) @ R.T + pose.state[:3])
     template = BodyTemplate(plate, step, points, sample(pixels, seen.reshape(*points.shape[:2], 2)))
     if template.contrast < 4.0:
         raise BodyError(
-            f"the robot's top differs from its surroundings by {template.contrast:.1f} grey levels "
-            f"in the annotated photograph; expected at least 4: light the scene or use a marker"
+            f"the colours of the robot's top and its margin vary by {template.contrast:.1f} grey "
+            f"levels (standard deviation) in the annotated photograph; expected at least 4: light "
+            f"the scene better, or use a marker"
         )
     return template
 
@@ -214,6 +216,6 @@ def _corners_px(camera: Camera, view: CameraPose, pose: BodyPose, plate: TopPlat
 def _refuse_cut(corners_px: Array, size: tuple[int, int]) -> None:
     if (corners_px < 0).any() or (corners_px > np.subtract(size, 1)).any():
         raise BodyError(
-            "the robot is cut by the edge of the annotated photograph; annotate one that shows "
-            "its whole top"
+            "the robot's top is cut by the edge of the annotated photograph; annotate a photograph "
+            "that shows its whole top"
         )

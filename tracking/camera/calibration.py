@@ -134,8 +134,8 @@ def _check_determined(fit: CameraCalibration) -> None:
     focal, sd = fit.camera.matrix[0, 0], fit.sd[0]
     if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
         raise CalibrationError(
-            f"the focal length comes out as {focal:.0f} px with a standard deviation of {sd:.0f} "
-            f"px; the board was seen from too few directions: tilt it by 20 to 45 degrees"
+            f"the focal length is {focal:.0f} px with a standard deviation of {sd:.0f} px, more "
+            f"than 5 %; photograph the board tilted by 20 to 45 degrees, each time another way"
         )
 
 
@@ -143,14 +143,15 @@ def _warnings(fit: CameraCalibration) -> list[str]:
     messages = []
     if fit.coverage < 0.6:
         messages.append(
-            f"corners cover {fit.coverage:.0%} of the picture; the lens is extrapolated elsewhere: "
-            f"hold the board into the corners too"
+            f"corners cover {fit.coverage:.0%} of the picture, expected 60%; it is extrapolated "
+            f"elsewhere: photograph the board near the picture's edges and corners too"
         )
     if len(fit.view_names) < 10:
-        messages.append(f"{len(fit.view_names)} pictures; 10 to 15 are advised")
+        messages.append(f"{len(fit.view_names)} photographs are used; 10 to 15 are advised")
     limit = 3 * float(np.median(fit.view_rms))
     messages += [
-        f"{name}: corners are off by {rms:.2f} px, three times the median; look at the picture"
+        f"{name}: corners are off by {rms:.2f} px (rms), more than three times the median of all "
+        f"photographs; remove it if the board is blurred, bent or covered, and calibrate again"
         for name, rms in zip(fit.view_names, fit.view_rms, strict=True)
         if rms > limit
     ]

@@ -42,9 +42,9 @@ class Camera:
         ratio = size[0] / self.size[0]
         if abs(size[1] / self.size[1] - ratio) * self.size[1] > 1.0:
             raise ValueError(
-                f"pictures of {size[0]}x{size[1]} px are not a scaled {self.size[0]}x"
-                f"{self.size[1]} px, the size the camera was calibrated with; calibrate it with "
-                f"pictures of the same shape"
+                f"photographs of {size[0]}x{size[1]} px have another shape than those of "
+                f"{self.size[0]}x{self.size[1]} px with which the camera was calibrated; use "
+                f"photographs that are not cropped, or calibrate the camera with such photographs"
             )
         matrix = self.matrix.copy()
         matrix[:2, :2] *= ratio

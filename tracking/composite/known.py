@@ -169,7 +169,7 @@ class KnownExposure:
         """Build an alignment of score 0 from a pose (3,) on the raster, with the raster's error."""
         height, tilt = self.prior.height_sd, self.prior.tilt_sd
         covariance = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
-        level = BodyPose(self.level(pose), covariance, np.zeros((6, 6)), 0.0, 0.0)
+        level = BodyPose(self.level(pose), covariance, np.zeros((6, 6)))
         slip = RASTER_SD * self.size[0]
         return widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
 

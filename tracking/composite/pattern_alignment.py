@@ -214,8 +214,6 @@ class PatternAlignment:
                 self.known.level(pose),
                 covariance + by_assumed * assumed @ by_assumed.T,
                 by_camera @ self.known.view.covariance @ by_camera.T,
-                0.0,
-                float(residual.seen.size),
             ),
             residual.score,
             -residual.seen.size * float(np.log(residual.noise)),

@@ -93,8 +93,8 @@ def find_exposures(
     if not found:
         raise CompositeError(
             "no exposure of the robot is found in the composite picture; check the marker's number "
-            f"and dictionary and that the picture is '{merged}', or mark the top of one exposure "
-            "and go without"
+            f"and dictionary and that --merged {merged} is how the picture was made, or annotate "
+            "the robot's top in one exposure and track --without-marker"
         )
     return tuple(found)
 

@@ -101,20 +101,20 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
     if not keys:
         expected = ", ".join(str(key) for key in floor.marks)
         raise FloorError(
-            f"{view.photo}: none of the floor's marks ({expected}) is seen; check the dictionary "
-            f"('{floor.dictionary}') and that they lie in the picture"
+            f"{view.photo}: none of the floor's marks ({expected}) is seen; check dictionary "
+            f"'{floor.dictionary}' in floor.toml and that the marks lie in the picture"
         )
     points = np.concatenate([floor.marks[key].points for key in keys])
     pixels = np.concatenate([view.pixels[key] for key in keys])
     if len(points) < 4:
         raise FloorError(
-            f"{view.photo}: {len(points)} points of the floor are seen; at least 4 are needed "
-            f"(a marker has 4)"
+            f"{view.photo}: {len(points)} points of the floor are seen; expected at least 4 (a "
+            f"marker has 4): click on more with `zebro-lab annotate --click`"
         )
     starts = _starting_poses(camera, points, pixels)
     poses = [_polish(camera, pose, points, pixels) for pose in starts]
     if not poses:
-        raise FloorError(f"{view.photo}: no camera could see the floor's marks where they are seen")
+        raise FloorError(f"{view.photo}: the floor's marks in floor.toml fit no pose of the camera")
     return min(poses, key=lambda found: found[1])
 
 
@@ -182,9 +182,10 @@ def _explain(camera: Camera, floor: FloorMap, view: FloorView, misfit: float) ->
     ):
         raise FloorError(
             f"{view.photo}: the map of the floor is mirrored (its marks are off by {misfit:.0f} "
-            f"px, mirrored by {other_misfit:.1f} px); y must grow to the left of x, seen from above"
+            f"px, reversed in y by {other_misfit:.1f} px); y must grow left of x, seen from above"
         )
     raise FloorError(
-        f"{view.photo}: the floor's marks are off by {misfit:.0f} px from where the map has them; "
-        f"check positions, yaw and side of each, and that the camera is the calibrated one"
+        f"{view.photo}: the floor's marks are off by {misfit:.0f} px (rms) from where floor.toml "
+        f"has them, expected at most {_MISFIT_PX:g} px; check x, y, yaw_deg and side of each mark, "
+        f"clicked points, and that camera.toml is of this camera, zoom and focus"
     )

@@ -71,16 +71,16 @@ class FloorFit:
     def warnings(self) -> tuple[str, ...]:
         """Warnings, one sentence each: camera moved; marks shifted by more than 4 sd."""
         messages = [
-            f"the camera moved between {a.photos[-1]} and {b.photos[0]}; each side has its own "
-            f"camera pose"
+            f"the camera moved between {a.photos[-1]} and {b.photos[0]}; photographs before and "
+            f"after have different camera poses"
             for a, b in zip(self.stands, self.stands[1:], strict=False)
         ]
         for key, shift in self.shifts.items():
             sd = self.floor.marks[key].position_sd
             if np.linalg.norm(shift) > 4 * sd:
                 messages.append(
-                    f"mark {key} lies {1e3 * float(np.linalg.norm(shift)):.1f} mm from where the "
-                    f"tape has it (standard deviation {1e3 * sd:.1f} mm); measure it again"
+                    f"mark {key} lies {1e3 * float(np.linalg.norm(shift)):.1f} mm from its place "
+                    f"in floor.toml (position_sd {1e3 * sd:.1f} mm); measure it again"
                 )
         return tuple(messages)
 
@@ -114,8 +114,9 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
     unused = {view.photo: "no mark of the floor is seen" for view in views if view not in usable}
     if not usable:
         raise FloorError(
-            f"none of the {len(views)} photographs shows a mark of the floor; check the dictionary "
-            f"('{floor.dictionary}') and the numbers {', '.join(map(str, floor.marks))}"
+            f"none of the {len(views)} photographs shows a mark of the floor "
+            f"({', '.join(map(str, floor.marks))}); check the numbers and dictionary "
+            f"'{floor.dictionary}' in floor.toml, or click on points of the floor"
         )
     numbers = split_stands(usable)
     groups = [

@@ -88,11 +88,11 @@ def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
     shown = read_clock(read_pixels(path))
     if shown is None:
         raise PhotoError(
-            path.name, "no QR clock is seen; fill a third of the picture with it, without glare"
+            path.name, "no QR clock is decoded; fill a third of the picture with it, without glare"
         )
     stamp = exif_time(path)
     if stamp is None:
-        raise PhotoError(path.name, "no EXIF time; the photograph must come as the camera wrote it")
+        raise PhotoError(path.name, "no EXIF time is in the file; give it as the camera wrote it")
     taken, step = stamp
     sd = float(np.sqrt((step**2 + renewal**2) / 12))
     return CameraClockOffset(taken + step / 2 - (shown + renewal / 2), sd)

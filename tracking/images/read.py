@@ -2,6 +2,7 @@
 """Read photographs with limits of size, and report damaged files."""
 
 import re
+import traceback
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -87,8 +88,8 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
 
     Raises:
         PhotoError: When the file is missing, not a regular file, empty, HEIC or of an unknown
-            format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for any exception
-            raised inside the `with` block.
+            format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for what Pillow
+            raises inside the `with` block. Other exceptions of the block are raised unchanged.
     """
     _refuse_unreadable(path)
     try:
@@ -101,16 +102,23 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
     except PhotoError:
         raise
     except PIL.UnidentifiedImageError as error:
-        raise PhotoError(path.name, "not a picture; expected JPEG, PNG or TIFF") from error
+        raise PhotoError(path.name, "not a readable picture; expected JPEG, PNG or TIFF") from error
     except PIL.Image.DecompressionBombError as error:
         most = 2 * (PIL.Image.MAX_IMAGE_PIXELS or MOST_PIXELS)
         raise PhotoError(path.name, _too_large(f"more than {most / 1e6:.0f}")) from error
     except Exception as error:  # Pillow raises many kinds of exceptions for damaged files
-        said = " ".join(str(error).split()) or type(error).__name__
+        if not (isinstance(error, OSError) or _raised_by_pillow(error)):
+            raise
+        reason = " ".join(str(error).split()) or type(error).__name__
         raise PhotoError(
             path.name,
-            f"cannot be decoded ({said[:200]}); the file is cut short or damaged: copy it again",
+            f"cannot be decoded ({reason[:200]}); the file is cut short or damaged: copy it again",
         ) from error
+
+
+def _raised_by_pillow(error: Exception) -> bool:
+    frames = traceback.walk_tb(error.__traceback__)
+    return any(frame.f_globals.get("__name__", "").startswith("PIL.") for frame, _ in frames)
 
 
 def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
@@ -131,8 +139,8 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
     if size is not None and upright.size != size:
         raise PhotoError(
             path.name,
-            f"{upright.size[0]}x{upright.size[1]} px; expected {size[0]}x{size[1]} px, as of the "
-            "camera and the other photographs: use photographs of one size, not turned or cropped",
+            f"it has {upright.size[0]}x{upright.size[1]} px; expected {size[0]}x{size[1]} px, as "
+            "most of the photographs have: use photographs of one size, not turned or cropped",
         )
     return np.ascontiguousarray(np.asarray(upright)[:, :, ::-1])
 
@@ -154,11 +162,11 @@ def _upright(path: Path) -> PIL.Image.Image:
 def _refuse_unreadable(path: Path) -> None:
     # Neither a FIFO, which would block until there is a writer, nor a device.
     if not path.is_file():
-        found = "no regular file; move it elsewhere"
+        found = "it is not a regular file; remove it from the folder"
         raise PhotoError(path.name, found if path.exists() else f"no such file in {path.parent}")
     if path.stat().st_size > MOST_FILE:
-        raise PhotoError(path.name, _too_large(f"a file of {path.stat().st_size / 1e6:.0f} MB: too "
-                                               "many"))  # fmt: skip
+        found = f"the file has {path.stat().st_size / 1e6:.0f} MB: too many"
+        raise PhotoError(path.name, _too_large(found))
     with path.open("rb") as file:
         head = file.read(12)
     if not head:
@@ -176,7 +184,7 @@ def _refuse_many_scans(path: Path) -> None:
     data = path.read_bytes()
     scans = data.count(b"\xff\xda") if data.startswith(b"\xff\xd8") else 0
     if scans > MOST_SCANS:
-        raise PhotoError(path.name, f"a JPEG of {scans} scans; at most {MOST_SCANS} are read")
+        raise PhotoError(path.name, f"the JPEG has {scans} scans; at most {MOST_SCANS} are read")
 
 
 def _refuse_large(path: Path, size: tuple[int, int]) -> None:

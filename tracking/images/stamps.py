@@ -52,9 +52,9 @@ def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit |
         with the stamps or a skipped exposure cannot be distinguished from a slower timer.
     """
     s = np.asarray(stamps, dtype=float)
-    span = s[-1] - s[0]
-    if len(s) < 3 or span <= 0:
+    if len(s) < 3 or s[-1] <= s[0]:
         return None
+    span = s[-1] - s[0]
     for jitter in _JITTERS:
         # The longest interval first: shorter ones with more skipped exposures always fit too.
         for intervals in range(len(s) - 1, 2 * len(s)):

@@ -86,17 +86,17 @@ def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
             f"{without[0]} and {len(without) - 1} others have no EXIF time; give the interval of "
             f"the timer (--interval SECONDS) or a table of times (--times FILE)"
             if len(without) > 1
-            else f"{without[0]} has no EXIF time; leave it out, or give --interval or --times"
+            else f"{without[0]} has no EXIF time; remove it, or give --interval or --times"
         )
     t = np.array([stamp[0] for stamp in stamps if stamp is not None])
     step = np.array([stamp[1] for stamp in stamps if stamp is not None])
     # A clock that stores "00" in every photograph has whole seconds only.
-    if step.max() < 1.0 and not np.allclose(t % 1.0, 0.0):
+    if step.max(initial=0.0) < 1.0 and not np.allclose(t % 1.0, 0.0):
         return PhotoTimes(t + step / 2, step / math.sqrt(12), "EXIF with fractions of a second")
     fit = fit_interval(t)
     if fit is None:
         return PhotoTimes(
-            t + 0.5, np.full(len(t), 1 / math.sqrt(12)), "EXIF in whole seconds, irregular"
+            t + 0.5, np.full(len(t), 1 / math.sqrt(12)), "EXIF in whole seconds, no interval"
         )
     return PhotoTimes(
         fit.t, fit.sd, f"EXIF in whole seconds with an interval of {fit.interval:.3f} s fitted"
@@ -115,7 +115,7 @@ def times_from_interval(count: int, interval: float, *, jitter: float = 0.0) -> 
         TimesError: When the interval is not positive.
     """
     if not interval > 0:
-        raise TimesError(f"the interval is {interval:g} s; expected more than 0")
+        raise TimesError(f"the interval (--interval) is {interval:g} s; expected more than 0 s")
     return PhotoTimes(
         interval * np.arange(count), np.full(count, float(jitter)), f"interval of {interval:g} s"
     )
@@ -134,10 +134,10 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
             photograph is missing, a row has too many cells, or a number is not a finite number.
     """
     if table.exists() and not table.is_file():  # a FIFO would block until there is a writer
-        raise TimesError(f"{table} is no file; expected a table of times")
+        raise TimesError(f"{table} is not a file; expected a table of times")
     try:
         if table.stat().st_size > MOST_TABLE:
-            raise TimesError(f"{table} has more than {MOST_TABLE >> 20} MB; is it times?")
+            raise TimesError(f"{table} has more than {MOST_TABLE >> 20} MB, too many for times")
         with table.open(newline="", encoding="utf-8-sig") as file:
             rows = list(csv.DictReader(file))
     except OSError as error:
@@ -145,14 +145,14 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
     except (csv.Error, ValueError) as error:
         raise TimesError(f"{table} cannot be read as CSV in UTF-8: {error}") from error
     if any(None in row for row in rows):
-        raise TimesError(f"{table} has a row of more cells than its header; correct or delete it")
+        raise TimesError(f"{table} has a row with more cells than its header; correct the row")
     if not rows or not {"photo", "t_s"} <= set(rows[0]):
-        found = ", ".join(rows[0]) if rows else "nothing"
-        raise TimesError(f"{table} has {found}; expected columns photo, t_s and maybe t_sigma")
+        found = f"the columns {', '.join(rows[0])}" if rows else "no rows"
+        raise TimesError(f"{table} has {found}; expected columns photo, t_s, optionally t_sigma")
     times = {row["photo"]: _numbers(table, line, row) for line, row in enumerate(rows, 2)}
     missing = [path.name for path in paths if path.name not in times]
     if missing:
-        raise TimesError(f"{table} has no row for {missing[0]} ({len(missing)} missing in all)")
+        raise TimesError(f"{table} has no row for {missing[0]} ({len(missing)} have none)")
     pairs = np.array([times[path.name] for path in paths]).reshape(-1, 2)
     return PhotoTimes(pairs[:, 0], pairs[:, 1], f"table {table.name}")
 
@@ -166,5 +166,5 @@ def _numbers(table: Path, line: int, row: dict[str, str]) -> tuple[float, float]
         except ValueError as error:
             raise TimesError(f"{table}, row {line}, {column}: '{text}' is not a number") from error
         if not math.isfinite(numbers[-1]):
-            raise TimesError(f"{table}, row {line}, {column}: '{text}' is not a time in seconds")
+            raise TimesError(f"{table}, row {line}, {column}: '{text}' is not a time in s")
     return numbers[0], numbers[1]

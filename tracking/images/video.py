@@ -38,7 +38,7 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
             than `MOST_PIXELS`.
     """
     if not path.is_file() or path.stat().st_size == 0:
-        raise PhotoError(path.name, "no such file, or an empty one; expected a video")
+        raise PhotoError(path.name, "the file does not exist or is empty; expected a video")
     _refuse_playlist(path)
     # Errors are raised below; FFmpeg would write them to the terminal.
     os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
@@ -71,7 +71,7 @@ def _refuse_large(capture: cv2.VideoCapture, name: str) -> None:
     if width * height > MOST_PIXELS:
         raise PhotoError(
             name,
-            f"frames of {width:.0f}x{height:.0f} px; at most {MOST_PIXELS / 1e6:.0f} megapixels "
+            f"frames have {width:.0f}x{height:.0f} px; at most {MOST_PIXELS / 1e6:.0f} megapixels "
             "are read: scale the video down",
         )
 
@@ -89,5 +89,7 @@ def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Imag
             continue
         last = t
         yield Image(f"{name}#{number}", np.asarray(pixels, dtype=np.uint8), t, FRAME_TIME_SD)
-    if number < 0:
-        raise PhotoError(name, "the video has no frames; copy it again or record another")
+    if np.isinf(last):
+        raise PhotoError(
+            name, "no frame of the video can be decoded; copy it again or record another"
+        )

@@ -75,7 +75,7 @@ def track_by_look(
         for (photo, _), alignment in zip(known, chosen, strict=True)
     ]
     unseen = {
-        photo.name: "nothing looks like the robot"
+        photo.name: "no place looks like the robot's annotated top"
         for photo, each in zip(usable, found, strict=True)
         if each is None
     }
@@ -111,11 +111,13 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
     """
     top = scene.top
     if top is None:
-        raise BodyError("a robot without a marker is known by its top, and nobody marked that")
+        raise BodyError(
+            "the robot has no marker, and its top is not annotated (`zebro-lab annotate --corners`)"
+        )
     if top.photo not in {photo.name for photo in photos}:
-        raise NoUsablePhoto(f"the template's photograph '{top.photo}' is not among the photographs")
+        raise NoUsablePhoto(f"the annotated photograph '{top.photo}' is not among the photographs")
     if top.photo in seen.lost:
-        raise NoUsablePhoto(f"the template's photograph {top.photo}: {seen.lost[top.photo]}")
+        raise NoUsablePhoto(f"the annotated photograph {top.photo}: {seen.lost[top.photo]}")
     return top
 
 

@@ -58,7 +58,7 @@ def _robot_unseen(
 ) -> str:
     first = next(photo for photo in photos if photo.name == seen.detections[0].photo)
     other = other_markers(read_pixels(first.path), robot, scene.floor)
-    advice = f"look at {first.name} with --preview"
+    advice = "look at the first photograph with `zebro-lab track --preview`"
     if other is not None:
         advice = f"{first.name} shows {other}: correct [marker] of robot.toml, or --marker"
     marker = robot.marker

@@ -87,5 +87,5 @@ def see_floor(
 def _why_none(results: Sequence[PhotoResult]) -> str:
     first = results[0]
     common, count = Counter(result.problem for result in results).most_common(1)[0]
-    so = f" ({count} of them so)" if common == first.problem and count > 1 else ""
+    so = f" (the same for {count} of them)" if common == first.problem and count > 1 else ""
     return f"none of {len(results)} photographs can be used; {first.photo}: {first.problem}{so}"

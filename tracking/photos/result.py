@@ -99,13 +99,13 @@ def finish(
 def _track_notes(track: Track) -> list[str]:
     of = track.observations
     notes = [
-        f"nothing is seen for {of[k].t - of[k - 1].t:.1f} s before {of[k].photo}: the path is "
-        "interrupted there"
+        f"no pose is found in the {of[k].t - of[k - 1].t:.1f} s before {of[k].photo}: the path is "
+        "interrupted there (--gap is the longest time without interruption)"
         for k in np.flatnonzero(track.gap_before)
     ]
     notes += [
-        f"{of[k].photo}: far from the path through its neighbours; look at it, and correct it "
-        "with `zebro-lab annotate`"
+        f"{of[k].photo}: its pose is far from the path through its neighbours; look at the "
+        "photograph, and move, flip or delete the pose with `zebro-lab annotate`"
         for k in np.flatnonzero(track.smoothed.suspect)
     ]
     return notes
@@ -116,8 +116,9 @@ def _height_note(track: Track, prior: BodyPrior) -> list[str]:
     if abs(higher) < _HIGH * prior.height_sd:
         return []
     return [
-        f"the body seems {1e3 * abs(higher):.0f} mm {'higher' if higher > 0 else 'lower'} than "
-        "stated; check marker.height in robot.toml, and the side of the marker (--marker)"
+        f"the robot's body is {1e3 * abs(higher):.0f} mm {'higher' if higher > 0 else 'lower'} in "
+        f"the photographs than expected ({1e3 * prior.height:.0f} mm above the floor); check "
+        "marker.height in robot.toml (or --body-height) and the side of the marker (--marker)"
     ]
 
 
@@ -125,4 +126,4 @@ def _correction_note(corrections: Sequence[Correction]) -> list[str]:
     if not corrections:
         return []
     moved = sum(isinstance(correction, Move) for correction in corrections)
-    return [f"{len(corrections)} corrections replayed, {moved} of them positions by hand"]
+    return [f"{len(corrections)} corrections are applied; {moved} of them set a pose by hand"]

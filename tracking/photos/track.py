@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Sequence
 
+from tracking.errors import NoUsablePhoto
 from tracking.images import PhotoTimes
 from tracking.photos.by_look import track_by_look
 from tracking.photos.by_marker import track_by_marker
@@ -32,11 +33,14 @@ def track_photos(
         The path with covariance, the fitted floor and camera, and photographs left out and why.
 
     Raises:
-        NoUsablePhoto: No photograph can be used, or the robot's marker is detected in none.
+        NoUsablePhoto: No photograph is given or can be used, or the robot's marker is detected in
+            none.
         TrackingError: The floor's map does not fit, the robot's head and tail cannot be
             distinguished, no pose or exposure is found, or a correction is invalid.
         TrackStopped: A stop was requested.
     """
+    if not photos:
+        raise NoUsablePhoto("there are no photographs to track; expected one or more")
     progress = NoProgress() if progress is None else progress
     if scene.merged is not None:
         return track_exposures(

@@ -11,7 +11,7 @@ from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.annotate_request import AnnotateRequest
 
 EPILOG = """
-It opens no window. Pixels are read in a picture that --grid writes, with any viewer:
+annotate opens no window. Read the pixels off a picture that --grid writes, in any image viewer:
 
 zebro-lab annotate photos --photo p01.jpg --grid grid.png
 
@@ -31,9 +31,9 @@ zebro-lab annotate photos --from clicked-elsewhere.toml
 
 Grid = Annotated[
     Path | None,
-    typer.Option(metavar="PNG", help="Draw --photo with a grid of pixel coordinates, and exit."),
+    typer.Option(metavar="PNG", help="Only draw --photo with a grid of pixels."),
 ]
-Around = Annotated[str | None, typer.Option(metavar="U,V", help="Enlarge around this pixel.")]
+Around = Annotated[str | None, typer.Option(metavar="U,V", help="Enlarge --grid at this pixel.")]
 Reach = Annotated[int, typer.Option(min=5, help="Half the width of the enlarged part [px].")]
 
 
@@ -48,7 +48,7 @@ def annotate(
         _annotate(request)
         return
     if request.photo is None:
-        raise typer.BadParameter("missing: the photograph to draw", param_hint="'--photo'")
+        raise typer.BadParameter("missing: name the photograph to draw", param_hint="'--photo'")
     annotate_stage.draw_grid(request.photos, request.photo, grid, around=around, reach=reach)
     say(f"wrote {grid}")
 
@@ -64,7 +64,7 @@ def _annotate(request: AnnotateRequest) -> None:
             param_hint="'annotate'",
         )
     written, out = annotate_stage.annotate(request), request.out
-    template = "" if written.template is None else f"robot marked in {written.template.photo}, "
+    template = "" if written.template is None else f"robot's top in {written.template.photo}, "
     clicks = sum(len(points) for points in written.clicks.values())
     say(f"{template}{clicks} points of the floor, {len(written.corrections)} corrections")
     say(f"wrote {out}; give it to track as --annotations {out}")

@@ -12,46 +12,46 @@ from typer import Argument, Option
 class AnnotateRequest:
     """Options of `zebro-lab annotate`: the annotations to write."""
 
-    photos: Annotated[Path, Argument(help="Photographs, as given to track.")]
-    out: Annotated[Path, Option(help="File to write or to add to.")] = Path("annotations.toml")
+    photos: Annotated[Path, Argument(help="Folder, video or picture, as given to track.")]
+    out: Annotated[Path, Option(help="File to create or to add to.")] = Path("annotations.toml")
     photo: Annotated[
-        str | None, Option(metavar="NAME", help="Photograph of --corners and --grid.")
+        str | None, Option(metavar="NAME", help="Photograph for --corners or --grid.")
     ] = None
     corners: Annotated[
         str | None,
         Option(
             metavar="U,V U,V U,V U,V",
-            help="Robot's top: front left, front right, rear right, rear left [px].",
+            help="Corners of the robot's top: front left, front right, rear right, rear left [px].",
         ),
     ] = None
     plate: Annotated[
         str | None, Option(metavar="LENGTHxWIDTH@HEIGHT", help="Robot's top; default: its body.")
     ] = None
     margin: Annotated[
-        str, Option(metavar="LENGTH", help="Width around the top that belongs to the template.")
+        str, Option(metavar="LENGTH", help="Width around the top that is also compared.")
     ] = "20mm"
     robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
     clicks: Annotated[
         tuple[str, ...],
-        Option("--click", metavar="PHOTO:NAME=U,V", help="Point of floor.toml [px]; repeatable."),
+        Option("--click", metavar="PHOTO:NAME=U,V", help="Pixel of a floor point; repeatable."),
     ] = ()
     moves: Annotated[
         tuple[str, ...],
-        Option("--move", metavar="PHOTO:X,Y,YAW", help="Pose of the robot [m, m, deg]."),
+        Option("--move", metavar="PHOTO:X,Y,YAW", help="Set a pose [m, m, deg]; repeatable."),
     ] = ()
     flips: Annotated[
         tuple[str, ...],
-        Option("--flip", metavar="PHOTO", help="Head and tail are exchanged; repeatable."),
+        Option("--flip", metavar="PHOTO", help="Exchange head and tail of a pose; repeatable."),
     ] = ()
     deletes: Annotated[
         tuple[str, ...],
-        Option("--delete", metavar="PHOTO", help="Detection is not the robot; repeatable."),
+        Option("--delete", metavar="PHOTO", help="Delete the pose in a photograph; repeatable."),
     ] = ()
     order: Annotated[
-        str | None, Option(metavar="PHOTO,PHOTO,…", help="Order in which they were taken.")
+        str | None, Option(metavar="PHOTO,PHOTO,…", help="Order in time of photographs.")
     ] = None
     added: Annotated[
-        Path | None, Option("--from", metavar="TOML", help="File of annotations to add.")
+        Path | None, Option("--from", metavar="TOML", help="Another annotations.toml to add.")
     ] = None
 
     @property

@@ -46,7 +46,7 @@ def annotate(request: AnnotateRequest) -> Annotations:
         TrackingError: The folder holds no photographs.
     """
     if request.added is not None and request.out.exists() and request.out.samefile(request.added):
-        raise AlreadyExists(f"{request.out} is read as --from; name another --out")
+        raise AlreadyExists(f"{request.out} is the file given as --from; choose another with --out")
     names = photo_names(request.photos)
     new = Annotations(_template(request), _clicks(request), _corrections(request))
     if request.added is not None:
@@ -96,8 +96,8 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     target = require_own(file, GRID, inputs=(path,))
     if origin.is_dir() and target.parent.samefile(origin):
         raise AlreadyExists(
-            f"{file} would lie among the photographs and be tracked as one of them; name another "
-            "--grid"
+            f"{file} would lie among the photographs and be tracked as one of them; choose another "
+            "file with --grid"
         )
     middle = None if around is None else _pair(around, "--around")
     drawn = BytesIO()
@@ -110,7 +110,7 @@ def _template(request: AnnotateRequest) -> MarkedTop | None:
     if request.corners is None:
         return None
     if request.photo is None:
-        raise SettingsError("needed: the photograph in which they are", key="--photo")
+        raise SettingsError("missing: name the photograph of --corners", key="--photo")
     corners = tuple(_pair(text, "--corners") for text in request.corners.split())
     if len(corners) != 4:
         raise SettingsError(
@@ -131,7 +131,7 @@ def _plate(request: AnnotateRequest) -> TopPlate:
     length, _, width = sides.partition("x")
     if not (length and width and height):
         raise SettingsError(
-            f"'{request.plate}' is no plate; expected LENGTHxWIDTH@HEIGHT such as 194mmx251mm@35mm",
+            f"'{request.plate}' is not LENGTHxWIDTH@HEIGHT, such as 194mmx251mm@35mm",
             key="--plate",
         )
     sizes = [quantity_to_si(text, "m") for text in (length, width, height)]
@@ -144,7 +144,7 @@ def _clicks(request: AnnotateRequest) -> Mapping[str, Mapping[str, Click]]:
         place, _, pixel = text.rpartition("=")
         photo, _, name = place.rpartition(":")
         if not (photo and name):
-            raise SettingsError(f"'{text}'; expected PHOTO:NAME=U,V", key="--click")
+            raise SettingsError(f"'{text}' is not PHOTO:NAME=U,V", key="--click")
         clicks.setdefault(photo, {})[name] = _pair(pixel, "--click")
     return clicks
 
@@ -161,14 +161,14 @@ def _move(text: str) -> Move:
     photo, _, place = text.rpartition(":")
     numbers = _numbers(place, "--move")
     if not photo or len(numbers) != 3:
-        raise SettingsError(f"'{text}'; expected PHOTO:X,Y,YAW in m, m, degrees", key="--move")
+        raise SettingsError(f"'{text}' is not PHOTO:X,Y,YAW in m, m, degrees", key="--move")
     return Move(photo, numbers[0], numbers[1], radians(numbers[2]))
 
 
 def _pair(text: str, key: str) -> Click:
     numbers = _numbers(text, key)
     if len(numbers) != 2:
-        raise SettingsError(f"'{text}'; expected two pixels, U,V", key=key)
+        raise SettingsError(f"'{text}' is not a pixel U,V, as in 812,440", key=key)
     return numbers[0], numbers[1]
 
 
@@ -176,7 +176,7 @@ def _numbers(text: str, key: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError as error:
-        raise SettingsError(f"'{text}' holds what is no number", key=key) from error
+        raise SettingsError(f"'{text}' is not a list of numbers with commas", key=key) from error
 
 
 def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
@@ -194,4 +194,4 @@ def _require_photo(photo: str, names: Sequence[str]) -> None:
         return
     near = difflib.get_close_matches(photo, names, n=1)
     hint = f"did you mean '{near[0]}'?" if near else f"there are {names[0]} to {names[-1]}"
-    raise SettingsError(f"no photograph '{photo}'; {hint}")
+    raise SettingsError(f"there is no photograph '{photo}'; {hint}")

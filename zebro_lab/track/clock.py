@@ -76,7 +76,7 @@ def counted_later(*, manifest: RunManifest | None, request: TimeRequest) -> Coun
     notes = ()
     if manifest is not None and request.table is None:
         notes = unknown_start("give seconds since the run's start as --times, or ")
-    return CountedTimes(None, "times of exposures as given", notes)
+    return CountedTimes(None, "times of exposures from --interval or --times", notes)
 
 
 def unknown_start(advice: str) -> tuple[str, ...]:
@@ -96,8 +96,8 @@ def _as_given(
 ) -> CountedTimes:
     if start is not None:
         raise SettingsError(
-            f"these photographs' times are not a camera clock's ({times.source}), which a moment "
-            "needs; leave it out",
+            f"the photographs' times are not those of a camera's clock ({times.source}), which "
+            "a moment needs; leave the option out",
             key="--start",
         )
     if manifest is None or request.table is not None:
@@ -119,7 +119,7 @@ def _outside_run(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
     if last < -_RUN_TOLERANCE or first > length + _RUN_TOLERANCE:
         raise TimesError(
             f"the photographs were taken {first:.1f} to {last:.1f} s after the run's start, and "
-            f"the run lasted {length:.1f} s; name the run they belong to, or correct --start (the "
+            f"the run lasted {length:.1f} s; give their run as --run, or correct --start (the "
             "moment of the run's start as the camera's clock shows it)"
         )
     outside = int(((counted.t < 0) | (counted.t > length)).sum())

@@ -45,12 +45,12 @@ PreviewPng = Annotated[
 
 @request_command()
 def track(request: TrackRequest, preview: PreviewPng = None) -> None:
-    """Track the robot in photographs: track.csv with covariance, TUM, pictures."""
+    """Track the robot in photographs; write track.csv with covariance, track.tum, pictures."""
     if preview is not None:
         _preview(request, preview)
         return
     if request.out is None and request.run is None:
-        raise typer.BadParameter("missing: name --run RUN or --out FOLDER", param_hint="'--run'")
+        raise typer.BadParameter("missing: give --run RUN or --out FOLDER", param_hint="'--run'")
     _track(request)
 
 
@@ -86,7 +86,7 @@ def track_lines(result: "TrackResult") -> list[str]:
     what = "exposures" if result.is_composite else "photographs"
     return [
         f"{simulated}track (source {result.source}): {len(track.t)} of {result.photos} "
-        f"{what}, {track.t[-1] - track.t[0]:.4g} s, {moves.sum():.3f} m",
+        f"{what}, duration {track.t[-1] - track.t[0]:.4g} s, length {moves.sum():.3f} m",
         f"times: {result.times}",
         f"standard deviations (median): x {1e3 * np.median(spread[:, 0]):.2f} mm, "
         f"y {1e3 * np.median(spread[:, 1]):.2f} mm, "
@@ -109,7 +109,7 @@ def _preview(request: TrackRequest, file: Path) -> None:
     for line in (*preview_lines(seen), f"wrote {file}"):
         say(line)
     if any(check.is_off for check in seen.tape):
-        sys.stderr.write("the tape and the photograph disagree; measure the floor again\n")
+        sys.stderr.write("distances marked off differ by over 4 mm; measure the floor again\n")
 
 
 def preview_lines(seen: "Preview") -> list[str]:
@@ -122,7 +122,7 @@ def preview_lines(seen: "Preview") -> list[str]:
         f"camera {seen.camera_height:.3f} m over the floor; a pixel is {1e3 * seen.scale:.2f} mm",
     ]
     if seen.robot is None:
-        lines.append("the robot's marker is not seen")
+        lines.append("the robot's marker is not seen, or is not searched (composite, no marker)")
     else:
         x, y, yaw = seen.robot
         lines.append(
@@ -130,7 +130,7 @@ def preview_lines(seen: "Preview") -> list[str]:
             f"{seen.robot_side_px:.0f} px wide"
         )
     pairs = [
-        f"  {a} to {b}: tape {check.tape:.4f} m, photograph {check.seen:.4f} m"
+        f"  {a} to {b}: tape measure {check.tape:.4f} m, photograph {check.seen:.4f} m"
         f"{'  <-- off' if check.is_off else ''}"
         for check in seen.tape
         for a, b in [check.marks]

@@ -78,10 +78,10 @@ def track_of_table(table: RawTable) -> TrackFile:
             "prediction: take photographs more often, or walk for longer",
             file=file,
         )
-    notes = [] if poses.has_yaw else [f"{file.name}: without headings; yaw is not scored"]
+    notes = [] if poses.has_yaw else [f"{file.name} has no column yaw_rad; yaw is not scored"]
     has_covariance = all(name in table.columns for name in _COVARIANCE)
     if not has_covariance:
-        notes.append(f"{file.name}: without covariance; the tracker is taken as exact")
+        notes.append(f"{file.name} has no covariance; its poses are taken as exact")
     if has_covariance:
         poses = replace(poses, covariance=_covariance(table))
     source = table.source or _tracked_source(file) or "unknown"
@@ -130,7 +130,7 @@ def _present(table: RawTable, names: Sequence[str]) -> str:
         if name in table.columns:
             return name
     columns = ", ".join(table.columns)
-    raise table.fault(f"missing; expected {names[0]} or {names[1]} among {columns}", names[0])
+    raise table.fault(f"missing; expected {names[0]} or {names[1]}, found {columns}", names[0])
 
 
 def _numbers(table: RawTable, name: str) -> Array:

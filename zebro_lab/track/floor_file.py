@@ -34,7 +34,7 @@ def read_floor_file(file: Path) -> FloorMap:
     table = read_settings(file, advice="`zebro-lab camera kit` starts one")
     markers, points = table.table("markers"), table.table("points")
     if markers.empty and points.empty:
-        raise table.fault("no marker and no point; the floor needs at least one marker", "markers")
+        raise table.fault("no marker and no point; expected a marker, or four points", "markers")
     common = _common(table)
     try:
         dictionary = table.text("dictionary", DICTIONARY, least=1)
@@ -60,7 +60,7 @@ def _common(table: SettingsTable) -> dict[str, float]:
 
 def _marker(markers: SettingsTable, number: str, common: Mapping[str, float]) -> FloorMarker:
     if not number.isdecimal() or len(number) > _MOST_DIGITS:
-        raise markers.fault("expected the marker's number in its dictionary as the key", number)
+        raise markers.fault("is not a marker's number; expected one such as 10", number)
     table = markers.table(number)
     own = {
         key: table.quantity(key, unit, default=common.get(key), above=0.0)

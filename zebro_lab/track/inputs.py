@@ -75,7 +75,7 @@ class TrackInputs:
             raise HowMergedUnknown(_HOW_MERGED, key="--merged")
         if self.scene.robot is None and self.scene.top is None:
             raise SettingsError(
-                "needed: without a marker the robot is known by its picture; mark its top in one "
+                "needed: without a marker the robot is found by its look; annotate its top in one "
                 "photograph with `zebro-lab annotate PHOTOS --photo NAME --corners ...`",
                 key="--annotations",
             )

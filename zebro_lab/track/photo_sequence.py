@@ -82,7 +82,8 @@ def open_photos(
     Raises:
         NotFound: `origin` does not exist.
         SettingsError: A video is given together with times.
-        DataError: Frames of a video cannot be written to the temporary folder.
+        DataError: The folder holds only the photograph of the clock, or frames of a video cannot be
+            written to the temporary folder.
         TrackingError: The folder has no photograph, times are missing, or a file is unreadable.
         TrackStopped: A stop was requested.
     """
@@ -145,8 +146,8 @@ def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
     times = _given_times([Path(name) for name in names], request)
     if times is None:
         raise SettingsError(
-            f"a composite picture has no times of its own; give the interval between its "
-            f"{len(names)} exposures in seconds",
+            f"a composite picture has no times; give the interval between its {len(names)} "
+            f"exposures in seconds, or a table of their times with --times",
             key="--interval",
         )
     return times
@@ -164,6 +165,10 @@ def _given_times(paths: Sequence[Path], request: TimeRequest) -> PhotoTimes | No
 def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     clock = None if request.clock is None else request.clock.resolve()
     paths = tuple(path for path in find_photos(folder) if path.resolve() != clock)
+    if not paths:
+        raise DataError(
+            "holds no photograph but that of --clock; expected photographs of the walk", file=folder
+        )
     left_out: Mapping[str, str] = {}
     times = _given_times(paths, request)
     if times is None:
@@ -207,7 +212,7 @@ def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
 def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
     offset = clock_offset(clock)
     # The offset's error is common to all photographs: it is stated once, not added to each.
-    ahead = f"camera's clock {offset.seconds:+.3f} s (sd {offset.sd:.3f} s) ahead"
+    ahead = f"camera's clock {offset.seconds:+.3f} s (sd {offset.sd:.3f} s) ahead of the computer's"
     return PhotoTimes(times.t - offset.seconds, times.sd, f"{times.source}; {ahead}")
 
 
@@ -221,7 +226,7 @@ def _of_video(
         path = folder / f"{len(photos):06d}.png"
         if not cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
             raise DataError(
-                f"its frame {frame.name} cannot be kept in {folder.parent}; is the disk full? "
+                f"frame {frame.name} cannot be written to {folder.parent}; is the disk full? "
                 "--every SECONDS takes fewer frames",
                 file=video,
             )
@@ -240,7 +245,7 @@ def _require_no_times(request: TimeRequest) -> None:
     }  # fmt: skip
     for key, value in given.items():
         if value is not None:
-            raise SettingsError("not with a video, whose frames have their own times", key=key)
+            raise SettingsError("leave out for a video, whose frames have their times", key=key)
 
 
 def _simulated(path: Path) -> str | None:

@@ -108,7 +108,8 @@ def photos_of_track(track: Path) -> TrackedPhotos:
 
     Raises:
         NotFound: The folder is not a track folder, or a photograph or `camera.toml` has moved.
-        DataError: The track is of a video, whose frames are not kept, or a photograph has changed.
+        DataError: The track is of a video, whose frames are not kept, or a photograph or
+            `camera.toml` has changed.
     """
     folder = track if track.is_dir() else track.parent
     manifest = read_track_manifest(folder)
@@ -139,17 +140,20 @@ def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
     if file is None or not file.is_file():
         raise NotFound(f"{file or plain}: the photograph is not where it was when it was tracked")
     if file.suffix.lower() in VIDEOS:
-        raise DataError("frames of a video are not kept", file=file)
+        raise DataError("is a video, whose frames are not kept", file=file)
     if file_hash(file) != inputs[file]:
         raise DataError("is another photograph than the one that was tracked", file=file)
     return file
 
 
 def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
-    for path in inputs:
+    for path, digest in inputs.items():
         if path.suffix == ".toml" and path.is_file():
             try:
-                return read_camera_file(path)
+                camera = read_camera_file(path)
             except SettingsError:  # the floor's or the robot's
                 continue
+            if file_hash(path) != digest:
+                raise DataError("has changed: it is not the camera file of this track", file=path)
+            return camera
     raise NotFound(f"{folder}: the camera.toml of this track is not where it was")

@@ -147,7 +147,7 @@ def _draw_map(
     extent = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
     figure = over_floor(
         picture, extent=extent, poses=poses, ellipses=ellipses, labels=_time_labels(track, poses),
-        title=f"Path over the floor, 90 % regions; what stands on it leans away: {title}",
+        title=f"Path over the floor, 90 % regions; raised objects are displaced: {title}",
         simulated=simulated,
     )  # fmt: skip
     save(figure, file)

@@ -21,12 +21,12 @@ def _moment(text: str) -> datetime:
         moment = datetime.fromisoformat(text)
     except ValueError as error:
         raise BadParameter(
-            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00", param_hint="'--start'"
+            f"'{text}' is not a time such as 2020-06-01T12:00:00", param_hint="'--start'"
         ) from error
     if moment.utcoffset():
         raise BadParameter(
-            f"'{text}' has a time zone, which the camera's clock does not tell; give the time as "
-            f"that clock shows it, {moment:%Y-%m-%dT%H:%M:%S} or another, without a zone",
+            f"'{text}' has a time zone, which a camera's clock does not have; give the time as "
+            f"that clock shows it, such as {moment:%Y-%m-%dT%H:%M:%S}, without a zone",
             param_hint="'--start'",
         )
     return moment.replace(tzinfo=UTC)
@@ -49,7 +49,7 @@ class TimeRequest:
         Option(
             "--times",
             metavar="CSV",
-            help="Table of times, with columns photo, t_s and optionally t_sigma.",
+            help="Table of times, with columns photo, t_s [s] and optionally t_sigma [s].",
         ),
     ] = None
     every: Annotated[
@@ -83,11 +83,11 @@ class TrackRequest:
     photos: Annotated[
         Path, Argument(help="Folder of photographs, a video, or one composite picture.")
     ]
-    camera: Annotated[Path, Option(help="camera.toml.")]
-    floor: Annotated[Path, Option(help="floor.toml.")]
+    camera: Annotated[Path, Option(help="camera.toml, the lens.")]
+    floor: Annotated[Path, Option(help="floor.toml, the marks on the floor.")]
     robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
     out: Annotated[Path | None, Option(help="Folder to write; default: RUN/track.")] = None
-    run: Annotated[Path | None, Option(metavar="RUN", help="Run folder of the photographs.")] = None
+    run: Annotated[Path | None, Option(metavar="RUN", help="Run of the photographed walk.")] = None
     times: TimeRequest = field(default_factory=TimeRequest)
     start: Annotated[
         datetime | None,
@@ -106,14 +106,12 @@ class TrackRequest:
     ] = None
     without_marker: Annotated[
         bool,
-        Option(
-            "--without-marker", help="Track the robot by a template, annotated in one photograph."
-        ),
+        Option("--without-marker", help="Track the robot by its top, annotated in one photograph."),
     ] = False
     merged: Annotated[
         MergedAs | None, Option(help="How the exposures of a composite picture were merged.")
     ] = None
-    annotations: Annotated[Path | None, Option(help="File of `zebro-lab annotate`.")] = None
+    annotations: Annotated[Path | None, Option(help="annotations.toml to apply.")] = None
     body_height: Annotated[
         str | None,
         Option(
@@ -122,13 +120,13 @@ class TrackRequest:
         ),
     ] = None
     height_sd: Annotated[
-        str, Option(metavar="LENGTH", help="Standard deviation of that height over a walk.")
+        str, Option(metavar="LENGTH", help="Standard deviation of the body's height over a walk.")
     ] = "5mm"
     gap: Annotated[
         float | None,
         Option(
-            help="Longest time between two poses of an uninterrupted path [s]; default: 3.5 usual "
-            "ones."
+            help="Longest time between two poses of an uninterrupted path [s]; default: 3.5 median "
+            "intervals."
         ),
     ] = None
     source: Annotated[
@@ -143,7 +141,7 @@ class TrackRequest:
     def __post_init__(self) -> None:
         is_picture = self.photos.is_file() and self.photos.suffix.lower() not in VIDEOS
         if self.merged is not None and self.photos.exists() and not is_picture:
-            raise SettingsError("only with one composite picture", key="--merged")
+            raise SettingsError("applies only to one composite picture", key="--merged")
 
     @property
     def folder(self) -> Path:
@@ -155,7 +153,7 @@ class TrackRequest:
         if self.out is not None:
             return self.out
         if self.run is None:
-            raise SettingsError("missing: name --run RUN, to write RUN/track, or --out FOLDER")
+            raise SettingsError("missing: give --run RUN, to write RUN/track, or --out FOLDER")
         return self.run / KIND
 
     @property

@@ -38,8 +38,8 @@ def tracked_robot(
     place = described.marker
     if place is None:
         raise SettingsError(
-            "missing; say where the marker sits on the robot (docs/formats.md), or track the robot "
-            "by its own picture",
+            "missing; state the marker's place on the robot (docs/formats.md), or track it "
+            "--without-marker",
             file=_file(described), key="marker",
         )  # fmt: skip
     roll, pitch, yaw = place.roll_pitch_yaw
@@ -90,4 +90,4 @@ def body_prior(
 
 
 def _file(described: RobotFile) -> str:
-    return str(described.file or "the thesis's robot (--robot names another)")
+    return str(described.file or "the thesis's robot (choose another with --robot)")

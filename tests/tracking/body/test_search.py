@@ -6,6 +6,8 @@ import pytest
 
 from support.drawn_plate import LENS, PLATE, PRIOR, VIEW, annotated, picture_of
 from tracking.body import find_body, make_template
+from tracking.camera import CameraPose
+from tracking.errors import FloorError
 
 
 @pytest.fixture(scope="module")
@@ -38,3 +40,13 @@ def test_an_empty_floor_shows_no_robot(template):
     rng = np.random.default_rng(2)
     empty = picture_of((50.0, 50.0, 0.0), rng)
     assert find_body(empty, LENS, VIEW, template=template, prior=PRIOR, near=(0, 0)) is None
+
+
+@pytest.mark.parametrize("up", [0.1, 0.6])  # rad: some floor far away is seen, and none
+def test_a_camera_that_sees_no_floor_near_it_is_refused_with_what_to_do(up, template):
+    c, s = np.cos(up), np.sin(up)
+    turn = np.array([[0.0, -1.0, 0.0], [s, 0.0, -c], [c, 0.0, s]])
+    view = CameraPose.from_matrix(turn, -turn @ [0.0, 0.0, 0.5])
+    picture = np.zeros((480, 640, 3), np.uint8)
+    with pytest.raises(FloorError, match=r"0\.50 m high.*within 1\.50 m.*tilt"):
+        find_body(picture, LENS, view, template=template, prior=PRIOR)

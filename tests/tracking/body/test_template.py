@@ -26,5 +26,5 @@ def test_a_picture_without_contrast_is_no_template():
 
 
 def test_a_plate_without_sides_is_refused():
-    with pytest.raises(BodyError, match="positive sides"):
+    with pytest.raises(BodyError, match="above 0 m"):
         TopPlate(0.2, 0.0, 0.03)

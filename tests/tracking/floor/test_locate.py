@@ -80,7 +80,7 @@ def test_a_mirrored_map_is_told_from_a_wrong_one():
     with pytest.raises(FloorError, match=r"p1\.jpg: the map of the floor is mirrored"):
         locate_camera(LENS, FLOOR.mirrored(), view)
     wrong = FloorMap("4x4_50", (FloorMarker(10, 0.1, 1.3, 0.4), *FLOOR.markers[1:]))
-    with pytest.raises(FloorError, match="check positions"):
+    with pytest.raises(FloorError, match="check x, y, yaw_deg"):
         locate_camera(LENS, wrong, view)
 
 

@@ -14,7 +14,7 @@ import pytest
 from support.hostile_files import within_two_seconds
 from support.written_photos import write_photo
 from tracking.errors import PhotoError, TrackingError
-from tracking.images import exif_time, find_photos, read_pixels
+from tracking.images import exif_time, find_photos, open_picture, read_pixels
 from zebro_lab.track.photo_sequence import open_photos, upright_size
 from zebro_lab.track.request import TimeRequest
 
@@ -55,13 +55,24 @@ def break_file(path, kind):
 
 @pytest.mark.parametrize(
     ("kind", "message"),
-    [("empty", "0 bytes"), ("cut", "cut short"), ("text", "not a picture"), ("heic", "HEIC")],
+    [
+        ("empty", "0 bytes"),
+        ("cut", "cut short"),
+        ("text", "not a readable picture"),
+        ("heic", "HEIC"),
+    ],
 )
 def test_a_bad_file_is_named_with_its_fault(tmp_path, kind, message):
     path = tmp_path / "p7.jpg"
     break_file(path, kind)
     with pytest.raises(PhotoError, match=rf"p7\.jpg: .*{message}"):
         read_pixels(path)
+
+
+@pytest.mark.parametrize("bug", [KeyError("t"), TypeError("no number"), ZeroDivisionError("0")])
+def test_an_error_of_the_caller_is_not_put_down_to_the_file(tmp_path, bug):
+    with pytest.raises(type(bug)), open_picture(write_photo(tmp_path / "a.jpg")):
+        raise bug
 
 
 @pytest.mark.parametrize("side", [11_000, 14_200])
@@ -123,7 +134,7 @@ def test_a_picture_that_would_take_a_gigabyte_is_refused_unread(width, height, t
 def test_a_picture_of_another_program_is_not_handed_to_it(tmp_path):
     file = tmp_path / "a.jpg"
     PIL.Image.new("RGB", (64, 64)).save(file, format="PPM")
-    with pytest.raises(PhotoError, match="not a picture"):
+    with pytest.raises(PhotoError, match="not a readable picture"):
         read_pixels(file)
 
 

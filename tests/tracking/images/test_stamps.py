@@ -48,3 +48,7 @@ def test_missing_exposures_are_counted():
 def test_an_irregular_hand_gives_no_interval():
     stamps = np.cumsum(np.random.default_rng(1).integers(2, 30, 25))
     assert fit_interval(stamps) is None
+
+
+def test_no_stamps_give_no_interval():
+    assert fit_interval([]) is None

@@ -117,7 +117,8 @@ def test_thinning_goes_by_time_and_not_by_number(tmp_path):
     assert [frame.name for frame in frames] == [f"walk.mp4#{number}" for number in (0, 4, 7, 8)]
 
 
-def test_a_frame_that_is_decoded_to_nothing_is_left_out(tmp_path, monkeypatch):
+@pytest.mark.parametrize("damaged", [{3}, set(range(len(STEPS)))])
+def test_a_frame_that_is_decoded_to_nothing_is_left_out(damaged, tmp_path, monkeypatch):
     file = phone_video(tmp_path / "a.mp4")
     usual, numbers = cv2.VideoCapture, iter(range(len(STEPS)))
 
@@ -130,11 +131,15 @@ def test_a_frame_that_is_decoded_to_nothing_is_left_out(tmp_path, monkeypatch):
 
         def retrieve(self):
             found = self._capture.retrieve()
-            return (True, None) if next(numbers) == 3 else found
+            return (True, None) if next(numbers) in damaged else found
 
     monkeypatch.setattr(cv2, "VideoCapture", Damaged)
+    if len(damaged) == len(STEPS):
+        with pytest.raises(PhotoError, match="no frame"):
+            list(video_frames(file))
+        return
     names = [image.name for image in video_frames(file)]
-    assert names == [f"a.mp4#{number}" for number in range(len(STEPS)) if number != 3]
+    assert names == [f"a.mp4#{number}" for number in range(len(STEPS)) if number not in damaged]
 
 
 def test_a_playlist_is_no_video(tmp_path):

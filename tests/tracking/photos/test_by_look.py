@@ -22,12 +22,12 @@ def test_the_robot_is_found_where_it_was(scene, photos, walk, top):
 
 def test_the_marked_top_must_be_known_and_its_photograph_usable(scene, photos, top, unreadable):
     seen = see_floor(scene, [photos[0], unreadable], robot=None, workers=1, progress=NoProgress())
-    with pytest.raises(BodyError, match="nobody marked"):
+    with pytest.raises(BodyError, match="not annotated"):
         marked_top(scene, seen, photos)
     with pytest.raises(NoUsablePhoto, match="not among"):
         marked_top(replace(scene, top=replace(top, photo="p9.png")), seen, photos)
     bad = replace(scene, top=replace(top, photo="bad.png"))
-    with pytest.raises(NoUsablePhoto, match=r"bad.png: not a picture"):
+    with pytest.raises(NoUsablePhoto, match=r"bad.png: not a readable picture"):
         marked_top(bad, seen, [*photos, unreadable])
     assert marked_top(replace(scene, top=top), seen, photos) is top
 

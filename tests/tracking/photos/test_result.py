@@ -42,7 +42,7 @@ def test_what_is_deleted_and_what_is_placed_by_hand_is_told(scene, seen):
     found = finished(asked, seen, walked(scene))
     assert found.lost == {"p9.png": "cut short", "p1.png": "deleted by a correction"}
     assert found.notes[0] == "the tape slipped"
-    assert any(note.startswith("2 corrections replayed, 1 of them") for note in found.notes)
+    assert any(note.startswith("2 corrections are applied; 1 of them") for note in found.notes)
     assert found.track.observations[-1].source == "hand"
 
 
@@ -50,13 +50,13 @@ def test_a_gap_is_told(scene, seen):
     observations = walked(scene)
     late = replace(observations[-1], t=60.0)
     notes = finished(scene, seen, [*observations[:-1], late]).notes
-    assert any("nothing is seen for 52.0 s before p5.png" in note for note in notes)
+    assert any("no pose is found in the 52.0 s before p5.png" in note for note in notes)
 
 
 @pytest.mark.parametrize(("higher", "told"), [(0.0, None), (0.02, "higher"), (-0.02, "lower")])
 def test_a_body_that_seems_higher_or_lower_than_stated_is_told(scene, seen, higher, told):
     notes = finished(scene, seen, walked(scene, higher=higher)).notes
-    of_height = [note for note in notes if "the body seems" in note]
+    of_height = [note for note in notes if "the robot's body is" in note]
     assert len(of_height) == (told is not None)
     assert all(f"20 mm {told}" in note for note in of_height)
 

@@ -14,7 +14,7 @@ def test_a_bad_photograph_is_named_and_loses_no_other(scene, robot, photos, unre
         [photos[0], unreadable, photos[1]], wanted(scene, robot), workers=1, progress=NoProgress()
     )
     assert [each.photo for each in found] == ["p0.png", "bad.png", "p1.png"]
-    assert "not a picture" in (found[1].problem or "")
+    assert "not a readable picture" in (found[1].problem or "")
     for each in (found[0], found[2]):
         assert each.seen is not None
         assert set(each.seen.floor.pixels) == {10, 11, 12, 13}

@@ -8,7 +8,7 @@ import pytest
 
 from tracking import track_photos
 from tracking.composite import Merged
-from tracking.errors import CompositeError
+from tracking.errors import CompositeError, NoUsablePhoto
 from tracking.images import PhotoTimes
 
 
@@ -33,3 +33,9 @@ def test_without_a_marker_the_marked_top_is_tracked(scene, photos, walk, top):
 def test_one_picture_that_is_merged_is_no_photograph(scene, photos):
     with pytest.raises(CompositeError, match="length and width"):
         track_photos(replace(scene, merged=Merged.MEAN), photos, times_of=every_two_seconds)
+
+
+@pytest.mark.parametrize("merged", [None, Merged.MEAN])
+def test_no_photographs_at_all_are_refused(merged, scene):
+    with pytest.raises(NoUsablePhoto, match="no photographs"):
+        track_photos(replace(scene, merged=merged), (), times_of=every_two_seconds)

@@ -20,7 +20,7 @@ def test_annotations_are_added_to_those_before(run_command, tmp_path):
         "simulated_05.jpg,simulated_04.jpg", "--delete", "simulated_06.jpg",
     )  # fmt: skip
     assert code == 0
-    assert "robot marked in simulated_01.jpg, 1 points of the floor, 3 corrections" in out
+    assert "robot's top in simulated_01.jpg, 1 points of the floor, 3 corrections" in out
     said = read_annotations(file)
     assert said.template is not None
     assert said.template.plate.width == 0.14
@@ -32,11 +32,11 @@ def test_annotations_are_added_to_those_before(run_command, tmp_path):
     [
         (("--flip", "simulated_2.jpg"), "did you mean 'simulated_"),
         (("--photo", "simulated_01.jpg", "--corners", "1,2 3,4"), "2 corners; expected four"),
-        (("--corners", "1,2 3,4 5,6 7,8"), "--photo: needed"),
-        (("--click", "simulated_01.jpg:door=1"), "expected two pixels"),
-        (("--click", "door=1,2"), "expected PHOTO:NAME=U,V"),
-        (("--move", "simulated_01.jpg:1,2"), "expected PHOTO:X,Y,YAW"),
-        (("--move", "simulated_01.jpg:a,b,c"), "no number"),
+        (("--corners", "1,2 3,4 5,6 7,8"), "--photo: missing"),
+        (("--click", "simulated_01.jpg:door=1"), "is not a pixel U,V"),
+        (("--click", "door=1,2"), "is not PHOTO:NAME=U,V"),
+        (("--move", "simulated_01.jpg:1,2"), "is not PHOTO:X,Y,YAW"),
+        (("--move", "simulated_01.jpg:a,b,c"), "not a list of numbers"),
         (("--from", "nothing.toml"), "nothing.toml: no such file"),
     ],
 )

@@ -74,7 +74,7 @@ def test_what_another_file_says_is_added_but_never_to_itself(asked, tmp_path):
     annotate(replace(asked, out=other, flips=("p1.png",)))
     said = annotate(replace(asked, added=other, deletes=("p2.png",)))
     assert set(said.corrections) == {Flip("p1.png"), Delete("p2.png")}
-    with pytest.raises(AlreadyExists, match="name another"):
+    with pytest.raises(AlreadyExists, match="choose another"):
         annotate(replace(asked, added=asked.out))
 
 
@@ -83,11 +83,14 @@ def test_what_another_file_says_is_added_but_never_to_itself(asked, tmp_path):
     [
         ({"flips": ("p3.png",)}, "did you mean"),
         ({"photo": "p1.png", "corners": "1,2"}, "1 corners"),
-        ({"corners": "1,2 3,2 3,8 1,8"}, "needed: the photograph"),
-        ({"photo": "p1.png", "corners": "1,2 3,2 3,8 1,8", "plate": "2mm"}, "is no plate"),
-        ({"moves": ("p1.png:1,2",)}, "expected PHOTO:X,Y,YAW"),
-        ({"clicks": ("1,2",)}, "expected PHOTO:NAME"),
-        ({"clicks": ("p1.png:door=a,b",)}, "no number"),
+        ({"corners": "1,2 3,2 3,8 1,8"}, "name the photograph"),
+        (
+            {"photo": "p1.png", "corners": "1,2 3,2 3,8 1,8", "plate": "2mm"},
+            "is not LENGTHxWIDTH@HEIGHT",
+        ),
+        ({"moves": ("p1.png:1,2",)}, "is not PHOTO:X,Y,YAW"),
+        ({"clicks": ("1,2",)}, "is not PHOTO:NAME"),
+        ({"clicks": ("p1.png:door=a,b",)}, "not a list of numbers"),
     ],
 )
 def test_what_cannot_be_understood_is_said(asked, said, message):
@@ -113,5 +116,5 @@ def test_a_grid_is_drawn_whole_or_around_a_pixel_and_never_among_the_photographs
     assert part.read_bytes() != whole.read_bytes()
     with pytest.raises(AlreadyExists, match="among the photographs"):
         draw_grid(photos, "p1.png", photos / "grid.png")
-    with pytest.raises(SettingsError, match="expected two pixels"):
+    with pytest.raises(SettingsError, match="is not a pixel U,V"):
         draw_grid(photos, "p1.png", whole, around="40")

@@ -45,7 +45,7 @@ FAULTS = {
     ),
     "no plate": (
         '[template]\nphoto = "a"\ncorners_px = [[1, 2], [3, 4], [5, 6], [7, 8]]\nlength = 0\n'
-        "width = 1\nheight = 1", "positive sides",
+        "width = 1\nheight = 1", "above 0 m",
     ),
     "unknown table": ("[corrections]", "did you mean 'correction'"),
 }  # fmt: skip

@@ -119,7 +119,7 @@ BAD = {
     "p8.jpg": ("200 MP", "more than 179 megapixels; at most 80 are read"),
     "p9.jpg": ("126 MP", "14000x9000 px are 126 megapixels; at most 80 are read"),
     "q1.jpg": ("empty", "the file is empty (0 bytes)"),
-    "q2.png": ("text", "not a picture; expected JPEG, PNG or TIFF"),
+    "q2.png": ("text", "not a readable picture; expected JPEG, PNG or TIFF"),
 }
 
 
@@ -169,7 +169,9 @@ def edit(file: str, pattern: str, replacement) -> None:
 
 def test_a_floor_of_another_dictionary_is_told_which_is_seen(lab, track):
     edit("floor.toml", "4x4_50", "5x5_50")
-    assert_refused(track("photos"), "the picture has markers of '4x4_50': correct the dictionary")
+    assert_refused(
+        track("photos"), "the picture has markers of '4x4_50': correct dictionary in floor.toml"
+    )
 
 
 def test_a_mirrored_floor_is_called_so(lab, track):
@@ -200,4 +202,4 @@ def test_a_video_without_frames_is_named(kind, lab, track):
 
 
 def test_a_picture_that_is_none_is_no_composite(lab, track):
-    assert_refused(track("robot.toml", "--interval", "2"), "robot.toml: not a picture")
+    assert_refused(track("robot.toml", "--interval", "2"), "robot.toml: not a readable picture")

@@ -34,7 +34,7 @@ def test_preview_in_a_pipe_says_what_is_seen_and_draws_it(files):
     )  # fmt: skip
     assert process.returncode == 0, process.stderr
     assert process.stderr == ""
-    for part in ("marks 10, 11, 12, 13 are seen", "a pixel is ", "10 to 11: tape 1.7000 m"):
+    for part in ("marks 10, 11, 12, 13 are seen", "a pixel is ", "10 to 11: tape measure 1.7000 m"):
         assert part in process.stdout
     assert (files / "preview.png").is_file()
 

@@ -29,7 +29,7 @@ def test_a_stranger_s_track_without_headings_is_read_and_says_so(tmp_path):
     track = read_track(write(tmp_path, "t,x,y\n0,0,0\n1,1,0\n2,2,0\n"))
     assert not track.poses.has_yaw
     assert not track.covariance.any()
-    assert "without headings" in " ".join(track.notes)
+    assert "no column yaw_rad" in " ".join(track.notes)
 
 
 def test_headings_are_unwrapped(tmp_path):

@@ -51,7 +51,7 @@ FAULTS = {
     "no side": ("[markers]\n10 = { x = 0, y = 0 }", r"markers\.10\.side: is missing"),
     "no place": ("side = 0.1\n[markers]\n10 = { x = 0 }", r"markers\.10\.y: is missing"),
     "negative side": ("side = -1\n[markers]\n10 = { x = 0, y = 0 }", "expected more than 0"),
-    "no number": ("side = 0.1\n[markers]\nten = { x = 0, y = 0 }", "number in its dictionary"),
+    "no number": ("side = 0.1\n[markers]\nten = { x = 0, y = 0 }", "not a marker's number"),
     "unknown key": ("side = 0.1\n[markers]\n10 = { x = 0, y = 0, yaw = 9 }", "yaw_deg"),
     "no dictionary": ('dictionary = "4x4_51"\nside = 1\n[points]\na = { x = 0, y = 0 }', "4x4_50"),
     "no length": ('side = "1 kg"\n[markers]\n10 = { x = 0, y = 0 }', "kg"),

@@ -45,7 +45,7 @@ def test_a_composite_picture_is_not_guessed_to_be_merged_in_one_way(request_):
 
 def test_what_is_no_picture_is_told_of_as_such(request_):
     asked = replace(request_, photos=request_.floor, times=TimeRequest(4.0))
-    with pytest.raises(PhotoError, match="not a picture"):
+    with pytest.raises(PhotoError, match="not a readable picture"):
         checked(asked)
 
 

@@ -83,6 +83,17 @@ def test_a_photographed_code_ties_the_cameras_clock_to_the_computers(tmp_path):
         np.testing.assert_allclose(sequence.times.t - STARTED, [-3589.5, -3587.5], atol=0.1)
 
 
+@pytest.mark.parametrize("interval", [None, 2.0])
+def test_the_photograph_of_the_clock_alone_is_no_walk(interval, tmp_path):
+    clock = tmp_path / "clock.jpg"
+    photo(clock, 1.0, clock_picture(STARTED, module_px=8))
+    with (
+        pytest.raises(DataError, match="no photograph but"),
+        open_photos(tmp_path, TimeRequest(interval=interval, clock=clock)),
+    ):
+        pass
+
+
 def test_frames_of_a_video_keep_their_own_times_and_leave_no_files(tmp_path):
     video = tmp_path / "walk.avi"
     writer = cv2.VideoWriter(str(video), cv2.VideoWriter.fourcc(*"MJPG"), 10.0, (80, 60))
@@ -100,7 +111,7 @@ def test_frames_of_a_video_keep_their_own_times_and_leave_no_files(tmp_path):
 def test_a_video_takes_no_times_of_others(tmp_path):
     (tmp_path / "walk.mp4").touch()
     with (
-        pytest.raises(SettingsError, match="--interval: not with a video"),
+        pytest.raises(SettingsError, match="--interval: leave out for a video"),
         open_photos(tmp_path / "walk.mp4", TimeRequest(interval=2.0)),
     ):
         pass

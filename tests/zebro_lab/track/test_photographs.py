@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Photographs of the bundled walk, found through a track folder and seen from above."""
 
+import re
 import shutil
 
 import cv2
@@ -53,6 +54,13 @@ def test_a_photograph_that_moved_away_is_missed_by_name(track):
 def test_another_photograph_of_that_name_is_refused(track):
     shutil.copy(track.parent / SHOWN[0], track.parent / SHOWN[1])
     with pytest.raises(DataError, match="another photograph"):
+        photos_of_track(track)
+
+
+def test_another_lens_in_the_camera_file_is_refused(track):
+    camera = track.parent / "camera.toml"
+    camera.write_text(re.sub(r"focal = \[\d", "focal = [9", camera.read_text()))
+    with pytest.raises(DataError, match=r"camera\.toml.*not the camera file of this track"):
         photos_of_track(track)
 
 

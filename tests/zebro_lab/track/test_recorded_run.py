@@ -121,7 +121,7 @@ FAULTS = {
     "photographs of another day": (("--start", "2020-05-31T12:00:00"), "86400.0 to 86408.0 s"),
     "a moment without a clock": (("--interval", "2", "--start", "2020-06-01"), "--start: these ph"),
     "no run": (("--run", "photos"), "photos is no run folder"),
-    "no clock in the picture": (("--clock", "photos/simulated_00.jpg"), "no QR clock is seen"),
+    "no clock in the picture": (("--clock", "photos/simulated_00.jpg"), "no QR clock is decoded"),
 }  # fmt: skip
 
 

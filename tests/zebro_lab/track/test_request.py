@@ -29,7 +29,7 @@ def test_every_file_that_is_named_is_an_input():
 
 
 def test_photographs_of_a_folder_are_not_merged(request_):
-    with pytest.raises(SettingsError, match="only with one composite picture"):
+    with pytest.raises(SettingsError, match="only to one composite picture"):
         replace(request_, merged=Merged.MEAN)
     assert replace(request_, photos=COMPOSITE, merged=Merged.MEAN).merged is Merged.MEAN
 

@@ -38,19 +38,19 @@ def parse_board(text: str) -> Board:
         columns, rows = _grid(text, parts[0])
         square, marker = _length(text, parts[1]), _length(text, parts[2])
         if marker >= square:
-            raise _error(text, "its markers do not fit into its squares")
+            raise _error(text, f"markers of {parts[2]} do not fit into squares of {parts[1]}")
         try:
             dictionary_named(parts[3])
         except TrackingError as error:
             raise SettingsError(str(error), key="--board") from error
         return CharucoBoard(columns, rows, square, marker, parts[3])
-    raise _error(text, "is no board")
+    raise _error(text, "is not a board")
 
 
 def _grid(text: str, part: str) -> tuple[int, int]:
     columns, _, rows = part.partition("x")
     if not (columns.isdigit() and rows.isdigit() and int(columns) > 1 and int(rows) > 1):
-        raise _error(text, f"'{part}' is no COLUMNSxROWS")
+        raise _error(text, f"'{part}' is not COLUMNSxROWS, 2 or more each")
     return int(columns), int(rows)
 
 

@@ -28,7 +28,7 @@ def show_clock(stopped: Callable[[], bool], *, duration: float | None) -> None:
     typer.echo(_CLEAR, nl=False)
     while not stopped() and (end is None or time.monotonic() < end):
         now = time.time()
-        typer.echo(f"{_HOME}{code_lines(now)}\nphotograph this code; Ctrl-C ends", nl=True)
+        typer.echo(f"{_HOME}{code_lines(now)}\nphotograph this code; press Ctrl-C to end", nl=True)
         # In phase with the clock itself, so that the code never shows an outdated time.
         time.sleep(RENEWAL - time.time() % RENEWAL)
 

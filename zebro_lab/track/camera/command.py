@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Paper: TypeAlias = Literal["a4", "letter"]
 
 app = typer.Typer(
-    no_args_is_help=True, help="Print the tracking kit, calibrate the camera, tie its clock."
+    no_args_is_help=True, help="Print the tracking kit, calibrate the camera, show its clock code."
 )
 
 CALIBRATE_EPILOG = """
@@ -38,7 +38,7 @@ def kit(
 
     for file in write_kit(out, paper=paper):
         say(f"wrote {file}")
-    say("print at 100 % and measure the 100 mm bar of every page")
+    say("print kit.pdf at 100 % and measure the 100 mm bar of every page")
 
 
 @app.command(epilog=CALIBRATE_EPILOG)
@@ -70,10 +70,10 @@ def calibration_lines(result: "CameraResult") -> list[str]:
         if spread > 0
     ]
     return [
-        *(f"{name}: {reason}; left out" for name, reason in result.left_out.items()),
+        *(f"left out: {name}: {reason}" for name, reason in result.left_out.items()),
         f"{len(fit.view_names)} photographs of {width}x{height} px, lens model '{fit.lens_model}'",
         ", ".join(f"{name} {value:.2f} ± {spread:.2f} px" for name, value, spread in numbers),
-        f"distortion {', '.join(bent) or 'none seen'}",
+        f"distortion {', '.join(bent) or 'none fitted'}",
         f"corners are off by {fit.rms:.3f} px (rms) and cover {fit.coverage:.0%} of the picture:",
         *("  " + " ".join("#" if count else "." for count in row) for row in fit.seen),
         *(f"WARNING: {warning}" for warning in fit.warnings),
@@ -84,7 +84,7 @@ def calibration_lines(result: "CameraResult") -> list[str]:
 @app.command()
 def clock(
     duration: Annotated[
-        float | None, typer.Option(min=0.0, help="Duration [s]; default: until Ctrl-C.")
+        float | None, typer.Option(min=0.0, help="Time to show it [s]; default: until Ctrl-C.")
     ] = None,
 ) -> None:
     """Show the computer's time as a QR code to photograph; give the photograph to track --clock."""

@@ -82,14 +82,14 @@ def _look(job: tuple[Path, Board, tuple[int, int]]) -> SeenBoard | str:
         view = find_board(read_pixels(path, size=size), board, name=path.name)
     except PhotoError as error:
         return error.reason
-    return "the board is not seen" if view is None else view
+    return "the board is not detected" if view is None else view
 
 
 def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
     name, reason = next(iter(left_out.items()))
     return (
         f"the board '{request.board}' is seen in none of {len(left_out)} photographs ({name}: "
-        f"{reason}); name the board that was photographed as --board"
+        f"{reason}); describe the board that was photographed with --board"
     )
 
 
@@ -112,7 +112,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
     pages = kit_pages(paper)
     if (out / FLOOR_FILE).exists():
         raise AlreadyExists(
-            f"{out / FLOOR_FILE} exists already and may hold measured positions; name another --out"
+            f"{out / FLOOR_FILE} exists and may hold measured positions; choose another --out"
         )
     drawn = BytesIO()
     save_pages(pages, drawn)
@@ -130,7 +130,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
 
 def _require_same(file: Path, content: bytes) -> None:
     if os.path.lexists(file) and (not file.is_file() or file.read_bytes() != content):
-        raise AlreadyExists(f"{file} exists already and is another one; name another --out")
+        raise AlreadyExists(f"{file} exists with other content; choose another folder with --out")
 
 
 _HEADING = """\

@@ -173,7 +173,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
         reset: Whether to reset a latched emergency stop.
 
     Returns:
-        Content of the journal; when resumed, as it was before any reset.
+        Content of the journal after any repair and reset.
 
     Raises:
         NotFound, DataError: `resume` is set, and there is no readable journal.
@@ -207,7 +207,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
     if latched is not None:
         writer.append("reset", latched)
         latch.reset()
-    return read_journal(data) if journal is None else journal
+    return read_journal(data)
 
 
 def _resumed(data: Path, plan_text: str) -> Journal:

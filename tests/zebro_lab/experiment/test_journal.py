@@ -47,6 +47,6 @@ def test_an_emergency_stop_stays_until_it_is_reset(tmp_path):
     JournalWriter(tmp_path).append("end", "emergency stop: smoke")
     with pytest.raises(SettingsError, match="smoke is latched; inspect the rig"):
         begin(tmp_path, resume=True)
-    begin(tmp_path, resume=True, reset=True)
+    assert begin(tmp_path, resume=True, reset=True) == read_journal(tmp_path)
     assert read_journal(tmp_path).latched is None
     begin(tmp_path, resume=True)

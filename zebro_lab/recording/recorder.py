@@ -159,8 +159,9 @@ class RunRecorder:
         self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
-        """Set the time of the run's end to now, and its reason unless one was set before."""
-        self._ended = self._clock.now()
+        """Set the run's end to now and its reason, each unless one was set before."""
+        if self._ended is None:
+            self._ended = self._clock.now()
         if self._reason == "completed":
             self._reason = reason
 
@@ -202,10 +203,7 @@ class RunRecorder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if error is not None:
-            self.end(f"failed: {_one_line(error)}")
-        if self._ended is None:
-            self.end()
+        self.end("completed" if error is None else f"failed: {_one_line(error)}")
         self._ending.set()
         if self._files is None:
             return

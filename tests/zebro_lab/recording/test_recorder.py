@@ -233,7 +233,7 @@ def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path
 
     with recorder(tmp_path) as run:
         monkeypatch.setattr(run_files, "write_manifest", fail)
-    assert "end record" in run.failure
+    assert "run.json cannot be completed" in run.failure
     assert "No space left on device" in run.failure
 
 

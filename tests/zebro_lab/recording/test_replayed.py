@@ -73,5 +73,5 @@ def test_a_replay_moves_nothing(make):
     with pytest.raises(ProfileError, match="replays a recording"):
         resolve("replay:RUN", default="rig-board-serial")
     play = DevicesRequest(zebro=f"replay:{make('real')}", play=object())
-    with pytest.raises(SettingsError, match="takes no set-points"), open_devices(play):
+    with pytest.raises(SettingsError, match="cannot be moved"), open_devices(play):
         pass

@@ -131,9 +131,8 @@ def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
         if others:
             yield Finding(
                 Grade.BROKEN, f"module {module}",
-                f"is installed by {package} and by {', '.join(others)}, which overwrite each "
-                f"other; run `pip uninstall {' '.join(others)}`, then `pip install "
-                f"--force-reinstall {package}`",
+                f"is part of {package} and of {', '.join(others)}; run `pip uninstall "
+                f"{' '.join(others)}`, then `pip install --force-reinstall {package}`",
             )  # fmt: skip
     yield from _local_shadows(folder, home)
 
@@ -180,9 +179,8 @@ def check_can(net: Path) -> Iterator[Finding]:
     found = [place for place in sorted(net.glob("*")) if _read(place / "type") == CAN_TYPE]
     if not found:
         yield Finding(
-            Grade.NOTE, "CAN", "no CAN interface found; none is needed for an adapter at a serial "
-            "port (PROFILE@slcan:/dev/ttyACM0) or a simulated device (`zebro-lab sim rig "
-            "rig-odrive-netft`)",
+            Grade.NOTE, "CAN", "no CAN interface found; a serial adapter (PROFILE@slcan:/dev/tty…) "
+            "or a simulated device (`zebro-lab sim rig rig-odrive-netft`) needs none",
         )  # fmt: skip
     for place in found:
         up = int(_read(place / "flags") or "0", 16) & 1
@@ -207,9 +205,8 @@ def check_udp(limit: Path) -> Iterator[Finding]:
         return
     yield Finding(
         Grade.NOTE, "UDP buffer",
-        f"the system allows {granted >> 10} KiB, of {UDP_BUFFER >> 10} KiB wanted; samples of a "
-        "load cell at 7 kHz may be lost while the computer is busy. Run "
-        f"`sudo sysctl net.core.rmem_max={UDP_BUFFER}`",
+        f"the system allows {granted >> 10} KiB; a busy computer may lose samples of a load cell "
+        f"at 7 kHz. Run `sudo sysctl net.core.rmem_max={UDP_BUFFER}`",
     )  # fmt: skip
 
 

@@ -276,7 +276,7 @@ FAULTS = {
     "repeated time": "column 't', row 41 (line 42): time",
     "three samples": "3 samples in all, expected at least 20",
     "empty folder": "holds no data",
-    "truncated parquet": "rig.parquet: is not a whole Parquet file",
+    "truncated parquet": "rig.parquet: is not a complete Parquet file",
     "binary file": "rig.csv: is not text but a binary file",
 }
 

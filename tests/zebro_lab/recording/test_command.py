@@ -172,4 +172,4 @@ def test_others_files_are_imported_and_say_that_they_are_simulated(run_command, 
     for options in (("--legs", walk / "legs.csv", "--start", "tomorrow"), ()):
         code, _, err = run_command("import", "--data", tmp_path, *options)
         assert code in (1, 2)
-        assert "--start" in err or "nothing to import" in err
+        assert "--start" in err or "no file to import" in err

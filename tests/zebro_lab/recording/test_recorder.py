@@ -170,7 +170,7 @@ def test_a_run_is_never_overwritten(tmp_path, monkeypatch):
     with recorder(tmp_path) as run:
         pass
     before = (run.folder / "run.json").read_text()
-    with pytest.raises(AlreadyExists, match="another label"):
+    with pytest.raises(AlreadyExists, match="another name with --label"):
         recorder(tmp_path).__enter__()
     assert (run.folder / "run.json").read_text() == before
     assert json.loads(before)["exit_status"] == "completed"

@@ -61,7 +61,7 @@ def test_a_stream_that_the_run_lacks_is_named(make):
 
 
 def test_a_run_that_is_not_there_or_lost_its_profile_is_named(make, tmp_path):
-    with pytest.raises(NotFound, match="is no run folder"):
+    with pytest.raises(NotFound, match="is not a run folder"):
         read_replay(f"replay:{tmp_path}", "rig")
     run = make("real")
     (run / "profiles" / "rig.toml").unlink()

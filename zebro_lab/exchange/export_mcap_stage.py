@@ -129,9 +129,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     predicted = _read_predicted(run / PREDICTION, track)
     recorded = read_manifest(run) if is_recorded(run) else None
     if track is None and predicted is None:
-        raise NotFound(
-            f"{run} has neither {TRACK}/ nor {PREDICTION}/; run zebro-lab track or predict"
-        )
+        raise NotFound(f"{run} has neither {TRACK}/ nor {PREDICTION}/; first run track or predict")
     start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)

@@ -104,8 +104,7 @@ def _column_section(table: RawTable, name: str, guesses: Mapping[str, ColumnGues
     elif name == "slip_ratio":
         lines.append('# definition = "material"  # NEEDED: material, travel or larger')
         if {"omega_leg", "omega_ground"} <= guesses.keys():
-            text = "# Slip is computed from the disc speeds; to use this column instead, uncomment:"
-            lines.insert(0, text)
+            lines.insert(0, "# Slip comes from the disc speeds; to use this column, uncomment:")
             lines[1:] = [line if line.startswith("#") else f"# {line}" for line in lines[1:]]
     return "\n" + "\n".join(lines) + "\n"
 

@@ -19,8 +19,7 @@ STOPPED = 130
 REFUSED = 3
 
 app = typer.Typer(
-    help="Run experiments on the slip rig. This program is not a safety device: keep a hardware "
-    "emergency stop within reach.",
+    help="Run experiments on the slip rig. Not a safety device: keep an emergency stop at hand.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
@@ -170,8 +169,7 @@ class _Asker:
     def __call__(self, text: str, normal: float) -> None:
         if text and text != self._asked:
             self._asked = text
-            asked = f"{text} with Enter (the load cell reads {normal:.3f} N)"
-            typer.prompt(asked, default="", show_default=False)
+            typer.prompt(f"{text} with Enter (now {normal:.3f} N)", default="", show_default=False)
             self._control.confirm()
 
 

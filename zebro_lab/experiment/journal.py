@@ -190,8 +190,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
     latched = latch.reason or (journal.latched if journal else None)
     if latched is not None and not reset:
         raise SettingsError(
-            f"an emergency stop is latched ({latched}); inspect the rig, then repeat the command "
-            "with --reset-emergency added",
+            f"an emergency stop is latched ({latched}); inspect the rig, add --reset-emergency",
             file=data / (JOURNAL_FILE if journal else LATCH_FILE),
         )
     try:

@@ -50,9 +50,7 @@ def weigh_masses(
         raise SettingsError("expected masses above 0 kg, such as 0.2,0.5,1", key="--masses")
     target = None if request.data is None else request.data / COLUMNS_FILE
     if target is not None and target.exists():
-        raise AlreadyExists(
-            f"{target} exists already; omit --data and copy the printed [load_cell]"
-        )
+        raise AlreadyExists(f"{target} exists; omit --data and copy the printed [load_cell]")
     forces = [mass * request.gravity for mass in request.masses]
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
         for force in forces:

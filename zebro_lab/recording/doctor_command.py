@@ -15,8 +15,7 @@ zebro-lab doctor
 
 zebro-lab doctor --data /mnt/recordings
 
-Exit code 1 if anything that zebro-lab needs is marked BROKEN. A note concerns only users of the
-device, program or package that it names.
+Exit code 1 if anything is BROKEN. A note concerns only users of the device or program it names.
 """
 
 Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings are written to.")]

@@ -102,9 +102,8 @@ def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) ->
         return
     row, leg = (int(i[0]) for i in np.nonzero(turns > _LONGEST_TURN))
     raise table.fault(
-        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad between two samples (limit "
-        f"{_LONGEST_TURN:g} rad), so that its direction is uncertain; check the unit of the "
-        "angles, or record at a higher rate",
+        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad between two samples, so that the "
+        "direction is uncertain; check the unit of the angles, or record at a higher rate",
         columns.mapped[ANGLES[leg]].name,
         row + 1,
     )

@@ -23,8 +23,7 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
     for number in numbers:
         if number >= count:
             raise MarkerError(
-                f"marker {number} is not in the dictionary '{dictionary}'; expected a number from "
-                f"0 to {count - 1}"
+                f"marker {number} is not in the dictionary '{dictionary}' of 0 to {count - 1}"
             )
 
 

@@ -57,8 +57,7 @@ def derive_table(
     except RigError as error:
         raise DataError(str(error), file=folder) from error
     if table.shape[1] == 0:
-        problem = "no force was recorded at a time when the speeds of both discs are known"
-        raise DataError(problem, file=folder)
+        raise DataError("no force was recorded while both disc speeds are known", file=folder)
     table[3] -= zero.get("zero_normal", 0.0)
     table[4] -= zero.get("zero_traction", 0.0)
     return _increasing(table)

@@ -119,8 +119,7 @@ def _csv_layout(path: Path) -> _CsvLayout:
     names = [name or f"column {i}" for i, name in enumerate(names, start=1)]
     if all(_is_number(name) for name in names):
         raise DataError(
-            f"has no header: the first line is '{header[:60]}'; add a line of column names",
-            file=path,
+            f"has no header: the first line is '{header[:60]}'; add column names", file=path
         )
     return _CsvLayout(separator, names, header_line)
 

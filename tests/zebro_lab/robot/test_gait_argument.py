@@ -81,7 +81,7 @@ FAULTS = {
     "empty angle": ({"touchdown_deg": ""}, r"--touchdown-deg: '' is not an angle"),
     "infinite angle": ({"touchdown_deg": "inf"}, r"--touchdown-deg: 'inf' is not an angle"),
     "two angles for one": (
-        {"name": "buehler", "touchdown_deg": "50,40"}, r"has one for all legs",
+        {"name": "buehler", "touchdown_deg": "50,40"}, r"this gait takes one, for all legs",
     ),
 }  # fmt: skip
 

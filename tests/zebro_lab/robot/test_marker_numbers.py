@@ -17,7 +17,7 @@ from zebro_lab.track.robot import tracked_robot
 )
 def test_numbers_of_a_dictionary_end_with_its_last_marker(dictionary, last):
     require_in_dictionary(dictionary, (0, last))
-    message = f"marker {last + 1} is not in the dictionary '{dictionary}'; expected .* 0 to {last}"
+    message = f"marker {last + 1} is not in the dictionary '{dictionary}' of 0 to {last}"
     with pytest.raises(MarkerError, match=message):
         require_in_dictionary(dictionary, (0, last + 1))
 

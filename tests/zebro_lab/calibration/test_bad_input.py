@@ -52,7 +52,7 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     ),
     "nan": (
         put("traction_force", 7, None),
-        "column 'traction_force', row 7 (line 8): found nan; expected finite numbers",
+        "column 'traction_force', row 7 (line 8): found nan N; expected finite numbers",
     ),
     "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e9"]'),
     "nan in time": (put("t", 4, None), "column 't', row 4 (line 5)"),

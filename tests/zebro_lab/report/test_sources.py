@@ -32,7 +32,7 @@ def test_a_folder_of_runs_is_one_page(walk, tmp_path):
 
 def test_a_foreign_manifest_is_refused(walk):
     write_json(walk / "track/manifest.json", {"kind": "predict"})
-    with pytest.raises(DataError, match="of kind 'track', which compare does not replace"):
+    with pytest.raises(DataError, match="of kind 'predict'; expected kind track"):
         made(walk)
 
 

@@ -156,7 +156,7 @@ def test_slip_that_a_model_does_not_have_stays_absent(walked, tmp_path):
 def test_missing_walk_is_said_to_be_missing(tmp_path):
     with pytest.raises(NotFound, match="name a folder that walk or predict wrote"):
         read_walk(tmp_path)
-    with pytest.raises(NotFound, match=r"it has no manifest\.json"):
+    with pytest.raises(NotFound, match=r"manifest\.json is missing"):
         read_walk_manifest(tmp_path)
 
 

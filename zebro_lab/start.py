@@ -22,12 +22,13 @@ def require_own_packages() -> None:
     for package in PACKAGES:
         spec = find_spec(package)
         if spec is None:
-            raise ImportError(f"the package '{package}' of zebro-lab is missing; install it again")
+            raise ImportError(f"the package '{package}' is missing; reinstall zebro-lab")
         places = [spec.origin or "", *(spec.submodule_search_locations or ())]
         if home / package not in {Path(place) for place in places}:
+            found = spec.origin or places[-1]
             raise ImportError(
-                f"{spec.origin or places[-1]} shadows the package '{package}' of zebro-lab; rename "
-                "it, or start Python where it is not found first"
+                f"Python imports {found} instead of the package '{package}' of zebro-lab; rename "
+                f"{found}, or start the command in another folder and without it in PYTHONPATH"
             )
 
 

@@ -128,7 +128,7 @@ def driver_ended_by(number, *, device, profile):
     twin = subprocess.Popen([COMMAND, "sim", "rig", profile], stdout=subprocess.PIPE, text=True)
     try:
         lines = iter(twin.stdout.readline, "")
-        address = next(line.split()[-1] for line in lines if line.startswith("record it as"))
+        address = next(line.split()[-1] for line in lines if line.startswith("to record the"))
         driver = subprocess.Popen(
             [sys.executable, "-c", DRIVE, address, device], stdout=subprocess.PIPE, text=True
         )

@@ -36,7 +36,7 @@ def test_a_shadowed_package_is_one_line_of_a_command(name, package, tmp_path):
     assert done.stdout == ""
     (line,) = done.stderr.splitlines()
     assert str(tmp_path) in line
-    assert f"shadows the package '{package}'" in line
+    assert f"instead of the package '{package}'" in line
 
 
 def test_a_notebook_beside_a_foreign_model_is_told(tmp_path):
@@ -46,4 +46,4 @@ def test_a_notebook_beside_a_foreign_model_is_told(tmp_path):
         cwd=tmp_path, capture_output=True, text=True,
     )  # fmt: skip
     last = done.stderr.splitlines()[-1]
-    assert last.startswith(f"ImportError: {tmp_path / 'model.py'} shadows")
+    assert last.startswith(f"ImportError: Python imports {tmp_path / 'model.py'} instead")

@@ -13,21 +13,21 @@ RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
 
 To = Annotated[
     ExportFormat,
-    typer.Option(help="Tables, or one MCAP file of legs, frames, track and band for Foxglove."),
+    typer.Option(help="Format: tables (csv, parquet), or one MCAP file for Foxglove."),
 ]
 Out = Annotated[
-    Path, typer.Option(metavar="PATH", help="Folder of tables to write; for mcap, the file.")
+    Path, typer.Option(metavar="PATH", help="New folder for the tables; for mcap, a new file.")
 ]
 
 
 def export(run: RunFolder, out: Out, to: To = "csv") -> None:
-    """Export a run as tables (raw samples, leg angles, calibration columns) or as MCAP."""
+    """Export a run as tables of its samples, or its track and prediction as one MCAP file."""
     if to == "mcap":
         from zebro_lab.exchange.export_mcap_stage import export_mcap
 
         exported = export_mcap(run, out=out)
         for topic, count in exported.topics.items():
-            say(f"{topic}: {count}")
+            say(f"{topic}: {count} messages")
         for line in (*exported.notes, f"wrote {exported.file}"):
             say(line)
         return

@@ -122,14 +122,14 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
         DataError: A file is damaged, or track and prediction do not overlap in time.
     """
     if out.exists():
-        raise AlreadyExists(f"{out} exists already; name another --out")
+        raise AlreadyExists(f"{out} exists already; choose another name with --out")
     for part in (TRACK, PREDICTION):
         settle(run / part)
     track = read_track(run / TRACK) if (run / TRACK / TRACK_CSV).is_file() else None
     predicted = _read_predicted(run / PREDICTION, track)
     recorded = read_manifest(run) if is_recorded(run) else None
     if track is None and predicted is None:
-        raise NotFound(f"{run} holds neither {TRACK}/ nor {PREDICTION}/; track or predict first")
+        raise NotFound(f"{run} has neither {TRACK}/ nor {PREDICTION}/; first run track or predict")
     start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)
@@ -264,9 +264,9 @@ def _thinned(t: Array, rate: float) -> Sequence[int]:
 
 def _notes(run: Path, track: TrackFile | None, predicted: _Predicted | None) -> list[str]:
     if track is None:
-        return [f"no track: track the run's photographs into {run / TRACK} first"]
+        return [f"without a track: none is in {run / TRACK}; write it with zebro-lab track"]
     if predicted is None:
-        return [f"no prediction: predict {run} --out {run / PREDICTION} first"]
+        return [f"without a prediction: zebro-lab predict {run} --out {run / PREDICTION} writes it"]
     if predicted.draws is None:
-        return ["no band: predict with --draws 500"]
+        return ["without an uncertainty band: zebro-lab predict with --draws 500 writes it"]
     return []

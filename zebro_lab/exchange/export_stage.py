@@ -42,7 +42,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
         AlreadyExists: `out` exists.
     """
     if out.exists():
-        raise AlreadyExists(f"{out} exists already; name another --out")
+        raise AlreadyExists(f"{out} exists already; choose another folder with --out")
     manifest = read_manifest(folder)
     streams = read_raw_log(folder / LOG_FILE).streams if manifest.profiles else {}
     tables: dict[str, Columns] = {
@@ -58,7 +58,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
             if name.startswith("radius_")
         }  # fmt: skip
     if not tables:
-        raise DataError("holds no samples to export", file=folder)
+        raise DataError("the run holds no samples to export", file=folder)
     with atomic_folder(out) as draft:
         for name, columns in tables.items():
             _write(draft / f"{name}.{to}", columns, to=to, source=manifest.source)

@@ -17,15 +17,15 @@ zebro-lab import --legs bag.mcap --track path.tum --robot robot.toml --data data
 
 zebro-lab import --rig sweep.csv --material "POM on steel" --data data
 
-Names and units through a columns.toml beside the files, or --columns FILE: with sections
-[legs.columns], [imu.columns], [track.columns], [rig.columns] where there are several files.
-docs/formats.md says more.
+Other names and units of columns are mapped by a columns.toml in the folder of the files, or by
+--columns FILE. For several files it has the sections [legs.columns], [imu.columns],
+[track.columns] and [rig.columns]; see docs/formats.md.
 """
 
 
 @request_command()
 def import_files(request: ImportRequest) -> None:
-    """Convert files from other software to run folders: DIR/RUN/{run.json, log.mcap, track/}."""
+    """Convert files from other software to run folders in DIR: run.json, log.mcap, track/."""
     from zebro_lab.exchange.import_stage import import_run
     from zebro_lab.runs.manifest import read_manifest
     from zebro_lab.terminal.progress import progress_bar
@@ -38,4 +38,4 @@ def import_files(request: ImportRequest) -> None:
         manifest = read_manifest(folder)
         simulated = "SIMULATED " if manifest.source.startswith("sim:") else ""
         counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
-        say(f"{simulated}{manifest.source}: {counts}: {folder}")
+        say(f"{simulated}source {manifest.source}, samples: {counts}; wrote {folder}")

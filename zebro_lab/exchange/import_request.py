@@ -13,7 +13,7 @@ def _moment(text: str) -> datetime:
     try:
         return datetime.fromisoformat(text)
     except ValueError as error:
-        message = f"found '{text}'; expected a time such as 2026-03-04T05:06:07+00:00"
+        message = f"found '{text}'; expected date and time like 2026-03-04T05:06:07+00:00"
         raise BadParameter(message, param_hint="--start") from error
 
 
@@ -21,7 +21,7 @@ def _moment(text: str) -> datetime:
 class ImportRequest:
     """Options of `zebro-lab import`."""
 
-    data: Annotated[Path, Option(metavar="DIR", help="Folder of run folders.")]
+    data: Annotated[Path, Option(metavar="DIR", help="Folder in which to create run folders.")]
     legs: Annotated[
         Path | None,
         Option(metavar="FILE", help="Leg angles: CSV, Parquet, or a ROS 2 log in MCAP."),
@@ -36,20 +36,20 @@ class ImportRequest:
     rig: Annotated[
         Path | None, Option(metavar="FILE", help="Table of a slip rig: CSV or Parquet.")
     ] = None
-    robot: Annotated[Path | None, Option(metavar="FILE", help="robot.toml, kept with the run.")] = (
+    robot: Annotated[Path | None, Option(metavar="FILE", help="robot.toml to copy to the run.")] = (
         None
     )
     columns: Annotated[
-        Path | None, Option(metavar="FILE", help="columns.toml in place of those beside the files.")
+        Path | None, Option(metavar="FILE", help="columns.toml instead of those by the files.")
     ] = None
-    label: Annotated[str | None, Option(help="Name of the run; default: the file's.")] = None
+    label: Annotated[str | None, Option(help="Name of the run; default: name of the file.")] = None
     start: Annotated[
         datetime | None,
         Option(
             metavar="TIME",
             parser=_moment,
-            help="Date of the files' time 0, such as 2026-03-04T05:06:07+00:00.",
+            help="Date at which time in the files is 0, such as 2026-03-04T05:06:07+00:00.",
         ),
     ] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
-    operator: Annotated[str, Option(help="Who recorded the files.")] = "unknown"
+    operator: Annotated[str, Option(help="Name of the person who recorded.")] = "unknown"

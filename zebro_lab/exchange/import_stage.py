@@ -85,12 +85,12 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
 
 def _require_something(request: ImportRequest) -> None:
     if request.legs is None and request.rig is None:
-        raise SettingsError("nothing to import; name leg angles or a rig's table",
+        raise SettingsError("no file to import is given; add --legs or --rig",
                             key="--legs, --rig")  # fmt: skip
     if request.legs is None:
         for name in (TRACK, IMU, "robot"):
             if getattr(request, name) is not None:
-                raise SettingsError("belongs to a walk; name its leg angles with --legs",
+                raise SettingsError("belongs to a walk; give the leg angles, too, with --legs",
                                     key=f"--{name}")  # fmt: skip
     if request.start is not None and request.start.tzinfo is None:
         raise SettingsError(
@@ -182,10 +182,10 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
     if given is not None:
         return given.astimezone(UTC), 0.0, ()
     if began is not None:
-        return began, first, (f"times are taken as seconds since 1970: begun {began.isoformat()}",)
+        return began, first, (f"times are read as Unix time: the run starts {began.isoformat()}",)
     now = datetime.now(UTC)
-    note = f"the time of the recording is unknown; its start is set to now, {now.isoformat()}"
-    return now, 0.0, (f"{note} (set it with --start)",)
+    note = f"the date of the recording is not known; time 0 is set to now, {now.isoformat()}"
+    return now, 0.0, (f"{note} (give the date with --start)",)
 
 
 def _apart(
@@ -197,8 +197,8 @@ def _apart(
         TRACK: None if track is None else track.track.poses.t,
     }
     return tuple(
-        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, do not overlap the legs', "
-        f"{t[0]:g} to {t[-1]:g} s; are both on one clock?"
+        f"{name}: the times of the run, {other[0]:g} to {other[-1]:g} s, do not overlap those of "
+        f"the legs, {t[0]:g} to {t[-1]:g} s; check that both files use the same clock"
         for name, other in others.items()
         if other is not None and not np.any((other >= t[0]) & (other <= t[-1]))
     )
@@ -211,4 +211,4 @@ def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -
         require_new(path)
     if len(set(paths)) < len(paths):
         twice = next(path for path in paths if paths.count(path) > 1)
-        raise DataError(f"two runs would both be written to {twice}; give them different names")
+        raise DataError(f"two runs would be written to {twice}; give the runs different names")

@@ -23,7 +23,7 @@ from zebro_lab.tables.run_separation import run_times, separate_runs
 from zebro_lab.tables.table_files import read_table_file
 
 _NEEDED = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
-_ELSE = "calibrate-slip reads this table as it is"
+_ELSE = "give this table to calibrate-slip directly, without import"
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def rig_runs(
     raw = read_table_file(path)
     table = RigTable(raw, columns, kept_rows(raw, columns))
     if columns.runs.each_row:
-        raise DataError(f"has averages of trials for rows, which are no recording; {_ELSE}",
+        raise DataError(f"each row is the mean of a trial ([runs] each_row), not a sample; {_ELSE}",
                         file=path)  # fmt: skip
     _require_columns(table)
     runs = separate_runs(table, label)
@@ -140,8 +140,8 @@ def _require_columns(table: RigTable) -> None:
         if table.source_of(name) is None:
             if table.source_of("slip_ratio") is not None and name.startswith("omega_"):
                 raise DataError(
-                    f"gives slip and no {name}; a run folder holds the speeds of both discs: "
-                    f"{_ELSE}",
+                    f"has a slip ratio but no {name}, and a run folder needs the speeds of both "
+                    f"discs; {_ELSE}",
                     file=table.raw.path,
                 )
             table.required(name)
@@ -152,8 +152,8 @@ def _radius(table: RigTable, name: str) -> float:
     values: Array = np.atleast_1d(radius)
     if np.ptp(values) > 0:
         raise DataError(
-            f"{name} goes from {values.min():g} to {values.max():g} m; a run folder has one: "
-            f"{_ELSE}",
+            f"{name} varies from {values.min():g} to {values.max():g} m, and a run folder holds "
+            f"one radius; {_ELSE}",
             file=table.raw.path, column=name,
         )  # fmt: skip
     return float(values[0])
@@ -162,7 +162,7 @@ def _radius(table: RigTable, name: str) -> float:
 def _left_out(table: RigTable) -> tuple[str, ...]:
     left_out = len(table.raw) - len(table.rows)
     conditions = " and ".join(map(str, table.columns.keep))
-    return (f"{left_out} of {len(table.raw)} rows left out; kept where {conditions}",) * bool(
+    return (f"{left_out} of {len(table.raw)} rows do not meet {conditions}: skipped",) * bool(
         table.columns.keep
     )
 

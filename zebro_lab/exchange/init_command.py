@@ -10,12 +10,12 @@ from zebro_lab.terminal.messages import say
 
 
 def init(
-    file: Annotated[Path, typer.Argument(help="CSV or Parquet file to read the header of.")],
+    file: Annotated[Path, typer.Argument(help="CSV or Parquet file whose header is read.")],
     force: Annotated[
-        bool, typer.Option("--force", help="Replace a columns.toml that is there already.")
+        bool, typer.Option("--force", help="Replace an existing columns.toml.")
     ] = False,
 ) -> None:
-    """Write a commented columns.toml template beside FILE, guessed from its header."""
+    """Write a commented columns.toml to the folder of FILE, guessed from its header."""
     from zebro_lab.exchange.init_stage import write_columns_template
     from zebro_lab.tables.columns import CANONICAL, read_columns
 
@@ -23,25 +23,25 @@ def init(
     columns = read_columns(target)
     say(f"wrote {target}")
     for name, mapped in columns.columns.items():
-        sign = " times -1" if mapped.factor < 0 else ""
+        sign = ", sign reversed" if mapped.factor < 0 else ""
         unit = f" in {mapped.unit}" if CANONICAL[name].unit not in (None, "dimensionless") else ""
         say(f"  {name:<15} from '{mapped.name}'{unit}{sign}")
     for advice in _to_check(set(columns.columns)):
-        say(f"check: {advice}")
+        say(f"please check: {advice}")
 
 
 def _to_check(found: set[str]) -> list[str]:
     """Return advice on what a header does not show; `found` holds the mapped canonical columns."""
-    advice = ["names, units and signs above; each is commented in the file"]
+    advice = ["the names, units and signs above; comments in columns.toml explain them"]
     missing = [name for name in ("normal_force", "traction_force") if name not in found]
     speeds = {"omega_leg", "omega_ground"} <= found
     if not speeds and "slip_ratio" not in found:
         missing.append("slip_ratio (or omega_leg and omega_ground)")
     if missing:
-        advice.append(f"no column found for {', '.join(missing)}: name it in the file")
+        advice.append(f"no column was found for {', '.join(missing)}: add it to columns.toml")
     if "slip_ratio" in found:
-        advice.append("[columns.slip_ratio] definition: material, travel or larger")
+        advice.append("[columns.slip_ratio] needs definition: material, travel or larger")
     if speeds and not {"radius_leg", "radius_ground"} <= found:
-        advice.append("[constants] radius_leg and radius_ground")
-    advice.append("[runs]: what separates runs, if not each file is one")
+        advice.append("[constants] needs radius_leg and radius_ground")
+    advice.append("[runs] must state what separates runs, unless each file is one run")
     return advice

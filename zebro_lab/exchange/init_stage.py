@@ -19,9 +19,9 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 
 _TOP = """\
-# How the columns of {file} map to the columns calibrate-slip knows.
-# Guessed from their names: check names, units and signs. docs/formats.md explains every key.
-# It applies to every table in this folder and below that has no {columns_file} nearer by.
+# How the columns of {file} map to the columns that calibrate-slip reads.
+# Guessed from the header: check names, units and signs. docs/formats.md explains every key.
+# It applies to all tables in this folder and in subfolders that have no {columns_file}.
 
 # Where the data come from: "real", or "sim:WHAT" for simulated data.
 # source = "real"
@@ -32,12 +32,12 @@ _CONSTANTS = """
 # radius_ground = "120 mm"
 """
 _ROWS = """
-[rows]  # every row must meet all of these; names in backticks where they hold signs
+[rows]  # only rows that meet all of these are read; put names in backticks if they contain < > = !
 # keep = ["{column} > 0"]
 """
 _LOAD_CELL = """
-[load_cell]  # from its certificate or a check with known weights, as standard deviations
-# zero_stability = "0.15 N"  # of its zero between runs
+[load_cell]  # standard deviations, from the certificate or a check with known weights
+# zero_stability = "0.15 N"  # of the zero between runs
 # gain_sd = 0.005
 # bias_sd = "0.05 N"
 # crosstalk_sd = 0.005
@@ -62,7 +62,7 @@ def write_columns_template(file: Path, *, force: bool = False) -> Path:
     file = Path(file)
     target = file.parent / COLUMNS_FILE
     if target.exists() and not force:
-        raise AlreadyExists(f"{target} exists already; edit it, or replace it with --force")
+        raise AlreadyExists(f"{target} exists already; edit that file, or replace it with --force")
     return atomic_write_text(target, render_template(read_table_file(file)))
 
 
@@ -92,7 +92,7 @@ def _column_section(table: RawTable, name: str, guesses: Mapping[str, ColumnGues
         f"name = {_quoted(guess.name)}  # {_summary(table, guess.name)}",
     ]
     if guess.others:
-        lines[-1] += f"; or is it {', '.join(map(_quoted, guess.others))}?"
+        lines[-1] += f"; CHECK: could also be {', '.join(map(_quoted, guess.others))}"
     if canonical.unit is not None:
         check = "from its header" if guess.unit else "CHECK: the header shows no unit"
         lines.append(f"unit = {_quoted(guess.unit or canonical.unit)}  # {check}")
@@ -100,7 +100,7 @@ def _column_section(table: RawTable, name: str, guesses: Mapping[str, ColumnGues
         sign = "-1  # negative in the file" if guess.negative else "1"
         lines.append(f"sign = {sign}")
     elif name == "traction_force":
-        lines.append("sign = 1  # CHECK: -1 where the file's force is positive when braking")
+        lines.append("sign = 1  # CHECK: use -1 if the force in the file is positive when braking")
     elif name == "slip_ratio":
         lines.append('# definition = "material"  # NEEDED: material, travel or larger')
         if {"omega_leg", "omega_ground"} <= guesses.keys():
@@ -117,10 +117,10 @@ def _runs_section(table: RawTable, guesses: Mapping[str, ColumnGuess]) -> str:
     by = by or _quoted("SET_POINT")
     check = "  # CHECK: time restarts in the file" if restarts else ""
     return (
-        "\n[runs]  # what separates runs, one of these; else a column 'run', else each file\n"
+        "\n[runs]  # what separates runs: one of these; default: a column 'run', else each file\n"
         f"{active}by = [{by}]{check}\n"
         '# gap = "1 s"      # a pause longer than this starts a run\n'
-        "# each_row = true  # every row is the average of a trial\n"
+        "# each_row = true  # every row is the mean of a trial\n"
     )
 
 

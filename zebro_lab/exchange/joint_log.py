@@ -38,23 +38,23 @@ def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
         if joints:
             rows.setdefault(topic_found, []).append((stamp or NANOSECOND * log_time, joints))
     chosen = _chosen(rows, topic, path)
-    notes = () if damage is None else (f"{path.name}: is cut short ({damage})",)
+    notes = () if damage is None else (f"{path.name} is incomplete ({damage})",)
     return _table(path, rows[chosen], notes)
 
 
 def _chosen(rows: dict[str, Any], topic: str | None, path: Path) -> str:
     if topic is not None and topic not in rows:
-        raise DataError(f"has no joint states on {topic}; {nearest(topic, rows)}", file=path)
+        raise DataError(f"has no joint states of topic {topic}; {nearest(topic, rows)}", file=path)
     if not rows:
         raise DataError(
-            f"holds no positions in messages of type {JOINT_STATE.name}; expected leg angles in "
-            "such, as ROS 2 logs them",
+            f"holds no joint positions; expected the leg angles in ROS 2 messages of type "
+            f"{JOINT_STATE.name}",
             file=path,
         )
     if topic is None and len(rows) > 1:
         raise DataError(
-            f'has joint states on {", ".join(sorted(rows))}; name one as topic = "..." in [legs] '
-            "of a columns.toml",
+            f"has joint states of the topics {', '.join(sorted(rows))}; choose one with "
+            'topic = "..." in section [legs] of a columns.toml',
             file=path,
         )
     return topic or next(iter(rows))

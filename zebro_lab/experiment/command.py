@@ -19,15 +19,16 @@ STOPPED = 130
 REFUSED = 3
 
 app = typer.Typer(
-    help="Run experiments of the slip rig. Not a safety device: have an emergency stop at hand.",
+    help="Run experiments on the slip rig. Not a safety device: keep an emergency stop at hand.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
 
 EPILOG = """
-Ctrl-C: once a soft stop (holds, energised; resume goes on), twice a safe stop (ends at rest),
-three times an emergency stop (de-energised at once, latched). SIGTERM, a lost connection or closed
-terminal (SIGHUP, unless started with nohup), Ctrl-\\ and Ctrl-Z: a safe stop.
+Ctrl-C once: soft stop (ramp to standstill, stay energised; r and Enter resume). Twice: safe stop
+(ramp to standstill, de-energise, end). Three times: emergency stop (de-energise at once, latched).
+SIGTERM, Ctrl-\\, Ctrl-Z and a lost connection or closed terminal (SIGHUP, unless started with
+nohup): safe stop.
 
 Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 130 stopped.
 """
@@ -35,11 +36,11 @@ Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 
 
 @app.command()
 def plan(
-    file: Annotated[Path, typer.Argument(metavar="PLAN", help="A plan.toml.")],
-    rig: Annotated[str, typer.Option(help="Profile of the rig, or sim.")] = "sim",
-    steps: Annotated[bool, typer.Option("--steps", help="List every step.")] = False,
+    file: Annotated[Path, typer.Argument(metavar="PLAN", help="Plan file (TOML).")],
+    rig: Annotated[str, typer.Option(help="Profile whose limits apply, or sim.")] = "sim",
+    steps: Annotated[bool, typer.Option("--steps", help="List every step of the plan.")] = False,
 ) -> None:
-    """Say what a plan will do and how long it takes, and check it against the limits."""
+    """Check a plan against the limits and list its points and duration; nothing moves."""
     from zebro_lab.experiment.plan_stage import foresee
 
     _print_plan(foresee(file, rig), steps=steps)
@@ -48,7 +49,7 @@ def plan(
 @app.command(epilog=EPILOG)
 @request_command()
 def run(request: RigRunRequest) -> None:
-    """Run a plan: a run folder for each point, ready for calibrate-slip."""
+    """Run a plan; record each point to a run folder, as calibrate-slip reads them."""
     from rich.console import Console
 
     from rig.experiment.control import Control
@@ -69,7 +70,7 @@ def _say_latched(data: Path) -> None:
     from zebro_lab.terminal.last_words import say_in_time
 
     say_in_time(
-        f"an emergency stop is latched in {data}; check the rig, then continue with "
+        f"an emergency stop is latched in {data}; inspect the rig, then repeat the command with "
         "--resume --reset-emergency",
         err=True,
     )
@@ -80,11 +81,11 @@ def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
     from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
     words = (
-        f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} refused, "
-        f"{outcome.attempts} attempts; {data}"
+        f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} points "
+        f"failed all their attempts, {outcome.attempts} attempts in this run; results in {data}"
     )
     if not outcome.completed and not latched:
-        words += "\ncontinue with --resume"
+        words += "\nto continue, repeat the command with --resume"
     refused = REFUSED if outcome.refused else 0
     code = refused if outcome.completed else STOPPED
     if not say_in_time(words):
@@ -94,11 +95,11 @@ def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
 
 @app.command("say")
 def command(
-    words: Annotated[list[str], typer.Argument(help="pause, resume, confirm, note TEXT, "
-                                               "soft, safe, emergency or status.")],
+    words: Annotated[list[str], typer.Argument(help="pause, resume, confirm, note TEXT, status, "
+                                               "or a stop: soft, safe or emergency.")],
     data: Data = Path("experiment"),
 ) -> None:  # fmt: skip
-    """Give the experiment that runs into DIR a command."""
+    """Send a command to the running experiment that records to DIR."""
     from zebro_lab.experiment.stage import command_run
 
     say(command_run(data, " ".join(words)))
@@ -107,7 +108,7 @@ def command(
 @app.command()
 @request_command()
 def weigh(request: WeighRequest) -> None:
-    """Check the load cell with known weights: the gain's prior for the fit."""
+    """Check the load cell with known weights; the result is the gain's prior in a calibration."""
     from rig.experiment.control import Control
     from zebro_lab.experiment.weigh_stage import render_load_cell, weigh_masses
 
@@ -116,15 +117,15 @@ def weigh(request: WeighRequest) -> None:
     for force, reading, error in zip(
         weighing.forces, weighing.readings, weighing.errors, strict=True
     ):
-        say(f"{force:8.3f} N reads {reading:8.4f} +/- {error:.4f} N")
+        say(f"weight of {force:8.3f} N: the load cell reads {reading:8.4f} +/- {error:.4f} N")
     say(
-        f"slope {check.slope:.5f} +/- {check.slope_sd:.5f}, zero {check.zero:.4f} +/- "
-        f"{check.zero_sd:.4f} N, largest misfit {check.misfit:.4f} N"
+        f"reading per force {check.slope:.5f} +/- {check.slope_sd:.5f} (expected 1), without load "
+        f"{check.zero:.4f} +/- {check.zero_sd:.4f} N, largest residual {check.misfit:.4f} N"
     )
     if abs(check.slope - 1) > 2 * check.slope_sd:
         say(
-            f"the gain is off: multiply counts_per_force in the profile by {check.slope:.5f} and "
-            "weigh again"
+            f"the gain is wrong: multiply counts_per_force in the rig's profile by "
+            f"{check.slope:.5f}, then run `zebro-lab rig weigh` again"
         )
     if written is None:
         typer.echo(render_load_cell(check).rstrip())
@@ -134,26 +135,26 @@ def weigh(request: WeighRequest) -> None:
 
 @app.command()
 def check(
-    data: Annotated[list[Path], typer.Argument(help="Fresh runs, or folders of them.")],
+    data: Annotated[list[Path], typer.Argument(help="New runs or tables, or folders of them.")],
     slip: Annotated[Path, typer.Option(help="The calibration: slip.toml or its folder.")] = Path(
         "calibration"
     ),
     zero_sd: Annotated[
-        float, typer.Option(min=0.0, help="Standard deviation of the zero between runs [N].")
+        float, typer.Option(min=0.0, help="Sd of the load cell's zero between runs [N].")
     ] = 0.1,
 ) -> None:
-    """Compare fresh check points with a calibration: has the rig drifted?"""
-    from zebro_lab.experiment.check_stage import check_runs
+    """Compare the traction of new runs with a calibration to detect drift of the rig."""
+    from zebro_lab.experiment.check_stage import SUSPICIOUS, check_runs
 
     runs = check_runs(data, slip, zero_sd=zero_sd)
     for found in runs:
         say(
-            f"{found.name}: slip {found.slip:.4f}, normal {found.load:.2f} N, traction "
-            f"{found.traction:.3f} N, expected {found.expected:.3f} +/- {found.sd:.3f} N "
-            f"({found.deviation:+.1f} sd){' DRIFTED' if found.drifted else ''}"
+            f"{found.name}: mean slip {found.slip:.4f}, normal force {found.load:.2f} N, traction "
+            f"{found.traction:.3f} N, expected {found.expected:.3f} +/- {found.sd:.3f} N, off by "
+            f"{found.deviation:+.1f} sd{' DRIFTED' if found.drifted else ''}"
         )
     drifted = sum(found.drifted for found in runs)
-    say(f"{drifted} of {len(runs)} runs have drifted from the calibration")
+    say(f"{drifted} of {len(runs)} runs deviate from the calibration by over {SUSPICIOUS:g} sd")
     if drifted:
         raise typer.Exit(REFUSED)
 
@@ -168,7 +169,7 @@ class _Asker:
     def __call__(self, text: str, normal: float) -> None:
         if text and text != self._asked:
             self._asked = text
-            typer.prompt(f"{text} (reads {normal:.3f} N) Enter", default="", show_default=False)
+            typer.prompt(f"{text} with Enter (now {normal:.3f} N)", default="", show_default=False)
             self._control.confirm()
 
 
@@ -178,15 +179,15 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
 
     plan, points = foreseen.plan, foreseen.plan.points
     minutes, seconds = divmod(round(foreseen.estimate.seconds), 60)
-    say(f"{plan.name}, {plan.material}, on {foreseen.profile.name}")
+    say(f"plan '{plan.name}', material {plan.material}, rig profile {foreseen.profile.name}")
     say(
-        f"{foreseen.estimate.points} points: {len(points.loads)} loads x {len(points.slips)} slip "
-        f"ratios, {points.repeats} time(s), {points.order}{', sweeping' if points.sweep else ''}, "
-        "and check points"
+        f"{foreseen.estimate.points} points in all, check points included: {len(points.loads)} "
+        f"loads x {len(points.slips)} slip ratios, repeated {points.repeats} time(s), order "
+        f"{points.order}{', slip ratios as one sweep' if points.sweep else ''}"
     )
     say(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
-    say(f"takes about {minutes} min {seconds} s if no point is repeated")
-    say("every set-point lies within the limits:")
+    say(f"the plan takes about {minutes} min {seconds} s if no point is repeated")
+    say("all set-points are within these limits:")
     for name, unit in LIMIT_UNITS.items():
         value = getattr(plan.limits, name)
         limit = "not limited" if value is None else f"{value:g}"

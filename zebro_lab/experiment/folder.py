@@ -171,7 +171,7 @@ class ExperimentFolder:
         try:
             self._thread.start()
         except RuntimeError as error:
-            raise SinkFailed(f"the writer cannot be started: {error}") from error
+            raise SinkFailed(f"the thread that writes cannot be started: {error}") from error
         return self
 
     def __exit__(
@@ -239,7 +239,7 @@ class ExperimentFolder:
             self._jobs.put_nowait(job)
         except queue.Full:
             raise SinkFailed(
-                f"the disk of {self._data} is too slow: {MOST_WAITING} writes wait"
+                f"the disk of {self._data} is too slow: {MOST_WAITING} write jobs are waiting"
             ) from None
         if wait and self._in_step:
             while not job.done.wait(DISK_PERIOD):
@@ -249,12 +249,12 @@ class ExperimentFolder:
     def _require_working(self) -> None:
         started = self._thread.ident is not None
         if started and not (self._ending.is_set() or self._thread.is_alive()):
-            self._failure = self._failure or "the writer has ended by itself"
+            self._failure = self._failure or "the thread that writes has ended unexpectedly"
         busy = self._busy_since
         if busy is not None and time.monotonic() - busy > LONGEST_JOB:
             self._failure = f"the disk of {self._data} has not answered for {LONGEST_JOB:g} s"
         if self._failure is not None:
-            raise SinkFailed(f"data cannot be kept: {self._failure}")
+            raise SinkFailed(f"the data cannot be saved: {self._failure}")
 
     def _fail(self, error: BaseException) -> None:
         """Store the first failure as text, for the acquiring thread, which then stops the rig."""
@@ -294,8 +294,8 @@ class ExperimentFolder:
         free = shutil.disk_usage(self._data).free
         if free < self._least_room:
             raise SinkFailed(
-                f"room for data in {self._data} is {free / 1e6:.0f} MB; its limit is "
-                f"{self._least_room / 1e6:.0f} MB"
+                f"the disk of {self._data} has {free / 1e6:.0f} MB free; the plan's "
+                f"limits.free_space is {self._least_room / 1e6:.0f} MB"
             )
 
 

@@ -142,7 +142,7 @@ def read_journal(data: Path) -> Journal:
     entries = list(_entries(file))
     plan = next((e.get("fingerprint") for e in entries if e.get("kind") == "plan"), None)
     if not isinstance(plan, str):
-        raise DataError("has no entry of its plan; name another --data", file=file)
+        raise DataError("has no entry for the plan; choose another folder with --data", file=file)
     points = [entry for entry in entries if entry.get("kind") == "point"]
     latched = None
     for entry in entries:
@@ -173,7 +173,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
         reset: Whether to reset a latched emergency stop.
 
     Returns:
-        Content of the journal; when resumed, as it was before any reset.
+        Content of the journal after any repair and reset.
 
     Raises:
         NotFound, DataError: `resume` is set, and there is no readable journal.
@@ -185,20 +185,20 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
     journal = _resumed(data, plan_text) if resume else None
     if journal is None and os.path.lexists(data / JOURNAL_FILE):
         raise AlreadyExists(
-            f"{data} holds an experiment already; continue it with --resume, or name another --data"
+            f"{data} holds an experiment; add --resume to continue it, or choose another --data"
         )
     latched = latch.reason or (journal.latched if journal else None)
     if latched is not None and not reset:
         raise SettingsError(
-            f"{latched} is latched; inspect the rig, then continue with --reset-emergency",
+            f"an emergency stop is latched ({latched}); inspect the rig, add --reset-emergency",
             file=data / (JOURNAL_FILE if journal else LATCH_FILE),
         )
     try:
         latch.prepare()
     except OSError as error:
         raise RecordingError(
-            f"{data / LATCH_FILE}: cannot be prepared ({error.strerror}); an emergency stop could "
-            "not be latched: move it away, or name another --data"
+            f"{data / LATCH_FILE}: cannot be opened for writing ({error.strerror}), so that an "
+            "emergency stop could not be latched; move it away, or choose another --data folder"
         ) from error
     if journal is None:
         writer.append("plan", plan_text, fingerprint=plan_fingerprint(plan_text))
@@ -207,7 +207,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
     if latched is not None:
         writer.append("reset", latched)
         latch.reset()
-    return read_journal(data) if journal is None else journal
+    return read_journal(data)
 
 
 def _resumed(data: Path, plan_text: str) -> Journal:
@@ -215,7 +215,8 @@ def _resumed(data: Path, plan_text: str) -> Journal:
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
-            "was started with another plan; give that plan, or name another --data",
+            "was started with another plan; use the plan it was started with, or choose another "
+            "folder with --data",
             file=data / JOURNAL_FILE,
         )
     return journal
@@ -223,15 +224,14 @@ def _resumed(data: Path, plan_text: str) -> Journal:
 
 def _entries(file: Path) -> Iterator[dict[str, Any]]:
     """Yield the entry of each complete line; an invalid line gives an entry of kind `damaged`."""
-    advice = "no experiment to resume; run without --resume"
+    advice = "there is no experiment to resume; run without --resume"
     content = read_bytes(file, most=LARGEST, advice=advice)
     for number, line in enumerate(content.split(b"\n")[:-1], start=1):
         entry = _entry(line)
         if entry is None:
             yield {
                 "kind": "damaged",
-                "text": f"line {number} of the journal cannot be read; it may have been an "
-                "emergency stop, which",
+                "text": f"line {number} of the journal is damaged and may have held a stop",
             }
         else:
             yield entry

@@ -51,7 +51,7 @@ class Keyboard:
                 # Input typed before the terminal disappeared is read first.
                 data = os.read(self._handle, LONGEST_LINE) if found & select.POLLIN else b""
                 if not data and found & ~select.POLLIN:  # hung up, or no file any more
-                    raise LinkError("the terminal is gone")
+                    raise LinkError("the terminal was closed")
                 self.take(data)
 
     def take(self, data: bytes) -> None:

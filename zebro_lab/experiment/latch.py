@@ -86,7 +86,7 @@ class EmergencyLatch:
         if stat.S_ISREG(os.fstat(handle).st_mode):
             return handle
         os.close(handle)
-        raise OSError(errno.EINVAL, "is no regular file", str(self._file))
+        raise OSError(errno.EINVAL, "not a regular file", str(self._file))
 
     def _write(self, content: bytes, flags: int) -> None:
         handle = self._open(os.O_WRONLY | flags)

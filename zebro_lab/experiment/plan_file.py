@@ -21,4 +21,4 @@ def read_plan(file: Path) -> Plan:
         NotFound: The file does not exist.
         SettingsError: The file is not TOML, or a key is missing, unknown or impossible.
     """
-    return parse_plan(read_settings(file, advice="examples/plan-thesis.toml is one"))
+    return parse_plan(read_settings(file, advice="expected a plan like examples/plan-thesis.toml"))

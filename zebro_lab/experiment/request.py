@@ -10,13 +10,13 @@ from typer import Argument, BadParameter, Option
 
 STANDARD_GRAVITY: Final = 9.80665
 
-Rig: TypeAlias = Annotated[str, Option(help="PROFILE@PORT, PROFILE@sim, or sim.")]
+Rig: TypeAlias = Annotated[str, Option(help="Rig: PROFILE@PORT, or PROFILE@sim or sim.")]
 Data: TypeAlias = Annotated[Path, Option(metavar="DIR", help="Folder of the experiment.")]
 Fast: TypeAlias = Annotated[
     bool, Option("--fast", help="Run a simulated rig faster than real time.")
 ]
 Seed: TypeAlias = Annotated[
-    int, Option(help="Seed of a simulated rig: its load cell, noise and slip wander.")
+    int, Option(help="Seed of a simulated rig: load cell errors, noise, slip wander.")
 ]
 
 
@@ -24,21 +24,21 @@ def _masses(text: str) -> tuple[float, ...]:
     try:
         return tuple(float(mass) for mass in text.split(","))
     except ValueError as error:
-        raise BadParameter(f"found '{text}'; expected 0.2,0.5,1") from error
+        raise BadParameter(f"found '{text}'; expected masses in kg like 0.2,0.5,1") from error
 
 
 @dataclass(frozen=True)
 class RigRunRequest:
     """Options of `zebro-lab rig run`."""
 
-    plan: Annotated[Path, Argument(metavar="PLAN", help="A plan.toml.")]
+    plan: Annotated[Path, Argument(metavar="PLAN", help="Plan file (TOML).")]
     rig: Rig
     data: Data = Path("experiment")
-    resume: Annotated[bool, Option("--resume", help="Continue after the last finished point.")] = (
+    resume: Annotated[bool, Option("--resume", help="Measure the points still missing in DIR.")] = (
         False
     )
     reset_emergency: Annotated[
-        bool, Option("--reset-emergency", help="Reset a latched emergency stop.")
+        bool, Option("--reset-emergency", help="Reset the emergency stop latched in DIR.")
     ] = False
     fast: Fast = False
     seed: Seed = 0
@@ -50,14 +50,15 @@ class WeighRequest:
 
     rig: Rig
     masses: Annotated[
-        Sequence[float], Option(metavar="KG,KG…", parser=_masses, help="Known masses [kg].")
+        Sequence[float],
+        Option(metavar="KG,KG…", parser=_masses, help="Known masses to hang, in order [kg]."),
     ]
     data: Annotated[
-        Path | None, Option(metavar="DIR", help="Write DIR/columns.toml for the fit.")
+        Path | None, Option(metavar="DIR", help="Folder for columns.toml with the gain's prior.")
     ] = None
     weight_sd: Annotated[
-        float, Option(min=0.0, help="Relative error that all masses share [-].")
+        float, Option(min=0.0, help="Sd of the relative error common to all masses [-].")
     ] = 1e-3
-    gravity: Annotated[float, Option(help="Gravity at the rig [m/s2].")] = STANDARD_GRAVITY
+    gravity: Annotated[float, Option(help="Gravity at the rig [m/s²].")] = STANDARD_GRAVITY
     fast: Fast = False
     seed: Seed = 0

@@ -78,7 +78,7 @@ class RigAtHand:
             return HandShaft(control, tolerance=setting.tolerance)
         if self.twin is None:
             raise SettingsError(
-                "is 'axis', but no profile knows a driven axis yet; expected 'hand'",
+                "found 'axis', which only a simulated rig has; expected 'hand'",
                 key="load.set_by",
             )
         axis = SimulatedAxis(self.twin, clock=self.clock)
@@ -116,7 +116,7 @@ def rig_at_hand(
     profiles = {RIG: (profile.name, profile_text(name))}
     if port != SIMULATED:
         if fast:
-            raise SettingsError("only a simulated rig's time can pass at once", key="--fast")
+            raise SettingsError("works only with a simulated rig; omit it", key="--fast")
         yield RigAtHand(make_bench(open_rig(address)), profiles)
         return
     rng = np.random.default_rng(seed)
@@ -142,7 +142,7 @@ def _fast_bench(
 ) -> Bench:
     if profile.board is None:
         raise SettingsError(
-            f"the twin of '{profile.name}' runs in real time only; take {TWIN_PROFILE}@sim",
+            f"the simulated '{profile.name}' runs in real time only; use {TWIN_PROFILE}@sim",
             key="--fast",
         )
     twin = SimulatedBoard(rig, profile=profile.board, rng=rng)

@@ -111,7 +111,7 @@ class ExperimentScreen(ExperimentWatcher):
             left: Estimated remaining time [s].
         """
         minutes, seconds = divmod(round(left), 60)
-        head = f"{what}: {done} of {of} points, {minutes}:{seconds:02d} left"
+        head = f"{what}: {done} of {of} points finished, {minutes} min {seconds:02d} s left"
         self._picture = replace(self._picture, head=head, done=done, of=max(of, 1), prompt="")
 
     def prompt(self, text: str, *, normal: float) -> None:
@@ -122,7 +122,7 @@ class ExperimentScreen(ExperimentWatcher):
             normal: Present normal force [N].
         """
         if self._live is not None:
-            self._picture = replace(self._picture, prompt=f"{text}; now {normal:.2f} N")
+            self._picture = replace(self._picture, prompt=f"{text}; it is {normal:.2f} N now")
         elif self._picture.prompt != text:
             self._lines.append(text)
             self._picture = replace(self._picture, prompt=text)
@@ -143,8 +143,9 @@ class ExperimentScreen(ExperimentWatcher):
             self._picture = replace(self._picture, points=(*self._picture.points, good))
         if self._live is None or not verdict.accepted:
             self._lines.append(
-                f"{point.label} (attempt {attempt}): {result}; slip {verdict.slip:.4f}, "
-                f"friction {verdict.friction:.3f}, normal {verdict.normal_force:.2f} N"
+                f"{point.label} (attempt {attempt}): {result}; slip ratio {verdict.slip:.4f}, "
+                f"friction coefficient {verdict.friction:.3f}, normal force "
+                f"{verdict.normal_force:.2f} N"
             )
 
     def draw_on(self) -> None:
@@ -196,7 +197,8 @@ def slip_chart(points: list[tuple[float, float, float]]) -> str:
         rows[HEIGHT - 1 - row][column] = MARKS[loads.index(load) % len(MARKS)]
     legend = ", ".join(f"{MARKS[k % len(MARKS)]} {load:g} N" for k, load in enumerate(loads))
     body = "\n".join("".join(row).rstrip() for row in rows)
-    return f"friction {bottom:.2f} to {top:.2f} over slip {low:.2f} to {high:.2f}: {legend}\n{body}"
+    axes = f"friction (up) {bottom:.2f} to {top:.2f}, slip ratio (right) {low:.2f} to {high:.2f}"
+    return f"{axes}; loads {legend}\n{body}"
 
 
 @contextmanager

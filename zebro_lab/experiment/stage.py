@@ -113,8 +113,8 @@ def _require_no_points(data: Path) -> None:
     """Raise AlreadyExists where points exist without a journal: repeated, they'd count twice."""
     if not (data / JOURNAL_FILE).exists() and holds_points(data):
         raise AlreadyExists(
-            f"{data} holds points of an experiment without its {JOURNAL_FILE}; restore that, or "
-            "name another --data"
+            f"{data} holds points of an experiment, but {JOURNAL_FILE} is missing; restore that "
+            "file, or choose another folder with --data"
         )
 
 
@@ -130,7 +130,7 @@ def _owned(data: Path) -> Iterator[None]:
         raise
     except OSError as error:
         raise RecordingError(
-            f"cannot write to {data}: {error.strerror}; name another --data"
+            f"cannot write to {data}: {error.strerror}; choose another folder with --data"
         ) from (error)
     try:
         yield
@@ -159,7 +159,7 @@ def command_run(data: Path, command: str) -> str:
     """
     file = data / CONTROL_FILE
     if not file.exists():
-        raise NotFound(f"{data}: no experiment runs here")
+        raise NotFound(f"{data}: no experiment is running here; start it with zebro-lab rig run")
     port, token = _address(file)
     return send_command(port, token, command)
 
@@ -170,12 +170,11 @@ def _address(file: Path) -> tuple[int, str]:
     Raises:
         DataError: The file is damaged, or port or token is missing or invalid.
     """
-    content = require_object(read_json_document(file, advice="no experiment runs here"), file)
+    content = require_object(read_json_document(file, advice="no experiment is running"), file)
     port, token = content.get("port"), content.get("token")
     if type(port) is not int or not 0 < port < 1 << 16 or not isinstance(token, str):
-        raise DataError(
-            "has no valid port and token of the experiment; stop it at its own keyboard", file=file
-        )
+        problem = "holds no valid port and token; use the keys of the experiment's terminal"
+        raise DataError(problem, file=file)
     return port, token
 
 

@@ -24,7 +24,7 @@ def _require_finite(request: WeighRequest) -> None:
     for option, numbers in given.items():
         for number in numbers:
             if not math.isfinite(number):
-                raise SettingsError(f"found {number}; expected a finite number", key=option)
+                raise SettingsError(f"found {number:g}; expected a finite number", key=option)
 
 
 def weigh_masses(
@@ -50,7 +50,7 @@ def weigh_masses(
         raise SettingsError("expected masses above 0 kg, such as 0.2,0.5,1", key="--masses")
     target = None if request.data is None else request.data / COLUMNS_FILE
     if target is not None and target.exists():
-        raise AlreadyExists(f"{target} exists already; put the [load_cell] printed there by hand")
+        raise AlreadyExists(f"{target} exists; omit --data and copy the printed [load_cell]")
     forces = [mass * request.gravity for mass in request.masses]
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
         for force in forces:

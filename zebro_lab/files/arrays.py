@@ -48,7 +48,7 @@ def read_arrays(
         unpacked = sum(member.file_size for member in wanted.values())
         if unpacked > most:
             raise DataError(
-                f"would unpack to {unpacked / 1e6:.0f} MB; at most {most / 1e6:.0f} are read",
+                f"would unpack to {unpacked / 1e6:.0f} MB; expected at most {most / 1e6:.0f} MB",
                 file=path,
             )
         return {name: _array(archive, member, path) for name, member in wanted.items()}
@@ -58,7 +58,7 @@ def _member(archive: zipfile.ZipFile, name: str, path: Path) -> zipfile.ZipInfo:
     try:
         return archive.getinfo(f"{name}.npy")
     except KeyError as error:
-        raise DataError(f"has no member '{name}'; make it again", file=path) from error
+        raise DataError(f"has no array '{name}'; compute the result again", file=path) from error
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDArray:
@@ -69,8 +69,8 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDA
     count = _product(shape)
     if dtype.kind not in _NUMBERS or dtype.hasobject or count * dtype.itemsize != len(data):
         raise DataError(
-            f"member '{member.filename.removesuffix('.npy')}' holds {len(data)} bytes, not the "
-            f"{count} numbers of type {dtype} that it claims; make it again",
+            f"the array '{member.filename.removesuffix('.npy')}' holds {len(data)} bytes, expected "
+            f"{count} numbers of type {dtype}; compute the result again",
             file=path,
         )
     return np.frombuffer(data, dtype).reshape(shape, order="F" if fortran else "C")
@@ -80,9 +80,7 @@ def _header(
     file: IO[bytes], member: zipfile.ZipInfo, path: Path
 ) -> tuple[tuple[int, ...], bool, np.dtype]:
     name = member.filename.removesuffix(".npy")
-    with parsing(
-        path, f"cannot be read: member '{name}' is no array of numbers", advice="make it again"
-    ):
+    with parsing(path, f"'{name}' is not an array of numbers", advice="compute the result again"):
         return _HEADERS[npy.read_magic(file)](file)
 
 

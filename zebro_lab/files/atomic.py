@@ -118,6 +118,6 @@ def sync_folder(folder: Path) -> None:
 
 def _require_empty(folder: Path, target: object) -> None:
     if folder.exists() and not folder.is_dir():
-        raise AlreadyExists(f"{target} is a file where a folder is to be written; name another")
+        raise AlreadyExists(f"{target} is a file, expected a new folder; choose another name")
     if folder.is_dir() and any(folder.iterdir()):
-        raise AlreadyExists(f"{target} exists already and holds something; name another")
+        raise AlreadyExists(f"{target} exists already and is not empty; choose another name")

@@ -49,7 +49,7 @@ def read_json_document(path: Path, *, advice: str = "") -> Any:
         DataError: The file is not regular, larger than `MOST_JSON`, not JSON, or nested too deeply.
     """
     text = read_text(path, most=MOST_JSON, advice=advice)
-    with parsing(path, "cannot be read as JSON", advice="make it again"):
+    with parsing(path, "cannot be read as JSON", advice="restore or create the file again"):
         content = json.loads(text)
         require_bounded(content)
         return content

@@ -23,7 +23,7 @@ def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
     try:
         return require_object(read_json_document(file), file)
     except NotFound as error:
-        raise NotFound(f"{file.parent} is no {of}: it has no {file.name}") from error
+        raise NotFound(f"{file.parent} is not a {of}: {file.name} is missing") from error
 
 
 def read_folder_manifest(
@@ -43,10 +43,11 @@ def read_folder_manifest(
     """
     content = read_json_object(file, of=f"{of} folder")
     if content.get("kind") not in tuple(kinds):
-        raise DataError(f"is not of a {of}; expected kind {' or '.join(kinds)}", file=file)
+        raise DataError(f"is not a manifest of a {of}: expected 'kind' {' or '.join(kinds)}",
+                        file=file)  # fmt: skip
     if content.get("schema") != schema:
         raise DataError(
-            f"has schema {content.get('schema')}, this version reads {schema}; update zebro-lab",
+            f"has schema {content.get('schema')}; this version of zebro-lab reads schema {schema}",
             file=file,
         )
     return content

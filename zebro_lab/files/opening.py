@@ -52,8 +52,8 @@ def open_file(
         size = os.fstat(file.fileno()).st_size
         if most is not None and size > most:
             raise fault(
-                f"has {size / 1e6:.1f} MB; at most {most / 1e6:.1f} are read, of a file of this "
-                "kind: is it the right one?",
+                f"has {size / 1e6:.1f} MB; expected at most {most / 1e6:.1f} MB for a file of this "
+                "kind; check that this is the right file",
                 file=path,
             )
         yield file
@@ -101,8 +101,8 @@ def read_text(
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise fault(
-            f"is not UTF-8 text (byte 0x{data[error.start]:02x} at {error.start}); save it as "
-            "UTF-8",
+            f"is not UTF-8 text (byte 0x{data[error.start]:02x} at position {error.start}); save "
+            "it as UTF-8",
             file=path,
         ) from error
 
@@ -157,4 +157,4 @@ def _descriptor(path: Path, advice: str, fault: Fault) -> int:
 def _require_regular(mode: int, path: Path, fault: Fault) -> None:
     if not stat.S_ISREG(mode):
         kind = next((name for test, name in _KINDS if test(mode)), "something else")
-        raise fault(f"is {kind}; expected a file", file=path)
+        raise fault(f"is {kind}; expected a regular file", file=path)

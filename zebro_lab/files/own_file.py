@@ -80,12 +80,12 @@ def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Pat
     """
     file = Path(os.path.realpath(out))
     if file.is_dir():
-        raise AlreadyExists(f"{out} is a folder; name a file as --out")
+        raise AlreadyExists(f"{out} is a folder; give the name of a file as --out")
     if not file.parent.is_dir():
-        raise NotFound(f"{out.parent}: no such folder; make it, or name another --out")
+        raise NotFound(f"{out.parent}: no such folder; create it, or choose another --out")
     for path in inputs:
         if path.exists() and file.exists() and path.samefile(file):
-            raise AlreadyExists(f"{out} is read by {kind.command}; name another --out")
+            raise AlreadyExists(f"{out} is an input of {kind.command}; choose another --out")
     if os.path.lexists(file):
         _require_ours(out, file, kind)
     return file
@@ -93,16 +93,16 @@ def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Pat
 
 def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
     if not file.is_file():
-        raise AlreadyExists(f"{out} is no regular file; name another --out")
+        raise AlreadyExists(f"{out} is not a regular file; choose another file with --out")
     with file.open("rb") as opened:
         head = opened.read(_HEAD)
     if head and not kind.is_ours(head):  # an empty file may be overwritten
         raise AlreadyExists(
-            f"{out} was not made by {kind.command}; move it away, or name another --out"
+            f"{out} was not made by {kind.command}; move it away, or choose another --out"
         )
     if file.name in _listed_beside(file):
         raise AlreadyExists(
-            f"{out} belongs to the result in {file.parent}, see {MANIFEST}; name another --out"
+            f"{out} is part of the result in {file.parent} ({MANIFEST}); choose another --out"
         )
 
 

@@ -116,8 +116,8 @@ def require_free_previous(folder: Path) -> None:
     """
     if os.path.lexists(previous_of(folder)):
         raise AlreadyExists(
-            f"{previous_of(folder)} is in the way: the old result is kept under that name while it "
-            "is replaced; rename it, or name another --out"
+            f"{previous_of(folder)} exists, but this name is needed for the old result while it is "
+            "being replaced; rename it, or choose another folder with --out"
         )
 
 
@@ -133,8 +133,8 @@ def _settle(folder: Path, *, writing: bool) -> None:
         if folder.exists():
             return  # it is complete; an old folder that cannot be removed does not affect readers
         raise DataError(
-            f"is missing, and {previous_of(folder).name} beside it cannot be renamed "
-            f"({error.strerror}); rename it to {folder.name} by hand",
+            f"is missing: a replacement was interrupted, and {previous_of(folder).name} cannot be "
+            f"renamed back ({error.strerror}); rename it to {folder.name} by hand",
             file=folder,
         ) from error
 
@@ -261,7 +261,7 @@ def _open_locked(folder: Path) -> IO[bytes]:
         note.close()
         if time.monotonic() > deadline:
             raise AlreadyExists(
-                f"{folder} is being replaced by another process; try again when that has ended"
+                f"{folder} is being replaced by another process; try again when that process ends"
             )
         time.sleep(0.02)
 

@@ -68,7 +68,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
     settle(folder, writing=True)
     _require_ground(out)
     if os.path.lexists(folder) and not folder.is_dir():
-        raise AlreadyExists(f"{out} is a file where a folder is to be written; name another --out")
+        raise AlreadyExists(f"{out} is a file; give the name of a folder as --out")
     _require_not_inside(out, folder)
     if folder.exists():
         require_free_previous(folder)
@@ -81,7 +81,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
         _require_kept(out, folder, path, {*fixed, *owned})
     ground = folder.parent if folder.parent.is_dir() else nearest_folder(folder)
     if not os.access(ground, os.W_OK | os.X_OK):
-        raise NotWritten(f"{ground} cannot be written to; name another --out")
+        raise NotWritten(f"{ground} is not writable; choose another folder with --out")
 
 
 @contextmanager
@@ -144,7 +144,7 @@ def writing(out: Path) -> Iterator[None]:
         if isinstance(error, ZebroLabError):
             raise
         raise NotWritten(
-            f"{out} cannot be written ({error.strerror or error}); name another --out"
+            f"{out} cannot be written ({error.strerror or error}); choose another folder with --out"
         ) from error
 
 
@@ -161,9 +161,9 @@ def _require_ground(out: Path) -> None:
     """Raise `AlreadyExists` if a folder would be below a file or behind a broken link."""
     for place in (out, *out.parents):
         if place.is_symlink() and not place.exists():
-            raise AlreadyExists(f"{place} is a link to what is not there; name another --out")
+            raise AlreadyExists(f"{place} is a broken link; choose another folder with --out")
         if place != out and place.exists() and not place.is_dir():
-            raise AlreadyExists(f"{place} is a file, which holds no folder; name another --out")
+            raise AlreadyExists(f"{place} is a file, not a folder; choose another --out")
 
 
 def _require_not_inside(out: Path, folder: Path) -> None:
@@ -174,7 +174,7 @@ def _require_not_inside(out: Path, folder: Path) -> None:
         return
     if folder == here or folder in here.parents:
         raise AlreadyExists(
-            f"{out} is the folder you are in, which cannot be replaced as a whole; name a new "
+            f"{out} is the working folder or contains it, and cannot be replaced; give a new "
             "folder in it as --out"
         )
 
@@ -190,8 +190,8 @@ def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
     manifest = _manifest_of(folder)
     if manifest.get("kind") != kind.kind:
         raise AlreadyExists(
-            f"{folder} holds the result of another command ({manifest.get('kind')}), not of "
-            f"{kind.command}; name another --out"
+            f"{folder} holds the result of another command (kind '{manifest.get('kind')}'), which "
+            f"{kind.command} does not replace; choose another folder with --out"
         )
     names = {MANIFEST}
     for name, digest in _outputs(manifest).items():
@@ -199,8 +199,8 @@ def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
             continue
         if file_hash(folder / name) != digest:
             raise AlreadyExists(
-                f"{folder / name} was changed since {kind.command} wrote it; move it away, or name "
-                "another --out"
+                f"{folder / name} was changed after {kind.command} wrote it and is not replaced; "
+                "move that file away, or choose another folder with --out"
             )
         names.add(name)
     inner = (f"{sub}/{n}" for sub, each in kind.inside.items() for n in _void(folder / sub, each))
@@ -220,8 +220,8 @@ def _manifest_of(folder: Path) -> Mapping[str, Any]:
         return read_json_object(folder / MANIFEST, of="result folder")
     except ZebroLabError as error:
         raise AlreadyExists(
-            f"{folder / MANIFEST} does not say what wrote {folder} ({error}); move the folder away "
-            "or name another --out"
+            f"{folder} is not replaced, because its manifest cannot be read ({error}); move the "
+            "folder away, or choose another folder with --out"
         ) from error
 
 
@@ -239,8 +239,8 @@ def _require_free(
     for name in names:
         if name not in owned and os.path.lexists(folder / name):
             raise AlreadyExists(
-                f"{folder / name} is in the way, and no {MANIFEST} says that {kind.command} wrote "
-                "it; move it away, or name another --out"
+                f"{folder / name} exists and is not replaced, because no {MANIFEST} shows that "
+                f"{kind.command} wrote it; move it away, or choose another folder with --out"
             )
 
 
@@ -250,7 +250,7 @@ def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]
     inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
     if place == folder or (inside and inside[0] in replaced):
         raise AlreadyExists(
-            f"{out} as --out would replace {path}, which is read; name another --out"
+            f"{out} as --out would replace {path}, which this command reads; choose another --out"
         )
 
 

@@ -68,12 +68,12 @@ class _Counted(io.BufferedIOBase):
             data = self._source.read(-1 if size is None else size)
         except (EOFError, zlib.error, gzip.BadGzipFile) as error:
             raise self._refuse(
-                f"is not a whole gzip file ({error}); it may have been cut short: copy it again"
+                f"is not a complete gzip file ({error}); copy or export it again"
             ) from error
         self._left -= len(data)
         if self._left < 0:
             raise self._refuse(
-                f"unpacks to more than {MOST_RATIO} times its size; is it a table of measurements?"
+                f"unpacks to more than {MOST_RATIO} times its size; check that it is a table"
             )
         self._count(data)
         return data
@@ -89,8 +89,8 @@ class _Counted(io.BufferedIOBase):
             raise self._refuse(f"has a line of more than {LONGEST_LINE >> 20} MB; is it a table?")
         if self._lines * self._width > MOST_CELLS:
             raise self._refuse(
-                f"has more than {MOST_CELLS / 1e6:.0f} million cells; split it, or leave out "
-                "columns that nothing reads"
+                f"has more than {MOST_CELLS / 1e6:.0f} million cells; split it, or drop columns "
+                "that are not needed"
             )
 
     def _refuse(self, problem: str) -> DataError:

@@ -60,7 +60,7 @@ def read_records(path: Path, take: "Callable[[McapRecord], object]") -> str | No
                 else:
                     take(record)
         except InvalidMagic as error:
-            raise DataError("is no MCAP file", file=path) from error
+            raise DataError("is not an MCAP file", file=path) from error
         except ZebroLabError:
             raise
         except Exception as error:  # libraries answer damage with whatever went wrong inside them
@@ -79,11 +79,11 @@ def _unpacked(chunk: "Chunk", most: int) -> "Chunk":
         return chunk
     if chunk.uncompressed_size > most:
         raise ValueError(
-            f"a chunk would unpack to {chunk.uncompressed_size} bytes, {most} are read at most"
+            f"a chunk would unpack to {chunk.uncompressed_size} bytes, expected at most {most}"
         )
     data = _UNPACK[chunk.compression](chunk.data, chunk.uncompressed_size + 1)
     if len(data) > chunk.uncompressed_size:
-        raise ValueError("a chunk unpacks to more than it says")
+        raise ValueError("a chunk unpacks to more bytes than its header states")
     return replace(chunk, compression="", data=data)
 
 

@@ -127,7 +127,7 @@ def read_raw_log(path: Path) -> SalvagedStreams:
             samples = decode_raw(record.data, dtype=dtype)
             earlier = parts.setdefault(topic, [])
             if earlier and earlier[0].counts.shape[1] != samples.counts.shape[1]:
-                raise ValueError(f"samples of {topic} change their width")
+                raise ValueError(f"the number of values per sample of {topic} changes")
             earlier.append(samples)
 
     damage = read_records(path, take)

@@ -115,7 +115,7 @@ def read_log(path: Path) -> SalvagedLog:
     damage = read_records(path, take)
     if not blocks:
         raise DataError(
-            f"holds no samples on {TOPIC}" + (f" that can be read ({damage})" if damage else ""),
+            f"holds no readable samples of topic {TOPIC}" + (f" ({damage})" if damage else ""),
             file=path,
         )
     return SalvagedLog(SlipRigTable(*np.concatenate(blocks).T.copy()), damage)

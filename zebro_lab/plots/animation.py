@@ -94,7 +94,7 @@ class _Scene:
 
     def __init__(self, figure: Figure, path: WalkPath, robot: Robot, speed_up: float) -> None:
         self._path, self._robot = path, robot
-        self._pace = "" if speed_up == 1 else f"   {speed_up:.2g}× faster than life"
+        self._pace = "" if speed_up == 1 else f"   {speed_up:.2g}× real time"
         figure.set_layout_engine("none")
         figure.texts[0].set_y(0.96)
         beyond = (0.0, -0.2, 1.0, 1.35)  # 3-D axes leave much of their square empty

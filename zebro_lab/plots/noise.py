@@ -110,11 +110,11 @@ def _legend_above(axes: Axes) -> None:
 
 def _draw_run_scores(axes: Axes, run_score: Array) -> None:
     outside = int(np.sum(np.abs(run_score) > _NORMAL_90))
-    name = f"central 90 %, {outside} of {len(run_score)} outside"
+    name = f"central 90 %, {outside} of {len(run_score)} runs outside"
     axes.axhspan(-_NORMAL_90, _NORMAL_90, color=BLUE, alpha=0.15, lw=0, label=name)
     ranks = np.arange(1, len(run_score) + 1)
     axes.plot(ranks, np.sort(run_score), ls="none", marker="o", ms=3, color=BLUE)
     axes.axhline(0, color="black", lw=0.6)
-    axes.set(xlabel="run, by rank [-]", ylabel="run mean in its predictive [sd]")
+    axes.set(xlabel="run, by rank [-]", ylabel="run mean minus predicted mean [sd]")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     _legend_above(axes)

@@ -72,7 +72,7 @@ def photos_beside_poses(
         _draw_robot(drawn, shot, robot)
         off = 1e3 * np.linalg.norm(shot.position[:2] - shot.tracked[:2])
         turned = np.degrees(np.angle(np.exp(1j * (shot.orientation[2] - shot.tracked[2]))))
-        drawn.set_title(f"{off:.0f} mm, {turned:+.1f} deg off", loc="left")
+        drawn.set_title(f"error {off:.0f} mm, {turned:+.1f} deg", loc="left")
         for axes in (photograph, drawn):
             axes.set(xlim=shot.extent[:2], ylim=shot.extent[2:], aspect="equal")
             axes.tick_params(labelsize=7)

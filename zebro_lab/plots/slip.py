@@ -155,7 +155,7 @@ def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
     )  # fmt: skip
     axes.scatter(
         slip[off], force[off], s=12, facecolors="none", edgecolors="0.35", alpha=alpha,
-        linewidths=0.6, label="block means, load more than 10 % off" if off.any() else None,
+        linewidths=0.6, label="block means, load differs > 10 %" if off.any() else None,
     )  # fmt: skip
     low, lower, median, upper, high = curve.bands
     axes.fill_between(curve.slip, low, high, color=BLUE, alpha=0.25, lw=0, label="90 % of curves")

@@ -35,7 +35,7 @@ def slip_ratios(path: WalkPath, *, title: str) -> Figure:
     limits = _limits(path.slip_ratio[path.contact], least=0.02, cut=0.03)
     lines = {"slip ratio": path.slip_ratio}
     return _leg_panels(
-        path.t, path.contact, lines, limits, label="slip ratio, the model's own [-]", title=title
+        path.t, path.contact, lines, limits, label="slip ratio of the model [-]", title=title
     )
 
 

@@ -12,27 +12,30 @@ from zebro_lab.terminal.request_command import request_command
 if TYPE_CHECKING:
     from rig.zebro.check import MovedLeg
 
-app = typer.Typer(no_args_is_help=True, help="Work on the robot itself.")
+app = typer.Typer(no_args_is_help=True)
 
 
 @app.callback()
 def zebro() -> None:
-    """Work on the robot itself."""
+    """Find leg order, turning directions and zeros of a connected robot."""
 
 
 @app.command()
 @request_command()
 def check(request: CheckRequest) -> None:
-    """Fix leg order, signs and zeros; the robot stands on a block, its legs free to turn."""
+    """Move each leg, ask which one moved and which way, and write the robot's leg profile.
+
+    Put the robot on a block first, so that its legs turn freely.
+    """
     from zebro_lab.recording.check_stage import check_zebro
 
     checked = check_zebro(request, _Terminal())
     if checked.lift_off is not None:
         say(
-            f"lift-off at {checked.lift_off.theta_deg:.1f} degrees, hip "
-            f"{1e3 * checked.lift_off.mismatch:+.1f} mm from its height at touchdown"
+            f"lift-off angle {checked.lift_off.theta_deg:.1f} degrees: the height of the hip there "
+            f"differs by {1e3 * checked.lift_off.mismatch:+.1f} mm from that at touchdown"
         )
-    say(f"wrote {checked.file}; name it as --zebro {checked.file}@PORT")
+    say(f"wrote the profile {checked.file}; record with --zebro {checked.file}@PORT")
 
 
 class _Terminal:
@@ -42,31 +45,22 @@ class _Terminal:
         """Prompt for the leg that moved with a channel (from 0), and for its direction."""
         from rig.zebro.check import MovedLeg
 
-        leg = typer.prompt(
-            f"channel {channel + 1} moved; which leg was it (1 to 6)?", value_proc=_leg_number
-        )
-        return MovedLeg(leg, typer.confirm("did it turn as in walking forward?"))
+        asked = f"channel {channel + 1} was moved; which leg turned (1 to 6)?"
+        leg = typer.prompt(asked, value_proc=_leg_number)
+        return MovedLeg(leg, typer.confirm("did that leg turn as in walking forward?"))
 
     def hold_toes_ahead(self) -> None:
         """Ask the person to hold every toe straight ahead, and wait for Enter."""
-        typer.prompt(
-            "turn every toe straight ahead and hold it; Enter", default="", show_default=False
-        )
+        text = "turn all toes straight ahead, hold them there and press Enter"
+        typer.prompt(text, default="", show_default=False)
 
     def measure_height(self, theta_deg: float) -> float:
         """Prompt for the height of leg 1's hip in mm, leg at `theta_deg`; return it in m."""
-        asked = f"leg 1 stands at {theta_deg:.1f} degrees; hip height in mm?"
-        return typer.prompt(asked, value_proc=_number) / 1000
+        asked = f"leg 1 stands at {theta_deg:.1f} degrees; hip height above ground [mm]?"
+        return typer.prompt(asked, type=float) / 1000
 
 
 def _leg_number(text: str) -> int:
     if text not in {"1", "2", "3", "4", "5", "6"}:
-        raise typer.BadParameter(f"found '{text}'; expected 1 to 6")
+        raise typer.BadParameter(f"found '{text}'; expected the number of a leg, 1 to 6")
     return int(text)
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError as error:
-        raise typer.BadParameter(f"found '{text}'; expected a number") from error

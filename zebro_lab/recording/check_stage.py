@@ -82,7 +82,7 @@ def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_
         RigError: The robot cannot be reached, sends no samples, or does not follow.
     """
     if request.save.exists():
-        raise AlreadyExists(f"{request.save} exists already; name another --save")
+        raise AlreadyExists(f"{request.save} exists already; choose another file with --save")
     with _robot(request.address) as robot:
         # The driver's profile does not change: both steps refer to channels of the wire.
         ordered = check_legs(robot, person.watch, clock=clock)

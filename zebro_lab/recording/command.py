@@ -27,7 +27,7 @@ STOPPED = 130
 
 @request_command()
 def record(request: RecordRequest) -> None:
-    """Record a robot, an IMU or the slip rig: DIR/RUN/{run.json, log.mcap}."""
+    """Record a robot, IMUs or the slip rig into a new run folder in DIR: run.json, log.mcap."""
     from rich.console import Console
 
     from zebro_lab.recording import stage
@@ -49,14 +49,15 @@ def _report(recorded: "Recorded") -> str:
         rejected = sum(counters[key] for key in ("damaged", "repeated", "refused"))
         simulated = "SIMULATED " if manifest.sources[name].startswith("sim:") else ""
         lines.append(
-            f"{simulated}{name}: {counters['received']} samples, {counters['lost']} lost, "
-            f"{rejected} rejected, {counters['dropped']} dropped"
+            f"{simulated}{name}: {counters['received']} samples received, {counters['lost']} lost "
+            f"on the way, {rejected} rejected as damaged, repeated or impossible, "
+            f"{counters['dropped']} dropped by a slow disk"
         )
     for name, clock in manifest.clocks.items():
-        pace = "slow" if clock["drift"] > 0 else "fast"
+        pace = "slower" if clock["drift"] > 0 else "faster"
         lines.append(
-            f"clock of {name}: offset {clock['offset']:.6f} s, {1e6 * abs(clock['drift']):.1f} ppm "
-            f"{pace}; half of the samples arrive more than {1e3 * clock['delay']:.2f} ms after the "
-            "fastest"
+            f"clock of {name}: runs {1e6 * abs(clock['drift']):.1f} ppm {pace} than this computer's"
+            f", shows 0 s at {clock['offset']:.6f} s of the run; half of the samples arrive more "
+            f"than {1e3 * clock['delay']:.2f} ms later than the fastest ones"
         )
-    return "\n".join([*lines, f"{manifest.exit_status}: {recorded.folder}"])
+    return "\n".join([*lines, f"recording {manifest.exit_status}; run folder {recorded.folder}"])

@@ -130,9 +130,9 @@ def profile_text(name: str) -> str:
 
 def _require_any(request: DevicesRequest) -> None:
     if request.zebro is None and request.rig is None and not request.imus:
-        raise SettingsError("no device to record; name one with --zebro, --imu or --rig")
+        raise SettingsError("no device to record is given; add --zebro, --imu or --rig")
     if request.play is not None and request.zebro is None:
-        raise SettingsError("there is no robot to play to; name one with --zebro", key="--play")
+        raise SettingsError("no robot to move is given; add --zebro or omit --play", key="--play")
 
 
 def _add_legs(
@@ -144,7 +144,7 @@ def _add_legs(
 ) -> None:
     if address.startswith(REPLAY):
         if play is not None:
-            raise SettingsError("a replayed robot takes no set-points", key="--play")
+            raise SettingsError("a replayed robot cannot be moved; omit --play", key="--play")
         _replay(opened, address, LEGS)
         return
     legs = stack.enter_context(legs_at(address, play or default_gait(), rng=rng))
@@ -221,7 +221,7 @@ class ForceCheck:
         elif cell is not None:
             self._forces = partial(decode_forces, cell)
         else:
-            raise SettingsError(f"profile '{profile.name}' has no load cell", key="--rig")
+            raise SettingsError(f"profile '{profile.name}' has no board or load cell", key="--rig")
         self._normal = SampleGuard(limits.normal_force, quantity="normal force", unit="N")
         self._traction = SampleGuard(limits.traction_force, quantity="traction force", unit="N")
 

@@ -37,7 +37,7 @@ class Display:
             with needing_threads():
                 self._thread.start()
         except RecordingError as error:
-            self._end(f"display cannot be started, recording goes on without it: {error}")
+            self._end(f"the display cannot start, the recording continues without it: {error}")
 
     def show(self, status: RecordStatus) -> None:
         """Set the status to show next, replacing one not shown yet; does not block."""
@@ -62,7 +62,7 @@ class Display:
                 self._hangs()
 
     def _hangs(self) -> None:
-        self._end(f"display has not returned for {PATIENCE:g} s, recording goes on without it")
+        self._end(f"the display hung for {PATIENCE:g} s, the recording continues without it")
 
     def _end(self, why: str) -> None:
         with self._changed:
@@ -76,7 +76,7 @@ class Display:
             try:
                 self._show(status)
             except BaseException as error:  # noqa: BLE001, RUF100 - whatever a terminal or a plot may raise
-                self._end(f"display failed, recording goes on without it: {error!r}")
+                self._end(f"the display failed, the recording continues without it: {error!r}")
 
     def _take(self) -> RecordStatus | None:
         """Wait for a status and return it; None after `close` or a failure of the display."""

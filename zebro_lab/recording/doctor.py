@@ -22,13 +22,13 @@ OURS: Final = ("zebro_lab", "rig", "tracking", "model")
 FOREIGN: Final = {"serial": "pyserial", "can": "python-can", "cv2": "opencv-python-headless"}
 """Modules whose names several packages use, and the package that each must come from."""
 OPTIONAL_PROGRAMS: Final = {
-    "ffmpeg": "films in mp4 (`--animate`); without it they are gif",
-    "heif-convert": "turning HEIC photographs into JPEG for `track`",
+    "ffmpeg": "animations (`--animate`) as mp4; without ffmpeg they are written as gif",
+    "heif-convert": "converting HEIC photographs to JPEG by hand, for `track`",
 }
 OPTIONAL_PACKAGES: Final = {
-    "evo": "errors of track.tum by another program",
-    "mujoco": "generating datasets/walk-sim again, and `make bench`",
-    "numpyro": "`make bench`, which compares samplers",
+    "evo": "path errors computed by the program evo from track.tum",
+    "mujoco": "regenerating datasets/walk-sim, and for `make bench`",
+    "numpyro": "the comparison of samplers in `make bench`",
 }
 COMFORTABLE: Final = 2 << 30
 """Free space below which a warning is given: hours of recording [bytes]."""
@@ -83,7 +83,7 @@ def check_python(version: tuple[int, ...]) -> Finding:
     found = f"{'.'.join(map(str, version))} on {platform.system()} {platform.machine()}"
     if version[:2] < LEAST_PYTHON:
         wanted = ".".join(map(str, LEAST_PYTHON))
-        return Finding(Grade.BROKEN, "python", f"{found}; needs {wanted} or later")
+        return Finding(Grade.BROKEN, "python", f"{found}; zebro-lab needs Python {wanted} or later")
     return Finding(Grade.OK, "python", found)
 
 
@@ -102,10 +102,11 @@ def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
         found = _version(requirement.name)
         if found is None:
             yield Finding(Grade.BROKEN, requirement.name,
-                          f"missing: install it with `pip install '{requirement}'`")  # fmt: skip
+                          f"not installed; run `pip install '{requirement}'`")  # fmt: skip
         elif not requirement.specifier.contains(found, prereleases=True):
             yield Finding(Grade.BROKEN, requirement.name,
-                          f"found {found}; `pip install '{requirement}'`")  # fmt: skip
+                          f"found version {found}, expected {requirement.specifier}; run "
+                          f"`pip install '{requirement}'`")  # fmt: skip
         else:
             fitting.append(f"{requirement.name} {found}")
     yield Finding(Grade.OK, "packages", ", ".join(fitting))
@@ -130,8 +131,8 @@ def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
         if others:
             yield Finding(
                 Grade.BROKEN, f"module {module}",
-                f"comes from {package} and {', '.join(others)}: `pip uninstall {' '.join(others)}`,"
-                f" then `pip install --force-reinstall {package}`",
+                f"is part of {package} and of {', '.join(others)}; run `pip uninstall "
+                f"{' '.join(others)}`, then `pip install --force-reinstall {package}`",
             )  # fmt: skip
     yield from _local_shadows(folder, home)
 
@@ -142,8 +143,8 @@ def check_serial_ports() -> Iterator[Finding]:
 
     ports = sorted(list_ports.comports())
     if not ports:
-        yield Finding(Grade.NOTE, "serial ports", "none found; plug the device in, or use a twin "
-                      "(`zebro-lab sim zebro`)")  # fmt: skip
+        yield Finding(Grade.NOTE, "serial ports", "none found; connect the device, or simulate "
+                      "one with `zebro-lab sim zebro`")  # fmt: skip
     for port in ports:
         yield check_port(Path(port.device), port.description)
 
@@ -160,11 +161,11 @@ def check_port(
     """
     what = f"serial port {device}"
     if sys.platform == "win32" or may(device, os.R_OK | os.W_OK):
-        return Finding(Grade.OK, what, f"{description}, may be opened")
+        return Finding(Grade.OK, what, f"{description}; you may read and write it")
     group = _group(device)
     return Finding(
         Grade.NOTE, what,
-        f"{description}, may not be opened; it belongs to the group {group}: "
+        f"{description}; you may not read and write it. It belongs to the group {group}: run "
         f"`sudo usermod -aG {group} $USER`, then log in again",
     )  # fmt: skip
 
@@ -178,14 +179,14 @@ def check_can(net: Path) -> Iterator[Finding]:
     found = [place for place in sorted(net.glob("*")) if _read(place / "type") == CAN_TYPE]
     if not found:
         yield Finding(
-            Grade.NOTE, "CAN", "no interface found; an adapter on a serial line needs none "
-            "(PROFILE@slcan:/dev/ttyACM0), nor does a twin (`zebro-lab sim rig rig-odrive-netft`)",
+            Grade.NOTE, "CAN", "no CAN interface found; a serial adapter (PROFILE@slcan:/dev/tty…) "
+            "or a simulated device (`zebro-lab sim rig rig-odrive-netft`) needs none",
         )  # fmt: skip
     for place in found:
         up = int(_read(place / "flags") or "0", 16) & 1
         name = place.name
-        text = f"up: PROFILE@socketcan:{name}" if up else (
-            f"down; `sudo ip link set {name} up type can bitrate 1000000`")  # fmt: skip
+        text = f"is up; its address is PROFILE@socketcan:{name}" if up else (
+            f"is down; run `sudo ip link set {name} up type can bitrate 1000000`")  # fmt: skip
         yield Finding(Grade.OK if up else Grade.NOTE, f"CAN {name}", text)
 
 
@@ -200,12 +201,12 @@ def check_udp(limit: Path) -> Iterator[Finding]:
         return
     granted = int(text)
     if granted >= UDP_BUFFER:
-        yield Finding(Grade.OK, "UDP buffer", f"{granted >> 10} KiB")
+        yield Finding(Grade.OK, "UDP buffer", f"the system allows {granted >> 10} KiB")
         return
     yield Finding(
         Grade.NOTE, "UDP buffer",
-        f"the system grants {granted >> 10} KiB; a load cell at 7 kHz may lose samples when the "
-        f"machine is busy: `sudo sysctl net.core.rmem_max={UDP_BUFFER}`",
+        f"the system allows {granted >> 10} KiB; a busy computer may lose samples of a load cell "
+        f"at 7 kHz. Run `sudo sysctl net.core.rmem_max={UDP_BUFFER}`",
     )  # fmt: skip
 
 
@@ -221,11 +222,11 @@ def check_disk(data: Path) -> Finding:
     free = shutil.disk_usage(place).free
     text = f"{free / 1e9:.1f} GB free at {place}"
     if not os.access(place, os.W_OK):
-        return Finding(Grade.BROKEN, "disk", f"{place} cannot be written; name another --data")
+        return Finding(Grade.BROKEN, "disk", f"{place} is not writable; choose another --data")
     if free < LEAST_FREE:
         return Finding(Grade.BROKEN, "disk", f"{text}; recording needs {LEAST_FREE / 1e6:.0f} MB")
     if free < COMFORTABLE:
-        return Finding(Grade.NOTE, "disk", f"{text}; a load cell at 7 kHz fills 0.3 GB an hour")
+        return Finding(Grade.NOTE, "disk", f"{text}; a load cell at 7 kHz takes 0.3 GB an hour")
     return Finding(Grade.OK, "disk", text)
 
 
@@ -241,7 +242,7 @@ def check_optional() -> Iterator[Finding]:
                       version or f"not installed; only needed for {purpose}")  # fmt: skip
 
 
-def _from(module: str, place: Path, search: Sequence[str], of: str = "ours") -> Finding:
+def _from(module: str, place: Path, search: Sequence[str], of: str = "zebro-lab") -> Finding:
     spec = PathFinder.find_spec(module, list(search))
     origin = None if spec is None or spec.origin is None else Path(spec.origin)
     if origin is None and module in OURS:  # an editable installation has its own import finder
@@ -252,8 +253,8 @@ def _from(module: str, place: Path, search: Sequence[str], of: str = "ours") -> 
         return Finding(Grade.OK, what, of)
     return Finding(
         Grade.BROKEN, what,
-        f"comes from {origin}, expected {place}: something of the same name shadows it; remove or "
-        "rename it, or install zebro-lab into an environment of its own",
+        f"Python imports {origin} instead of {place}; rename or remove {origin}, or install "
+        "zebro-lab into a new virtual environment",
     )  # fmt: skip
 
 
@@ -265,7 +266,7 @@ def _local_shadows(folder: Path, home: Path) -> Iterator[Finding]:
             if shadows and not ours:
                 yield Finding(
                     Grade.NOTE, f"module {module}",
-                    f"{place} would be imported instead by any `python` started here; rename it",
+                    f"`python` started in this folder would import {place} instead; rename it",
                 )  # fmt: skip
 
 

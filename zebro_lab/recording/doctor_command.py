@@ -15,20 +15,20 @@ zebro-lab doctor
 
 zebro-lab doctor --data /mnt/recordings
 
-Exit code 1 where something that is needed is broken; notes are only for those whom they concern.
+Exit code 1 if anything is BROKEN. A note concerns only users of the device or program it names.
 """
 
 Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings are written to.")]
 
 
 def doctor(data: Data = Path()) -> None:
-    """Look at versions, packages, serial ports, CAN interfaces, disk and optional programs."""
+    """Check versions, packages, serial ports, CAN interfaces, disk and optional programs."""
     from zebro_lab.recording.doctor import Grade, examine
 
     broken = 0
     for finding in examine(data):
         broken += finding.state is Grade.BROKEN
         say(f"{finding.state:<6}  {finding.what}: {finding.text}")
-    say(f"{broken} broken" if broken else "everything needed is there")
+    say(f"{broken} BROKEN, see above" if broken else "everything that zebro-lab needs is there")
     if broken:
         raise typer.Exit(1)

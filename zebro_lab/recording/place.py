@@ -33,11 +33,11 @@ class OpenPlace:
         try:
             found = self._path.stat()
         except FileNotFoundError:
-            return f"{self._path} is gone: its folder was removed or renamed"
+            return f"{self._path} no longer exists: the file or its folder was removed or renamed"
         except OSError as error:
-            return f"{self._path} cannot be read any more: {error.strerror}"
+            return f"{self._path} can no longer be accessed: {error.strerror}"
         if identity(found) != self._file:
-            return f"{self._path} is another file now: it was removed or renamed, and created again"
+            return f"{self._path} was removed or renamed, and another file has its name now"
         return None
 
     def folder(self) -> Path | None:
@@ -71,11 +71,11 @@ def require_space(folder: Path, least: float) -> None:
     try:
         free = shutil.disk_usage(folder).free
     except OSError as error:
-        raise RecordingError(f"{folder}: free space unknown: {error.strerror}") from error
+        raise RecordingError(f"{folder}: cannot determine free space: {error.strerror}") from error
     if free < least:
         raise RecordingError(
-            f"{folder} has {free / 1e6:.0f} MB free; expected at least {least / 1e6:.0f} MB: make "
-            "room, or name another folder as --data"
+            f"the disk of {folder} has {free / 1e6:.0f} MB free; expected at least "
+            f"{least / 1e6:.0f} MB: delete files, or choose a folder on another disk with --data"
         )
 
 

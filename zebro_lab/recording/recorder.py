@@ -114,7 +114,7 @@ class RunRecorder:
         """
         if self._queues[stream].put(samples):
             return True
-        self._fail(f"disk too slow: more than {self._limit} samples of '{stream}' wait")
+        self._fail(f"disk too slow: more than {self._limit} samples of '{stream}' wait for writing")
         return False
 
     def event(self, text: str, *, level: int = INFO) -> None:
@@ -159,8 +159,9 @@ class RunRecorder:
         self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
-        """Set the time of the run's end to now, and its reason unless one was set before."""
-        self._ended = self._clock.now()
+        """Set the run's end to now and its reason, each unless one was set before."""
+        if self._ended is None:
+            self._ended = self._clock.now()
         if self._reason == "completed":
             self._reason = reason
 
@@ -202,10 +203,7 @@ class RunRecorder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if error is not None:
-            self.end(f"failed: {_one_line(error)}")
-        if self._ended is None:
-            self.end()
+        self.end("completed" if error is None else f"failed: {_one_line(error)}")
         self._ending.set()
         if self._files is None:
             return
@@ -220,7 +218,7 @@ class RunRecorder:
             finishing.join(JOIN_LIMIT + END_LIMIT)
             raise
         if finishing.is_alive():
-            self._fail(f"the disk did not take the end of the run within {END_LIMIT:g} s")
+            self._fail(f"the end of the run could not be written within {END_LIMIT:g} s")
 
     def _start_thread(self, task: Callable[[RunFiles], None], files: RunFiles) -> threading.Thread:
         thread = threading.Thread(target=task, args=(files,), daemon=True, name="recorder")
@@ -271,7 +269,7 @@ class RunRecorder:
             files.require_place()
 
     def _sync_loop(self, files: RunFiles) -> None:
-        with self._storing_failure(f"the disk does not keep {files.folder}"):
+        with self._storing_failure(f"flushing {files.folder} to the disk failed"):
             files.sync_first()
             while not self._ending.wait(SYNC_EVERY):
                 files.sync_log()
@@ -294,12 +292,12 @@ class RunRecorder:
         whole = False
         with self._storing_failure(files.folder / LOG_FILE):
             if any(thread.is_alive() for thread in before):
-                raise RecordingError(f"the disk took nothing for {JOIN_LIMIT:g} s")
+                raise RecordingError(f"the disk completed no write within {JOIN_LIMIT:g} s")
             files.free_reserve()
             if self._failure is None:
                 self._finish_log(files)
                 whole = True
-        with self._storing_failure(f"{files.folder}: its end record cannot be written"):
+        with self._storing_failure(f"{files.folder}: run.json cannot be completed"):
             files.write_end(self._end_record(whole=whole), whole=whole)
         self.folder = files.folder
         if not any(thread.is_alive() for thread in before):

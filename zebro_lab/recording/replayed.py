@@ -63,11 +63,11 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     kept = chosen[0] if what == IMU else what
     file = profile_file(folder, kept)
     if not file.is_file():
-        raise NotFound(f"{file}: missing; restore it from where the run was recorded")
+        raise NotFound(f"{file}: missing; copy it from the computer where the run was recorded")
     views = profile_views(file)
     for each in chosen:
         if each not in views:
-            raise DataError(f"describes no {each}, of which the log has samples", file=file)
+            raise DataError(f"does not describe the recorded stream '{each}'", file=file)
     streams = {name or each: (each, found[names[each]]) for each in chosen}
     return Replayed(
         tuple(

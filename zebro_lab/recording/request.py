@@ -14,14 +14,14 @@ _ADDRESS = "PROFILE@PORT|sim|replay:RUN"
 class RecordRequest:
     """Options of `zebro-lab record`."""
 
-    label: Annotated[str, Option(help="Name of the run.")]
-    data: Annotated[Path, Option(metavar="DIR", help="Folder of run folders.")]
-    zebro: Annotated[str | None, Option(metavar=_ADDRESS, help="Robot whose legs to record.")] = (
-        None
-    )
+    label: Annotated[str, Option(help="Name of the run, part of its folder's name.")]
+    data: Annotated[Path, Option(metavar="DIR", help="Folder in which to create the run folder.")]
+    zebro: Annotated[
+        str | None, Option(metavar=_ADDRESS, help="Robot whose leg angles to record.")
+    ] = None
     play: Annotated[
         Path | None,
-        Option(metavar="FILE", help="Leg angles to send to the robot: path.csv or a leg log."),
+        Option(metavar="FILE", help="Leg angles to walk: a walk folder, table or recorded run."),
     ] = None
     imus: Annotated[
         tuple[str, ...],
@@ -31,13 +31,13 @@ class RecordRequest:
     duration: Annotated[
         float | None,
         Option(
-            help="Duration from the first samples [s]; default: until q, Ctrl-C or the end of the "
-            "played gait or replayed run."
+            help="Duration after every device has sent a sample [s]; default: until q, Ctrl-C or "
+            "the end of --play or of the replayed run."
         ),
     ] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the operator.")] = "unknown"
-    robot: Annotated[str | None, Option(help="Name of the robot, for the record.")] = None
+    robot: Annotated[str | None, Option(help="Name of the robot, noted in run.json.")] = None
     seed: Annotated[int, Option(min=0, help="Seed of simulated devices.")] = 0
 
 
@@ -46,7 +46,7 @@ class CheckRequest:
     """Options of `zebro-lab zebro check`."""
 
     address: Annotated[
-        str, Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim is a twin.")
+        str, Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim to simulate one.")
     ]
     save: Annotated[Path, Option(metavar="FILE", help="Profile to write.")] = Path("zebro.toml")
     touchdown_deg: Annotated[
@@ -54,28 +54,29 @@ class CheckRequest:
         Option(
             "--lift-off-for",
             metavar="DEG",
-            help="Also find the lift-off angle whose hip height is this touchdown's [deg].",
+            help="Also find the lift-off angle of equal hip height for this touchdown angle [deg].",
         ),
     ] = None
 
 
-Profile: TypeAlias = Annotated[str, Argument()]
+Profile: TypeAlias = Annotated[str, Argument(help="Name of a shipped profile, or a profile file.")]
 Can: TypeAlias = Annotated[
     str | None,
     Option(
         metavar="INTERFACE:CHANNEL",
-        help="Bus for devices on CAN; default: a simulated adapter at a port, which speaks SLCAN.",
+        help="CAN bus of the system to use, such as socketcan:vcan0; default: a simulated SLCAN "
+        "adapter at a serial port. Only for profiles of devices on CAN.",
     ),
 ]
 Socket: TypeAlias = Annotated[
-    bool, Option("--socket", help="Listen on socket:// in place of a pseudo-terminal.")
+    bool, Option("--socket", help="Listen at a TCP port (socket://) instead of a pseudo-terminal.")
 ]
 Flip: TypeAlias = Annotated[float, Option(min=0.0, max=1.0, help="Probability that a bit flips.")]
 Drop: TypeAlias = Annotated[
     float, Option(min=0.0, max=1.0, help="Probability that a frame is lost.")
 ]
 Garbage: TypeAlias = Annotated[
-    float, Option(min=0.0, max=1.0, help="Probability of garbage between frames.")
+    float, Option(min=0.0, max=1.0, help="Probability of random bytes before a frame.")
 ]
 Seed: TypeAlias = Annotated[int, Option(min=0, help="Seed of all random numbers.")]
 
@@ -85,17 +86,17 @@ class ZebroTwinRequest:
     """Options of `zebro-lab sim zebro`."""
 
     profile: Profile = "zebro-100-serial"
-    play: Annotated[Path | None, Option(metavar="FILE", help="Leg angles to walk: path.csv.")] = (
-        None
-    )
+    play: Annotated[
+        Path | None, Option(metavar="FILE", help="Leg angles to walk: walk folder, table or run.")
+    ] = None
     can: Can = None
     as_socket: Socket = False
     flip: Flip = 0.0
     drop: Drop = 0.0
     garbage: Garbage = 0.0
-    jitter: Annotated[float, Option(min=0.0, help="Jitter of the sampling times (sd) [s].")] = 0.0
+    jitter: Annotated[float, Option(min=0.0, help="Spread (sd) of the sampling times [s].")] = 0.0
     pause: Annotated[
-        float, Option(min=0.0, max=1.0, help="Probability of a pause before a leg's flight.")
+        float, Option(min=0.0, max=1.0, help="Probability that a leg pauses before its flight.")
     ] = 0.0
     seed: Seed = 0
 

@@ -95,7 +95,7 @@ class RunFiles:
         """
         problem = self._place.problem()
         if problem is not None:
-            raise RecordingError(f"{problem} while recording")
+            raise RecordingError(f"{problem}, while the run was being recorded")
 
     def free_reserve(self) -> None:
         """Delete the reserve file, so that its disk space is free for the end of the run."""
@@ -121,8 +121,8 @@ class RunFiles:
         folder = self._place.folder()
         if folder is None:
             raise RecordingError(
-                f"{self.folder}: removed or moved while recording; its end record cannot be "
-                "written. Look for the folder under another name, or record again"
+                f"{self.folder} was removed or moved during the recording, so that its run.json "
+                "cannot be completed. If it was moved, move it back; else record again"
             )
         self.folder = folder
         log_sha256 = file_hash(folder / LOG_FILE) if whole else None

@@ -188,9 +188,9 @@ def _drawn(status: "RecordStatus") -> Group:
 
 def _time(status: "RecordStatus") -> Group:
     if status.duration is None:
-        return Group(Text(f"{status.elapsed:.0f} s; q ends the recording"))
+        return Group(Text(f"{status.elapsed:.0f} s recorded; press q to end the recording"))
     left = max(status.duration - status.elapsed, 0.0)
     return Group(
         ProgressBar(total=status.duration, completed=status.elapsed, width=40),
-        Text(f"{status.elapsed:.0f} of {status.duration:g} s, {left:.0f} s left; q ends it now"),
+        Text(f"{status.elapsed:.0f} of {status.duration:g} s, {left:.0f} s left; press q to end"),
     )

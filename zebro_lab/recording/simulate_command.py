@@ -25,7 +25,7 @@ Duration = Annotated[
 @app.command()
 @request_command()
 def zebro(request: ZebroTwinRequest, duration: Duration = None) -> None:
-    """Simulate the robot's leg stream; it walks a tripod, or what --play says."""
+    """Simulate the robot's legs, which walk a tripod gait or the leg angles of --play."""
     from zebro_lab.recording.simulate_stage import serve_zebro
 
     _serve(serve_zebro(request), request.profile, duration)
@@ -34,7 +34,7 @@ def zebro(request: ZebroTwinRequest, duration: Duration = None) -> None:
 @app.command()
 @request_command()
 def imu(request: ImuTwinRequest, duration: Duration = None) -> None:
-    """Simulate an inertial measurement unit on a rocking body."""
+    """Simulate an inertial measurement unit on a body that rolls and pitches."""
     from zebro_lab.recording.simulate_stage import serve_imu
 
     _serve(serve_imu(request), request.profile, duration)
@@ -43,7 +43,7 @@ def imu(request: ImuTwinRequest, duration: Duration = None) -> None:
 @app.command()
 @request_command()
 def rig(request: RigTwinRequest, duration: Duration = None) -> None:
-    """Simulate the slip rig; it sweeps slip by itself until it is commanded."""
+    """Simulate the slip rig, which repeats a slip sweep until a program commands its discs."""
     from zebro_lab.recording.simulate_stage import serve_rig
 
     _serve(serve_rig(request), request.profile, duration)
@@ -56,5 +56,5 @@ def _serve(serving: "AbstractContextManager[Served]", profile: str, duration: fl
     with progress_bar() as watcher, serving as served:
         for what, place in served.places.items():
             say(f"SIMULATED {what} ({served.source}), profile {profile}: {place}")
-        say(f"record it as {served.address}")
+        say(f"to record the simulated device, use the address {served.address}")
         wait_until(watcher.stop_requested, duration=duration)

@@ -112,7 +112,7 @@ def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
             yield Served(board.source, {"board": port}, f"{request.profile}@{port}")
         return
     if profile.drives is None or profile.load_cell is None:
-        raise SettingsError(f"profile '{profile.name}' has neither a board nor drives")
+        raise SettingsError(f"profile '{profile.name}' has no board, nor drives and load cell")
     with ExitStack() as stack:
         bus, place = stack.enter_context(_bus(request, "sim:rig"))
         drives = SimulatedDrives(rig, bus, profile=profile.drives, watchdog=WATCHDOG)
@@ -171,7 +171,7 @@ def _bus(
     try:
         bus = can.Bus(interface=interface, channel=channel)
     except (can.CanError, OSError, ValueError, ImportError) as error:
-        raise SettingsError(f"cannot open {request.can}: {error}", key="--can") from error
+        raise SettingsError(f"cannot open bus {request.can}: {error}", key="--can") from error
     with bus:
         yield bus, request.can
 

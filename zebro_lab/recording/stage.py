@@ -92,7 +92,7 @@ def record(
         what = recorder.failure or problem
         where = f"the samples until then are in {recorder.folder}"
         if not recorder.folder.is_dir():
-            where = "the samples until then are gone with it"
+            where = "the samples until then are lost with the run folder"
         raise RecordingError(f"recording ended early: {what}; {where}")
     return Recorded(recorder.folder, read_manifest(recorder.folder))
 
@@ -158,7 +158,7 @@ def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> Non
         try:
             fit = reader.clock_watch.result()
         except RigError as error:
-            recorder.event(f"{name}: clocks cannot be compared: {error}", level=WARNING)
+            recorder.event(f"{name}: cannot fit the device's clock: {error}", level=WARNING)
             continue
         if fit is not None:
             clocks[name] = fit
@@ -175,7 +175,7 @@ def _duration(request: RecordRequest, play: SampledReference | None) -> float | 
     if request.duration is not None:
         if not request.duration > 0:
             raise SettingsError(
-                f"{request.duration:g} s is no duration; expected more than 0", key="--duration"
+                f"found {request.duration:g} s; expected more than 0 s", key="--duration"
             )
         wanted.append(request.duration)
     return min(wanted, default=None)

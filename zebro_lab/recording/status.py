@@ -90,8 +90,9 @@ class StreamWatch:
             silent = [name for name, reader in self._readers.items() if reader.first is None]
             if silent:
                 return (
-                    f"no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, and --duration "
-                    "counts from the first samples; switch it on, or leave it out"
+                    f"received no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, and "
+                    "--duration counts from the first sample of every device; check that the "
+                    "device is connected and switched on, or record without it"
                 )
         return problem
 

@@ -20,6 +20,6 @@ def needing_threads() -> Iterator[None]:
         if "start new thread" not in str(error):
             raise
         raise RecordingError(
-            f"{error}: the system allows no more threads; end other programs, or raise the "
-            "limit (ulimit -u)"
+            f"{error}: the system allows no more threads; close other programs, or raise the "
+            "limit of threads (ulimit -u)"
         ) from error

@@ -12,8 +12,8 @@ zebro-lab report data/20260101T120000Z_walk_tiles --calibration calibration
 
 zebro-lab report data --out season.html --title "Tiles, spring"
 
-The page needs no network and no other file: send it, print it. What has not been made yet is named
-with the command that makes it.
+The page contains all pictures and needs no network. For results that do not exist yet, page and
+command line name the command that creates them.
 """
 
 
@@ -27,5 +27,5 @@ def report(request: ReportRequest) -> None:
     sources = stage.report(request, made=datetime.now(UTC))
     for part in sources.parts:
         if part.missing:
-            say(f"missing: {part.name}; {part.maker} makes it")
+            say(f"missing: {part.name}; create it with: {part.maker}")
     say(f"wrote {request.out} ({request.out.stat().st_size / 1e6:.1f} MB)")

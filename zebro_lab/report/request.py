@@ -16,9 +16,9 @@ class ReportRequest:
         Path,
         Argument(
             metavar="RUN",
-            help="Run folder, folder with track, prediction, validation, or folder of runs.",
+            help="Run folder, or folder with track, prediction or validation, or folder of these.",
         ),
     ]
     calibration: Annotated[Path, Option(help="Calibration folder.")] = Path("calibration")
-    out: Annotated[Path, Option(help="Page to write.")] = Path("report.html")
-    title: Annotated[str | None, Option(help="Title; default: the folder's name.")] = None
+    out: Annotated[Path, Option(help="HTML file to write.")] = Path("report.html")
+    title: Annotated[str | None, Option(help="Title; default: Report on RUN.")] = None

@@ -149,8 +149,8 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
     walks = None if walks.missing else walks
     if not found and not own:
         raise NotFound(
-            f"{data} holds no run ({MANIFEST_FILE}) and none of {', '.join(WALK_PARTS)}; name a "
-            "run folder, a folder of them, or a folder that track, predict and validate wrote into"
+            f"{data} holds neither a run ({MANIFEST_FILE}) nor a folder {', '.join(WALK_PARTS)} "
+            "with results; give a run folder, a folder of run folders, or the folder of results"
         )
     if data in found or not found:
         return Sources(data, [_run(data)], slip, walks=walks)
@@ -177,7 +177,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
     expected = ("predict", "walk") if name == PREDICTION else (name,)
     if kind not in expected:
         raise DataError(
-            f"is the result of another command ({kind}); expected a {name}",
+            f"is the manifest of a result of kind '{kind}'; expected kind {' or '.join(expected)}",
             file=folder / MANIFEST,
         )
     listed = documents[MANIFEST].get("outputs", {})
@@ -194,7 +194,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
 def _rows(file: Path) -> dict[str, dict[str, Any]]:
     """Read a CSV as dicts by header, by the cell in the first column; numeric cells as floats."""
     text = read_text(file, most=_MOST_TABLE)
-    with parsing(file, "cannot be read as CSV", advice="make it again"):
+    with parsing(file, "cannot be read as CSV", advice="run the command that wrote it again"):
         rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]
         return {
             next(iter(row.values())): {k: _value(v or "") for k, v in row.items()} for row in rows
@@ -210,7 +210,7 @@ def _value(cell: str) -> float | str:
 
 _READERS: Mapping[str, Callable[[Path], Any]] = {
     ".json": read_json_document,
-    ".toml": lambda file: read_toml_document(file, remedy="make it again", fault=DataError),
+    ".toml": lambda file: read_toml_document(file, remedy="write it again", fault=DataError),
     ".csv": _rows,
 }
 
@@ -219,7 +219,7 @@ def _read(file: Path) -> Mapping[str, Any]:
     try:
         content = _READERS[file.suffix](file)
     except NotFound as error:
-        raise DataError("is missing; make it again", file=file) from error
+        raise DataError("is missing; run the command that writes it again", file=file) from error
     if not isinstance(content, dict):
-        raise DataError("holds no table; make it again", file=file)
+        raise DataError("holds no named entries; run the command that wrote it again", file=file)
     return content

@@ -66,7 +66,7 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
     """
     if request.name not in GAITS:
         raise SettingsError(
-            f"there is no gait '{request.name}'; {nearest(request.name, list(GAITS))}",
+            f"'{request.name}' is not a gait; {nearest(request.name, list(GAITS))}",
             key="--gait",
         )
     kind = GAITS[request.name]
@@ -74,7 +74,7 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
         if option not in kind.options:
             known = ", ".join(map(_flag, kind.options))
             raise SettingsError(
-                f"means nothing to the gait '{request.name}', which has {known}", key=_flag(option)
+                f"does not apply to gait '{request.name}', which has {known}", key=_flag(option)
             )
     return kind.make(request, leg_arc)
 
@@ -185,7 +185,7 @@ def _angle(text: str | None, option: str, default: float) -> float:
         raise _no_angle(option, text)
     if second is not None and second != first:
         raise SettingsError(
-            f"'{text}' has two angles, but this gait has one for all legs", key=_flag(option)
+            f"found two angles, '{text}'; this gait takes one, for all legs", key=_flag(option)
         )
     return first
 
@@ -211,7 +211,7 @@ def _angles(
 
 def _no_angle(option: str, text: str | None) -> SettingsError:
     return SettingsError(
-        f"'{text}' is no angle; expected INNER or INNER,OUTER in degrees, such as 50 or 50,46",
+        f"'{text}' is not an angle; expected INNER or INNER,OUTER in degrees, like 50 or 50,46",
         key=_flag(option),
     )
 

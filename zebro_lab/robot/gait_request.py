@@ -15,9 +15,9 @@ _PAIR = "INNER[,OUTER]"
 class GaitRequest:
     """Parameters of a gait; None for the gait's default."""
 
-    name: Annotated[GaitName, Option("--gait", help="Pattern of the legs.")] = "tripod"
+    name: Annotated[GaitName, Option("--gait", help="Gait: pattern of leg motion.")] = "tripod"
     steering: Annotated[
-        float | None, Option(help="Outer over inner stance angle of the tripod; 1 is straight.")
+        float | None, Option(help="Outer to inner stance angle of the tripod; 1 is straight.")
     ] = None
     direction: Annotated[
         Side | None, Option(help="Side to turn to, for tripod, suriana and maxplus.")
@@ -27,7 +27,7 @@ class GaitRequest:
     ] = None
     liftoff_deg: Annotated[
         str | None,
-        Option(metavar=_PAIR, help="Leg angle at lift-off [deg]; computed for the tripod."),
+        Option(metavar=_PAIR, help="Leg angle at lift-off [deg]; default for tripod: computed."),
     ] = None
     cycle: Annotated[
         float | None, Option(help="Duration of a cycle, for tripod, tetrapod and buehler [s].")
@@ -35,12 +35,12 @@ class GaitRequest:
     tau_ground: Annotated[
         float | None,
         Option(
-            help="Stance time in a cycle without --tau-turn, for suriana and buehler; for maxplus "
-            "the shortest [s]."
+            help="Stance time without --tau-turn, for suriana and buehler; shortest stance time, "
+            "for maxplus [s]."
         ),
     ] = None
     tau_flight: Annotated[
-        float | None, Option(help="Time in flight, for suriana and maxplus [s].")
+        float | None, Option(help="Flight time of a leg, for suriana and maxplus [s].")
     ] = None
     tau_turn: Annotated[
         float | None,

@@ -81,15 +81,15 @@ def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, tuple[
         return quaternion, ()
     if not mapping.has(table, "roll"):
         raise DataError(
-            f"holds no orientation; expected {', '.join(_QUATERNION)}, or roll and pitch; its "
-            f"columns are {', '.join(table.columns)}: map them in [imu.columns] of a columns.toml",
+            f"holds no orientation; expected the columns {', '.join(_QUATERNION)}, or roll and "
+            f"pitch, found {', '.join(table.columns)}; map them in [imu.columns] of a columns.toml",
             file=table.path,
         )
     roll, pitch = (_numbers(table, mapping, name) for name in ("roll", "pitch"))
     known = mapping.has(table, "yaw")
     yaw = _numbers(table, mapping, "yaw") if known else np.zeros(len(roll))
     turned = Rotation.from_euler("ZYX", np.column_stack([yaw, pitch, roll]))
-    notes = () if known else (f"{table.path.name}: without yaw; its heading is kept as 0",)
+    notes = () if known else (f"{table.path.name} has no column of yaw; yaw is set to 0",)
     return turned.as_quat(scalar_first=True), notes
 
 
@@ -108,5 +108,5 @@ def _require_unit(table: RawTable, mapping: MappedColumns, quaternion: Array) ->
     good = np.abs(norm - 1) <= _NORM_TOLERANCE
     if not good.all():
         index = int(np.argmin(good))
-        problem = f"the quaternion has length {norm[index]:.3g}; expected 1"
+        problem = f"the quaternion in this row has length {norm[index]:.3g}; expected 1"
         raise table.fault(problem, mapping.mapped["qw"].name, index)

@@ -59,7 +59,7 @@ def legs_of_table(
     t, *angles = (_numbers(table, name, mapping) for name in LEG_UNITS)
     time_column = mapping.mapped["t"].name
     if len(t) < 2:
-        raise DataError(f"has {len(t)} row; a leg log needs two or more", file=files[0])
+        raise DataError(f"has {len(t)} row; expected two or more rows", file=files[0])
     table.require_increasing(time_column, t)
     _require_no_gap(table, time_column, t)
     raw = np.column_stack(angles) * np.asarray(leg_sign, dtype=float)
@@ -78,7 +78,7 @@ def _numbers(table: RawTable, name: str, columns: MappedColumns) -> Array:
         table,
         name,
         what="time" if name == "t" else f"angle of leg {name[-1]}",
-        advice="delete the rows before or after it, or fill it",
+        advice="fill in the cell, or delete all rows up to it or from it on",
     )
 
 
@@ -89,8 +89,8 @@ def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
     if wide.any():
         index = int(np.argmax(wide)) + 1
         raise table.fault(
-            f"time jumps from {t[index - 1]:g} to {t[index]:g} s, where samples are {usual:.4g} s "
-            "apart; split the log there and predict each part",
+            f"time jumps from {t[index - 1]:g} to {t[index]:g} s, while samples are usually "
+            f"{usual:.4g} s apart; split the file before this row and use each part by itself",
             column,
             index,
         )
@@ -102,8 +102,8 @@ def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) ->
         return
     row, leg = (int(i[0]) for i in np.nonzero(turns > _LONGEST_TURN))
     raise table.fault(
-        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad since the sample before; from half a "
-        "turn on the direction is ambiguous: check its unit, or log faster",
+        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad between two samples, so that the "
+        "direction is uncertain; check the unit of the angles, or record at a higher rate",
         columns.mapped[ANGLES[leg]].name,
         row + 1,
     )
@@ -113,11 +113,11 @@ def _notes(t: Array, raw: Array, theta: Array) -> list[str]:
     rate = (len(t) - 1) / (t[-1] - t[0])
     notes = [f"leg log: {len(t)} samples over {t[-1] - t[0]:.4g} s, about {rate:.4g} Hz"]
     if np.any(raw != theta):
-        notes.append("leg log: angles were wrapped to a turn, now unwrapped")
+        notes.append("leg log: angles were wrapped to one turn and have been unwrapped")
     backward = [str(leg + 1) for leg in range(N_LEGS) if theta[-1, leg] < theta[0, leg] - np.pi]
     if backward:
         notes.append(
-            f"leg log: legs {', '.join(backward)} turn backwards; is their sign right? "
-            "(legs.sign in robot.toml, or sign in columns.toml)"
+            f"leg log: leg {', '.join(backward)} turns backwards; check the signs (legs.sign in "
+            "robot.toml, or sign in columns.toml)"
         )
     return notes

@@ -23,7 +23,7 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
     for number in numbers:
         if number >= count:
             raise MarkerError(
-                f"number {number} is not in '{dictionary}', whose markers are 0 to {count - 1}"
+                f"marker {number} is not in the dictionary '{dictionary}' of 0 to {count - 1}"
             )
 
 
@@ -41,6 +41,6 @@ def require_apart(robot: MarkedRobot, floor: FloorMap) -> None:
     number = robot.marker.marker_id
     if number in floor.marker_ids:
         raise MarkerError(
-            f"marker {number} is the robot's and one of the floor's; take the one that is not laid "
-            "out of floor.toml, or correct the robot's number (id in robot.toml, --marker)"
+            f"marker {number} is listed both for the robot and for the floor; remove it from "
+            "floor.toml, or correct the robot's number (id in robot.toml, or --marker)"
         )

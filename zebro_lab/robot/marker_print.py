@@ -48,7 +48,7 @@ def parse_marker(text: str) -> MarkerPrint:
     parts = text.rsplit(":", 2)
     if len(parts) != 3 or not parts[1].isdigit():
         raise SettingsError(
-            f"'{text}' is no marker; expected DICTIONARY:NUMBER:SIDE such as {KIT_PRINT.text}",
+            f"found '{text}'; expected DICTIONARY:NUMBER:SIDE such as {KIT_PRINT.text}",
             key="--marker",
         )
     return MarkerPrint(parts[0], int(parts[1]), quantity_to_si(parts[2], "m"))

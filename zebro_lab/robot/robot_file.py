@@ -61,7 +61,7 @@ def read_robot_file(file: Path) -> RobotFile:
         NotFound: There is no such file.
         SettingsError: The file is not TOML, or has an unknown key, an invalid value or unit.
     """
-    advice = f"expected a {ROBOT_FILE} (walk --write-robot {file} starts one)"
+    advice = f"zebro-lab walk --write-robot {file} creates a {ROBOT_FILE} to edit"
     top = read_settings(file, advice=advice)
     legs = top.table("legs")
     described = RobotFile(
@@ -102,29 +102,29 @@ def render_robot_file(described: RobotFile) -> str:
 
 
 _TEMPLATE = """\
-# The robot. SI units; a text such as "35 mm" carries its own; *_deg is in degrees.
+# The robot, in SI units or as texts with a unit such as "35 mm"; *_deg is in degrees.
 # Frames, legs and signs: docs/conventions.md.
 
 mass = 0  # [kg]
 body_size = []  # length, width, height [m]
-inertia = []  # about x, y, z [kg m2]; a uniform cuboid's when left out
+inertia = []  # about x, y, z [kg m2]; default: inertia of a uniform cuboid
 
 [legs]
-radius = 0  # of the arc [m]
-arc_deg = 0  # 180 is a half circle; real legs have about 200
-offset_deg = []  # of legs 1 to 6: true angle minus the one reported
-sign = []  # -1 where a leg's reported angle falls as it walks forward
+radius = 0  # radius of the leg's arc [m]
+arc_deg = 0  # angle of the leg's arc: 180 is a half circle; real legs have about 200
+offset_deg = []  # of legs 1 to 6: true angle minus reported angle
+sign = []  # of legs 1 to 6: -1 if the reported angle falls while the robot walks forward
 
-[hips]  # x forward, y left, z up from the body's centre [m], by leg
+[hips]  # position of each hip from the body's centre: x forward, y left, z up [m]
 """
 _MARKER_TEMPLATE = """\
 [marker]
 dictionary = ""
-id = 0  # its number in the dictionary
-side = 0  # of the black square [m]
-position = []  # of its centre in the body frame [m]
+id = 0  # number of the marker in the dictionary
+side = 0  # side of the black square [m]
+position = []  # centre of the marker in the body frame [m]
 roll_pitch_yaw_deg = []
-height = 0.1  # of its centre above the ground while the robot stands [m]
+height = 0.1  # height of the marker's centre above the ground while the robot stands [m]
 """
 
 
@@ -179,7 +179,7 @@ def _hips(hips: SettingsTable) -> np.ndarray:
 def _marker(marker: SettingsTable) -> Marker:
     if "position" not in marker:
         raise marker.fault(
-            "is missing; give its centre in the body frame as [x, y, z] in m", "position"
+            "is missing; give the marker's centre in the body frame as [x, y, z] in m", "position"
         )
     x, y, z = marker.quantities("position", 3, "m")
     roll, pitch, yaw = np.radians(

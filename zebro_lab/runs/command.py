@@ -8,10 +8,10 @@ import typer
 
 from zebro_lab.terminal.messages import say
 
-DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
+DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder with run folders, searched.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
-Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and earlier reasons.")]
-Undo = Annotated[bool, typer.Option("--undo", help="Include the run again.")]
+Why = Annotated[str | None, typer.Option(help="Reason, added to the run's run.json.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Undo the exclusion of the run.")]
 
 
 def runs(data: DataDir) -> None:
@@ -28,18 +28,18 @@ def runs(data: DataDir) -> None:
 
 
 def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
-    """Exclude a run from every calibration, keeping its data, or undo the exclusion."""
+    """Exclude a run from every later calibration, or undo that; its data stay."""
     from zebro_lab.runs.exclusion import exclude_run, take_in_again
     from zebro_lab.runs.folder import require_ended
 
     require_ended(run)
     if undo:
         take_in_again(run, why=why)
-        say(f"{run.name} is included again")
+        say(f"{run.name} is no longer excluded from calibrations")
         return
     if why is None:
         raise typer.BadParameter(
-            "missing: the reason, which is kept with the run", param_hint="'--why'"
+            "missing; state why the run is excluded, for run.json", param_hint="'--why'"
         )
     manifest = exclude_run(run, why=why)
-    say(f"{run.name} is excluded: {(manifest.excluded or {})['why']}")
+    say(f"{run.name} is excluded from calibrations: {(manifest.excluded or {})['why']}")

@@ -108,11 +108,11 @@ def duplicates_note(what: str, repeated: Sequence[tuple[object, object]]) -> tup
         One line; empty if there are no duplicates.
 
     >>> duplicates_note("tables", [("b.csv", "a.csv")])
-    ('1 of the tables is there twice and counts once: b.csv is a.csv',)
+    ('1 of the tables is a duplicate and was ignored: b.csv equals a.csv',)
     """
     if not repeated:
         return ()
-    shown = ", ".join(f"{one} is {other}" for one, other in repeated[:_SHOWN])
+    shown = ", ".join(f"{one} equals {other}" for one, other in repeated[:_SHOWN])
     more = f" and {len(repeated) - _SHOWN} more" if len(repeated) > _SHOWN else ""
-    verb = "is there twice and counts" if len(repeated) == 1 else "are there twice and count"
-    return (f"{len(repeated)} of the {what} {verb} once: {shown}{more}",)
+    verb = "is a duplicate and was" if len(repeated) == 1 else "are duplicates and were"
+    return (f"{len(repeated)} of the {what} {verb} ignored: {shown}{more}",)

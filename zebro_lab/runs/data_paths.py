@@ -57,7 +57,7 @@ def find_sources(paths: Sequence[Path]) -> list[DataSource]:
         DataError: A named folder holds no data.
     """
     if not paths:
-        raise NotFound("no data named; name files or folders of CSV, Parquet or run folders")
+        raise NotFound("no data given; give CSV or Parquet files, run folders, or folders of them")
     found: dict[Path, DataSource] = {}
     for path in map(Path, paths):
         for source in _sources_at(path):
@@ -67,7 +67,7 @@ def find_sources(paths: Sequence[Path]) -> list[DataSource]:
 
 def _sources_at(path: Path) -> list[DataSource]:
     if not path.exists():
-        raise NotFound(f"{path}: no such file or folder; working in {Path.cwd()}")
+        raise NotFound(f"{path}: no such file or folder; the working folder is {Path.cwd()}")
     if path.is_dir():
         sources = [DataSource(below, path) for below in _walk(path, set())]
         if not sources:
@@ -105,8 +105,8 @@ def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
 
 def _why_empty(folder: Path) -> str:
     if (folder / CALIBRATION_FILE).is_file():
-        return "is a calibration's output; name the data it was made from"
+        return "is the result of a calibration; give the data that the calibration was made from"
     return (
-        f"holds no data; expected files ending in {', '.join(TABLE_SUFFIXES)} "
-        f"or run folders with a {MANIFEST_FILE}, here or below"
+        f"holds no data; expected files ending in {', '.join(TABLE_SUFFIXES)} or run folders with "
+        f"a {MANIFEST_FILE}, in this folder or folders in it"
     )

@@ -27,7 +27,7 @@ def exclude_run(folder: Path, *, why: str) -> RunManifest:
         DataError: The manifest is damaged, or the reason is blank.
     """
     if not why.strip():
-        raise DataError("no reason given; say why the run is left out", file=folder)
+        raise DataError("the reason is blank; state why the run is excluded", file=folder)
     return _written(folder, EXCLUDED, why.strip())
 
 
@@ -43,7 +43,7 @@ def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
         DataError: The manifest is damaged, or the run is not excluded.
     """
     if read_manifest(folder).excluded is None:
-        raise DataError("is not left out; there is nothing to undo", file=folder)
+        raise DataError("the run is not excluded; there is nothing to undo", file=folder)
     return _written(folder, UNDONE, (why or "").strip() or NO_REASON)
 
 

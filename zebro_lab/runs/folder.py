@@ -47,7 +47,7 @@ class SlipRigRun:
 def require_new(folder: Path) -> None:
     """Raise AlreadyExists where the path of a new run folder exists."""
     if folder.exists():
-        raise AlreadyExists(f"{folder} exists already; give the run another label")
+        raise AlreadyExists(f"{folder} exists already; choose another name with --label")
 
 
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
@@ -62,12 +62,12 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
     manifest = read_manifest(folder)
     if manifest.kind != "slip-rig":
         raise DataError(
-            f"is a run of kind '{manifest.kind}', expected 'slip-rig'; leave it out",
+            f"is a run of kind '{manifest.kind}', expected 'slip-rig'; do not give this run",
             file=folder / MANIFEST_FILE,
         )
     path = folder / LOG_FILE
     if not path.is_file():
-        raise NotFound(f"{path}: missing; restore it from where the run was recorded")
+        raise NotFound(f"{path}: missing; copy it from the computer where the run was recorded")
     table, damage, notes = _slip_rig_table(folder, manifest)
     _require_radii(manifest, folder / MANIFEST_FILE)
     if damage is not None:
@@ -96,10 +96,10 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
     except FileExistsError as error:
         if folder.is_dir():
             require_new(folder)
-        raise RecordingError(f"{error.filename} is a file; name a folder as --data") from error
+        raise RecordingError(f"{error.filename} is a file; give a folder as --data") from error
     except OSError as error:
         raise RecordingError(
-            f"cannot write to {data_dir}: {error.strerror}; name another folder as --data"
+            f"cannot write to {data_dir}: {error.strerror}; choose another folder with --data"
         ) from error
     return folder
 
@@ -111,7 +111,7 @@ def find_runs(data_dir: Path) -> list[Path]:
         NotFound: The folder does not exist.
     """
     if not data_dir.is_dir():
-        raise NotFound(f"{data_dir}: no such folder; name one that holds run folders")
+        raise NotFound(f"{data_dir}: no such folder; give the folder that holds the run folders")
     return sorted(file.parent for file in data_dir.rglob(MANIFEST_FILE))
 
 
@@ -185,8 +185,8 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
     """
     if manifest.log_sha256 is not None and file_hash(path) != manifest.log_sha256:
         raise DataError(
-            f"is not the log that was recorded: its SHA-256 differs from {MANIFEST_FILE}; "
-            "restore the log, or leave the run out with: zebro-lab exclude RUN --why REASON",
+            f"was changed after the recording: its SHA-256 differs from that in {MANIFEST_FILE}; "
+            "restore the log, or exclude the run: zebro-lab exclude RUN --why REASON",
             file=path,
         )
 
@@ -194,7 +194,7 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
 def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) -> str:
     recorded = manifest.streams.get(_BOARD_TOPIC, manifest.streams.get(TOPIC))
     of_all = f" of {recorded}" if recorded else ""
-    return f"{folder.name}: {LOG_FILE} is cut short ({damage}); {count}{of_all} samples read"
+    return f"{folder.name}: {LOG_FILE} is incomplete ({damage}); {count}{of_all} samples were read"
 
 
 def run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:

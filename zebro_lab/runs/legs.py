@@ -50,8 +50,8 @@ def _table_of(path: Path) -> Path:
     if (path / PATH_CSV).is_file():
         return path / PATH_CSV
     raise DataError(
-        f"is a folder without a {PATH_CSV}; name a CSV or Parquet file with t and "
-        f"{ANGLES[0]} to {ANGLES[-1]}",
+        f"is a folder without {PATH_CSV} or run.json; give a walk folder, a run folder, or a CSV "
+        f"or Parquet file with the columns t and {ANGLES[0]} to {ANGLES[-1]}",
         file=path,
     )
 

@@ -179,8 +179,8 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
     found = document.get("schema_version")
     if found != SCHEMA_VERSION:
         raise DataError(
-            f"schema_version is {found!r}, expected {SCHEMA_VERSION}; "
-            f"read it with the version of zebro-lab that wrote it",
+            f"'schema_version' is {found!r}, expected {SCHEMA_VERSION}; use the version of "
+            "zebro-lab that wrote this file",
             file=file,
         )
     for name, expected in _FIELD_TYPES.items():
@@ -192,9 +192,9 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             )
     for each in document.get("exclusions") or ():
         if not (isinstance(each, dict) and {"did", "why"} <= each.keys()):
-            raise DataError(f"'exclusions' holds {each!r}, expected did and why", file=file)
+            raise DataError(f"'exclusions' holds {each!r}, expected 'did' and 'why'", file=file)
     if document["kind"] not in KINDS:
-        raise DataError(f"unknown kind '{document['kind']}'; {nearest(document['kind'], KINDS)}",
+        raise DataError(f"'kind' is '{document['kind']}'; {nearest(document['kind'], KINDS)}",
                         file=file)  # fmt: skip
     _require_entries(document, file)
     for name in ("start", "stop"):
@@ -238,7 +238,7 @@ def _require_moment(name: str, text: str, file: Path) -> None:
         known = None
     if not known:
         raise DataError(
-            f"'{name}' is {text!r}, expected a moment with its time zone, such as "
+            f"'{name}' is {text!r}, expected a date and time with a time zone, such as "
             "2026-01-01T12:00:00+00:00",
             file=file,
         )

@@ -113,7 +113,7 @@ def _list_events(axes: Axes, events: Sequence[Event]) -> None:
             color=colour, annotation_clip=False,
         )  # fmt: skip
     more = len(events) - len(shown)
-    axes.set_title(f"events{f', {more} more in the log' if more else ''}", loc="left")
+    axes.set_title(f"events{f' ({more} more in log.mcap)' if more else ''}", loc="left")
     axes.set(ylim=(len(shown) - 0.3, -0.7), yticks=[])
     for side in ("left", "bottom"):
         axes.spines[side].set_visible(False)

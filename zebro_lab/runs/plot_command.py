@@ -18,12 +18,12 @@ zebro-lab plot data/20260304T050607Z_walk_circle --out circle.png
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
 Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Picture to write; default: RUN.png beside RUN.")
+    Path | None, typer.Option(metavar="FILE", help="PNG file to write; default: RUN.png by RUN.")
 ]
 
 
 def plot(run: Run, out: Out = None) -> None:
-    """Plot all streams of a run: legs, IMU, forces, speeds, with gaps and events marked."""
+    """Plot all recorded streams of a run over time in one picture; mark gaps and events."""
     from zebro_lab.runs.plot_stage import plot_run
     from zebro_lab.terminal.progress import progress_bar
 

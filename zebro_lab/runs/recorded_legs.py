@@ -44,16 +44,16 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     log, profile = folder / LOG_FILE, profile_file(folder, LEGS)
     for file in (log, profile):
         if not file.is_file():
-            raise NotFound(f"{file}: missing; restore it, or name a run with leg angles")
+            raise NotFound(f"{file}: missing; restore it, or give a run with recorded leg angles")
     raw = read_raw_log(log)
     stream = raw.streams.get(raw_topic(LEGS))
     if stream is None:
-        raise DataError(f"holds no samples on {raw_topic(LEGS)}", file=log)
+        raise DataError(f"has no leg angles: no samples of topic {raw_topic(LEGS)}", file=log)
     notes = ()
     if raw.damage is None:
         require_recorded(log, manifest)
     else:
-        notes = (f"{folder.name}: {LOG_FILE} is cut short ({raw.damage})",)
+        notes = (f"{folder.name}: {LOG_FILE} is incomplete ({raw.damage})",)
     columns = {name: pd.Series(values) for name, values in _angles(stream, profile).items()}
     source = manifest.sources.get(LEGS, manifest.source)
     table = RawTable(log, columns, source=source, notes=notes)

@@ -31,13 +31,13 @@ def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]
     if not left_out:
         return number, ()
     note = (
-        f"{run.folder.name}: {left_out:.1%} of the samples left out, in which slip jumped from "
-        "sweep to sweep or the leg disc stood"
+        f"{run.folder.name}: {left_out:.1%} of the samples are ignored, because slip jumped "
+        "between two sweeps or the leg disc stood still"
     )
     return number, (note,)
 
 
 def _why_none(speed_leg: NDArray[np.float64]) -> str:
     if np.abs(speed_leg).max() <= STANDING:
-        return "the leg disc never turned, which leaves slip undefined; record while the rig runs"
-    return "slip jumped all the time, which leaves no sweep; record longer, or steadier"
+        return "the leg disc never turned, so that slip is undefined; record while the rig runs"
+    return "slip jumped all the time, so that there is no sweep; change the slip ratio more slowly"

@@ -102,12 +102,12 @@ def read_signals(folder: Path) -> RunSignals:
         raw = read_raw_log(log)
         panels = [p for topic, stream in raw.streams.items()
                   for p in _panels(folder, manifest, topic, stream)]  # fmt: skip
-        notes = () if raw.damage is None else (f"{log}: is cut short ({raw.damage})",)
+        notes = () if raw.damage is None else (f"{log} is incomplete ({raw.damage})",)
     else:
         run = read_slip_rig_run(folder)
         panels, notes = list(_of_table(run.table.rows(), manifest)), run.notes
     if not panels:
-        raise DataError("holds no samples to draw", file=log)
+        raise DataError("holds no samples to plot", file=log)
     state = run_state(folder, manifest)
     if manifest.excluded is not None:
         state = f"excluded: {manifest.excluded.get('why', 'no reason given')}"

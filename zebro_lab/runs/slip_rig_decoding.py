@@ -53,11 +53,11 @@ def derive_table(
             cell, drives = (_require(streams, name, folder) for name in ("load_cell", "drives"))
             table = _of_two(profile.drives, profile.load_cell, drives, cell)
         else:
-            raise DataError("has neither a board nor drives and load cell", file=file)
+            raise DataError("describes neither a board nor drives and a load cell", file=file)
     except RigError as error:
         raise DataError(str(error), file=folder) from error
     if table.shape[1] == 0:
-        raise DataError("its log holds no force between two speeds of each disc", file=folder)
+        raise DataError("no force was recorded while both disc speeds are known", file=folder)
     table[3] -= zero.get("zero_normal", 0.0)
     table[4] -= zero.get("zero_traction", 0.0)
     return _increasing(table)
@@ -112,12 +112,12 @@ def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp
 
 def _require(streams: Mapping[str, SampleColumns], name: str, folder: Path) -> SampleColumns:
     if raw_topic(name) not in streams:
-        raise DataError(f"its log holds no samples on {raw_topic(name)}", file=folder)
+        raise DataError(f"the log holds no samples of topic {raw_topic(name)}", file=folder)
     return streams[raw_topic(name)]
 
 
 def _increasing(table: Array) -> tuple[SlipRigTable, tuple[str, ...]]:
     later = np.r_[True, np.diff(np.maximum.accumulate(table[0])) > 0]
     left_out = int(np.sum(~later))
-    notes = (f"{left_out} samples left out whose time does not increase",) if left_out else ()
+    notes = (f"{left_out} samples ignored whose time does not increase",) if left_out else ()
     return SlipRigTable(*table[:, later]), notes

@@ -42,11 +42,11 @@ CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
         CanonicalColumn("omega_ground", "rad/s", "angular speed of the ground disc"),
         CanonicalColumn("radius_leg", "m", "radius of the leg disc at the contact"),
         CanonicalColumn("radius_ground", "m", "radius of the ground disc at the contact"),
-        CanonicalColumn("slip_ratio", "dimensionless", "slip, where it is given: with definition"),
+        CanonicalColumn("slip_ratio", "dimensionless", "slip ratio, with its definition"),
         CanonicalColumn("normal_force", "N", "normal force, positive when pressed together"),
         CanonicalColumn("traction_force", "N", "traction force, positive when driving"),
         CanonicalColumn("run", None, "name or number of the run"),
-        CanonicalColumn("slip_definition", None, "material, travel or larger; one a file"),
+        CanonicalColumn("slip_definition", None, "material, travel or larger; one in each file"),
     )
 })  # fmt: skip
 _CONSTANTS = {"radius_leg": "m", "radius_ground": "m"}
@@ -202,7 +202,7 @@ def _source(table: SettingsTable) -> str | None:
         return None
     source = table.text("source")
     if source.split(":")[0] not in _SOURCES:
-        raise table.fault(f"'{source}' is none of 'real', 'sim:WHAT', 'replay:WHAT'", "source")
+        raise table.fault(f"found '{source}'; expected real, sim:WHAT or replay:WHAT", "source")
     return source
 
 
@@ -210,7 +210,7 @@ def _runs(table: SettingsTable) -> RunRule:
     runs = table.table("runs")
     given = [key for key in ("by", "gap", "each_row") if key in runs]
     if len(given) > 1:
-        raise table.fault(f"{' and '.join(given)} at once; give one of them", "runs")
+        raise table.fault(f"found {' and '.join(given)}; keep only one of them", "runs")
     return RunRule(
         by=runs.texts("by"),
         gap=runs.quantity("gap", "s", above=0.0) if "gap" in runs else None,

@@ -21,9 +21,9 @@ _HEAD_BYTES = 1 << 16  # enough to see separators, little enough to decode twice
 _HEAD_LINES = 50
 MOST_COLUMNS = 2000
 _MAGIC = {
-    b"PAR1": "a Parquet file; name it .parquet",
+    b"PAR1": "a Parquet file; rename it to end in .parquet",
     b"PK": "a zip or spreadsheet file; export it as CSV",
-    b"\x1f\x8b": "a gzip file; name it .csv.gz",
+    b"\x1f\x8b": "a gzip file; rename it to end in .csv.gz",
     b"\xff\xfe": "UTF-16 text; save it as UTF-8",
     b"\xfe\xff": "UTF-16 text; save it as UTF-8",
 }
@@ -71,7 +71,7 @@ def read_csv_file(path: Path) -> RawTable:
         columns,
         frozenset(name for name, count in Counter(layout.names).items() if count > 1),
         decimal_comma=odd,
-        notes=(f"{path.name}: read as separated by {_SEPARATORS[layout.separator]}",) * odd,
+        notes=(f"{path.name}: cells are separated by {_SEPARATORS[layout.separator]}",) * odd,
         header_line=layout.header_line,
     )
 
@@ -92,7 +92,7 @@ def _csv_errors(path: Path) -> Iterator[None]:
         except UnicodeDecodeError as error:
             raise DataError(f"is not UTF-8 text ({error}); save it as UTF-8", file=path) from error
         except (pd.errors.ParserError, pd.errors.ParserWarning) as error:
-            raise DataError(f"is no regular table: {error}", file=path) from error
+            raise DataError(f"is not a regular table: {error}", file=path) from error
 
 
 def _csv_layout(path: Path) -> _CsvLayout:
@@ -101,8 +101,8 @@ def _csv_layout(path: Path) -> _CsvLayout:
     lines = re.split(r"\r\n|\n|\r", _decode_head(path, head))
     if len(head) == _HEAD_BYTES and len(lines) == 1:
         raise DataError(
-            f"its first line has more than {_HEAD_BYTES >> 10} kB; at most {MOST_COLUMNS} columns "
-            "are read",
+            f"the first line is longer than {_HEAD_BYTES >> 10} kB; expected a header of at most "
+            f"{MOST_COLUMNS} columns",
             file=path,
         )
     if len(head) == _HEAD_BYTES:
@@ -110,16 +110,16 @@ def _csv_layout(path: Path) -> _CsvLayout:
     numbered = [(i, line) for i, line in enumerate(lines, start=1) if line.strip()]
     numbered = numbered[_count_comments(numbered) :]
     if not numbered:
-        raise DataError("is empty; expected a header and rows", file=path)
+        raise DataError("is empty; expected a header line and rows", file=path)
     separator = _separator(path, numbered)
     header_line, header = numbered[0]
     names = [name.strip() for name in next(csv.reader([header], delimiter=separator))]
     if len(names) > MOST_COLUMNS:
-        raise DataError(f"has {len(names)} columns; at most {MOST_COLUMNS} are read", file=path)
+        raise DataError(f"has {len(names)} columns; expected at most {MOST_COLUMNS}", file=path)
     names = [name or f"column {i}" for i, name in enumerate(names, start=1)]
     if all(_is_number(name) for name in names):
         raise DataError(
-            f"has no names: its first line is '{header[:60]}'; put a header above it", file=path
+            f"has no header: the first line is '{header[:60]}'; add column names", file=path
         )
     return _CsvLayout(separator, names, header_line)
 
@@ -135,8 +135,8 @@ def _decode_head(path: Path, head: bytes) -> str:
         text = codecs.getincrementaldecoder("utf-8-sig")().decode(head)
     except UnicodeDecodeError as error:
         raise DataError(
-            f"is not UTF-8 text (byte 0x{head[error.start]:02x} at {error.start}); "
-            f"save it as CSV in UTF-8",
+            f"is not UTF-8 text (byte 0x{head[error.start]:02x} at position {error.start}); save "
+            "it as CSV in UTF-8",
             file=path,
         ) from error
     if any(ord(c) < 32 and c not in "\t\r\n\f" for c in text):
@@ -155,8 +155,8 @@ def _separator(path: Path, lines: list[tuple[int, str]]) -> str:
     regular = [s for s, cells in counts.items() if cells[0] > 1 and len(set(cells)) == 1]
     if len(regular) > 1:
         raise DataError(
-            f"could be separated by {' or '.join(_SEPARATORS[s] for s in regular)}; "
-            f"save it with one separator",
+            f"cells may be separated by {' or by '.join(_SEPARATORS[s] for s in regular)}; save "
+            "the file with one of these only",
             file=path,
         )
     if regular:
@@ -165,9 +165,9 @@ def _separator(path: Path, lines: list[tuple[int, str]]) -> str:
     cells = counts[separator]
     for row, found in enumerate(cells[1:], start=1):
         if found > cells[0]:
-            advice = "; do decimal commas separate cells?" if separator == "," else ""
+            advice = "; write decimals with a point" if separator == "," else ""
             raise DataError(
-                f"{found} cells under a header of {cells[0]}{advice}",
+                f"the row has {found} cells, the header has {cells[0]}{advice}",
                 file=path, row=row, line=lines[row][0],
             )  # fmt: skip
     return separator

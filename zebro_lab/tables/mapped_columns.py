@@ -63,8 +63,8 @@ class MappedColumns:
         mapped = self.mapped[name]
         if not self.has(table, name):
             raise table.fault(
-                f"missing, the {what}; {nearest(mapped.name, list(table.columns))}; map it in "
-                f"{COLUMNS_FILE} as [{self.where}columns.{name}]",
+                f"the column of the {what} is missing; {nearest(mapped.name, list(table.columns))}"
+                f"; if its header differs, map it in {COLUMNS_FILE}: [{self.where}columns.{name}]",
                 mapped.name,
             )
         return table.finite(mapped.name, f"a number in {mapped.unit}: {advice}") * mapped.factor

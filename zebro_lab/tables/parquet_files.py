@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-_ADVICE = "it may have been cut short: export it again"
+_ADVICE = "export the file again"
 _MOST_THRIFT = 1 << 26  # memory that a footer may ask for [bytes or entries]
 
 
@@ -26,7 +26,7 @@ def read_parquet_file(path: Path) -> RawTable:
         NotFound: There is no such file.
         DataError: The file is not complete Parquet, or exceeds the limits of size or cells.
     """
-    with open_file(path) as file, parsing(path, "is not a whole Parquet file", advice=_ADVICE):
+    with open_file(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
         table = _read(file, path)
         metadata = table.schema.metadata or {}
         columns = {name: _cells(table.column(i)) for i, name in enumerate(table.column_names)}
@@ -63,15 +63,16 @@ def _require_bounded(metadata: Any, path: Path, size: int) -> None:
     cells = rows * max(metadata.num_columns, 1)
     if cells > MOST_CELLS:
         raise DataError(
-            f"has {cells / 1e6:.0f} million cells; at most {MOST_CELLS / 1e6:.0f} are read: split "
-            "it, or leave out columns that nothing reads",
+            f"has {cells / 1e6:.0f} million cells; expected at most {MOST_CELLS / 1e6:.0f} million:"
+            " split the file, or drop columns that are not needed",
             file=path,
         )
     # Not `group.column(i)`: pyarrow 26 aborts the process there if a column's statistics are wrong.
     unpacked = sum(group.total_byte_size for group in groups)
     if unpacked > FREELY + MOST_RATIO * size:
         raise DataError(
-            f"would unpack to {unpacked / 1e6:.0f} MB, more than {MOST_RATIO} times its size",
+            f"would unpack to {unpacked / 1e6:.0f} MB, more than {MOST_RATIO} times its size; "
+            "check that this is the right file",
             file=path,
         )
 

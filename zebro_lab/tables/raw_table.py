@@ -69,9 +69,9 @@ class RawTable:
             DataError: No or several columns have this header, or cells are of another type.
         """
         if name in self.repeated:
-            raise self.fault("heads more than one column; give each a name of its own", name)
+            raise self.fault("several columns have this header; give each another header", name)
         if name not in self.columns:
-            raise self.fault(f"missing; {nearest(name, list(self.columns))}", name)
+            raise self.fault(f"is missing; {nearest(name, list(self.columns))}", name)
         if name in self.unreadable:
             kind = self.unreadable[name]
             raise self.fault(f"holds cells of type {kind}; expected numbers or texts", name)
@@ -87,8 +87,8 @@ class RawTable:
 
         cells = self.column(name)
         if pd.api.types.is_datetime64_any_dtype(cells) or pd.api.types.is_timedelta64_dtype(cells):
-            raise self.fault("holds dates, expected numbers", name)
-        with parsing(self.path, f"cannot take column '{name}' for numbers"):
+            raise self.fault("holds dates; expected numbers", name)
+        with parsing(self.path, f"column '{name}' cannot be read as numbers"):
             empty = cells.isna().to_numpy(dtype=bool)
             values = _as_numbers(cells)
             bad = np.isnan(values) & ~empty
@@ -137,7 +137,7 @@ class RawTable:
         index = int(np.argmin(later)) + 1
         raise self.fault(
             f"time goes from {t[index - 1]:g} to {t[index]:g} s; expected increasing times: "
-            "sort the rows, delete repeated ones",
+            "sort the rows by time and delete repeated ones",
             column,
             index,
         )
@@ -162,7 +162,7 @@ class RawTable:
         if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
             advice = "; write decimals with a point"
         elif index == 0:
-            advice = "; delete a row of units, give them in columns.toml"
+            advice = "; if the row holds units, delete it and give them in columns.toml"
         else:
             advice = "; correct or delete the row"
         return self.fault(f"'{text}' is not a number{advice}", name, index, value=text)

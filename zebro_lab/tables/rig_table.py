@@ -45,8 +45,8 @@ class RigTable:
         source = self.source_of(name)
         if source is None:
             raise self.raw.fault(
-                f"missing; {nearest(name, list(self.raw.columns))}; "
-                f"map it in {COLUMNS_FILE} as [columns.{name}] (zebro-lab init writes one)",
+                f"is missing; {nearest(name, list(self.raw.columns))}; if it has another header, "
+                f"map it in {COLUMNS_FILE}: [columns.{name}] (zebro-lab init writes that file)",
                 name,
             )
         return source
@@ -75,22 +75,23 @@ class RigTable:
         constant, source = self.columns.constants.get(name), self.source_of(name)
         if constant is not None and source is not None:
             raise self.raw.fault(
-                f"given twice: as a column and as [constants] {name} = {constant:g} m; keep one",
+                f"the radius is given twice, in this column and as [constants] {name} = "
+                f"{constant:g} m in {COLUMNS_FILE}; delete one of them",
                 source.name,
             )
         if constant is None:
             if source is None:
                 raise self.raw.fault(
-                    f"missing, needed for slip from disc speeds; give it as "
+                    "the radius is missing and needed to compute slip from disc speeds; give it as "
                     f'[constants] {name} = "35 mm" in {COLUMNS_FILE}',
                     name,
                 )
             values = self.si(name)
-            self.require(name, values > 0, lambda v: f"radius is {v}, expected more than 0")
+            self.require(name, values > 0, lambda v: f"the radius is {v}; expected more than 0 m")
             return values
         if constant <= 0:
             raise DataError(
-                f"radius is {constant:g} m, expected more than 0; correct it in [constants]",
+                f"the radius in [constants] is {constant:g} m; expected more than 0 m",
                 file=self.columns.file or self.raw.path, column=name, value=constant, unit="m",
             )  # fmt: skip
         return constant
@@ -130,9 +131,9 @@ class RigTable:
             name,
             good,
             lambda value: (
-                f"{np.sum(~good)} of {len(good)} rows are not finite numbers, this one ({value}) "
-                f"is the first; delete them or leave them out with "
-                f'[rows] keep = ["`{header}` {bound}"]'
+                f"found {value}; expected finite numbers, which {np.sum(~good)} of {len(good)} "
+                "rows do not have, this row first. Delete these rows, or skip them with "
+                f'[rows] keep = ["`{header}` {bound}"] in {COLUMNS_FILE}'
             ),
         )
 
@@ -156,7 +157,7 @@ def kept_rows(raw: RawTable, columns: Columns) -> NDArray[np.intp]:
     if not keep.any():
         conditions = " and ".join(map(str, columns.keep))
         raise DataError(
-            f"no row of {len(raw)} is left by [rows] keep: {conditions}; check its units",
+            f"none of the {len(raw)} rows meets [rows] keep: {conditions}; check numbers and units",
             file=raw.path,
         )
     return np.flatnonzero(keep)
@@ -172,14 +173,14 @@ def normal_force(table: RigTable) -> Array:
     force = table.si("normal_force")
     mostly_negative = np.mean(force < 0) > 0.9
     advice = (
-        f"nearly all rows are negative: give [columns.normal_force] the other sign (sign = -1) "
-        f"in {COLUMNS_FILE}"
+        "nearly all rows are negative: set [columns.normal_force] sign = "
+        f"{-1 if table.required('normal_force').factor > 0 else 1} in {COLUMNS_FILE}"
         if mostly_negative
-        else "leave unloaded rows out with [rows] keep"
+        else f"skip unloaded rows with [rows] keep in {COLUMNS_FILE}"
     )
     table.require(
         "normal_force",
         force > 0,
-        lambda value: f"normal force is {value}, expected more than 0 when pressed; {advice}",
+        lambda value: f"the normal force is {value}; expected more than 0 when pressed; {advice}",
     )
     return force

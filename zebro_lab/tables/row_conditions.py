@@ -68,7 +68,7 @@ def parse_row_condition(text: str) -> RowCondition:
     match = _CONDITION.fullmatch(text)
     if match is None:
         raise ValueError(
-            f"'{text}' is not a condition; expected a column, one of "
+            f"'{text}' is not a condition; expected the header of a column, one of "
             f"{', '.join(_OPERATORS)}, and a number, as in 'slip > 0.05'"
         )
     column = match["quoted"] or match["plain"]

@@ -43,15 +43,16 @@ def separate_runs(table: RigTable, label: str) -> Runs:
     rule, mapped_run = table.columns.runs, table.source_of("run")
     if rule.each_row:
         names = tuple(f"{label} row {row + 1}" for row in table.rows)
-        return Runs(np.arange(len(names)), names, "every row a trial of its own")
+        return Runs(np.arange(len(names)), names, "each row is one run")
     if rule.gap is not None:
         starts = _after_pauses(table, rule.gap)
-        return _named(table, starts, label, None, f"by pauses longer than {rule.gap:g} s")
+        return _named(table, starts, label, None, f"separated by pauses of over {rule.gap:g} s")
     by = rule.by or ((mapped_run.name,) if mapped_run else ())
     if by:
         starts = _at_changes(table, by)
-        return _named(table, starts, label, by, f"by changes of {', '.join(map(repr, by))}")
-    return Runs(np.zeros(len(table.rows), dtype=np.intp), (label,), "one a file")
+        changes = f"separated by changes of {', '.join(map(repr, by))}"
+        return _named(table, starts, label, by, changes)
+    return Runs(np.zeros(len(table.rows), dtype=np.intp), (label,), "each file is one run")
 
 
 def run_times(table: RigTable, runs: Runs) -> Array | None:
@@ -73,18 +74,18 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
     step = np.diff(time, prepend=-np.inf)
     inside = np.diff(runs.index, prepend=-1) == 0
     advice = (
-        f"if a new run begins here, say in {COLUMNS_FILE} what separates them: [runs] "
-        f'by = ["COLUMN"], gap = "1 s" or each_row = true'
+        f"if a new run begins here, state in {COLUMNS_FILE} what separates runs, by one of "
+        f'[runs] by = ["COLUMN"], gap = "1 s" or each_row = true'
     )
     table.require(
         "t",
         ~inside | (step >= 0),
-        lambda value: f"time runs backwards to {value}; {advice}",
+        lambda value: f"time goes back to {value}; sort the rows by time, or {advice}",
     )
     table.require(
         "t",
         ~inside | (step > 0),
-        lambda value: f"time {value} is given twice in one run; delete the copy, or {advice}",
+        lambda value: f"time {value} repeats within a run; delete the copy, or {advice}",
     )
     return time
 
@@ -92,7 +93,7 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
 def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
     source = table.source_of("t")
     if source is None:
-        problem = "missing, needed to find the pauses of [runs] gap; map it as [columns.t]"
+        problem = "is missing, but [runs] gap needs times; map them in columns.toml: [columns.t]"
         raise table.raw.fault(problem, "t")
     time = table.raw.numbers(source.name) * source.factor
     known = np.flatnonzero(np.isfinite(time))  # a row without time belongs to the run before it

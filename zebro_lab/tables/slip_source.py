@@ -55,9 +55,9 @@ def slip(table: RigTable) -> SlipColumn:
         for name in _SPEEDS:
             table.required(name)
     raise table.raw.fault(
-        f"no slip: expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground' "
-        f"with radii; {nearest('slip_ratio', list(table.raw.columns))}; "
-        f"map them in {COLUMNS_FILE} (zebro-lab init writes one)",
+        "is missing; expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground' "
+        f"with the radii; {nearest('slip_ratio', list(table.raw.columns))}; if they have other "
+        f"headers, map them in {COLUMNS_FILE} (zebro-lab init writes that file)",
         "slip_ratio",
     )
 
@@ -89,8 +89,8 @@ def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) 
             column,
             index,
             lambda _: (
-                f"{source} slip {ratio[index]:g} is infinite as '{target}'; "
-                f"leave such rows out with [rows] keep"
+                f"the '{source}' slip ratio {ratio[index]:g} is infinite in the definition "
+                f"'{target}'; skip such rows with [rows] keep in {COLUMNS_FILE}"
             ),
         )
     return SlipColumn(values, target, column, f"{slip_column.origin}, converted to {target}")
@@ -107,16 +107,16 @@ def _given_definition(table: RigTable) -> SlipDefinition | None:
     index = int(table.rows[np.argmax(differing)] if differing.any() else table.rows[0])
     if differing.any():
         raise table.raw.fault(
-            f"two slip definitions in one file: '{texts[0]}' and "
-            f"'{texts[np.argmax(differing)]}'; split it by definition",
+            f"the file holds two slip definitions, '{texts[0]}' and "
+            f"'{texts[np.argmax(differing)]}'; write one file for each",
             column.name,
             index,
         )
     found = parse_definition(texts[0], file=table.raw.path, key=column.name)
     if stated not in (None, found):
         raise table.raw.fault(
-            f"slip definition is '{found}' here and '{stated}' in {table.columns.file}; "
-            f"correct one of them",
+            f"the slip definition is '{found}' in this column and '{stated}' in "
+            f"{table.columns.file}; correct one of them",
             column.name,
             index,
         )
@@ -128,15 +128,14 @@ def _given_slip(
 ) -> SlipColumn:
     if definition is None:
         raise table.raw.fault(
-            f"slip ratio without its definition; state what it is divided by: "
-            f"[columns.slip_ratio] definition = one of {', '.join(SlipDefinition)} "
-            f"in {COLUMNS_FILE}",
+            f"the definition of the slip ratio is not known; state in {COLUMNS_FILE} what it is "
+            f"divided by: [columns.slip_ratio] definition = one of {', '.join(SlipDefinition)}",
             given.name,
         )
     ratio = table.si("slip_ratio")
     _require_possible(table, ratio, definition)
-    unused = "; the disc speeds are there too and were not used" if speeds else ""
-    origin = f"as given in '{given.name}', {definition}{unused}"
+    unused = "; the columns of disc speeds are not used" if speeds else ""
+    origin = f"as given in '{given.name}', definition {definition}{unused}"
     return SlipColumn(ratio, definition, "slip_ratio", origin)
 
 
@@ -151,8 +150,8 @@ def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition)
             "slip_ratio",
             _first_rejected(inner, definition, other),
             lambda value: (
-                f"slip ratio is {value}, outside what '{definition}' slip can be; "
-                f'check the definition, its sign, or the unit (unit = "%")'
+                f"the slip ratio is {value}, impossible for the definition '{definition}'; check "
+                f'in {COLUMNS_FILE} the definition, the sign and the unit (such as unit = "%")'
             ),
         ) from error
 
@@ -166,13 +165,13 @@ def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipCo
         "omega_leg",
         np.isfinite(ratio),
         lambda value: (
-            f"leg disc stands still ({value}), which leaves slip undefined; "
-            f'leave such rows out with [rows] keep = ["`{header}` > 0.1"]'
+            f"the leg disc stands still ({value}), so that slip is undefined; skip such rows with "
+            f'[rows] keep = ["`{header}` > 0.1"] in {COLUMNS_FILE}'
         ),
     )
-    origin = "from the disc speeds and radii, material"
+    origin = "computed from disc speeds and radii, definition material"
     if unused:
-        origin += f"; '{unused.name}' has no stated definition and was not used"
+        origin += f"; '{unused.name}' is not used, because its definition is not stated"
     return SlipColumn(ratio, SlipDefinition.MATERIAL, "omega_leg", origin)
 
 

@@ -35,7 +35,7 @@ def read_table_file(path: Path) -> RawTable:
         raise NotFound(f"{path}: no such file")
     if path.is_dir() or not is_table_file(path):
         raise DataError(
-            f"is no table file; expected one that ends in {', '.join(TABLE_SUFFIXES)}", file=path
+            f"is not a table file; expected a name ending in {', '.join(TABLE_SUFFIXES)}", file=path
         )
     table = READERS[_suffix(path)](path)
     if len(table) == 0:

@@ -53,7 +53,7 @@ class ProgressBar:
             raise KeyboardInterrupt
         self._stop = True
         if self._progress.console.is_terminal:
-            self._progress.console.print("stopping; once more to quit at once")
+            self._progress.console.print("stopping; press Ctrl-C again to quit at once")
 
 
 @contextmanager
@@ -73,7 +73,7 @@ def progress_bar(console: Console | None = None) -> Iterator[ProgressBar]:
         BarColumn(),
         TextColumn("{task.percentage:>3.0f} %"),
         TimeElapsedColumn(),
-        TextColumn("left"),
+        TextColumn("elapsed, left:"),
         TimeLeftColumn(),
     )
     progress = Progress(*columns, console=console, disable=not console.is_terminal)

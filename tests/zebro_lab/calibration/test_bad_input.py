@@ -40,19 +40,19 @@ def put(column: str, row: int, value: object) -> pd.DataFrame:
 CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     "missing column": (
         good().rename(columns={"normal_force": "Normal Force"}),
-        "column 'normal_force': missing; did you mean 'Normal Force'?",
+        "column 'normal_force': is missing; did you mean 'Normal Force'?",
     ),
     "missing slip": (
         good().drop(columns=["slip_ratio", "slip_definition"]),
-        "no slip: expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground'",
+        "is missing; expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground'",
     ),
     "one speed": (
         with_speeds().drop(columns="omega_ground"),
-        "column 'omega_ground': missing; did you mean 'omega_leg'",
+        "column 'omega_ground': is missing; did you mean 'omega_leg'",
     ),
     "nan": (
         put("traction_force", 7, None),
-        "column 'traction_force', row 7 (line 8): 1 of 30 rows are not finite numbers",
+        "column 'traction_force', row 7 (line 8): found nan N; expected finite numbers",
     ),
     "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e9"]'),
     "nan in time": (put("t", 4, None), "column 't', row 4 (line 5)"),
@@ -60,10 +60,13 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
         put("normal_force", 5, "n/m"),
         "column 'normal_force', row 5 (line 6): 'n/m' is not a number; correct or delete",
     ),
-    "row of units": (put("normal_force", 1, "[N]"), "row 1 (line 2): '[N]' is not a number; del"),
+    "row of units": (
+        put("normal_force", 1, "[N]"),
+        "row 1 (line 2): '[N]' is not a number; if the row holds units",
+    ),
     "negative load": (
         put("normal_force", 12, -0.3),
-        "column 'normal_force', row 12 (line 13): normal force is -0.3 N, expected more than 0",
+        "column 'normal_force', row 12 (line 13): the normal force is -0.3 N; expected more than 0",
     ),
     "zero load": (put("normal_force", 12, 0), "normal force is 0 N"),
     "wrong sign": (good().assign(normal_force=-5.0), "sign = -1"),
@@ -82,7 +85,7 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     ),
     "two definitions in a file": (
         put("slip_definition", 9, "travel"),
-        "column 'slip_definition', row 9 (line 10): two slip definitions in one file",
+        "column 'slip_definition', row 9 (line 10): the file holds two slip definitions",
     ),
     "unknown definition": (
         good().assign(slip_definition="materiel"),
@@ -90,28 +93,31 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     ),
     "no definition": (
         good().drop(columns="slip_definition"),
-        "column 'slip_ratio': slip ratio without its definition",
+        "column 'slip_ratio': the definition of the slip ratio is not known",
     ),
     "slip in percent": (
         good().assign(slip_ratio=np.linspace(0, 30, N)),
-        "row 3 (line 4): slip ratio is 2.06897, outside what 'material' slip can be",
+        "row 3 (line 4): the slip ratio is 2.06897, impossible for the definition 'material'",
     ),
     "repeated time": (
         put("t", 6, 0.04),
-        "column 't', row 6 (line 7): time 0.04 s is given twice in one run",
+        "column 't', row 6 (line 7): time 0.04 s repeats within a run",
     ),
-    "time backwards": (put("t", 6, 0.0), "time runs backwards to 0 s; if a new run begins here"),
+    "time backwards": (
+        put("t", 6, 0.0),
+        "time goes back to 0 s; sort the rows by time, or if a new run",
+    ),
     "zero radius": (
         with_speeds().assign(radius_leg=0.0),
-        "column 'radius_leg', row 1 (line 2): radius is 0 m, expected more than 0",
+        "column 'radius_leg', row 1 (line 2): the radius is 0 m; expected more than 0",
     ),
     "no radius": (
         with_speeds().drop(columns="radius_ground"),
-        "column 'radius_ground': missing, needed for slip from disc speeds",
+        "column 'radius_ground': the radius is missing and needed to compute slip from disc speeds",
     ),
     "standing disc": (
         with_speeds().assign(omega_leg=0.0),
-        "column 'omega_leg', row 1 (line 2): leg disc stands still (0 rad/s)",
+        "column 'omega_leg', row 1 (line 2): the leg disc stands still (0 rad/s)",
     ),
     "few samples": (good().head(3), "3 samples in all, expected at least 20"),
     "header only": (good().head(0), "has a header but no rows"),
@@ -153,14 +159,14 @@ COLUMN_FAULTS = {
     ),
     "mapped column missing": (
         "[columns.normal_force]\nname = 'FZ'",
-        "column 'FZ': missing; known: 't', 'slip_ratio'",
+        "column 'FZ': is missing; known: 't', 'slip_ratio'",
     ),
     "zero constant radius": (
         "[constants]\nradius_leg = 0\nradius_ground = 0.12",
-        "column 'radius_leg': radius is 0 m, expected more than 0; correct it in [constants]",
+        "column 'radius_leg': the radius in [constants] is 0 m; expected more than 0 m",
     ),
-    "rule column missing": ("runs.by = ['set']", "column 'set': missing"),
-    "condition column missing": ("rows.keep = ['beta == 0']", "column 'beta': missing"),
+    "rule column missing": ("runs.by = ['set']", "column 'set': is missing"),
+    "condition column missing": ("rows.keep = ['beta == 0']", "column 'beta': is missing"),
 }
 
 
@@ -188,8 +194,8 @@ def test_empty_folder_and_wrong_paths_are_named(tmp_path):
     assert f"{tmp_path}: holds no data; expected files ending in .csv" in message_of(tmp_path)
     assert "absent: no such file or folder" in message_of(tmp_path / "absent")
     (tmp_path / "rig.xlsx").write_bytes(b"PK")
-    assert "is no table file; expected one that ends in" in message_of(tmp_path / "rig.xlsx")
+    assert "is not a table file; expected a name ending in" in message_of(tmp_path / "rig.xlsx")
     (tmp_path / "slip.toml").write_text("")
-    assert "is a calibration's output" in message_of(tmp_path)
-    with pytest.raises(ZebroLabError, match="no data named"):
+    assert "is the result of a calibration" in message_of(tmp_path)
+    with pytest.raises(ZebroLabError, match="no data given"):
         read_rig_data([])

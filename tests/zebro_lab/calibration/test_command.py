@@ -266,17 +266,17 @@ def faulty(sweep: Path, folder: Path, fault: str) -> None:
 
 
 FAULTS = {
-    "missing column": "column 'normal_force': missing",
+    "missing column": "column 'normal_force': is missing",
     "unknown unit": "unknown unit 'Newtom'",
-    "not a number": "column 'traction_force', row 41 (line 42): 1 of 600 rows are not finite",
-    "infinite": "column 'traction_force', row 41 (line 42): 1 of 600 rows are not finite",
-    "negative load": "column 'normal_force', row 41 (line 42): normal force is -1 N",
+    "not a number": "column 'traction_force', row 41 (line 42): found nan N; expected finite",
+    "infinite": "column 'traction_force', row 41 (line 42): found inf N; expected finite",
+    "negative load": "column 'normal_force', row 41 (line 42): the normal force is -1 N",
     "constant slip": "a curve needs several set-points",
     "mixed definitions": "'travel'",
     "repeated time": "column 't', row 41 (line 42): time",
     "three samples": "3 samples in all, expected at least 20",
     "empty folder": "holds no data",
-    "truncated parquet": "rig.parquet: is not a whole Parquet file",
+    "truncated parquet": "rig.parquet: is not a complete Parquet file",
     "binary file": "rig.csv: is not text but a binary file",
 }
 

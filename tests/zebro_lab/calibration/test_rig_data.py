@@ -34,7 +34,7 @@ def test_slip_from_disc_speeds_is_material(plain):
     assert plain.samples.definition == "material"
     np.testing.assert_allclose(plain.samples.slip, np.linspace(0.0, 0.5, N), atol=1e-12)
     assert plain.samples.run_names == ("rig",)
-    assert plain.notes[0] == "slip from the disc speeds and radii, material"
+    assert plain.notes[0] == "slip computed from disc speeds and radii, definition material"
     assert plain.source == "unknown"
 
 
@@ -60,7 +60,7 @@ def test_every_form_of_file_reads_the_same(tmp_path, plain, form):
 def test_foreign_separator_is_noted(tmp_path):
     columns(tmp_path, RADII)
     data = read_rig_data([write(tmp_path, speeds(), sep=";")])
-    assert "rig.csv: read as separated by semicolons" in data.notes
+    assert "rig.csv: cells are separated by semicolons" in data.notes
 
 
 def test_foreign_names_units_and_signs_are_converted(tmp_path, plain):
@@ -134,7 +134,7 @@ def test_each_file_is_a_run_by_default(tmp_path):
     data = read_rig_data([tmp_path])
     assert data.samples.n_runs == 2
     assert data.samples.run_names == (str(Path("a", "rig")), str(Path("b", "rig")))
-    assert "2 runs, one a file" in data.notes
+    assert "2 runs, each file is one run" in data.notes
 
 
 def test_nearest_columns_file_wins_and_an_explicit_one_over_all(tmp_path):

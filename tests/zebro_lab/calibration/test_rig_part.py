@@ -97,4 +97,4 @@ def test_a_recorded_run_is_one_run_a_sweep(tmp_path):
     part = part_of(folder)
     assert len(part.runs.names) == 3
     assert part.rows_read == len(part.normal_force) < len(t)
-    assert "of the samples left out, in which slip jumped" in part.notes[0]
+    assert "of the samples are ignored, because slip jumped" in part.notes[0]

@@ -283,7 +283,7 @@ def test_options_that_do_not_fit_are_refused(request_for, tmp_path, changes, pro
 
 def test_file_in_the_place_of_the_folder_is_refused_before_the_data_is_read(request_for, tmp_path):
     (tmp_path / "out").write_text("a file")
-    with pytest.raises(AlreadyExists, match="name another --out"):
+    with pytest.raises(AlreadyExists, match="is a file; give the name of a folder as --out"):
         calibrate(request_for(tmp_path / "out", data=(tmp_path / "absent",)), Watcher())
     assert (tmp_path / "out").read_text() == "a file"
 

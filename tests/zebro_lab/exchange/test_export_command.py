@@ -27,4 +27,7 @@ def test_topics_of_a_log_for_viewers_are_counted(tmp_path, run_command, monkeypa
     monkeypatch.setattr(export_mcap_stage, "export_mcap", export_mcap)
     ended = run_command("export", "a-run", "--out", tmp_path / "a.mcap", "--to", "mcap")
     assert (ended.code, ended.err) == (0, "")
-    assert ended.out == f"/tf: 12\n/track: 3\nof a-run\nwrote {tmp_path / 'a.mcap'}\n"
+    assert (
+        ended.out
+        == f"/tf: 12 messages\n/track: 3 messages\nof a-run\nwrote {tmp_path / 'a.mcap'}\n"
+    )

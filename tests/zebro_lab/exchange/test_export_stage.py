@@ -45,5 +45,5 @@ def test_a_table_says_that_it_is_simulated(recorded, tmp_path):
 
 
 def test_what_is_there_is_not_written_over(recorded, tmp_path):
-    with pytest.raises(AlreadyExists, match="another --out"):
+    with pytest.raises(AlreadyExists, match="another folder with --out"):
         export_run(recorded, to="csv", out=tmp_path)

@@ -79,7 +79,7 @@ def test_a_named_file_counts_in_place_of_that_beside_the_table(find, tmp_path):
     ("text", "message"),
     [
         ("[legs]\n[leg.columns]", "leg: unknown key; did you mean 'legs'"),
-        ("legs = 3", "legs: found 3; expected a table"),
+        ("legs = 3", "legs: found 3; expected a section"),
         ("[legs]\n[columns]\nt = 'time'", "columns: unknown key"),
     ],
 )

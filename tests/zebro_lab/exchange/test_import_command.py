@@ -18,8 +18,11 @@ def test_options_reach_the_run_and_it_is_named(files, tmp_path, run_command):
     assert (ended.code, ended.err) == (0, "")
     folder = data / "20260304T050607Z_walk_circle"
     *notes, last = ended.out.splitlines()
-    assert last == f"SIMULATED sim:other-lab: 100 /legs/raw, 100 /imu/raw: {folder}"
-    assert any("without yaw" in note for note in notes)
+    assert (
+        last
+        == f"SIMULATED source sim:other-lab, samples: 100 /legs/raw, 100 /imu/raw; wrote {folder}"
+    )
+    assert any("no column of yaw" in note for note in notes)
     manifest = read_manifest(folder)
     assert (manifest.material, manifest.operator, manifest.robot) == ("PLA", "a", "robot")
     assert (folder / "track" / "track.csv").is_file()
@@ -30,7 +33,9 @@ def test_a_rigs_runs_are_all_named(sweep, tmp_path, run_command):
     ended = run_command("import", "--rig", sweep / "sweep.csv", "--data", tmp_path,
                         "--start", "2026-01-01T00:00:00+00:00")  # fmt: skip
     assert ended.code == 0
-    named = [line for line in ended.out.splitlines() if line.startswith("SIMULATED sim:rig-sweep")]
+    named = [
+        line for line in ended.out.splitlines() if line.startswith("SIMULATED source sim:rig-sweep")
+    ]
     assert len(named) == len(list(tmp_path.iterdir())) == 24
 
 
@@ -38,4 +43,4 @@ def test_a_rigs_runs_are_all_named(sweep, tmp_path, run_command):
 def test_a_start_that_is_no_time_is_named(tmp_path, run_command, start):
     ended = run_command("import", "--legs", "legs.csv", "--data", tmp_path, "--start", start)
     assert ended.code == 2
-    assert f"found '{start}'; expected a time such as" in " ".join(ended.err.split())
+    assert f"found '{start}'; expected date and time like" in " ".join(ended.err.split())

@@ -79,7 +79,7 @@ def test_files_that_share_no_time_are_told_of(files, tmp_path):
     table["t"] += 100
     table.to_csv(files / "imu.csv", index=False)
     _, notes = everything(files, tmp_path)
-    assert any("one clock" in note for note in notes)
+    assert any("the same clock" in note for note in notes)
 
 
 def change(name, **changes):
@@ -145,8 +145,8 @@ def test_a_trajectory_of_another_form_is_refused(files, tmp_path, text, message)
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({}, "nothing to import"),
-        ({"imu": "imu.csv"}, "belongs to a walk|nothing to import"),
+        ({}, "no file to import"),
+        ({"imu": "imu.csv"}, "belongs to a walk|no file to import"),
         ({"legs": "legs.csv", "start": datetime(2026, 1, 1)}, "no time zone"),
     ],
 )

@@ -32,9 +32,9 @@ def test_a_rig_without_speeds_or_with_trials_is_left_to_the_calibration(sweep, t
     table = pd.read_csv(sweep / "sweep.csv")
     given = table.drop(columns=["omega_leg"]).assign(slip_ratio=0.1)
     given.to_csv(tmp_path / "slip.csv", index=False)
-    with pytest.raises(DataError, match="calibrate-slip reads this table"):
+    with pytest.raises(DataError, match="give this table to calibrate-slip"):
         taken(tmp_path, rig=tmp_path / "slip.csv")
     table.to_csv(tmp_path / "trials.csv", index=False)
     (tmp_path / "columns.toml").write_text("[runs]\neach_row = true")
-    with pytest.raises(DataError, match="averages of trials"):
+    with pytest.raises(DataError, match="is the mean of a trial"):
         taken(tmp_path, rig=tmp_path / "trials.csv")

@@ -29,7 +29,7 @@ def test_a_run_says_what_it_was_made_from_and_is_listed(files, tmp_path):
     (run,) = list_runs(tmp_path / "data")
     assert (run.state, run.duration) == ("imported", "2.0 s")
     assert run.samples == "100 /legs/raw, 100 /imu/raw"
-    assert any("without yaw" in note for note in notes)
+    assert any("no column of yaw" in note for note in notes)
 
 
 def test_orientation_is_decoded_as_of_any_imu(files, tmp_path):
@@ -52,7 +52,7 @@ def test_nobody_stated_a_source_so_that_the_file_is_it(files, tmp_path):
 def test_a_run_that_is_there_is_not_written_over(files, tmp_path):
     folder, _ = everything(files, tmp_path)
     before = (folder / "run.json").read_bytes()
-    with pytest.raises(AlreadyExists, match="another label"):
+    with pytest.raises(AlreadyExists, match="another name with --label"):
         everything(files, tmp_path)
     assert (folder / "run.json").read_bytes() == before
 

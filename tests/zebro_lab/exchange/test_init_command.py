@@ -19,14 +19,14 @@ def test_init_says_what_it_guessed_and_what_to_check(tmp_path):
     result = CliRunner().invoke(app, [str(file)])
     assert result.exit_code == 0, result.output
     assert f"wrote {tmp_path / 'columns.toml'}" in result.output
-    assert "normal_force    from 'FZ' in N times -1" in result.output
-    assert "check: [constants] radius_leg and radius_ground" in result.output
+    assert "normal_force    from 'FZ' in N, sign reversed" in result.output
+    assert "check: [constants] needs radius_leg and radius_ground" in result.output
 
 
 def test_init_names_what_it_could_not_find(tmp_path):
     (tmp_path / "rig.csv").write_text("a,b\n1,2\n")
     result = CliRunner().invoke(app, [str(tmp_path / "rig.csv")])
-    assert "no column found for normal_force, traction_force, slip_ratio" in result.output
+    assert "no column was found for normal_force, traction_force, slip_ratio" in result.output
 
 
 def test_init_is_imported_without_its_heavy_dependencies():

@@ -44,7 +44,7 @@ def test_tyre_bench_header_is_recognised(tmp_path):
     names = {canonical: mapped.name for canonical, mapped in columns.columns.items()}
     assert names == {"t": "ET", "slip_ratio": "SL", "normal_force": "FZ", "traction_force": "FX"}
     assert columns.columns["normal_force"].factor == -1
-    assert 'name = "SL"  # first -0.1, from -0.1 to 0.1; or is it "SR"?' in text
+    assert 'name = "SL"  # first -0.1, from -0.1 to 0.1; CHECK: could also be "SR"' in text
     assert '#   "V": first 40, from 40 to 40' in text
 
 
@@ -97,7 +97,7 @@ def test_existing_file_is_kept_unless_forced(tmp_path):
 def test_what_is_no_table_leaves_no_template(tmp_path):
     with pytest.raises(NotFound):
         write_columns_template(tmp_path / "absent.csv")
-    with pytest.raises(DataError, match="is no table file"):
+    with pytest.raises(DataError, match="is not a table file"):
         write_columns_template(tmp_path)
     (tmp_path / "a.csv").write_bytes(b"")
     with pytest.raises(DataError, match="is empty"):

@@ -35,4 +35,4 @@ def test_a_rig_that_lost_friction_has_drifted(plan, tmp_path, monkeypatch):
     assert all(found.drifted for found in check_runs([data], tmp_path))
     result = zebro_lab("check", data, "--slip", tmp_path)
     assert result.exit_code == 3
-    assert "2 of 2 runs have drifted" in result.output
+    assert "2 of 2 runs deviate from the calibration" in result.output

@@ -27,14 +27,14 @@ def test_a_run_says_what_each_point_is_worth(plan, tmp_path):
     result = zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", tmp_path / "data")
     assert result.exit_code == 0, result.output
     assert "point-0002 Fn 8 N slip 0.0500 (attempt 1): good" in result.output
-    assert "completed: 2 points finished, 0 refused" in result.output
+    assert "completed: 2 points finished, 0 points failed" in result.output
 
 
 def test_refused_points_have_an_exit_code_of_their_own(plan, tmp_path):
     plan.write_text(plan.read_text().replace("slip = 0.02   ", "slip = 1e-9   "))
     result = zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", tmp_path / "data")
     assert result.exit_code == 3
-    assert "2 refused" in result.output
+    assert "2 points failed" in result.output
 
 
 def test_a_weighing_prints_line_and_prior():
@@ -56,7 +56,7 @@ def test_a_short_run_in_real_time_takes_its_time(plan, tmp_path, monkeypatch):
 
 def test_nobody_to_talk_to_is_said(tmp_path):
     result = zebro_lab("say", "pause", "--data", tmp_path)
-    assert "no experiment runs here" in str(result.exception)
+    assert "no experiment is running here" in str(result.exception)
 
 
 def test_help_loads_nothing_heavy():

@@ -33,7 +33,7 @@ def begin(folder, *, plan="plan", resume=False, reset=False):
 def test_an_experiment_is_begun_once_and_resumed_with_its_own_plan(tmp_path):
     assert begin(tmp_path).plan == plan_fingerprint("plan")
     JournalWriter(tmp_path).append("point", "accepted", number=2, accepted=True, folder="a")
-    with pytest.raises(AlreadyExists, match="continue it with --resume"):
+    with pytest.raises(AlreadyExists, match="add --resume to continue it"):
         begin(tmp_path)
     with pytest.raises(SettingsError, match="was started with another plan"):
         begin(tmp_path, plan="another", resume=True)
@@ -45,8 +45,8 @@ def test_an_experiment_is_begun_once_and_resumed_with_its_own_plan(tmp_path):
 def test_an_emergency_stop_stays_until_it_is_reset(tmp_path):
     begin(tmp_path)
     JournalWriter(tmp_path).append("end", "emergency stop: smoke")
-    with pytest.raises(SettingsError, match="smoke is latched; inspect the rig"):
+    with pytest.raises(SettingsError, match=r"is latched .emergency stop: smoke.; inspect the rig"):
         begin(tmp_path, resume=True)
-    begin(tmp_path, resume=True, reset=True)
+    assert begin(tmp_path, resume=True, reset=True) == read_journal(tmp_path)
     assert read_journal(tmp_path).latched is None
     begin(tmp_path, resume=True)

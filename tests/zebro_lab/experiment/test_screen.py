@@ -39,9 +39,9 @@ def test_a_terminal_sees_progress_prompt_and_curve():
         verdict = PointVerdict((), 100, 0.1, 0.3, 4.0)
         screen.judged(Point(1, 4.0, (0.1,)), verdict, attempt=1)
     shown = console.file.getvalue()
-    assert "1 of 4 points, 1:15 left" in shown
-    assert "set it; now 3.20 N" in shown
-    assert "friction 0.00 to 0.30" in shown
+    assert "1 of 4 points finished, 1 min 15 s left" in shown
+    assert "set it; it is 3.20 N now" in shown
+    assert "friction (up) 0.00 to 0.30" in shown
 
 
 def test_without_a_terminal_a_prompt_is_one_line():

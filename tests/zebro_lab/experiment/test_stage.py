@@ -41,7 +41,7 @@ def test_a_damaged_address_of_an_experiment_is_one_line(tmp_path, content):
 
 
 def test_no_address_means_that_no_experiment_runs(tmp_path):
-    with pytest.raises(NotFound, match="no experiment runs here"):
+    with pytest.raises(NotFound, match="no experiment is running here"):
         command_run(tmp_path, "status")
 
 

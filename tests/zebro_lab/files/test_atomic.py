@@ -62,7 +62,7 @@ def test_exception_leaves_nothing_behind(tmp_path, stop):
 def test_a_folder_that_holds_something_is_refused(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "notes.txt").write_text("mine")
-    with pytest.raises(AlreadyExists, match="holds something"), atomic_folder(tmp_path / "out"):
+    with pytest.raises(AlreadyExists, match="is not empty"), atomic_folder(tmp_path / "out"):
         pass
     assert names(tmp_path) == ["out/notes.txt"]
 

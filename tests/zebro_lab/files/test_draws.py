@@ -43,7 +43,7 @@ def test_a_missing_file_and_a_group_that_is_none_are_named(tmp_path):
         read(tmp_path / "posterior.nc")
     with h5py.File(tmp_path / "posterior.nc", "w") as file:
         file["posterior"] = np.arange(3.0)
-    with pytest.raises(DataError, match="'posterior' is no group of draws; calibrate again"):
+    with pytest.raises(DataError, match="'posterior' is not a group of draws; calibrate again"):
         read(tmp_path / "posterior.nc")
 
 
@@ -62,7 +62,7 @@ def test_no_draws_and_more_than_a_file_can_hold_are_refused(size, tmp_path):
         lambda group: group.create_dataset("friction", (size,), "f8", chunks=(1 << 20,),
                                            maxshape=(None,)),
     )  # fmt: skip
-    assert f"claims {size} draws of 'friction'" in refusal(read, file)
+    assert f"has {size} draws of 'friction'" in refusal(read, file)
 
 
 @pytest.mark.parametrize("way", ["storage", "link"])

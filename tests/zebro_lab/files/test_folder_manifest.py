@@ -28,10 +28,13 @@ def test_a_manifest_of_an_expected_kind_is_returned_whole(file, kind):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ({"kind": "track", "schema": 2}, "is not of a walk; expected kind walk or prediction"),
-        ({"kind": ["walk"], "schema": 2}, "is not of a walk"),
-        ({"schema": 2}, "is not of a walk"),
-        ({"kind": "walk", "schema": 3}, "has schema 3, this version reads 2; update zebro-lab"),
+        (
+            {"kind": "track", "schema": 2},
+            "is not a manifest of a walk: expected 'kind' walk or prediction",
+        ),
+        ({"kind": ["walk"], "schema": 2}, "is not a manifest of a walk"),
+        ({"schema": 2}, "is not a manifest of a walk"),
+        ({"kind": "walk", "schema": 3}, "has schema 3; this version of zebro-lab reads schema 2"),
         ({"kind": "walk"}, "has schema None"),
         (["kind", "walk"], "is not a JSON object"),
     ],
@@ -44,5 +47,5 @@ def test_a_manifest_of_another_kind_or_schema_is_refused(file, content, message)
 
 
 def test_a_folder_without_its_file_is_none_of_the_kind(file):
-    with pytest.raises(NotFound, match=r"is no run folder: it has no manifest\.json"):
+    with pytest.raises(NotFound, match=r"is not a run folder: manifest\.json is missing"):
         read_json_object(file, of="run folder")

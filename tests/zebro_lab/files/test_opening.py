@@ -18,7 +18,7 @@ def test_what_is_no_file_is_told_with_its_name_once(tmp_path):
     os.mkfifo(tmp_path / "x")
     with pytest.raises(DataError) as caught:
         read_bytes(tmp_path / "x", most=1)
-    assert str(caught.value) == f"{tmp_path / 'x'}: is a FIFO; expected a file"
+    assert str(caught.value) == f"{tmp_path / 'x'}: is a FIFO; expected a regular file"
 
 
 @pytest.mark.parametrize("reader", [read_tum, read_raw_log, read_log, read_table_file])

@@ -119,7 +119,7 @@ def test_a_picture_is_known_by_its_command_and_one_of_a_result_is_kept(run, phot
     words.add_text("Software", "zebro-lab")
     Image.new("RGB", (8, 8)).save(early, pnginfo=words)
     (tmp_path / "manifest.json").write_text(json.dumps({"outputs": {"early.png": "0"}}))
-    with pytest.raises(ZebroLabError, match="belongs to the result"):
+    with pytest.raises(ZebroLabError, match="is part of the result"):
         plot_run(run, out=early)
     (tmp_path / "manifest.json").unlink()
     plot_run(run, out=early)

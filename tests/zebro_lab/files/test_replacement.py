@@ -110,7 +110,7 @@ def test_a_folder_that_somebody_keeps_as_previous_is_never_removed(tmp_path):
     write_track(tmp_path / "track.previous", 7.0)
     write_track(out, 0.0)
     assert read_track_manifest(tmp_path / "track.previous")["settings"] == {"x": 7.0}
-    with pytest.raises(ZebroLabError, match=r"track\.previous is in the way"):
+    with pytest.raises(ZebroLabError, match=r"track\.previous exists"):
         write_track(out, 1.0)
     assert read_track_manifest(out)["settings"] == {"x": 0.0}
 

@@ -35,9 +35,9 @@ def test_a_packed_and_a_plain_file_read_the_same(tmp_path):
 def test_a_gzip_file_cut_short_and_one_that_is_none_are_refused(tmp_path):
     file = packed(tmp_path / "a.csv.gz", TEXT)
     file.write_bytes(file.read_bytes()[:-20])
-    assert "is not a whole gzip file" in refusal(read, file)
+    assert "is not a complete gzip file" in refusal(read, file)
     file.write_bytes(TEXT)
-    assert "is not a whole gzip file" in refusal(read, file)
+    assert "is not a complete gzip file" in refusal(read, file)
 
 
 def test_a_file_that_unpacks_to_far_more_than_its_size_is_refused(tmp_path, monkeypatch):

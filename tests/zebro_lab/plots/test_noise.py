@@ -37,7 +37,7 @@ def test_wild_residuals_are_counted_and_do_not_squeeze_the_histogram(one_load):
     legends = [axes.get_legend() for axes in figure.axes]
     entries = [text.get_text() for each in legends if each for text in each.get_texts()]
     assert "blocks (2 beyond ±8 at the edges)" in entries
-    assert "central 90 %, 1 of 2 outside" in entries
+    assert "central 90 %, 1 of 2 runs outside" in entries
 
 
 def test_lags_are_drawn_with_the_band_of_white_noise(rig):

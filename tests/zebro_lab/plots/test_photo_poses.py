@@ -17,7 +17,7 @@ def test_a_robot_is_drawn_where_it_was_predicted(walked):
     )  # fmt: skip
     figure = photos_beside_poses([shot], Robot(), title="w", simulated_photos=False)
     above, below = figure.axes
-    assert "30 mm, +5.7 deg off" in below.get_title(loc="left")
+    assert "error 30 mm, +5.7 deg" in below.get_title(loc="left")
     assert above.get_ylabel().startswith("photograph")
     lines = {line.get_label(): line for line in below.lines}
     assert {"predicted body", "tracked body", "leg on the ground", "leg in the air"} <= set(lines)

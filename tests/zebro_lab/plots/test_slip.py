@@ -26,7 +26,7 @@ def test_blocks_far_off_their_load_are_hollow(one_load):
     full, hollow = scatters(shifted.curves().axes[0])
     assert (len(full.get_offsets()), len(hollow.get_offsets())) == (46, 16)
     assert len(hollow.get_facecolors()) == 0
-    assert hollow.get_label() == "block means, load more than 10 % off"
+    assert hollow.get_label() == "block means, load differs > 10 %"
 
 
 def test_the_median_of_one_repeated_draw_is_the_law(tyre):

@@ -15,7 +15,7 @@ def test_zebro_check_fixes_order_and_writes_a_profile(tmp_path):
         command, input="\n".join(answers) + "\n", capture_output=True, text=True, check=False
     )
     assert checked.returncode == 0, checked.stderr
-    assert f"wrote {file}" in checked.stdout
+    assert f"wrote the profile {file}" in checked.stdout
     profile = load_leg_profile(str(file))
     assert profile.legs == (1, 2, 3, 5, 4, 6)
     assert profile.sign == (1, 1, -1, 1, 1, 1)

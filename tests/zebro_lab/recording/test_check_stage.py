@@ -41,7 +41,7 @@ def test_what_the_person_saw_is_in_the_profile(tmp_path):
 def test_a_profile_that_is_there_is_kept_and_no_robot_moved(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text("mine")
-    with pytest.raises(AlreadyExists, match="name another --save"):
+    with pytest.raises(AlreadyExists, match="choose another file with --save"):
         check_zebro(CheckRequest("sim", file), Person(), clock=SYSTEM_CLOCK)
     assert file.read_text() == "mine"
 

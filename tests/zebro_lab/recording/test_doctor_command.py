@@ -10,7 +10,7 @@ from zebro_lab.recording.doctor import Grade
 
 def test_the_command_fails_only_where_something_needed_is_broken(monkeypatch, tmp_path):
     done = CliRunner().invoke(app, ["doctor", "--data", str(tmp_path)])
-    assert (done.exit_code, "everything needed is there" in done.output) == (0, True)
+    assert (done.exit_code, "everything that zebro-lab needs is there" in done.output) == (0, True)
     monkeypatch.setattr(doctor, "check_python", lambda _: doctor.Finding(Grade.BROKEN, "p", "old"))
     done = CliRunner().invoke(app, ["doctor", "--data", str(tmp_path)])
-    assert (done.exit_code, "1 broken" in done.output) == (1, True)
+    assert (done.exit_code, "1 BROKEN" in done.output) == (1, True)

@@ -6,10 +6,11 @@ import json
 import os
 import threading
 import time
-from datetime import datetime
+from datetime import datetime, timedelta
 
 import pytest
 
+from rig.clock import ManualClock
 from rig.device import Counters
 from support.recorders import PROFILE, count_in, recorder, some, until
 from zebro_lab.files.errors import AlreadyExists, RecordingError
@@ -40,6 +41,18 @@ def test_a_run_ends_with_a_complete_record(tmp_path):
     assert profile_file(run.folder, "legs").read_text() == profile_text(PROFILE)
     assert sorted(p.name for p in run.folder.iterdir()) == ["log.mcap", "profiles", "run.json"]
     assert read_raw_log(run.folder / "log.mcap").damage is None
+
+
+def test_the_first_of_two_ends_dates_the_stop(tmp_path):
+    clock = ManualClock()
+    with recorder(tmp_path, clock=clock) as run:
+        clock.sleep(1.0)
+        run.end()
+        clock.sleep(9.0)
+        run.end("failed: the port does not close")
+    manifest = read_manifest(run.folder)
+    assert manifest.exit_status == "failed: the port does not close"
+    assert datetime.fromisoformat(manifest.stop) - manifest.began == timedelta(seconds=1)
 
 
 def test_a_run_can_be_read_while_it_grows(tmp_path):
@@ -157,7 +170,7 @@ def test_a_run_is_never_overwritten(tmp_path, monkeypatch):
     with recorder(tmp_path) as run:
         pass
     before = (run.folder / "run.json").read_text()
-    with pytest.raises(AlreadyExists, match="another label"):
+    with pytest.raises(AlreadyExists, match="another name with --label"):
         recorder(tmp_path).__enter__()
     assert (run.folder / "run.json").read_text() == before
     assert json.loads(before)["exit_status"] == "completed"
@@ -220,7 +233,7 @@ def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path
 
     with recorder(tmp_path) as run:
         monkeypatch.setattr(run_files, "write_manifest", fail)
-    assert "end record" in run.failure
+    assert "run.json cannot be completed" in run.failure
     assert "No space left on device" in run.failure
 
 

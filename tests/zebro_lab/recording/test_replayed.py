@@ -61,7 +61,7 @@ def test_a_stream_that_the_run_lacks_is_named(make):
 
 
 def test_a_run_that_is_not_there_or_lost_its_profile_is_named(make, tmp_path):
-    with pytest.raises(NotFound, match="is no run folder"):
+    with pytest.raises(NotFound, match="is not a run folder"):
         read_replay(f"replay:{tmp_path}", "rig")
     run = make("real")
     (run / "profiles" / "rig.toml").unlink()
@@ -73,5 +73,5 @@ def test_a_replay_moves_nothing(make):
     with pytest.raises(ProfileError, match="replays a recording"):
         resolve("replay:RUN", default="rig-board-serial")
     play = DevicesRequest(zebro=f"replay:{make('real')}", play=object())
-    with pytest.raises(SettingsError, match="takes no set-points"), open_devices(play):
+    with pytest.raises(SettingsError, match="cannot be moved"), open_devices(play):
         pass

@@ -19,6 +19,6 @@ def test_a_twin_prints_its_port_and_any_program_can_record_it(run_command, tmp_p
         twin.send_signal(signal.SIGTERM)
         assert twin.wait(20) == 0
     assert code == 0
-    received, lost = map(int, re.search(r"legs: (\d+) samples, (\d+) lost", out).groups())
+    received, lost = map(int, re.search(r"legs: (\d+) samples received, (\d+) lost", out).groups())
     assert received > 50
     assert 0 < lost < 0.3 * received

@@ -46,7 +46,7 @@ def test_every_device_of_a_rig_is_read_at_its_address(profile):
 
 def test_a_bus_that_cannot_be_opened_is_named():
     request = ZebroTwinRequest("zebro-100-can", can="nosuch:bus")
-    with pytest.raises(SettingsError, match="cannot open nosuch:bus"), serve_zebro(request):
+    with pytest.raises(SettingsError, match="cannot open bus nosuch:bus"), serve_zebro(request):
         pass
 
 

@@ -16,10 +16,10 @@ def test_what_is_missing_is_named_with_the_command_that_makes_it(walk, tmp_path,
     ended = run_command("report", walk, "--calibration", tmp_path / "none", "--out",
                         tmp_path / "page.html")  # fmt: skip
     calibration, track, written = ended.out.splitlines()
-    assert calibration.startswith("missing: calibration; zebro-lab calibrate ")
+    assert calibration.startswith("missing: calibration; create it with: zebro-lab calibrate ")
     assert track == (
-        f"missing: track; zebro-lab track PHOTOS --camera camera.toml --floor floor.toml --run "
-        f"{walk} makes it"
+        "missing: track; create it with: zebro-lab track PHOTOS --camera camera.toml --floor "
+        f"floor.toml --run {walk}"
     )
     assert written.startswith("wrote")
 

@@ -125,7 +125,7 @@ def test_pictures_outside_the_folder_are_left_out_and_named(run, secret):
     page = page_of(run)
     assert base64.b64encode(secret).decode() not in page
     assert page.count("data:image/png") == 1
-    assert "Not shown" in page
+    assert "Picture not shown" in page
 
 
 def test_marks_of_direction_and_controls_are_spelled_out(run):

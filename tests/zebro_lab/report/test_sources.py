@@ -32,7 +32,7 @@ def test_a_folder_of_runs_is_one_page(walk, tmp_path):
 
 def test_a_foreign_manifest_is_refused(walk):
     write_json(walk / "track/manifest.json", {"kind": "predict"})
-    with pytest.raises(DataError, match="another command"):
+    with pytest.raises(DataError, match="of kind 'predict'; expected kind track"):
         made(walk)
 
 
@@ -59,16 +59,20 @@ def test_a_picture_from_elsewhere_is_not_shown_and_one_that_is_gone_is_left_out(
 
 
 def test_a_folder_with_nothing_to_report_is_named(tmp_path):
-    with pytest.raises(NotFound, match=r"holds no run \(run\.json\) and none of track"):
+    with pytest.raises(NotFound, match=r"holds neither a run \(run\.json\) nor a folder track"):
         find_sources(tmp_path, calibration=tmp_path)
 
 
 @pytest.mark.parametrize(
     ("file", "text", "message"),
     [
-        ("summary.csv", None, r"summary\.csv: is missing; make it again"),
-        ("manifest.json", "[]", r"manifest\.json: holds no table; make it again"),
-        ("slip.toml", "[", r"slip\.toml: cannot be read as TOML.*make it again"),
+        ("summary.csv", None, r"summary\.csv: is missing; run the command that writes it again"),
+        (
+            "manifest.json",
+            "[]",
+            r"manifest\.json: holds no named entries; run the command that wrote it again",
+        ),
+        ("slip.toml", "[", r"slip\.toml: cannot be read as TOML.*write it again"),
     ],
 )
 def test_a_part_that_cannot_be_read_is_named(walk, file, text, message):

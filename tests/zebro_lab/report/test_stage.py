@@ -27,7 +27,7 @@ def test_bad_input_leaves_no_page(walk, tmp_path):
     with pytest.raises(NotFound, match=r"run\.json"):
         made(empty, out=tmp_path / "r.html")
     (walk / "track/manifest.json").write_text("{")
-    with pytest.raises(DataError, match="make it again"):
+    with pytest.raises(DataError, match="restore or create the file again"):
         made(walk, out=tmp_path / "r.html")
     with pytest.raises(AlreadyExists, match="is a folder"):
         made(walk, out=empty)

@@ -72,16 +72,16 @@ def test_gait_is_named_by_what_sets_it_apart(options, what):
 
 
 FAULTS = {
-    "unknown gait": ({"name": "trot"}, r"there is no gait 'trot'"),
+    "unknown gait": ({"name": "trot"}, r"'trot' is not a gait"),
     "option of another gait": (
-        {"name": "tetrapod", "steering": 1.1}, r"--steering: means nothing to the gait 'tetrapod'",
+        {"name": "tetrapod", "steering": 1.1}, r"--steering: does not apply to gait 'tetrapod'",
     ),
-    "no number": ({"touchdown_deg": "50,x"}, r"--touchdown-deg: '50,x' is no angle"),
-    "three angles": ({"liftoff_deg": "1,2,3"}, r"--liftoff-deg: '1,2,3' is no angle"),
-    "empty angle": ({"touchdown_deg": ""}, r"--touchdown-deg: '' is no angle"),
-    "infinite angle": ({"touchdown_deg": "inf"}, r"--touchdown-deg: 'inf' is no angle"),
+    "no number": ({"touchdown_deg": "50,x"}, r"--touchdown-deg: '50,x' is not an angle"),
+    "three angles": ({"liftoff_deg": "1,2,3"}, r"--liftoff-deg: '1,2,3' is not an angle"),
+    "empty angle": ({"touchdown_deg": ""}, r"--touchdown-deg: '' is not an angle"),
+    "infinite angle": ({"touchdown_deg": "inf"}, r"--touchdown-deg: 'inf' is not an angle"),
     "two angles for one": (
-        {"name": "buehler", "touchdown_deg": "50,40"}, r"has one for all legs",
+        {"name": "buehler", "touchdown_deg": "50,40"}, r"this gait takes one, for all legs",
     ),
 }  # fmt: skip
 

@@ -47,17 +47,17 @@ def test_what_is_not_measured_is_nan_and_a_missing_yaw_is_noted():
                             [np.nan, 2.0, np.nan, np.nan, np.nan, 9.9]],
     )  # fmt: skip
     np.testing.assert_array_equal(log.t, T)
-    assert log.notes == ("imu.csv: without yaw; its heading is kept as 0",)
+    assert log.notes == ("imu.csv has no column of yaw; yaw is set to 0",)
 
 
 @pytest.mark.parametrize(
     ("columns", "message"),
     [
         ({"qw": [1.0, 0.9], "qx": [0.0, 0.0], "qy": [0.0, 0.0], "qz": [0.0, 0.0]},
-         "column 'qw', row 2: the quaternion has length 0.9; expected 1"),
-        ({"qw": [1.0, 1.0], "qx": [0.0, 0.0], "qy": [0.0, 0.0]}, "'qz': missing, the qz of the b"),
-        ({"roll": [0.0, 0.0]}, "'pitch': missing, the pitch of the body"),
-        ({"heading": [0.0, 0.0]}, "holds no orientation; expected qw, qx, qy, qz, or roll and p"),
+         "column 'qw', row 2: the quaternion in this row has length 0.9; expected 1"),
+        ({"qw": [1.0, 1.0], "qx": [0.0, 0.0], "qy": [0.0, 0.0]}, "the column of the qz of the"),
+        ({"roll": [0.0, 0.0]}, "'pitch': the column of the pitch of the body is missing"),
+        ({"heading": [0.0, 0.0]}, "holds no orientation; expected the columns qw, qx, qy, qz"),
         ({"t": [0.1, 0.1], "roll": [0.0, 0.0], "pitch": [0.0, 0.0]}, "expected increasing times"),
     ],
 )  # fmt: skip

@@ -44,7 +44,7 @@ def test_signs_of_the_robots_legs_are_applied_and_backward_legs_noted(tmp_path):
     found = read(leg_table(), tmp_path, leg_sign=(1, -1, 1, 1, 1, 1))
     np.testing.assert_allclose(found.reference.theta[:, 1], -leg_table().theta2)
     assert found.notes[0] == "leg log: 200 samples over 1.99 s, about 100 Hz"
-    assert "legs 2 turn backwards" in found.notes[-1]
+    assert "leg 2 turns backwards" in found.notes[-1]
 
 
 def test_the_source_of_the_table_is_kept_and_unknown_without_one():
@@ -59,15 +59,15 @@ def without(name: str, row: int, value: float = np.nan):
 
 
 FAULTS = {
-    "missing leg": (lambda t: t.drop(columns="theta4"), "column 'theta4': missing, the angle of l"),
-    "missing time": (lambda t: t.drop(columns="t"), "column 't': missing, the time"),
+    "missing leg": (lambda t: t.drop(columns="theta4"), "column 'theta4': the column of the angle"),
+    "missing time": (lambda t: t.drop(columns="t"), "'t': the column of the time is missing"),
     "empty cell": (without("theta2", 7), "column 'theta2', row 8 (line 9): is empty"),
     "infinite angle": (without("theta5", 0, np.inf), "column 'theta5', row 1 (line 2): is infinit"),
     "reversed time": (lambda t: t.iloc[::-1], "column 't', row 2 (line 3): time goes from 1.99 to"),
     "repeated time": (without("t", 5, 0.04), "column 't', row 6 (line 7): time goes from 0.04 to"),
     "gap": (lambda t: t.drop(index=range(50, 60)), "column 't', row 51 (line 52): time jumps from"),
     "half a turn": (lambda t: t.iloc[::90], "column 'theta1', row 2 (line 3): leg 1 turns by 2.7"),
-    "one row": (lambda t: t.head(1), "has 1 row; a leg log needs two or more"),
+    "one row": (lambda t: t.head(1), "has 1 row; expected two or more rows"),
     "text": (lambda t: t.assign(theta1="x"), "column 'theta1', row 1 (line 2): 'x' is not a num"),
 }  # fmt: skip
 

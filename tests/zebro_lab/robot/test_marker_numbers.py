@@ -17,7 +17,7 @@ from zebro_lab.track.robot import tracked_robot
 )
 def test_numbers_of_a_dictionary_end_with_its_last_marker(dictionary, last):
     require_in_dictionary(dictionary, (0, last))
-    message = f"number {last + 1} is not in '{dictionary}', whose markers are 0 to {last}"
+    message = f"marker {last + 1} is not in the dictionary '{dictionary}' of 0 to {last}"
     with pytest.raises(MarkerError, match=message):
         require_in_dictionary(dictionary, (0, last + 1))
 
@@ -32,7 +32,9 @@ def test_the_robots_number_is_not_laid_out_on_the_floor():
         marker = Marker((0, 0, 0.04), printed=MarkerPrint(number=number))
         robot = tracked_robot(RobotFile(marker=marker), prior=BodyPrior(0.06))
         if number in FLOOR_MARKERS:
-            with pytest.raises(MarkerError, match=f"marker {number} is the robot's and one of"):
+            with pytest.raises(
+                MarkerError, match=f"marker {number} is listed both for the robot and for"
+            ):
                 require_apart(robot, starter_floor())
         else:
             require_apart(robot, starter_floor())

@@ -27,7 +27,7 @@ def test_an_exclusion_can_be_undone_and_stays_on_record(tmp_path, run_command):
     assert "it was the other" in (folder / "run.json").read_text()
     again = run_command("exclude", folder, "--undo")
     assert again.code == 1
-    assert "is not left out" in again.err
+    assert "is not excluded" in again.err
 
 
 def test_a_run_that_is_being_recorded_is_not_excluded(tmp_path, run_command):

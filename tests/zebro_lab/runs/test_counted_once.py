@@ -36,7 +36,7 @@ def assert_once(found: RigData, sweep: Path, *names: str) -> None:
     alone = read_rig_data([sweep])
     assert len(found.samples.run_names) == len(alone.samples.run_names)
     assert len(found.samples) == len(alone.samples)
-    told = [note for note in found.notes if "once" in note]
+    told = [note for note in found.notes if "duplicate" in note]
     assert len(told) == 1
     assert all(name in told[0] for name in names)
 
@@ -121,7 +121,7 @@ covariance = { matrix = [[1.0, 0.0], [0.0, 1e-4]] }
 tested = { normal_force = [2.0, 13.0], slip_ratio = [0.0, 1.0] }
 """)
     assert len(check_runs([data], tmp_path)) == 24
-    assert "counts once: sweep is copy" in caplog.text
+    assert "was ignored: sweep equals copy" in caplog.text
 
 
 def test_a_damaged_gzip_file_is_told_apart_by_its_bytes(tmp_path):

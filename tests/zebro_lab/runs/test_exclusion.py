@@ -36,9 +36,9 @@ def test_an_exclusion_by_hand_or_an_earlier_version_enters_the_history(tmp_path)
 
 def test_no_reason_no_exclusion_and_no_run_are_refused(tmp_path):
     folder = make_run(tmp_path)
-    with pytest.raises(DataError, match="say why the run is left out"):
+    with pytest.raises(DataError, match="state why the run is excluded"):
         exclude_run(folder, why="  ")
     with pytest.raises(DataError, match="there is nothing to undo"):
         take_in_again(folder)
-    with pytest.raises(NotFound, match="is no run folder"):
+    with pytest.raises(NotFound, match="is not a run folder"):
         exclude_run(tmp_path, why="x")

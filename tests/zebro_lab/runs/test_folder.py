@@ -66,7 +66,7 @@ def test_start_in_any_zone_names_the_folder_in_utc(tmp_path):
 
 def test_run_is_never_overwritten(tmp_path):
     make_run(tmp_path)
-    with pytest.raises(AlreadyExists, match="give the run another label"):
+    with pytest.raises(AlreadyExists, match="choose another name with --label"):
         make_run(tmp_path)
 
 
@@ -83,8 +83,8 @@ def test_log_cut_short_is_salvaged_to_a_whole_chunk_with_a_note(tmp_path):
     run = read_slip_rig_run(folder)
     assert 6_000 < len(run.table) <= 10_000
     np.testing.assert_array_equal(run.table.t, make_table(20_000).t[: len(run.table)])
-    assert "log.mcap is cut short (the file ends early)" in run.notes[0]
-    assert f"; {len(run.table)} of 20000 samples read" in run.notes[0]
+    assert "log.mcap is incomplete (the file ends early)" in run.notes[0]
+    assert f"; {len(run.table)} of 20000 samples were read" in run.notes[0]
     assert run.notes[0] in read_rig_data([folder]).notes
 
 
@@ -101,7 +101,7 @@ def test_log_cut_anywhere_gives_a_prefix(tmp_path, kept):
 def test_log_cut_before_its_first_whole_chunk_is_an_error(tmp_path, kept):
     folder = make_run(tmp_path, 5_000)
     (folder / "log.mcap").write_bytes((folder / "log.mcap").read_bytes()[:kept])
-    with pytest.raises(DataError, match="holds no samples on /board/raw") as caught:
+    with pytest.raises(DataError, match="holds no samples of topic /board/raw") as caught:
         read_slip_rig_run(folder)
     assert "\n" not in str(caught.value)
 
@@ -114,13 +114,13 @@ def test_flipped_byte_is_found(tmp_path):
     log.write_bytes(data)
     run = read_slip_rig_run(folder)
     assert 0 < len(run.table) < 20_000
-    assert "is cut short" in run.notes[0]
+    assert "is incomplete" in run.notes[0]
 
 
 def test_log_of_another_run_is_refused(tmp_path):
     first, second = make_run(tmp_path, label="a"), make_run(tmp_path, 300, label="b")
     (first / "log.mcap").write_bytes((second / "log.mcap").read_bytes())
-    with pytest.raises(DataError, match="is not the log that was recorded"):
+    with pytest.raises(DataError, match="was changed after the recording"):
         read_slip_rig_run(first)
 
 
@@ -143,7 +143,7 @@ def test_wrong_manifest_is_named(tmp_path, change, message):
 def test_missing_and_foreign_files_are_named(tmp_path):
     folder = make_run(tmp_path)
     (folder / "log.mcap").write_bytes(b"no mcap at all")
-    with pytest.raises(DataError, match="is no MCAP file"):
+    with pytest.raises(DataError, match="is not an MCAP file"):
         read_slip_rig_run(folder)
     (folder / "log.mcap").unlink()
     with pytest.raises(NotFound, match=r"log\.mcap: missing"):
@@ -152,7 +152,7 @@ def test_missing_and_foreign_files_are_named(tmp_path):
     with pytest.raises(DataError, match="cannot be read as JSON"):
         read_slip_rig_run(folder)
     (folder / "run.json").unlink()
-    with pytest.raises(NotFound, match="is no run folder"):
+    with pytest.raises(NotFound, match="is not a run folder"):
         read_slip_rig_run(folder)
 
 

@@ -81,7 +81,7 @@ def test_named_columns_file_must_exist(read, tmp_path):
 
 
 def test_empty_folder_is_no_leg_log(tmp_path):
-    with pytest.raises(DataError, match=r"is a folder without a path\.csv"):
+    with pytest.raises(DataError, match=r"is a folder without path\.csv"):
         read_leg_log(tmp_path)
 
 

@@ -22,4 +22,4 @@ def test_what_is_no_run_is_one_line(tmp_path, run_command):
     ended = run_command("plot", tmp_path)
     assert (ended.code, ended.out) == (1, "")
     assert ended.err.startswith("error: ")
-    assert "is no run folder" in ended.err
+    assert "is not a run folder" in ended.err

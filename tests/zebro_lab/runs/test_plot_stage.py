@@ -21,9 +21,9 @@ def test_a_picture_stands_beside_its_run_and_says_how_that_ended(tmp_path):
 
 def test_what_cannot_be_drawn_is_named(tmp_path):
     run = make_run(tmp_path)
-    with pytest.raises(SettingsError, match=r"FILE\.png"):
+    with pytest.raises(SettingsError, match=r"ending in \.png"):
         plot_run(run, out=tmp_path / "picture.pdf")
     with pytest.raises(NotFound, match="no such folder"):
         plot_run(run, out=tmp_path / "no" / "picture.png")
-    with pytest.raises(NotFound, match="no run folder"):
+    with pytest.raises(NotFound, match="not a run folder"):
         plot_run(tmp_path)

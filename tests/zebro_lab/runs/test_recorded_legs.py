@@ -40,7 +40,7 @@ def test_a_log_cut_short_is_read_so_far_with_a_note(folder):
     log.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
     table, _ = read_recorded_legs(folder)
     assert len(table) > 10
-    assert "log.mcap is cut short" in table.notes[0]
+    assert "log.mcap is incomplete" in table.notes[0]
 
 
 def test_the_first_file_read_tells_a_walk_also_after_it_was_excluded_for_a_while(folder):
@@ -65,5 +65,5 @@ def test_a_damaged_profile_and_a_run_without_legs_are_named(folder, tmp_path):
         read_recorded_legs(folder)
     rig = make_run(tmp_path)
     (rig / "profiles" / "legs.toml").write_text("")
-    with pytest.raises(DataError, match="holds no samples on /legs/raw"):
+    with pytest.raises(DataError, match="no samples of topic /legs/raw"):
         read_recorded_legs(rig)

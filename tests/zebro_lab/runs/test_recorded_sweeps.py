@@ -30,8 +30,8 @@ def test_sweeps_are_numbered_from_one_and_jumps_belong_to_none():
     assert np.all(np.abs((T[between] + 1) % 2.0 - 1) < 0.5)
     left_out = np.mean(number == 0)
     assert 0 < left_out < 0.4
-    assert note == (f"a-run: {left_out:.1%} of the samples left out, in which slip jumped from "
-                    "sweep to sweep or the leg disc stood")  # fmt: skip
+    assert note == (f"a-run: {left_out:.1%} of the samples are ignored, because slip jumped "
+                    "between two sweeps or the leg disc stood still")  # fmt: skip
 
 
 def test_one_sweep_is_kept_whole_without_a_note():

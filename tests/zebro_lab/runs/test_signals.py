@@ -62,7 +62,7 @@ def test_a_run_without_samples_or_log_is_named(tmp_path):
     folder = make_run(tmp_path, 20)
     log = folder / "log.mcap"
     log.write_bytes(log.read_bytes()[:300])
-    with pytest.raises(DataError, match="holds no samples to draw"):
+    with pytest.raises(DataError, match="holds no samples to plot"):
         read_signals(folder)
     log.unlink()
     with pytest.raises(NotFound, match=r"log\.mcap"):

@@ -37,7 +37,7 @@ def test_forces_outside_the_speeds_are_left_out(tmp_path):
 
 
 def test_a_run_whose_forces_and_speeds_never_meet_is_one_line(tmp_path):
-    with pytest.raises(DataError, match="its log holds no force between two speeds"):
+    with pytest.raises(DataError, match="no force was recorded while both disc speeds"):
         derive(tmp_path, [0.05, 0.35])
 
 

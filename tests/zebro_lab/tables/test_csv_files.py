@@ -25,7 +25,7 @@ def test_separator_encoding_and_line_ends_do_not_matter(tmp_path, separator, enc
     table = read_csv_file(tmp_path / "a.csv")
     assert list(table.columns) == ["ü s", "x"]
     np.testing.assert_array_equal(table.numbers("ü s"), [0.5, 1.5])
-    assert table.notes == (("a.csv: read as separated by " + SEPARATORS[separator],)
+    assert table.notes == (("a.csv: cells are separated by " + SEPARATORS[separator],)
                            if separator != "," else ())  # fmt: skip
 
 
@@ -67,25 +67,29 @@ RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "binary": ("a.csv", lambda: bytes(range(256)) * 8, "binary file"),
     "latin-1": ("a.csv", lambda: "t,Kraft µN\n1,2\n".encode("latin-1"), "is not UTF-8 text"),
     "utf-16": ("a.csv", lambda: "t,F\n1,2\n".encode("utf-16"), "UTF-16"),
-    "parquet named csv": ("a.csv", lambda: b"PAR1....", "a Parquet file; name it .parquet"),
+    "parquet named csv": (
+        "a.csv",
+        lambda: b"PAR1....",
+        "a Parquet file; rename it to end in .parquet",
+    ),
     "spreadsheet named csv": ("a.csv", lambda: b"PK\x03\x04", "a zip or spreadsheet file"),
-    "gzip named csv": ("a.csv", _truncated_gzip, "a gzip file; name it .csv.gz"),
-    "csv named gzip": ("a.csv.gz", lambda: b"t,F\n1,2\n", "is not a whole gzip file"),
-    "truncated gzip": ("a.csv.gz", _truncated_gzip, "is not a whole gzip file"),
-    "csv named parquet": ("a.parquet", lambda: b"t,F\n1,2\n", "is not a whole Parquet file"),
-    "no header": ("a.csv", lambda: b"0.1,0.2\n0.3,0.4\n", "has no names"),
+    "gzip named csv": ("a.csv", _truncated_gzip, "a gzip file; rename it to end in .csv.gz"),
+    "csv named gzip": ("a.csv.gz", lambda: b"t,F\n1,2\n", "is not a complete gzip file"),
+    "truncated gzip": ("a.csv.gz", _truncated_gzip, "is not a complete gzip file"),
+    "csv named parquet": ("a.parquet", lambda: b"t,F\n1,2\n", "is not a complete Parquet file"),
+    "no header": ("a.csv", lambda: b"0.1,0.2\n0.3,0.4\n", "has no header"),
     "decimal commas between commas": (
         "a.csv",
         lambda: b"t,normal_force\n0,1,5,2\n0,2,5,3\n",
-        "row 1 (line 2): 4 cells under a header of 2; do decimal commas separate cells?",
+        "row 1 (line 2): the row has 4 cells, the header has 2; write decimals with a point",
     ),
-    "ambiguous separators": ("a.csv", lambda: b"a,b;c\n1,2;3\n", "commas or semicolons"),
+    "ambiguous separators": ("a.csv", lambda: b"a,b;c\n1,2;3\n", "commas or by semicolons"),
     "surplus cell far down": (
         "a.csv",
         lambda: b"t,F\n" + b"1,2\n" * 20_000 + b"1,2,3\n",
-        "is no regular table",
+        "is not a regular table",
     ),
-    "open quote": ("a.csv", lambda: b't,F\n1,"2\n3,4\n', "is no regular table"),
+    "open quote": ("a.csv", lambda: b't,F\n1,"2\n3,4\n', "is not a regular table"),
 }
 
 

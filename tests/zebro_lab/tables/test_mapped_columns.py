@@ -40,8 +40,9 @@ def test_another_header_keeps_the_unit():
 
 
 def test_a_missing_column_says_where_to_map_it():
-    with pytest.raises(DataError, match=r"'roll': missing, the roll of the body; .*'rol'.*"
-                       r"map it in columns\.toml as \[imu\.columns\.roll\]"):  # fmt: skip
+    with pytest.raises(DataError, match=r"'roll': the column of the roll of the body is "
+                       r"missing; .*'rol'.*map it in "
+                       r"columns\.toml: \[imu\.columns\.roll\]"):  # fmt: skip
         parse().numbers(table(rol=[1.0]), "roll", **READ)
 
 

@@ -71,11 +71,11 @@ def test_wrong_statistics_of_a_parquet_column_are_an_error_and_no_end_of_the_pro
     file = Path(__file__).with_name("wrong_histogram.parquet")
     done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True)
     assert (done.returncode, done.stdout.count("\n")) == (0, 1), done.stderr
-    assert "is not a whole Parquet file" in done.stdout
+    assert "is not a complete Parquet file" in done.stdout
 
 
 def test_truncated_parquet_is_named(tmp_path):
     path = tmp_path / "rig.parquet"
     given_slip().to_parquet(path)
     path.write_bytes(path.read_bytes()[:-100])
-    assert f"{path}: is not a whole Parquet file" in refusal(read_table_file, path)
+    assert f"{path}: is not a complete Parquet file" in refusal(read_table_file, path)

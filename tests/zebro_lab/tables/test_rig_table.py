@@ -33,9 +33,11 @@ def test_columns_are_in_si_with_the_canonical_sign_of_the_kept_rows():
 
 def test_a_cell_is_named_as_the_file_has_it():
     table = table_of({"normal_force": MappedColumn("FZ", "kN", -1e3)}, {}, FZ=[-1.0, 2.0])
-    with pytest.raises(DataError, match="column 'FZ', row 2: normal force is 2 kN, expected more"):
+    with pytest.raises(
+        DataError, match="column 'FZ', row 2: the normal force is 2 kN; expected more"
+    ):
         normal_force(table)
-    with pytest.raises(DataError, match=r"column 'omega_leg': missing; .*columns.omega_leg"):
+    with pytest.raises(DataError, match=r"column 'omega_leg': is missing; .*columns.omega_leg"):
         table.si("omega_leg")
 
 
@@ -48,11 +50,15 @@ def test_a_radius_is_a_constant_or_a_column_and_positive():
     assert table_of({}, {"radius_leg": 0.035}).constant_or_column("radius_leg") == 0.035
     by_row = table_of({}, {}, radius_leg=[0.1, 0.2]).constant_or_column("radius_leg")
     np.testing.assert_array_equal(by_row, [0.2])
-    with pytest.raises(DataError, match=r"columns\.toml, column 'radius_leg': radius is 0 m"):
+    with pytest.raises(
+        DataError, match=r"columns\.toml, column 'radius_leg': the radius in \[constants\] is 0 m"
+    ):
         table_of({}, {"radius_leg": 0.0}).constant_or_column("radius_leg")
-    with pytest.raises(DataError, match=r"column 'radius_leg', row 2: radius is -1 m, expected"):
+    with pytest.raises(
+        DataError, match=r"column 'radius_leg', row 2: the radius is -1 m; expected"
+    ):
         table_of({}, {}, radius_leg=[0.1, -1.0]).constant_or_column("radius_leg")
-    with pytest.raises(DataError, match="missing, needed for slip from disc speeds"):
+    with pytest.raises(DataError, match="missing and needed to compute slip from disc speeds"):
         table_of({}, {}).constant_or_column("radius_leg")
     with pytest.raises(DataError, match="given twice"):
         table_of({}, {"radius_leg": 0.1}, radius_leg=[0.1, 0.1]).constant_or_column("radius_leg")
@@ -67,5 +73,5 @@ def test_conditions_drop_rows_that_are_no_numbers(tmp_path):
 
 def test_table_without_any_condition_met_is_an_error(tmp_path):
     columns(tmp_path, "rows.keep = ['t > 100']")
-    with pytest.raises(DataError, match=r"no row of 40 is left by \[rows\] keep: t > 100"):
+    with pytest.raises(DataError, match=r"none of the 40 rows meets \[rows\] keep: t > 100"):
         read_rig_data([write(tmp_path, given_slip())])

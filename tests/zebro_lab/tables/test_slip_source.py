@@ -15,14 +15,14 @@ from zebro_lab.files.errors import DataError
 def test_given_slip_keeps_its_definition(tmp_path):
     data = read_rig_data([write(tmp_path, given_slip("travel"))])
     assert data.samples.definition == "travel"
-    assert data.notes[0] == "slip as given in 'slip_ratio', travel"
+    assert data.notes[0] == "slip as given in 'slip_ratio', definition travel"
 
 
 def test_slip_given_without_definition_yields_to_speeds(tmp_path):
     columns(tmp_path, RADII)
     data = read_rig_data([write(tmp_path, speeds().assign(slip_ratio=0.9))])
     assert data.samples.slip.max() == pytest.approx(0.5)
-    assert "'slip_ratio' has no stated definition and was not used" in data.notes[0]
+    assert "'slip_ratio' is not used, because its definition is not stated" in data.notes[0]
 
 
 def test_slip_mapped_with_definition_wins_over_speeds(tmp_path):
@@ -30,7 +30,7 @@ def test_slip_mapped_with_definition_wins_over_speeds(tmp_path):
     table = speeds().assign(SL=np.linspace(0, 0.1, N))
     data = read_rig_data([write(tmp_path, table)])
     assert data.samples.slip.max() == pytest.approx(0.1)
-    assert "speeds are there too and were not used" in data.notes[0]
+    assert "columns of disc speeds are not used" in data.notes[0]
 
 
 def test_measured_slip_may_pass_its_limit_by_noise(tmp_path):
@@ -41,7 +41,9 @@ def test_measured_slip_may_pass_its_limit_by_noise(tmp_path):
 def test_definition_stated_differently_in_map_and_file_is_refused(tmp_path):
     columns(tmp_path, "columns.slip_ratio.definition = 'travel'")
     path = write(tmp_path, given_slip("material"))
-    with pytest.raises(DataError, match="slip definition is 'material' here and 'travel' in"):
+    with pytest.raises(
+        DataError, match="slip definition is 'material' in this column and 'travel' in"
+    ):
         read_rig_data([path])
 
 
@@ -60,4 +62,7 @@ def test_slip_outside_what_conversion_allows_names_file_and_row(tmp_path):
 
 def test_slip_infinite_in_the_asked_definition_names_the_row(tmp_path):
     _, message = refused_as_travel(tmp_path, 1.0)
-    assert "row 8 (line 9): material slip 1 is infinite as 'travel'" in message
+    assert (
+        "row 8 (line 9): the 'material' slip ratio 1 is infinite in the definition 'travel'"
+        in message
+    )

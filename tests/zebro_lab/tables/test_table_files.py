@@ -28,7 +28,7 @@ def test_what_is_no_table_file_is_named(tmp_path):
         read_table_file(tmp_path / "absent.csv")
     for name in ("folder.csv", "x.xlsx"):
         (tmp_path / name).mkdir()
-        with pytest.raises(DataError, match=r"is no table file; .*\.csv, \.csv\.gz, \.parquet"):
+        with pytest.raises(DataError, match=r"is not a table file; .*\.csv, \.csv\.gz, \.parquet"):
             read_table_file(tmp_path / name)
 
 

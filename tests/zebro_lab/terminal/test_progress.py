@@ -42,7 +42,7 @@ def test_wish_is_acknowledged_on_a_terminal_alone():
         place = console(terminal=terminal)
         with progress_bar(place):
             signal.raise_signal(signal.SIGINT)
-        assert ("once more to quit" in written_on(place)) == terminal
+        assert ("Ctrl-C again to quit" in written_on(place)) == terminal
 
 
 def test_handlers_are_restored():

@@ -50,7 +50,7 @@ def test_robot_file_is_started(run_command, tmp_path):
 ERRORS = {
     "steering without solution": (("--steering", 9), "steering factor 9 has no solution"),
     "lift-off before touchdown": (("--liftoff-deg", 40), "lift off at 40 degrees"),
-    "option of another gait": (("--tau-turn", 0.1), "--tau-turn: means nothing to the gait 'trip"),
+    "option of another gait": (("--tau-turn", 0.1), "--tau-turn: does not apply to gait 'trip"),
     "no such robot": (("--robot", "none.toml"), "none.toml: no such file"),
     "no slip law": (("--slip", "ice"), "--slip: 'ice' is not a file or folder"),
     "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is not a friction law"),

@@ -122,13 +122,13 @@ def test_earlier_walks_pictures_go_and_foreign_files_stay(walked, tmp_path):
 
 def test_result_of_another_command_is_not_overwritten(walked, tmp_path):
     (tmp_path / "manifest.json").write_text('{"kind": "calibration"}')
-    with pytest.raises(AlreadyExists, match="name another --out"):
+    with pytest.raises(AlreadyExists, match="another command"):
         write(tmp_path, walked)
     assert json.loads((tmp_path / "manifest.json").read_text()) == {"kind": "calibration"}
 
 
 FAULTS = {
-    "missing column": (lambda t: t.drop(columns="theta3"), "column 'theta3': missing; did you mea"),
+    "missing column": (lambda t: t.drop(columns="theta3"), "column 'theta3': is missing; did you"),
     "empty position": (lambda t: t.assign(x=t.x.where(t.index != 3)), "column 'x', row 4 (line 5)"),
     "text": (lambda t: t.assign(yaw=["left", *t.yaw[1:]]), "column 'yaw', row 1 (line 2): 'left'"),
     "reversed time": (lambda t: t.iloc[::-1], "column 't', row 2 (line 3): time goes from 4 to 3."),
@@ -156,7 +156,7 @@ def test_slip_that_a_model_does_not_have_stays_absent(walked, tmp_path):
 def test_missing_walk_is_said_to_be_missing(tmp_path):
     with pytest.raises(NotFound, match="choose a folder that walk or predict wrote"):
         read_walk(tmp_path)
-    with pytest.raises(NotFound, match=r"it has no manifest\.json"):
+    with pytest.raises(NotFound, match=r"manifest\.json is missing"):
         read_walk_manifest(tmp_path)
 
 

@@ -209,7 +209,7 @@ class GuardedAcquisition:
                 oldest=self._limits.reading_age,
             )  # fmt: skip
         except NotAtRest:
-            self._bench.disarm()
+            self.disarm()
             raise
         self._standing = True
 

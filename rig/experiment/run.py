@@ -136,7 +136,9 @@ class _Run:
         finally:
             self._acquire.energised = False  # leaving a bench de-energises it
             self._load.halt()
-            self._finish(reason)
+            failed = self._finish(reason)
+        if failed is not None:
+            raise failed
         return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
 
     def _execute_plan(self) -> str:
@@ -330,11 +332,8 @@ class _Run:
             self._recording = False
             self._sink.close_run(verdict, reason=reason)
 
-    def _finish(self, reason: str) -> None:
-        """Store the latch of an emergency stop and the end of the run, then show the state.
-
-        A failure of the sink is raised only after a completed plan.
-        """
+    def _finish(self, reason: str) -> SinkFailed | None:
+        """Store latch and end of the run, then show the state; return the sink's last failure."""
         stop = self._control.stop.pending
         latched = stop is not None and stop.category is StopCategory.EMERGENCY
         if stop is not None and latched:
@@ -345,6 +344,5 @@ class _Run:
                 keep(reason)
             except SinkFailed as error:
                 failed = error
-        if failed is not None and reason == "completed":
-            raise failed
         self._show(RigState.LATCHED if latched else RigState.STOPPED, reason)
+        return failed

@@ -260,14 +260,21 @@ def _disc_drive(table: TomlTable) -> DiscDrive:
 
 
 def _load_cell(table: TomlTable) -> LoadCellProfile:
+    normal, traction = (_axis(table.table(key)) for key in ("normal", "traction"))
+    if normal.index == traction.index:
+        raise table.fault(
+            f"found '{AXES[normal.index]}', which is {table.dotted('normal.axis')}, too; expected "
+            "another axis for the traction force",
+            "traction.axis",
+        )
     return LoadCellProfile(
         host=table.text("host"),
         port=table.whole("port", 49_152, least=1, most=65_535),
         rate=table.positive("rate"),
         counts_per_force=table.positive("counts_per_force"),
         counts_per_torque=table.positive_or_none("counts_per_torque"),
-        normal=_axis(table.table("normal")),
-        traction=_axis(table.table("traction")),
+        normal=normal,
+        traction=traction,
     )
 
 

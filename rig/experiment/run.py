@@ -86,7 +86,7 @@ def run_plan(
     """
     require_allowed(plan, bench.profile)
     if control.stop.latched:
-        raise ProtocolError("an emergency stop is latched; inspect the rig, then reset it")
+        raise ProtocolError("an emergency stop is latched; inspect the rig, then reset the stop")
     run = _Run(
         plan, bench, load, sink, control, watcher or ExperimentWatcher(), clock, period, done
     )

@@ -61,8 +61,8 @@ class SerialLink:
         except (OSError, ValueError) as problem:
             self._lock.release()
             raise LinkError(
-                f"cannot open port {self.port}: {problem}; check the cable and the name, that no "
-                "other program has it, and on Linux that you are in the group that owns it"
+                f"cannot open port {self.port}: {problem}; check the cable and the name of the "
+                "port, that no other program uses it, and on Linux that your user is in its group"
             ) from problem
 
     def close(self) -> None:
@@ -96,7 +96,9 @@ class SerialLink:
             self._serial.write(data)
         except serial.SerialTimeoutException as problem:
             raise RigTimeout(
-                f"port {self.port} did not accept {len(data)} bytes", waited=WRITE_TIMEOUT
+                f"port {self.port} did not accept {len(data)} bytes",
+                waited=WRITE_TIMEOUT,
+                advice="check that the device is switched on",
             ) from problem
         except OSError:
             self._drop_connection()
@@ -165,7 +167,7 @@ def _read_once(port: serial.Serial) -> bytes:
     """
     data = os.read(port.fileno(), CHUNK)  # pyserial would call select once more
     if not data:
-        raise OSError(f"port {port.port} was readable and had no bytes: unplugged")
+        raise OSError(f"port {port.port} became readable without bytes: it was unplugged")
     return data
 
 

@@ -10,7 +10,7 @@ import tomlkit
 
 from rig.device import Limits
 from rig.errors import ProfileError
-from rig.profile import SCHEMA, open_profile
+from rig.profile import SCHEMA, open_profile, require_device
 from rig.toml_table import TomlTable
 
 BoardLink: TypeAlias = Literal["serial", "table"]
@@ -184,11 +184,8 @@ def device_profiles(profile: RigProfile) -> BoardProfile | tuple[DriveProfile, L
         ProfileError: The profile describes a table, or has neither a board nor both drives and
             load cell.
     """
-    if profile.board is not None and profile.board.link == "table":
-        raise ProfileError(
-            "describes a file, not a device; name a device's profile", file=profile.name
-        )
     if profile.board is not None:
+        require_device(profile.board.link, profile.name)
         return profile.board
     if profile.drives is None or profile.load_cell is None:
         raise ProfileError(f"profile '{profile.name}' has neither a board nor drives and load cell")
@@ -225,7 +222,7 @@ def load_rig_profile(name: str) -> RigProfile:
     table.finish()
     for key in FURTHER_LIMITS:
         if getattr(profile.limits, key) is not None and key not in profile.measured:
-            raise limits.fault("is set, but no device of this rig measures it; remove it", key)
+            raise limits.fault("no device of this rig measures this; remove the limit", key)
     return profile
 
 
@@ -241,7 +238,7 @@ def _limits(table: TomlTable) -> Limits:
 def _drives(table: TomlTable) -> DriveProfile:
     leg, ground = (_disc_drive(table.table(key)) for key in ("leg", "ground"))
     if leg.node == ground.node:
-        raise table.fault(f"both drives have node {leg.node}; expected two different ones")
+        raise table.fault(f"both drives have node {leg.node}; expected two different nodes")
     return DriveProfile(
         bitrate=table.whole("baudrate", least=1, most=8_000_000),
         firmware=table.choice("firmware", ("0.5", "0.6")),

@@ -40,7 +40,7 @@ class RobotImperfections:
         if not (self.jitter >= 0 and self.pause >= 0 and 0 <= self.pause_probability <= 1):
             raise ProtocolError(
                 f"jitter is {self.jitter:g} s, pause {self.pause:g} s with probability "
-                f"{self.pause_probability:g}; expected 0 or more, and a probability"
+                f"{self.pause_probability:g}; expected at least 0 s, and a probability, 0 to 1"
             )
 
 

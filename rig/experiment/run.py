@@ -240,7 +240,7 @@ class _Run:
         zero = take_zero(self._acquire, self._plan.controls.tare_duration)
         self._sink.event(
             "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
-            f"error {zero.standard_error:.4f} N"
+            f"standard error {zero.standard_error:.4f} N"
         )  # fmt: skip
         if self._zero is not None:
             try:

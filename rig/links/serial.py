@@ -96,9 +96,7 @@ class SerialLink:
             self._serial.write(data)
         except serial.SerialTimeoutException as problem:
             raise RigTimeout(
-                f"port {self.port} did not accept {len(data)} bytes",
-                waited=WRITE_TIMEOUT,
-                advice="check that the device is switched on",
+                f"port {self.port} did not accept {len(data)} bytes", waited=WRITE_TIMEOUT
             ) from problem
         except OSError:
             self._drop_connection()

@@ -209,7 +209,7 @@ def load_rig_profile(name: str) -> RigProfile:
     discs, limits = table.table("discs"), table.table("limits")
     drives, load_cell, board = (table.table(key) for key in ("drives", "load_cell", "board"))
     if board.empty == (drives.empty or load_cell.empty):
-        raise table.fault("expected either [drives] and [load_cell], or [board]")
+        raise table.fault("expected either [drives] and [load_cell], or [board], not both")
     profile = RigProfile(
         name=Path(name).stem,
         radius_leg=discs.positive("radius_leg"),

@@ -94,7 +94,7 @@ def test_a_drive_that_does_not_energise_leaves_the_other_one_de_energised(lab, m
                 execute(axis, *message)
 
         monkeypatch.setattr(drives, "_execute", only_leg)
-        with pytest.raises(RigTimeout, match="ground disc did not enter closed loop"):
+        with pytest.raises(RigTimeout, match="ground disc did not enter closed-loop control"):
             acquire.arm()
         assert not acquire.energised
         assert soon(lambda: all(axis.state == AxisState.IDLE for axis in drives._axes.values()))

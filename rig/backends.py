@@ -6,13 +6,12 @@ from typing import Any, Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Stream
-from rig.errors import ProfileError
 from rig.imu.profile import load_imu_profile
 from rig.imu.stream import ImuStream
 from rig.links.can import CanLink
 from rig.links.serial import SerialLink
 from rig.links.udp import UdpLink
-from rig.profile import split_address
+from rig.profile import require_device, split_address
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
@@ -56,7 +55,7 @@ def leg_link(profile: LegProfile, port: str, *, source: str = "real") -> SerialL
     Raises:
         ProfileError: The profile describes a table, not a device.
     """
-    _require_device(profile)
+    require_device(profile.layout, profile.name)
     if profile.layout == "can":
         return CanLink(port, bitrate=profile.baudrate, source=source)
     return SerialLink(port, baudrate=profile.baudrate, source=source)
@@ -76,16 +75,8 @@ def leg_driver(profile: LegProfile, link: Any, *, clock: Clock = SYSTEM_CLOCK) -
     Raises:
         ProfileError: The profile describes a table, not a device.
     """
-    _require_device(profile)
+    require_device(profile.layout, profile.name)
     return LEG_DRIVERS[profile.layout](link, profile=profile, clock=clock)
-
-
-def _require_device(profile: LegProfile) -> None:
-    if profile.layout not in LEG_DRIVERS:
-        raise ProfileError(
-            f"describes a file (layout '{profile.layout}'), not a device; name a device's profile",
-            file=profile.name,
-        )
 
 
 def open_imu(address: str, *, name: str = "imu") -> ImuStream:
@@ -103,10 +94,7 @@ def open_imu(address: str, *, name: str = "imu") -> ImuStream:
     """
     profile_name, port = split_address(address)
     profile = load_imu_profile(profile_name)
-    if profile.link == "table":
-        raise ProfileError(
-            "describes a file, not a device; name a device's profile", file=profile.name
-        )
+    require_device(profile.link, profile.name)
     return ImuStream(SerialLink(port, baudrate=profile.baudrate), profile=profile, name=name)
 
 

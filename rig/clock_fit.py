@@ -57,23 +57,27 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
         Offset, drift and delay.
 
     Raises:
-        ProtocolError: There are fewer than `FEWEST` samples, or the last device time is not later
-            than the first one.
+        ProtocolError: There are fewer than `FEWEST` samples, or the device time is the same in the
+            first bin and in the last one.
 
     >>> device = np.arange(100) / 10
     >>> fit = fit_clock(device, 5.0 + 1.0001 * device)
     >>> round(fit.offset, 6), round(fit.drift, 6)
     (5.0, 0.0001)
     """
-    if len(device_time) < FEWEST or not device_time[-1] > device_time[0]:
+    if len(device_time) < FEWEST:
         raise ProtocolError(
-            f"{len(device_time)} samples over "
-            f"{np.ptp(device_time) if len(device_time) else 0:g} s; expected at least {FEWEST} "
-            "over some time to compare clocks"
+            f"found {len(device_time)} samples with a device time; expected at least {FEWEST} to "
+            "compare the device's clock with the host's"
         )
     lag = host_time - device_time
     bins = np.array_split(np.arange(len(lag)), min(MOST_BINS, len(lag) // 5))
     least = np.array([part[np.argmin(lag[part])] for part in bins])
+    if not device_time[least[-1]] > device_time[least[0]]:
+        raise ProtocolError(
+            f"the device's clock stood still at {device_time[0]:g} s for {len(lag)} samples; "
+            "expected increasing device times"
+        )
     centre = device_time[least].mean()
     x = device_time[least] - centre
     level, slope = lag[least].mean(), float(x @ lag[least] / (x @ x))

@@ -2,6 +2,7 @@
 """Compare a device's clock with the host's during recording, and correct sample times with it."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Final
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from model.slip.law import Array
 from rig.clock_fit import FEWEST, fit_clock
 from rig.device import Sample
+from rig.errors import ProtocolError
 from rig.sample_columns import SampleColumns
 
 BUCKET: Final = 0.05
@@ -103,9 +105,8 @@ def sample_times(stream: SampleColumns) -> Array:
     lag = stream.host_time - device
     ends = np.flatnonzero(np.abs(np.diff(lag)) > RESTART_JUMP) + 1
     for part in np.split(np.arange(len(times)), ends):
-        if len(part) >= FEWEST and device[part[-1]] > device[part[0]]:
-            fit = fit_clock(device[part], stream.host_time[part])
-            times[part] = fit.to_host(device[part])
+        with suppress(ProtocolError):
+            times[part] = fit_clock(device[part], stream.host_time[part]).to_host(device[part])
     return times
 
 

@@ -35,8 +35,8 @@ class RigTimeout(RigError, TimeoutError):
         waited: Time for which the device was waited for [s].
     """
 
-    def __init__(self, problem: str, *, waited: float) -> None:
-        super().__init__(f"{problem} within {waited:g} s")
+    def __init__(self, problem: str, *, waited: float, advice: str = "") -> None:
+        super().__init__(f"{problem} within {waited:.4g} s" + (f"; {advice}" if advice else ""))
         self.waited = waited
 
 
@@ -91,12 +91,12 @@ class FrozenReading(RigError, ValueError):
         limit: Longest time allowed [s].
 
     >>> str(FrozenReading("speed of the leg disc", value=0.3, limit=0.25))
-    'speed of the leg disc stayed the same, bit for bit, for 0.3 s; its limit is 0.25 s'
+    'speed of the leg disc stayed the same, bit for bit, for 0.3 s; the limit is 0.25 s'
     """
 
     def __init__(self, what: str, *, value: float, limit: float) -> None:
         super().__init__(
-            f"{what} stayed the same, bit for bit, for {value:.3g} s; its limit is {limit:g} s"
+            f"{what} stayed the same, bit for bit, for {value:.3g} s; the limit is {limit:g} s"
         )
         self.value = value
         self.limit = limit
@@ -112,12 +112,13 @@ class NotAtRest(RigError, TimeoutError):
     Attributes:
         limit: Largest speed of a disc that stands [rad/s].
 
-    >>> str(NotAtRest("leg disc did not come to rest: its mean speed is 3 rad/s", limit=0.1))
-    'leg disc did not come to rest: its mean speed is 3 rad/s; its limit is 0.1 rad/s'
+    >>> str(NotAtRest("the disc turns", limit=0.1))
+    'the disc turns; at rest its mean speed is at most 0.1 rad/s: do not touch the discs'
     """
 
     def __init__(self, problem: str, *, limit: float) -> None:
-        super().__init__(f"{problem}; its limit is {limit:g} rad/s")
+        super().__init__(f"{problem}; at rest its mean speed is at most {limit:g} rad/s: do not "
+                         "touch the discs")  # fmt: skip
         self.limit = limit
 
 

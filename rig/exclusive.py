@@ -99,7 +99,7 @@ class Exclusive:
             os.close(handle)
             raise InUse(
                 f"{self._what} is in use by {owner or 'another program'}; end that program first, "
-                "or name another"
+                "or use another device or folder"
             )
         os.ftruncate(handle, 0)
         os.pwrite(handle, _owner().encode("utf-8", "backslashreplace"), 0)

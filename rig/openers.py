@@ -44,8 +44,8 @@ def resolve(address: str, *, default: str) -> tuple[str, str]:
     """
     if address.startswith(REPLAY):
         raise ProfileError(
-            f"'{address}' replays a recording: `record` accepts it, commands that move a device do "
-            "not"
+            f"'{address}' replays a recording, which only `record` accepts; give PROFILE@PORT or "
+            "sim instead"
         )
     return (default, SIMULATED) if address == SIMULATED else split_address(address)
 

@@ -38,7 +38,7 @@ def open_profile(name: str, *, device: str) -> TomlTable:
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     found = table.text("device")
     if found != device:
-        raise table.fault(f"describes '{found}'; expected a profile of '{device}'", "device")
+        raise table.fault(f"found '{found}'; expected a profile of the device '{device}'", "device")
     return table
 
 
@@ -76,6 +76,20 @@ def split_address(address: str) -> tuple[str, str]:
     return profile, port
 
 
+def require_device(link: str, profile: str) -> None:
+    """Raise where a profile's link or layout is `table`, an imported file.
+
+    Args:
+        link: Link of the profile, for a leg stream its layout.
+        profile: Name of the profile, for the message.
+
+    Raises:
+        ProfileError: There is no device to open.
+    """
+    if link == "table":
+        raise ProfileError("describes a file, not a device; use a device's profile", file=profile)
+
+
 def _find(name: str) -> Traversable:
     path = Path(name)
     if path.is_file():
@@ -84,5 +98,5 @@ def _find(name: str) -> Traversable:
     if name in known:
         return shipped_file(f"{name}.toml")
     raise ProfileError(
-        f"no profile '{name}' is shipped and no such file exists; {nearest(name, known)}"
+        f"found neither a file '{name}' nor a shipped profile of that name; {nearest(name, known)}"
     )

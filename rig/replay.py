@@ -37,8 +37,8 @@ class ReplayStream:
         for before, after in itertools.pairwise(samples):
             if after.host_time < before.host_time:
                 raise ProtocolError(
-                    f"recorded host time runs back from {before.host_time:g} to "
-                    f"{after.host_time:g} s; sort the samples first"
+                    f"the recorded host time falls from {before.host_time:g} s to "
+                    f"{after.host_time:g} s; sort the samples by host time first"
                 )
         self.name = name
         self.source = source

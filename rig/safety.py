@@ -115,7 +115,7 @@ class FollowingGuard:
             return
         self._since = now if self._since is None else self._since
         if now - self._since >= self._longest:
-            quantity = f"departure of the {self._name} from its set-point of {wanted:g} rad/s"
+            quantity = f"speed error of the {self._name} at its set-point of {wanted:g} rad/s"
             raise LimitExceeded(quantity, value=departure, limit=limit, unit="rad/s")
 
 
@@ -146,7 +146,8 @@ class SilenceGuard:
         if samples:
             self._last_arrival = now
         elif now - self._last_arrival > self._limit:
-            raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._last_arrival)
+            raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._last_arrival,
+                             advice=f"the limit is {self._limit:g} s")  # fmt: skip
 
 
 class StopCategory(IntEnum):

@@ -169,7 +169,7 @@ class RecordGuard:
         if len(self._restarts) > 1:
             raise UnreliableRecords(
                 f"stream '{self._name}' restarted its numbering {len(self._restarts)} times within "
-                f"{RESTART_WINDOW:g} s; its limit is 1"
+                f"{RESTART_WINDOW:g} s; at most 1 restart is allowed"
             )
         if now - self._since >= BAD_FRACTION_WINDOW:
             self._require_most(counters, self._base)
@@ -180,6 +180,7 @@ class RecordGuard:
         bad = counters.lost + counters.rejected - base.lost - base.rejected
         if bad + received >= MIN_RECORDS and bad > MAX_BAD_FRACTION * (bad + received):
             raise UnreliableRecords(
-                f"stream '{self._name}': {100 * bad / (bad + received):.0f} % of its records are "
-                f"missing or refused; its limit is {100 * MAX_BAD_FRACTION:g} %"
+                f"{100 * bad / (bad + received):.0f} % of the latest records of stream "
+                f"'{self._name}' are missing, damaged, repeated or refused; the limit is "
+                f"{100 * MAX_BAD_FRACTION:g} %"
             )

@@ -106,7 +106,8 @@ class TomlTable:
         """
         value = self.value(key, default)
         if not isinstance(value, str) or len(value) < least:
-            raise self.fault(f"found {value!r}; expected a text", key)
+            expected = "a text that is not empty" if value == "" else "a text"
+            raise self.fault(f"found {value!r}; expected {expected}", key)
         return value
 
     def texts(self, key: str) -> tuple[str, ...]:
@@ -142,7 +143,7 @@ class TomlTable:
         """
         value = self.value(key, [])
         if not isinstance(value, list) or not all(item in known for item in value):
-            raise self.fault(f"found {value!r}; expected a list of {', '.join(known)}", key)
+            raise self.fault(f"found {value!r}; expected a list of names: {', '.join(known)}", key)
         return tuple(dict.fromkeys(value))
 
     def flag(self, key: str, default: bool) -> bool:  # noqa: FBT001, RUF100 - a value, no switch
@@ -168,7 +169,8 @@ class TomlTable:
         """
         value = self.value(key, default)
         if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
-            raise self.fault(f"found {value!r}; expected a whole number, {least} to {most}", key)
+            expected = f"a whole number, {least} to {most}" if least < most else f"{least}"
+            raise self.fault(f"found {value!r}; expected {expected}", key)
         return value
 
     def number(self, key: str, default: float | None = None) -> float:
@@ -229,7 +231,7 @@ class TomlTable:
         """
         values = self._list(key, count)
         if any(isinstance(value, bool) or value not in (-1, 1) for value in values):
-            raise self.fault(f"found {values}; expected {count} times 1 or -1", key)
+            raise self.fault(f"found {values}; expected a list of {count} signs, each 1 or -1", key)
         return tuple(int(value) for value in values)
 
     def sign(self, key: str) -> int:
@@ -249,7 +251,8 @@ class TomlTable:
             return self._even(self.as_table(key, value))
         if not isinstance(value, list) or not 1 <= len(value) <= LONGEST:
             raise self.fault(
-                f"found {value!r}; expected numbers, or {{ first = 0.0, last = 1.0, count = 62 }}",
+                f"found {value!r}; expected a list of 1 to {LONGEST} numbers, or a table such as "
+                "{ first = 0.0, last = 1.0, count = 62 }",
                 key,
             )
         return tuple(self._finite(item, key) for item in value)

@@ -38,7 +38,7 @@ def parse_toml(data: bytes) -> dict[str, Any]:
     {'mass': 2.17}
     """
     if len(data) > MOST_BYTES:
-        raise ValueError(f"holds more than {MOST_BYTES >> 20} MiB; at most that is read")
+        raise ValueError(f"holds more than {MOST_BYTES >> 20} MiB, the most that is read")
     text = data.decode("utf-8-sig")
     if _LONG_KEY.search(text):
         raise ValueError(f"a dotted key has more than {DEEPEST} parts")

@@ -113,13 +113,17 @@ class GuardedAcquisition:
         """Energise at standstill, wait until no fault is reported, and start the silence guards.
 
         Raises:
-            RigError: A drive does not energise; or a fault is still reported after
-                `FAULT_CLEAR_TIME`, and both drives have been de-energised.
+            RigError: A drive does not energise, or a fault is still reported after
+                `FAULT_CLEAR_TIME`; both drives have been de-energised.
         """
         self._bench.read()  # discard what is in buffers
         self.energised = True
-        self._bench.arm()
-        self._await_health()
+        try:
+            self._bench.arm()
+            self._await_health()
+        except BaseException:
+            self.disarm()
+            raise
         self._sent = None
         self._guards.expect_samples(now=self._clock.now())
 
@@ -205,7 +209,7 @@ class GuardedAcquisition:
                 oldest=self._limits.reading_age,
             )  # fmt: skip
         except NotAtRest:
-            self._bench.disarm()
+            self.disarm()
             raise
         self._standing = True
 
@@ -257,7 +261,7 @@ class GuardedAcquisition:
             self._sink.require_room(self._limits.free_space)
 
     def _await_health(self) -> None:
-        """Read until no fault is reported; after `FAULT_CLEAR_TIME` disarm and raise the fault."""
+        """Read until no fault is reported; after `FAULT_CLEAR_TIME` raise the fault."""
         end = self._clock.now() + FAULT_CLEAR_TIME
         while True:
             self._clock.sleep(self._period)
@@ -265,11 +269,10 @@ class GuardedAcquisition:
             try:
                 self._bench.require_healthy()
             except DeviceFault:
-                if self._clock.now() < end:
-                    continue
-                self.disarm()
-                raise
-            return
+                if self._clock.now() >= end:
+                    raise
+            else:
+                return
 
     def _raise_if_stopped(self) -> None:
         stop = self._control.stop.pending

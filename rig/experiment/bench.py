@@ -269,5 +269,5 @@ def make_bench(devices: RigDevices) -> Bench:
     if devices.drives is not None and devices.load_cell is not None:
         return DrivesBench(devices.drives, devices.load_cell, profile=devices.profile)
     raise ProfileError(
-        f"profile '{devices.profile.name}' has neither a board nor drives and load cell"
+        f"the rig '{devices.profile.name}' has neither a board nor both drives and a load cell"
     )

@@ -66,8 +66,8 @@ class Condition:
     def headline(self) -> str:
         """Text with the state, whether discs are energised, and the reason.
 
-        >>> Condition(RigState.HOLDING, True, "soft stop: Ctrl-C, time 1").headline
-        'HOLDING, discs energised: soft stop: Ctrl-C, time 1'
+        >>> Condition(RigState.HOLDING, True, "soft stop: Ctrl-C").headline
+        'HOLDING, discs energised: soft stop: Ctrl-C'
         """
         energy = "discs energised" if self.energised else "discs de-energised"
         return f"{self.state.name}, {energy}" + (f": {self.why}" if self.why else "")

@@ -70,7 +70,9 @@ class Control:
         elif command in actions:
             actions[command]()
         else:
-            raise ProtocolError(f"found '{line.strip()[:80]}'; expected {', '.join(COMMANDS)}")
+            raise ProtocolError(
+                f"cannot execute '{line.strip()[:80]}'; expected {', '.join(COMMANDS)}"
+            )
         return "done"
 
     def fail(self, part: str, error: BaseException) -> None:

@@ -53,7 +53,7 @@ class ControlServer:
         """
         token, _, command = line.strip().partition(" ")
         if not hmac.compare_digest(token.encode(), self.token.encode()):
-            return "error: wrong token; it is in the run's control.json"
+            return "error: wrong token; the token of this run is in its file control.json"
         try:
             return f"ok {self._control.execute(command, who='socket')}"
         except ProtocolError as problem:
@@ -125,9 +125,12 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
             with link.makefile("r", encoding="utf-8", errors="replace") as lines:
                 reply = lines.readline(LONGEST_LINE).strip()
     except OSError as problem:
-        raise LinkError(f"no run answers at port {port}: {problem}; has it ended?") from problem
+        raise LinkError(
+            f"no experiment answers at port {port} of this machine: {problem}; it has ended, or is "
+            "too busy: send the command again"
+        ) from problem
     if not reply.startswith("ok"):
-        raise ProtocolError(reply.removeprefix("error: ") or "the run closed the connection")
+        raise ProtocolError(reply.removeprefix("error: ") or "the run sent no answer")
     return reply.removeprefix("ok").strip()
 
 
@@ -140,10 +143,10 @@ def _checked_command(command: str) -> str:
     text = command.strip().encode("utf-8", "backslashreplace").decode("utf-8")
     lines = len(text.splitlines())
     if lines > 1:
-        raise ProtocolError(f"found {lines} lines; expected one command; send each by itself")
+        raise ProtocolError(f"found {lines} lines; expected one: send one command at a time")
     if len(text) > LONGEST_NOTE:
         raise ProtocolError(
-            f"the command has {len(text)} characters; its limit is {LONGEST_NOTE}: shorten it, "
-            "or send several"
+            f"the command has {len(text)} characters; at most {LONGEST_NOTE} are allowed: shorten "
+            "it, or send several notes"
         )
     return text

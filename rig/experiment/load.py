@@ -160,6 +160,7 @@ class DrivenShaft:
             raise RigTimeout(
                 f"the load axis did not reach {self._target:g} N (it is at {normal:.3g} N)",
                 waited=now - self._asked,
+                advice="check the axis, or raise load.patience in the plan",
             )
         if now - self._since >= AXIS_PERIOD:
             self.halt()

@@ -73,11 +73,11 @@ def _points(table: TomlTable) -> PointGrid:
         raise table.fault(f"found {min(grid.loads):g} N; expected loads above 0 N", "loads")
     if max(grid.slips) > 1:
         raise table.fault(
-            f"found {max(grid.slips):g}; expected at most 1, where the ground disc stands still",
+            f"found {max(grid.slips):g}; expected at most 1, at which the ground disc stands",
             "slips",
         )
     if grid.sweep and len(grid.slips) < 2:
-        raise table.fault("found one slip; a sweep needs two or more", "slips")
+        raise table.fault("found one slip ratio; a sweep needs at least two", "slips")
     return grid
 
 
@@ -98,7 +98,7 @@ def _settle(table: TomlTable) -> SettleCriterion:
     )
     if criterion.timeout < criterion.window:
         raise table.fault(
-            f"found {criterion.timeout:g} s; expected at least the window's {criterion.window:g} s",
+            f"found {criterion.timeout:g} s; expected at least the window, {criterion.window:g} s",
             "timeout",
         )
     return criterion
@@ -157,8 +157,8 @@ def _require_guard(table: TomlTable, limits: RunLimits, name: str, highest: floa
     value, unit = getattr(limits, name), LIMIT_UNITS[name]
     if value > highest and name not in limits.guards_off:
         raise table.fault(
-            f"found {value:g} {unit}, above {highest:g} {unit}, where the guard has no effect; "
-            f'lower it, or write guards_off = ["{name}"]',
+            f"found {value:g} {unit}; above {highest:g} {unit} this guard has no effect: lower the "
+            f'limit, or add "{name}" to guards_off',
             name,
         )
     if value <= highest and name in limits.guards_off:

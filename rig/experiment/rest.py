@@ -70,7 +70,7 @@ class RestProof:
             if problem := self._problem(disc):
                 break
         else:
-            disc, problem = DISCS[0], f"its new readings do not cover {WINDOW:g} s"
+            disc, problem = DISCS[0], f"new readings cover less than {WINDOW:g} s"
         return NotAtRest(
             f"{disc} disc did not come to rest within {waited:.3g} s: {problem}", limit=self._limit
         )
@@ -80,14 +80,17 @@ class RestProof:
         speeds = np.array([speed for _, speed in self._seen[disc]])
         if len(speeds) < FEWEST:
             return (
-                f"{len(speeds)} readings of its speed in {WINDOW:g} s that are not older than "
-                f"{self._oldest:g} s, expected {FEWEST}"
+                f"its speed was read {len(speeds)} times in {WINDOW:g} s, no reading older than "
+                f"{self._oldest:g} s (expected {FEWEST} times)"
             )
         mean, scatter = float(speeds.mean()), float(np.sqrt(np.mean(speeds**2)))
         if not abs(mean) <= self._limit:
             return f"its mean speed over {WINDOW:g} s is {mean:.3g} rad/s"
         if not scatter <= SCATTER * self._limit:
-            return f"its speed oscillates, with a root mean square of {scatter:.3g} rad/s"
+            return (
+                f"its speed oscillates, with a root mean square of {scatter:.3g} rad/s (limit "
+                f"{SCATTER * self._limit:.3g} rad/s)"
+            )
         return ""
 
 

@@ -86,7 +86,7 @@ def run_plan(
     """
     require_allowed(plan, bench.profile)
     if control.stop.latched:
-        raise ProtocolError("an emergency stop is latched; inspect the rig, then reset it")
+        raise ProtocolError("an emergency stop is latched; inspect the rig, then reset the stop")
     run = _Run(
         plan, bench, load, sink, control, watcher or ExperimentWatcher(), clock, period, done
     )
@@ -136,7 +136,9 @@ class _Run:
         finally:
             self._acquire.energised = False  # leaving a bench de-energises it
             self._load.halt()
-            self._finish(reason)
+            failed = self._finish(reason)
+        if failed is not None:
+            raise failed
         return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
 
     def _execute_plan(self) -> str:
@@ -238,7 +240,7 @@ class _Run:
         zero = take_zero(self._acquire, self._plan.controls.tare_duration)
         self._sink.event(
             "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
-            f"error {zero.standard_error:.4f} N"
+            f"standard error {zero.standard_error:.4f} N"
         )  # fmt: skip
         if self._zero is not None:
             try:
@@ -330,11 +332,8 @@ class _Run:
             self._recording = False
             self._sink.close_run(verdict, reason=reason)
 
-    def _finish(self, reason: str) -> None:
-        """Store the latch of an emergency stop and the end of the run, then show the state.
-
-        A failure of the sink is raised only after a completed plan.
-        """
+    def _finish(self, reason: str) -> SinkFailed | None:
+        """Store latch and end of the run, then show the state; return the sink's last failure."""
         stop = self._control.stop.pending
         latched = stop is not None and stop.category is StopCategory.EMERGENCY
         if stop is not None and latched:
@@ -345,6 +344,5 @@ class _Run:
                 keep(reason)
             except SinkFailed as error:
                 failed = error
-        if failed is not None and reason == "completed":
-            raise failed
         self._show(RigState.LATCHED if latched else RigState.STOPPED, reason)
+        return failed

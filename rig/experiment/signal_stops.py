@@ -28,7 +28,7 @@ def signal_stops(switch: StopSwitch) -> Iterator[None]:
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:
         category = next_stop(None if switch.pending is None else switch.pending.category)
-        switch.request(category, f"Ctrl-C, time {category.value}")
+        switch.request(category, "Ctrl-C")
 
     def end(number: int, _frame: FrameType | None) -> None:
         switch.request(StopCategory.SAFE, signal.Signals(number).name)

@@ -140,10 +140,11 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
         if own is not None and key in FURTHER_LIMITS and key not in profile.measured:
             raise ProfileError(
                 f"the plan's limits.{key} is {own:g} {unit}, but no device of the rig "
-                f"'{profile.name}' measures that; take the limit out, or name another rig"
+                f"'{profile.name}' measures this quantity; remove limits.{key}, or use another rig"
             )
         if own is not None and rigs is not None:
-            require_within(own, rigs, quantity=f"the plan's limits.{key}", unit=unit)
+            quantity = f"the plan's limits.{key}, which the rig's profile limits,"
+            require_within(own, rigs, quantity=quantity, unit=unit)
     omega = plan.points.omega_leg
     require_within(omega, allowed.speed, quantity="points.omega_leg", unit="rad/s")
     for step in spell_out(plan):

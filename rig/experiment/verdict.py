@@ -113,12 +113,13 @@ def judge_point(
         normal force is not checked: the ground disc may stand on its bump.
     """
     if len(readings) < 8:
-        return PointVerdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
+        few = f"{len(readings)} samples were recorded (expected at least 8)"
+        return PointVerdict((few,), len(readings), np.nan, np.nan, np.nan)
     slip = measured_slip(readings.omega_leg, readings.omega_ground, profile)
-    problems = [] if settled else ["not settled in time"]
+    problems = [] if settled else ["the rig was not steady within settle.timeout"]
     covered = span(readings)
     if covered < LEAST_COVERED * duration:
-        problems.append(f"samples cover {covered:.2f} s of {duration:g} s")
+        problems.append(f"the samples cover {covered:.2f} s of the {duration:g} s to be recorded")
     return PointVerdict(
         problems=(*problems, *_deviations(readings, slip, point, accept)),
         samples=len(readings),
@@ -136,12 +137,12 @@ def _deviations(readings: Readings, slip: Array, point: Point, accept: Acceptanc
     wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
     off = float(slip.mean()) - wanted
     if not abs(off) <= accept.slip:
-        yield f"mean slip is {off:+.4f} off its set-point (limit {accept.slip:g})"
+        yield f"mean slip ratio is {off:+.4f} off its set-point (limit {accept.slip:g})"
     if point.kind != "sweep":
         first, late = halves(readings)
         drift = float(slip[len(first) :].mean() - slip[: len(first)].mean())
         if not abs(drift) <= accept.slip_drift:
-            yield f"slip drifted by {drift:+.4f} (limit {accept.slip_drift:g})"
+            yield f"slip ratio drifted by {drift:+.4f} (limit {accept.slip_drift:g})"
         change = friction(late) - friction(first)
         if not abs(change) <= accept.friction_drift:
             yield f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})"

@@ -115,7 +115,7 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     """
     force, reading = np.array(weighing.forces), np.array(weighing.readings)
     if np.ptp(force) <= 0:
-        raise ProtocolError("found a single force; expected at least one weight besides no load")
+        raise ProtocolError("every weight is 0 N; expected at least one weight besides no load")
     design = np.column_stack([np.ones_like(force), force])
     error = np.maximum(np.array(weighing.errors), 1e-9)
     weighted = design / error[:, None]
@@ -160,5 +160,8 @@ def _read(poll: Callable[[], Batch], duration: float, clock: Clock) -> tuple[flo
         parts.append(poll().normal)
     values = np.concatenate(parts)
     if len(values) < 2 * BATCHES:
-        raise ProtocolError(f"{len(values)} samples in {duration:g} s; is the load cell running?")
+        raise ProtocolError(
+            f"found {len(values)} force samples in {duration:g} s; expected {2 * BATCHES} or more: "
+            "check power and cable of the load cell or board"
+        )
     return float(values.mean()), standard_error(values)

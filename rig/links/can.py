@@ -85,8 +85,8 @@ class CanLink:
         except (can.CanError, OSError, ValueError, ImportError) as problem:
             self.close()
             raise LinkError(
-                f"cannot open CAN bus {self._channel}: {problem}; name it INTERFACE:CHANNEL, such "
-                "as socketcan:can0, and bring it up first"
+                f"cannot open CAN bus {self._channel}: {problem}; give the bus as "
+                "INTERFACE:CHANNEL, such as socketcan:can0, and bring it up first"
             ) from problem
 
     def close(self) -> None:
@@ -181,8 +181,8 @@ class CanLink:
             self._bus.send(message, timeout=WRITE_TIMEOUT)
         except can.CanError as problem:
             raise RigTimeout(
-                f"CAN bus {self._channel} did not accept a frame ({problem}); check termination "
-                "and power,", waited=WRITE_TIMEOUT
+                f"CAN bus {self._channel} did not accept a frame ({problem})",
+                waited=WRITE_TIMEOUT, advice="check the termination and power of the bus"
             ) from problem  # fmt: skip
         except OSError:
             self._drop_connection()

@@ -140,7 +140,7 @@ class PacketStream(LinkedStream[ByteLink]):
         self._foreign += 1
         if self._received == 0 and self._foreign >= MAX_FOREIGN:
             raise DeviceMismatch(
-                f"stream '{self.name}' found {self._foreign} whole packets of kind {packet.kind} "
-                f"with {len(packet.body)} bytes and none of kind {int(self._kind)} with "
-                f"{self._body.size}; are two ports swapped, or is it another profile?"
+                f"stream '{self.name}' received {self._foreign} packets of other kinds or lengths "
+                f"(last: kind {packet.kind}, {len(packet.body)} bytes) and none of kind "
+                f"{int(self._kind)} with {self._body.size} bytes; are two ports swapped?"
             )

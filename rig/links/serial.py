@@ -61,8 +61,8 @@ class SerialLink:
         except (OSError, ValueError) as problem:
             self._lock.release()
             raise LinkError(
-                f"cannot open port {self.port}: {problem}; check the cable and the name, that no "
-                "other program has it, and on Linux that you are in the group that owns it"
+                f"cannot open port {self.port}: {problem}; check the cable and the name of the "
+                "port, that no other program uses it, and on Linux that your user is in its group"
             ) from problem
 
     def close(self) -> None:
@@ -165,7 +165,7 @@ def _read_once(port: serial.Serial) -> bytes:
     """
     data = os.read(port.fileno(), CHUNK)  # pyserial would call select once more
     if not data:
-        raise OSError(f"port {port.port} was readable and had no bytes: unplugged")
+        raise OSError(f"port {port.port} became readable without bytes: it was unplugged")
     return data
 
 

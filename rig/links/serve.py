@@ -186,7 +186,7 @@ class PortServer:
             try:
                 self._end = self._make()
             except OSError as problem:
-                raise LinkError(f"cannot create a port for a twin: {problem}") from problem
+                raise LinkError(f"cannot create a port for a simulation: {problem}") from problem
             self.port = self._end.port
 
     def __enter__(self) -> Self:

@@ -61,7 +61,7 @@ def decode_frame(line: bytes) -> can.Message:
         return can.Message(arbitration_id=number, is_extended_id=extended, is_remote_frame=True,
                            dlc=int(part["asked"]))  # fmt: skip
     if len(part["data"]) != 2 * int(part["length"]):
-        raise ProtocolError(f"found {line[:LONGEST]!r}; its length is not that of its data")
+        raise ProtocolError(f"found {line[:LONGEST]!r}; expected {int(part['length'])} data bytes")
     data = bytes.fromhex(part["data"].decode("ascii"))
     return can.Message(arbitration_id=number, is_extended_id=extended, data=data)
 

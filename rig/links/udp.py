@@ -66,7 +66,7 @@ class UdpLink:
             opened.close()
             self._lock.release()
             raise LinkError(
-                f"cannot reach {self.address}: {problem}; check the address and the network"
+                f"cannot reach the device at {self.address}: {problem}; check address and network"
             ) from problem
         self._socket = opened
 

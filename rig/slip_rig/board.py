@@ -90,8 +90,8 @@ class RigBoard(PacketStream):
         """
         if self._status:
             raise DeviceFault(
-                f"the board reports status {self._status:#x}: its watchdog stopped the discs, or "
-                "it is faulty; arm again",
+                f"the board reports status {self._status:#x} (expected 0; 0x1: its watchdog has "
+                "stopped the discs); energise the discs again",
                 status=self._status,
             )
 

@@ -205,7 +205,9 @@ def tare(forces: Forces) -> Zero:
         ProtocolError: There are fewer than ten readings.
     """
     if len(forces.time) < BATCHES:
-        raise ProtocolError(f"{len(forces.time)} readings; expected at least {BATCHES} for a zero")
+        raise ProtocolError(
+            f"found {len(forces.time)} forces for a zero; expected at least {BATCHES}"
+        )
     return Zero(
         normal=float(forces.normal.mean()),
         traction=float(forces.traction.mean()),
@@ -228,5 +230,5 @@ def require_zero(before: Zero, after: Zero, *, limit: float) -> None:
     for channel in ("normal", "traction"):
         moved = getattr(after, channel) - getattr(before, channel)
         if abs(moved) > limit + 2 * error:
-            raise LimitExceeded(f"drift of the {channel} force's zero", value=moved, limit=limit,
+            raise LimitExceeded(f"change of the {channel} force's zero", value=moved, limit=limit,
                                 unit="N")  # fmt: skip

@@ -125,8 +125,8 @@ class DriveBus(LinkedStream[CanLink]):
             axis.require_no_error()
             if axis.armed and axis.state != AxisState.CLOSED_LOOP:
                 raise DeviceFault(
-                    f"drive of the {axis.name} left closed-loop control for axis state "
-                    f"{axis.state}",
+                    f"drive of the {axis.name} left closed-loop control: its axis state is "
+                    f"{axis.state} (expected {int(AxisState.CLOSED_LOOP)})",
                     status=axis.state,
                 )
 
@@ -136,7 +136,8 @@ class DriveBus(LinkedStream[CanLink]):
             self._wait(
                 lambda: all(axis.state for axis in self._axes.values()),
                 HEARTBEAT_TIMEOUT,
-                "no heartbeat came from both drives (check power, nodes and bit rate)",
+                "no heartbeat came from at least one of the two drives",
+                "check power, nodes and bit rate of both",
             )
         except BaseException:
             self._link.close()
@@ -166,7 +167,7 @@ class DriveBus(LinkedStream[CanLink]):
             for node in self._axes:
                 self._link.request(can_id(node, Command.TEMPERATURE), TEMPERATURES.size)
 
-    def _wait(self, holds: Callable[[], bool], timeout: float, problem: str) -> None:
+    def _wait(self, holds: Callable[[], bool], timeout: float, problem: str, advice: str) -> None:
         """Receive and feed the watchdogs until a condition holds; keep samples for the next `read`.
 
         Raises:
@@ -176,7 +177,7 @@ class DriveBus(LinkedStream[CanLink]):
         while not holds():
             left = end - self._clock.now()
             if left <= 0:
-                raise RigTimeout(problem, waited=timeout)
+                raise RigTimeout(problem, waited=timeout, advice=advice)
             self._feed()
             self._pending += self._receive(min(left, self.profile.feed_interval))
 
@@ -253,7 +254,8 @@ class OdriveDrive:
         self.armed, self.error = True, 0
         try:
             self._bus._wait(lambda: self.state == AxisState.CLOSED_LOOP, timeout,
-                            f"drive of the {self.name} did not enter closed loop")  # fmt: skip
+                            f"drive of the {self.name} did not enter closed-loop control",
+                            "check its supply voltage and its calibration")  # fmt: skip
             self.require_no_error()
         except RigError:
             self.disarm()

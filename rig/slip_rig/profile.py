@@ -10,7 +10,7 @@ import tomlkit
 
 from rig.device import Limits
 from rig.errors import ProfileError
-from rig.profile import SCHEMA, open_profile
+from rig.profile import SCHEMA, open_profile, require_device
 from rig.toml_table import TomlTable
 
 BoardLink: TypeAlias = Literal["serial", "table"]
@@ -184,11 +184,8 @@ def device_profiles(profile: RigProfile) -> BoardProfile | tuple[DriveProfile, L
         ProfileError: The profile describes a table, or has neither a board nor both drives and
             load cell.
     """
-    if profile.board is not None and profile.board.link == "table":
-        raise ProfileError(
-            "describes a file, not a device; name a device's profile", file=profile.name
-        )
     if profile.board is not None:
+        require_device(profile.board.link, profile.name)
         return profile.board
     if profile.drives is None or profile.load_cell is None:
         raise ProfileError(f"profile '{profile.name}' has neither a board nor drives and load cell")
@@ -212,7 +209,7 @@ def load_rig_profile(name: str) -> RigProfile:
     discs, limits = table.table("discs"), table.table("limits")
     drives, load_cell, board = (table.table(key) for key in ("drives", "load_cell", "board"))
     if board.empty == (drives.empty or load_cell.empty):
-        raise table.fault("expected either [drives] and [load_cell], or [board]")
+        raise table.fault("expected either [drives] and [load_cell], or [board], not both")
     profile = RigProfile(
         name=Path(name).stem,
         radius_leg=discs.positive("radius_leg"),
@@ -225,7 +222,7 @@ def load_rig_profile(name: str) -> RigProfile:
     table.finish()
     for key in FURTHER_LIMITS:
         if getattr(profile.limits, key) is not None and key not in profile.measured:
-            raise limits.fault("is set, but no device of this rig measures it; remove it", key)
+            raise limits.fault("no device of this rig measures this; remove the limit", key)
     return profile
 
 
@@ -241,7 +238,7 @@ def _limits(table: TomlTable) -> Limits:
 def _drives(table: TomlTable) -> DriveProfile:
     leg, ground = (_disc_drive(table.table(key)) for key in ("leg", "ground"))
     if leg.node == ground.node:
-        raise table.fault(f"both drives have node {leg.node}; expected two different ones")
+        raise table.fault(f"both drives have node {leg.node}; expected two different nodes")
     return DriveProfile(
         bitrate=table.whole("baudrate", least=1, most=8_000_000),
         firmware=table.choice("firmware", ("0.5", "0.6")),
@@ -260,14 +257,21 @@ def _disc_drive(table: TomlTable) -> DiscDrive:
 
 
 def _load_cell(table: TomlTable) -> LoadCellProfile:
+    normal, traction = (_axis(table.table(key)) for key in ("normal", "traction"))
+    if normal.index == traction.index:
+        raise table.fault(
+            f"found '{AXES[normal.index]}', which is {table.dotted('normal.axis')}, too; expected "
+            "another axis for the traction force",
+            "traction.axis",
+        )
     return LoadCellProfile(
         host=table.text("host"),
         port=table.whole("port", 49_152, least=1, most=65_535),
         rate=table.positive("rate"),
         counts_per_force=table.positive("counts_per_force"),
         counts_per_torque=table.positive_or_none("counts_per_torque"),
-        normal=_axis(table.table("normal")),
-        traction=_axis(table.table("traction")),
+        normal=normal,
+        traction=traction,
     )
 
 

@@ -66,7 +66,7 @@ class RigDynamics:
         if not (self.speed_lag > 0 and self.ripple >= 0 and 0 <= self.force_delay < MEMORY / 2):
             raise ProtocolError(
                 f"speed_lag is {self.speed_lag:g} s, ripple {self.ripple:g}, force_delay "
-                f"{self.force_delay:g} s; expected above 0, 0 or more, and 0 to {MEMORY / 2:g} s"
+                f"{self.force_delay:g} s; expected > 0 s, >= 0, and 0 to {MEMORY / 2:g} s"
             )
 
 

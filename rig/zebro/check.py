@@ -72,8 +72,8 @@ def check_legs(
         observation = observe(channel)
         if observation.leg in [earlier.leg for earlier in seen]:
             raise DeviceFault(
-                f"leg {observation.leg} was seen to move for two channels, the second "
-                f"{channel + 1}; start again",
+                f"leg {observation.leg} was seen to move for two channels, the second of them "
+                f"channel {channel + 1}; start again and watch which leg moves",
                 status=channel,
             )
         seen.append(observation)
@@ -112,7 +112,7 @@ def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOC
         if abs(moved - wanted) > max(step / 4, 1):
             raise DeviceFault(
                 f"channel {channel + 1} was commanded to move by {step} counts; channel "
-                f"{other + 1} moved by {moved:g} where {wanted} was expected",
+                f"{other + 1} moved by {moved:g} where {wanted} was expected; free the legs",
                 status=other,
             )
 
@@ -154,7 +154,8 @@ def latest_counts(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> tuple[f
         samples = robot.read(left)
         if samples:
             return samples[-1].counts
-    raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_TIMEOUT)
+    raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_TIMEOUT,
+                     advice="check power and cable of the robot")  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ def milliseconds(duration: float) -> int:
         LimitExceeded: The duration is negative or above `LONGEST_MOTION`.
     """
     if not 0 <= duration <= LONGEST_MOTION:
-        raise LimitExceeded("duration of a leg motion", value=duration, limit=LONGEST_MOTION,
+        raise LimitExceeded("duration (>= 0) of a leg motion", value=duration, limit=LONGEST_MOTION,
                             unit="s")  # fmt: skip
     return round(duration / MILLISECOND)
 

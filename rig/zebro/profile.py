@@ -161,13 +161,13 @@ def load_leg_profile(name: str) -> LegProfile:
     layout: Layout = frame.choice("layout", ("packet", "can", "dump", "poll", "table"))
     kind = link.choice("kind", ("serial", "can", "table"))
     if kind != LINK_OF[layout]:
-        raise link.fault(f"is '{kind}'; the layout '{layout}' needs '{LINK_OF[layout]}'", "kind")
+        raise link.fault(f"found '{kind}'; layout '{layout}' needs '{LINK_OF[layout]}'", "kind")
     order = _order(legs)
     registers = Registers()
     if layout in ("dump", "poll"):
         registers = _registers(frame, layout, len(order))
     elif len(order) != 6:
-        raise legs.fault(f"has {len(order)} legs; the layout '{layout}' carries six", "order")
+        raise legs.fault(f"found {len(order)} legs; layout '{layout}' needs all six", "order")
     profile = LegProfile(
         name=Path(name).stem,
         layout=layout,
@@ -275,19 +275,18 @@ def _registers(frame: TomlTable, layout: Layout, channels: int) -> Registers:
     last = DUMP_REGISTERS - 2  # a value takes two
     positions = frame.wholes("registers", most=last)
     if len(positions) != channels:
-        raise frame.fault(f"has {len(positions)} registers for {channels} legs", "registers")
+        raise frame.fault(f"found {len(positions)}; expected {channels}, one a leg", "registers")
     if layout == "dump":
         return Registers(positions)
     targets = frame.wholes("set_point_registers", most=last)
     for key, found in (("registers", positions), ("set_point_registers", targets)):
-        if list(found) != list(range(found[0], found[0] + 2 * channels, 2)):
-            raise frame.fault(
-                f"found {list(found)}; expected consecutive ones, two for each leg", key
-            )
+        expected = [found[0] + 2 * leg for leg in range(channels)] if found else "a list"
+        if list(found) != expected:
+            raise frame.fault(f"found {list(found)}; expected {expected}, two for each leg", key)
     duration = frame.whole("duration_register", most=last)
     if duration != targets[-1] + 2:
         raise frame.fault(
-            f"is {duration}; expected {targets[-1] + 2}, right after the set-points",
+            f"found {duration}; expected {targets[-1] + 2}, the next after the set-points",
             "duration_register",
         )
     return Registers(

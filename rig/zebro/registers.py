@@ -93,8 +93,8 @@ class DumpLegs(_RegisterStream):
             ProtocolError: Always.
         """
         raise ProtocolError(
-            f"profile '{self.profile.name}' describes a dump, which takes no set-points; command "
-            "the robot over its ZebroBus"
+            f"profile '{self.profile.name}' has the layout 'dump', which takes no set-points; use "
+            "a robot and a profile of the layout 'packet', 'can' or 'poll'"
         )
 
     def stop(self) -> bool:

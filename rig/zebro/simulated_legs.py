@@ -40,7 +40,7 @@ class RobotImperfections:
         if not (self.jitter >= 0 and self.pause >= 0 and 0 <= self.pause_probability <= 1):
             raise ProtocolError(
                 f"jitter is {self.jitter:g} s, pause {self.pause:g} s with probability "
-                f"{self.pause_probability:g}; expected 0 or more, and a probability"
+                f"{self.pause_probability:g}; expected at least 0 s, and a probability, 0 to 1"
             )
 
 
@@ -110,10 +110,15 @@ class SimulatedLegs:
         return frames
 
     def restart(self) -> None:
-        """Restart as after a loss of power: numbers, time and gait begin at 0; a command stays."""
+        """Restart as after a loss of power: numbers, time and gait begin at 0.
+
+        Legs that were commanded stand at the target of the last command.
+        """
         self._switched_on = None
         self._number = 0
         self._behind = self._paused_until = 0.0
+        if self._motion is not None:
+            self._motion = (0.0, 0.0, *self._motion[2:])
 
     def angles(self, time: float) -> Array:
         """Compute the true leg angles of the gait, or of the last command, shape (6,) [rad].

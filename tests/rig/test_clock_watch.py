@@ -6,6 +6,7 @@ import pytest
 
 from rig.clock_watch import ClockWatch, sample_times
 from rig.device import Sample
+from rig.errors import ProtocolError
 from rig.sample_columns import SampleColumns
 
 DRIFT = 5e-5
@@ -97,3 +98,15 @@ def test_reading_late_is_no_restart_and_keeps_the_clocks_compared(stalls):
     assert found is not None
     assert found["offset"] == pytest.approx(7.001, abs=2e-3)
     assert abs(found["drift"]) < 1e-3
+
+
+@pytest.mark.parametrize("last", [0.0, 0.01])
+def test_a_device_clock_that_stands_still_is_named_and_leaves_the_times_of_reading(last):
+    read = 0.06 * np.arange(20)
+    found = [[Sample(t, 5.0 + last * (t == read[-1]), k, (0,))] for k, t in enumerate(read)]
+    watch = ClockWatch(start=0.0)
+    for batch in found:
+        watch.add(batch)
+    with pytest.raises(ProtocolError, match="device's clock stood still at 5 s"):
+        watch.result()
+    np.testing.assert_array_equal(sample_times(as_stream(found)), read)

@@ -50,5 +50,5 @@ def test_a_recording_at_its_end_is_silent():
 
 def test_a_recording_whose_time_runs_back_is_not_replayed():
     recorded = [Sample(1.0, None, 0, ()), Sample(0.5, None, 1, ())]
-    with pytest.raises(ProtocolError, match=r"runs back from 1 to 0\.5"):
+    with pytest.raises(ProtocolError, match=r"falls from 1 s to 0\.5"):
         replay(recorded)

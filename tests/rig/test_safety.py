@@ -64,7 +64,7 @@ def test_a_speed_off_its_set_point_trips_only_when_it_stays_off():
     guard.check(10.5, 12.0, now=1.4)  # within again: the time starts anew
     guard.check(9.0, 12.0, now=1.6)
     guard.check(9.0, 12.0, now=2.0)
-    with pytest.raises(LimitExceeded, match="departure of the leg disc") as raised:
+    with pytest.raises(LimitExceeded, match="speed error of the leg disc") as raised:
         guard.check(9.0, 12.0, now=2.1)
     assert (raised.value.value, raised.value.limit) == (-3.0, 2.0)
 

@@ -82,7 +82,7 @@ FAULTS = {
     "empty text": (lambda t: t.text("k", least=1), "", "found ''; expected a text"),
     "texts": (lambda t: t.texts("k"), ["a", 1], "expected a list of texts"),
     "choice": (lambda t: t.choice("k", ("a", "b")), "c", "found 'c'; expected one of a, b"),
-    "names": (lambda t: t.names("k", ("a", "b")), ["c"], "expected a list of a, b"),
+    "names": (lambda t: t.names("k", ("a", "b")), ["c"], "expected a list of names: a, b"),
     "flag": (lambda t: t.flag("k", False), 1, "found 1; expected true or false"),
     "fraction": (lambda t: t.whole("k", most=5), 1.5, "expected a whole number, 0 to 5"),
     "truth": (lambda t: t.whole("k", most=5), True, "expected a whole number, 0 to 5"),
@@ -96,9 +96,9 @@ FAULTS = {
         [-1],
         "expected a list of whole numbers from 0 to 5",
     ),
-    "two": (lambda t: t.signs("k", 2), [1, 2], "expected 2 times 1 or -1"),
+    "two": (lambda t: t.signs("k", 2), [1, 2], "expected a list of 2 signs, each 1 or -1"),
     "sign": (lambda t: t.sign("k"), 0, "found 0; expected 1 or -1"),
-    "series": (lambda t: t.series("k"), [], "expected numbers, or"),
+    "series": (lambda t: t.series("k"), [], "expected a list of 1 to 10000 numbers, or"),
     "table": (lambda t: t.table("k"), 6, "found 6; expected a table"),
 }
 

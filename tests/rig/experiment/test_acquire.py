@@ -38,6 +38,7 @@ def test_a_disc_that_creeps_within_the_tracking_limit_is_not_at_rest(lab, monkey
         twin.turn(acquire)
         with pytest.raises(RigError, match=rf"leg disc .* {slowest:.1g}.* rad/s; .* 0\.1 rad/s"):
             acquire.come_to_rest(1.0)
+        assert not acquire.energised
 
 
 def test_nobody_is_asked_to_turn_the_shaft_while_a_disc_turns(lab, monkeypatch):

@@ -13,7 +13,7 @@ from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
 from rig.links.can import CanLink
-from rig.slip_rig.can_simple import Command, split_id
+from rig.slip_rig.can_simple import AxisState, Command, split_id
 from rig.slip_rig.decode import measured_slip
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
@@ -32,8 +32,8 @@ PATIENT = {"silence": 0.8, "speed_error_time": 1.0}
 
 
 @contextmanager
-def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
-    """Yield an acquisition whose discs turn, the rig, the drives' twin and the cell's."""
+def standing(lab, monkeypatch, **limits):
+    """Yield an acquisition with nothing energised, the rig, the drives' twin and the cell's."""
     found = {}
     for kind in (SimulatedDrives, SimulatedLoadCell):
         start = kind.__init__
@@ -57,19 +57,47 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
             bench, limits=lab["plan"](limits=PATIENT | limits).limits, control=Control(),
             sink=MemorySink(), clock=SYSTEM_CLOCK,
         )  # fmt: skip
+        yield acquire, rig, found[SimulatedDrives], found[SimulatedLoadCell]
+
+
+@contextmanager
+def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
+    """Yield what `standing` does, after the discs have been energised and turn."""
+    with standing(lab, monkeypatch, **limits) as twins:
+        acquire, *_ = twins
         acquire.arm()
         acquire.start_ramp(speed, slip)
         acquire.until(lambda _: not acquire.ramping, 2.0)
         acquire.until(lambda _: False, 0.2)
-        yield acquire, rig, found[SimulatedDrives], found[SimulatedLoadCell]
+        yield twins
 
 
 def stands(drives):
     """Tell whether both drives come to be de-energised well before their watchdogs would."""
+    return soon(lambda: not drives.turning())
+
+
+def soon(holds):
+    """Wait for a condition, for half of the watchdogs' time; return whether it holds."""
     end = time.monotonic() + WATCHDOG / 2
-    while drives.turning() and time.monotonic() < end:
+    while not holds() and time.monotonic() < end:
         time.sleep(0.001)
-    return not drives.turning()
+    return holds()
+
+
+def test_a_drive_that_does_not_energise_leaves_the_other_one_de_energised(lab, monkeypatch):
+    with standing(lab, monkeypatch) as (acquire, _, drives, _):
+        execute = drives._execute
+
+        def only_leg(axis, *message):
+            if axis.disc == "leg":
+                execute(axis, *message)
+
+        monkeypatch.setattr(drives, "_execute", only_leg)
+        with pytest.raises(RigTimeout, match="ground disc did not enter closed-loop control"):
+            acquire.arm()
+        assert not acquire.energised
+        assert soon(lambda: all(axis.state == AxisState.IDLE for axis in drives._axes.values()))
 
 
 def test_forces_and_speeds_are_lined_up(lab, monkeypatch):

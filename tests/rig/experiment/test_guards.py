@@ -35,7 +35,7 @@ def test_forces_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypat
     spoil_records(
         twin, monkeypatch, lambda number, c: (number, (400_000, 100_000, *c[2:])), after=2000
     )
-    with pytest.raises(RigError, match=r"forces .* stayed the same.*; its limit is 0\.25 s"):
+    with pytest.raises(RigError, match=r"forces .* stayed the same.*; the limit is 0\.25 s"):
         twin.run()
     assert twin.at_rest()
 

@@ -27,7 +27,7 @@ def test_a_zero_is_the_mean_of_an_unloaded_cell_and_its_error_is_small(lab):
 def test_a_cell_that_sends_nothing_gives_no_zero(lab, monkeypatch):
     twin = lab["twin"]()
     monkeypatch.setattr(twin.board, "_frames", lambda due: [])
-    with twin.bench, pytest.raises(ProtocolError, match="0 readings"):
+    with twin.bench, pytest.raises(ProtocolError, match="found 0 forces for a zero"):
         take_zero(twin.acquisition(lab["plan"]()), 0.1)
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
+from rig.experiment.condition import RigState
 from rig.experiment.sink import SinkFailed
 from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory
@@ -59,7 +60,7 @@ def test_a_rig_that_never_settles_says_so(lab):
     )
     outcome = twin.run(wanted)
     assert len(outcome.refused) == 3
-    assert "not settled in time" in twin.sink.runs[0].verdict.problems
+    assert "the rig was not steady within settle.timeout" in twin.sink.runs[0].verdict.problems
 
 
 def test_a_resumed_run_measures_only_what_is_left_after_a_new_zero(lab):
@@ -128,7 +129,7 @@ def test_a_disc_that_does_not_follow_stops(lab, monkeypatch):
         twin.rig, "command", lambda disc, omega: command(disc, omega if disc == "leg" else 0.0)
     )
     wanted = lab["plan"](limits={"speed_error": 2.0}, points={"slips": [0.0]})
-    with pytest.raises(LimitExceeded, match="departure of the ground disc from its set-point"):
+    with pytest.raises(LimitExceeded, match="speed error of the ground disc at its set-point"):
         twin.run(wanted)
     assert twin.at_rest()
 
@@ -143,6 +144,27 @@ def test_a_full_disk_ramps_down_and_is_named(lab):
     with pytest.raises(SinkFailed, match="room left is 0 bytes"):
         twin.run()
     assert twin.at_rest()
+
+
+@pytest.mark.parametrize("category", [None, StopCategory.SAFE, StopCategory.EMERGENCY])
+def test_an_end_that_cannot_be_stored_is_an_error_however_the_run_ended(lab, category):
+    class WithoutEnd(lab["At"]):
+        def event(self, kind, text):
+            if kind == "end":
+                raise SinkFailed("no room for the end")
+            super().event(kind, text)
+
+    class Screen(ExperimentWatcher):
+        def changed(self, condition):
+            shown.append(condition.state)
+
+    twin, shown = lab["twin"](), []
+    twin.sink = WithoutEnd(10, lambda: category and twin.control.stop.request(category, "planted"))
+    with pytest.raises(SinkFailed, match="no room for the end"):
+        twin.run(watcher=Screen())
+    assert twin.at_rest()
+    latched = category is StopCategory.EMERGENCY
+    assert shown[-1] is (RigState.LATCHED if latched else RigState.STOPPED)
 
 
 def test_an_exception_anywhere_leaves_the_motors_at_rest(lab):

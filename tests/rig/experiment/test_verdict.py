@@ -34,11 +34,11 @@ def test_a_steady_point_is_good(lab):
 @pytest.mark.parametrize(
     ("found", "said"),
     [
-        (readings(slip=0.25), "mean slip is +0.0500 off its set-point"),
-        (readings(slip=np.linspace(0.16, 0.24, 200)), "slip drifted by +0.04"),
+        (readings(slip=0.25), "mean slip ratio is +0.0500 off its set-point"),
+        (readings(slip=np.linspace(0.16, 0.24, 200)), "slip ratio drifted by +0.04"),
         (readings(friction=np.linspace(0.0, 0.8, 200)), "friction drifted by +0.4"),
         (readings(n=5), "5 samples"),
-        (readings(duration=0.2), "samples cover 0.20 s of 0.5 s"),
+        (readings(duration=0.2), "the samples cover 0.20 s of the 0.5 s"),
     ],
 )
 def test_what_is_wrong_with_a_point_is_said(lab, found, said):
@@ -48,7 +48,9 @@ def test_what_is_wrong_with_a_point_is_said(lab, found, said):
 
 
 def test_a_point_that_had_not_settled_is_not_good(lab):
-    assert judge(readings(), lab["plan"](), settled=False).problems == ("not settled in time",)
+    assert judge(readings(), lab["plan"](), settled=False).problems == (
+        "the rig was not steady within settle.timeout",
+    )
 
 
 def test_the_bump_of_the_ground_disc_does_not_look_like_drift(lab):

@@ -32,3 +32,13 @@ def test_two_drives_on_one_node_are_refused(tmp_path):
     path.write_text(text.replace("node = 1", "node = 0"))
     with pytest.raises(ProfileError, match="both drives have node 0"):
         load_rig_profile(str(path))
+
+
+def test_a_load_cell_whose_normal_and_traction_force_share_an_axis_is_refused(tmp_path):
+    text = shipped_file("rig-odrive-netft.toml").read_text()
+    path = tmp_path / "mine.toml"
+    path.write_text(text.replace('axis = "x"', 'axis = "z"'))
+    with pytest.raises(
+        ProfileError, match=r"load_cell.traction.axis: found 'z', .* load_cell.normal.axis"
+    ):
+        load_rig_profile(str(path))

@@ -98,7 +98,11 @@ def test_a_saved_profile_comes_back(name, tmp_path):
         ("sign = [1,", "sign = [2,", "1 or -1"),
         ('layout = "packet"', 'layout = "can"', "needs 'can'"),
         ('layout = "packet"', 'layout = "morse"', "expected one of"),
-        ('device = "legs"', 'device = "imu"', "describes 'imu'"),
+        (
+            'device = "legs"',
+            'device = "imu"',
+            "device: found 'imu'; expected a profile of",
+        ),
         ("schema = 1", "schema = 2", "schema"),
         ("[link]", "[link", "TOML"),
         ("baudrate = 3000000", 'baudrate = "fast"', "whole number"),
@@ -115,6 +119,24 @@ def test_a_malformed_profile_is_refused_and_the_place_named(tmp_path, old, new, 
         load_leg_profile(str(path))
     assert said in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("set_point_registers = [", "set_point_registers = [] # [", "found []; expected a list"),
+        ("set_point_registers = [", "set_point_registers = [1, ", "; expected [1, 3"),
+        ("duration_register = ", "duration_register = 1  # ", "the next after the set-points"),
+    ],
+)
+def test_registers_that_are_not_consecutive_are_refused(tmp_path, old, new, said):
+    text = shipped_file("zebrobus-uart.toml").read_text()
+    assert old in text
+    path = tmp_path / "mine.toml"
+    path.write_text(text.replace(old, new))
+    with pytest.raises(ProfileError, match=r"mine\.toml, frame\.") as error:
+        load_leg_profile(str(path))
+    assert said in str(error.value)
 
 
 @given(st.text(max_size=200))

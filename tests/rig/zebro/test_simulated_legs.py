@@ -41,3 +41,12 @@ def test_jitter_moves_the_reading_and_leaves_the_order():
     assert np.all(np.diff(taken) > 0)
     assert np.std(taken - np.arange(len(taken)) / 100) > 0.002
     assert frames[-1].device_time / frames[-1].time == pytest.approx(1 + 1e-4)
+
+
+def test_a_commanded_leg_stays_where_it_was_turned_when_the_robot_restarts():
+    legs = SimulatedLegs(GAIT, profile=SERIAL, rng=np.random.default_rng(0))
+    legs.frames(100.0)
+    legs.command((500,) * 6, 1.0, 110.0)
+    before = legs.frames(112.0)[-1].counts
+    legs.restart()
+    assert [frame.counts for frame in legs.frames(113.0)] == [before]

@@ -80,7 +80,7 @@ def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
     class Holding(ExperimentScreen):
         def judged(self, point, verdict, *, attempt):
             super().judged(point, verdict, attempt=attempt)
-            control.stop.request(StopCategory.SOFT, "Ctrl-C, time 1")
+            control.stop.request(StopCategory.SOFT, "Ctrl-C")
 
     plan.write_text(plan.read_text().replace("hold = 600.0", "hold = 1.0"))
     console = Console(file=io.StringIO(), width=200)

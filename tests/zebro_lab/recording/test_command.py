@@ -127,7 +127,7 @@ def test_a_run_is_exported_as_tables(run_command, tmp_path):
 ERRORS = {
     "no device": (("--label", "x"), "no device to record is given"),
     "no such port": (("--label", "x", "--zebro", "zebro-100-serial@/dev/no"), "cannot open port"),
-    "no such profile": (("--label", "x", "--imu", "mine@sim"), "no profile 'mine' is shipped"),
+    "no such profile": (("--label", "x", "--imu", "mine@sim"), "neither a file 'mine' nor a"),
     "nobody to play to": (("--label", "x", "--imu", "sim", "--play", "legs.csv"), "legs.csv"),
 }
 

@@ -6,8 +6,9 @@ overwritten. The same corrections on the same observations give the same result.
 """
 
 import difflib
+import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import MISSING, asdict, dataclass, fields, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -118,7 +119,8 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
         entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind.
 
     Raises:
-        CorrectionError: When the kind or a key is unknown, or a required key is missing.
+        CorrectionError: When the kind or a key is unknown, a required key is missing, or a value
+            is not a name, a finite number, or for a standard deviation a positive one.
     """
     kind = str(entry.get("kind", ""))
     if kind not in _KINDS:
@@ -129,12 +131,29 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
         if key not in names:
             near = difflib.get_close_matches(key, names, n=1) or names[:1]
             raise CorrectionError(f"correction '{kind}' has no '{key}'; did you mean '{near[0]}'?")
+        _require_value(kind, key, values[key])
+    needed = [each.name for each in fields(_KINDS[kind]) if each.default is MISSING]
+    missing = [name for name in needed if name not in values]
+    if missing:
+        raise CorrectionError(f"correction '{kind}' needs {', '.join(missing)}")
     if kind == "order":
-        values["photos"] = tuple(values.get("photos", ()))
-    try:
-        return _KINDS[kind](**values)
-    except TypeError as error:
-        raise CorrectionError(f"correction '{kind}' needs {', '.join(names)}: {error}") from error
+        values["photos"] = tuple(values["photos"])
+    return _KINDS[kind](**values)
+
+
+def _require_value(kind: str, key: str, value: Any) -> None:
+    """Raise `CorrectionError` where a value is not what the attribute of that name holds."""
+    if key == "photos":
+        wanted, valid = "a list of names", isinstance(value, list | tuple)
+        valid = valid and all(isinstance(name, str) for name in value)
+    elif key == "photo":
+        wanted, valid = "a name", isinstance(value, str)
+    else:
+        sd = key.endswith("_sd")
+        wanted = "a number above 0" if sd else "a finite number"
+        valid = isinstance(value, int | float) and math.isfinite(value) and not (sd and value <= 0)
+    if not valid:
+        raise CorrectionError(f"{key} of correction '{kind}' is {value!r}; expected {wanted}")
 
 
 def plain(correction: Correction) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """How the normal force is set: by a person on a threaded shaft, or by a driven axis."""
 
+import math
 from typing import Final, Protocol
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -76,7 +77,8 @@ class HandShaft:
         self._control.take_confirmation()  # a confirmation given before this prompt
         if target == 0:
             return "remove all load from the load cell, then confirm"
-        return f"set the normal force to {target:g} N +/- {self._tolerance:g} N, then confirm"
+        within = f" +/- {self._tolerance:g} N" if math.isfinite(self._tolerance) else ""
+        return f"set the normal force to {target:g} N{within}, then confirm"
 
     def follow(self, normal: float) -> bool:
         """Return whether the operator confirmed since the last call, with the force in tolerance.

@@ -88,7 +88,14 @@ def test_a_correction_of_nothing_is_named(correction, message):
     [
         ({"kind": "turn", "photo": "a"}, "'turn' is unknown"),
         ({"kind": "flip", "foto": "a"}, "did you mean 'photo'"),
-        ({"kind": "move", "photo": "a"}, "needs photo, x, y, yaw"),
+        ({"kind": "move", "photo": "a", "y": 1}, "needs x, yaw"),
+        ({"kind": "order"}, "needs photos"),
+        ({"kind": "order", "photos": 5}, "photos of correction 'order' is 5; expected a list"),
+        ({"kind": "order", "photos": "abc"}, "is 'abc'; expected a list of names"),
+        ({"kind": "flip", "photo": 3}, "photo of correction 'flip' is 3; expected a name"),
+        ({"kind": "move", "photo": "a", "x": "b"}, "x of .* is 'b'; expected a finite number"),
+        ({"kind": "move", "photo": "a", "x": float("nan")}, "is nan; expected a finite number"),
+        ({"kind": "move", "photo": "a", "position_sd": -1}, "is -1; expected a number above 0"),
     ],
 )
 def test_a_faulty_entry_is_named(entry, message):

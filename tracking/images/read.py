@@ -87,9 +87,10 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
         Pillow's picture; the file is closed on exit.
 
     Raises:
-        PhotoError: When the file is missing, not a regular file, empty, HEIC or of an unknown
-            format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for what Pillow
-            raises inside the `with` block. Other exceptions of the block are raised unchanged.
+        PhotoError: When the file is missing, not readable, not a regular file, empty, HEIC or of an
+            unknown format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for what
+            Pillow raises inside the `with` block. Other exceptions of the block are raised
+            unchanged.
     """
     _refuse_unreadable(path)
     try:
@@ -167,8 +168,12 @@ def _refuse_unreadable(path: Path) -> None:
     if path.stat().st_size > MOST_FILE:
         found = f"the file has {path.stat().st_size / 1e6:.0f} MB: too many"
         raise PhotoError(path.name, _too_large(found))
-    with path.open("rb") as file:
-        head = file.read(12)
+    try:
+        with path.open("rb") as file:
+            head = file.read(12)
+    except OSError as error:
+        found = f"cannot be opened ({error.strerror}); check its permissions"
+        raise PhotoError(path.name, found) from error
     if not head:
         raise PhotoError(path.name, "the file is empty (0 bytes); copy it from the camera again")
     if head[4:8] == b"ftyp" and head[8:12] in _HEIF_BRANDS:

@@ -86,6 +86,11 @@ def holds_points(data: Path) -> bool:
     return any(manifest.point for _, manifest in _read_all(data)[0])
 
 
+def point_sources(data: Path) -> frozenset[str]:
+    """Return the sources ("real", "sim:what") of all points of experiments in a folder."""
+    return frozenset(manifest.source for _, manifest in _read_all(data)[0] if manifest.point)
+
+
 def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
     """Read the manifests of all run folders by name; an unreadable one becomes a notice instead."""
     manifests: list[tuple[Path, RunManifest]] = []

@@ -21,11 +21,18 @@ from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, Journal, begin_or_resume
 from zebro_lab.experiment.plan_file import read_plan
-from zebro_lab.experiment.points import Finished, finished_points, holds_points
+from zebro_lab.experiment.points import Finished, finished_points, holds_points, point_sources
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
 from zebro_lab.files.documents import read_json_document, require_object
-from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError, ZebroLabError
+from zebro_lab.files.errors import (
+    AlreadyExists,
+    DataError,
+    NotFound,
+    RecordingError,
+    SettingsError,
+    ZebroLabError,
+)
 from zebro_lab.runs.manifest import RunManifest
 
 CONTROL_FILE: Final = "control.json"
@@ -53,7 +60,7 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
         require_allowed(plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)
         with _owned(request.data):
-            journal, finished = _begin(request)
+            journal, finished = _begin(request, source=rig.bench.source)
             for notice in finished.notices:
                 watcher.notice(notice)
             folder = ExperimentFolder(
@@ -69,9 +76,20 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
                 )  # fmt: skip
 
 
-def _begin(request: RigRunRequest) -> tuple[Journal, Finished]:
-    """Start or resume the journal as the options say, and find the points that are finished."""
-    if not request.resume:
+def _begin(request: RigRunRequest, *, source: str) -> tuple[Journal, Finished]:
+    """Start or resume the journal as the options say, and find the points that are finished.
+
+    Args:
+        request: Options of `zebro-lab rig run`.
+        source: Source of the samples of this run, "real" or "sim:what".
+
+    Raises:
+        SettingsError: Points of the experiment to resume have another source.
+        ZebroLabError: See `begin_or_resume`.
+    """
+    if request.resume:
+        _require_same_source(request.data, source)
+    else:
         _require_no_points(request.data)
     journal = begin_or_resume(
         request.data, request.plan.read_text(encoding="utf-8"), resume=request.resume,
@@ -115,6 +133,17 @@ def _require_no_points(data: Path) -> None:
         raise AlreadyExists(
             f"{data} holds points of an experiment, but {JOURNAL_FILE} is missing; restore that "
             "file, or choose another folder with --data"
+        )
+
+
+def _require_same_source(data: Path, source: str) -> None:
+    """Raise SettingsError where points were measured on another source, such as a simulated rig."""
+    others = point_sources(data) - {source}
+    if others:
+        raise SettingsError(
+            f"has points measured on '{', '.join(sorted(others))}', and this rig is '{source}': "
+            "these are two experiments; give the same --rig, or choose another folder with --data",
+            file=data,
         )
 
 

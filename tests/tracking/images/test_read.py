@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Photographs are read, or named with what is wrong, and soon."""
 
+import errno
 import io
 import os
 import struct
@@ -66,6 +67,17 @@ def test_a_bad_file_is_named_with_its_fault(tmp_path, kind, message):
     path = tmp_path / "p7.jpg"
     break_file(path, kind)
     with pytest.raises(PhotoError, match=rf"p7\.jpg: .*{message}"):
+        read_pixels(path)
+
+
+def test_a_photograph_that_must_not_be_read_is_a_bad_one(tmp_path, monkeypatch):
+    path = write_photo(tmp_path / "a.jpg")
+
+    def refused(*_, **__):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", refused)
+    with pytest.raises(PhotoError, match=r"a\.jpg: cannot be opened \(Permission denied\)"):
         read_pixels(path)
 
 

@@ -7,6 +7,8 @@ from collections import Counter
 
 import pytest
 
+from zebro_lab.experiment.journal import JOURNAL_FILE
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.runs.folder import find_runs
 from zebro_lab.runs.manifest import MANIFEST_FILE, read_manifest
 
@@ -50,6 +52,18 @@ def test_a_point_killed_before_its_journal_line_is_counted_once(lab, plan, tmp_p
     killed_run(plan, data, at=3)
     assert lab.run(plan, data, resume=True).finished == 6
     assert sorted(counted(data).values()) == [1] * 6
+
+
+def test_points_of_another_rig_are_not_taken_for_points_of_this_one(lab, plan, tmp_path):
+    data = tmp_path / "data"
+    killed_run(plan, data, at=3)
+    for run in find_runs(data):
+        file = run / MANIFEST_FILE
+        file.write_text(file.read_text().replace('"sim:rig"', '"real"'))
+    journal = (data / JOURNAL_FILE).read_bytes()
+    with pytest.raises(SettingsError, match=r"measured on 'real', and this rig is 'sim:rig'"):
+        lab.run(plan, data, resume=True)
+    assert (data / JOURNAL_FILE).read_bytes() == journal
 
 
 def test_a_refused_attempt_killed_before_its_journal_line_is_not_counted(

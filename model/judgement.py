@@ -112,8 +112,8 @@ def judge(
     target = seen.part(slice(1, None) if anchor else slice(None))
     if len(target) < 2:
         raise InsufficientData(
-            f"poses left to score, without the first if paths start from it: {len(target)}; "
-            "expected two or more"
+            f"{len(target)} tracked poses to score within the path's time (without the first where "
+            "paths start from it); expected two or more"
         )
     first, at = seen.states[0], float(seen.t[0])
     if anchor and not np.isfinite(first[2]):

@@ -40,11 +40,15 @@ class GaitRequest:
         ),
     ] = None
     tau_flight: Annotated[
-        float | None, Option(help="Flight time of a leg, for suriana and maxplus [s].")
+        float | None,
+        Option(help="Flight time of the legs without --tau-turn, for suriana and maxplus [s]."),
     ] = None
     tau_turn: Annotated[
         float | None,
-        Option(help="Extra stance time of the inner legs, for suriana and maxplus [s]."),
+        Option(
+            help="Time added to stance of the inner and to flight of the outer legs, for suriana "
+            "and maxplus [s]."
+        ),
     ] = None
 
     def given(self) -> dict[str, object]:

@@ -102,8 +102,9 @@ def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) ->
         return
     row, leg = (int(i[0]) for i in np.nonzero(turns > _LONGEST_TURN))
     raise table.fault(
-        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad between two samples, so that the "
-        "direction is uncertain; check the unit of the angles, or record at a higher rate",
+        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad between two samples; expected at most "
+        f"{_LONGEST_TURN:g} rad, since the direction is ambiguous near half a turn; check the unit "
+        "of the angles, or record at a higher rate",
         columns.mapped[ANGLES[leg]].name,
         row + 1,
     )

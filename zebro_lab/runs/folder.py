@@ -96,7 +96,9 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
     except FileExistsError as error:
         if folder.is_dir():
             require_new(folder)
-        raise RecordingError(f"{error.filename} is a file; give a folder as --data") from error
+        raise RecordingError(
+            f"{error.filename} exists and is not a folder; choose another folder with --data"
+        ) from error
     except OSError as error:
         raise RecordingError(
             f"cannot write to {data_dir}: {error.strerror}; choose another folder with --data"

@@ -135,7 +135,8 @@ class PredictRequest:
         Path | None, Option(help="columns.toml to use instead of the one beside LEGLOG.")
     ] = None
     direction: Annotated[
-        Side, Option(help="Side the gait turns to; used by --model thesis only.")
+        Side,
+        Option(help="Side the gait turns to, for --model thesis and the baseline of validate."),
     ] = "left"
     model: ModelRequest = field(default_factory=ModelRequest)
 

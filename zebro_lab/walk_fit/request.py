@@ -17,13 +17,13 @@ class WalksRequest:
         Option(help="Run folder of a tracked walk, to fit legs and floor to; repeatable."),
     ] = ()
     robot: Annotated[
-        Path | None, Option(help="robot.toml of the walks, in place of those in their folders.")
+        Path | None, Option(help="robot.toml of the walks, instead of those in their folders.")
     ] = None
     estimate_offset: Annotated[
         bool,
         Option(
             "--estimate-offset",
             help="Estimate from the motion how far each track's clock is behind that of its leg "
-            "log.",
+            "log, and add it to the track's times.",
         ),
     ] = False

@@ -79,7 +79,9 @@ def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_
 
     Raises:
         AlreadyExists: The file to write exists; the robot was not moved.
-        RigError: The robot cannot be reached, sends no samples, or does not follow.
+        RigError: The address is invalid, the robot cannot be reached, sends no samples or does not
+            follow, or one leg was reported for two channels.
+        OSError: The profile cannot be written.
     """
     if request.save.exists():
         raise AlreadyExists(f"{request.save} exists already; name another --save")
@@ -106,7 +108,10 @@ def _robot(address: str) -> Iterator[Any]:
 
 
 def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
-    """Return the present count of each leg within one turn; as set-points they stop a gait."""
+    """Return the present count of each leg within one turn; as set-points they stop a gait.
+
+    RigTimeout if the robot sends no sample.
+    """
     around = robot.profile.counts_per_revolution
     return tuple(int(count) % around for count in latest_counts(robot))
 

@@ -38,7 +38,7 @@ LIMIT: Final = 100_000
 LEAST_FREE: Final = 64 << 20
 """Free space below which a run does not start, or ends [bytes]."""
 JOIN_LIMIT: Final = 30.0
-"""Timeout for the writer threads to end [s]."""
+"""Timeout for each of the writer threads to end [s]."""
 END_LIMIT: Final = 60.0
 """Timeout for the end of the log and the end record [s]."""
 
@@ -60,7 +60,14 @@ class RunRecorder:
 
     Attributes:
         folder: The run folder; after the end its new path if it was renamed and can be found.
-        start: Host time at which the run began [s].
+            Before the run `data_dir`.
+        start: Host time at which the run began [s]; 0 before.
+
+    Raises:
+        RecordingError: On entering: too little disk space is free, a file cannot be written, or a
+            thread cannot be started; the folder is removed again.
+        AlreadyExists: On entering: a run of this kind, start (to the second) and label exists.
+        RigError: On entering: a profile is invalid.
     """
 
     def __init__(
@@ -95,7 +102,7 @@ class RunRecorder:
 
     @property
     def failure(self) -> str | None:
-        """First reason why writing stopped or the end is incomplete; None without a failure.
+        """First reason why samples, or the end of the run, were not written; None without one.
 
         A failure of a recorder thread appears here within a second: a full or failing disk, a
         folder that was removed or renamed. A program that drives motors must check it.
@@ -145,7 +152,10 @@ class RunRecorder:
         return self._queues[stream].dropped
 
     def compare_clocks(self, clocks: Mapping[str, Mapping[str, float]]) -> None:
-        """Store offset [s], drift [-] and delay [s] of each device's clock for the end record."""
+        """Store offset [s], drift [-] and delay [s] of the clocks, by stream, for the end record.
+
+        See `RunManifest.clocks`.
+        """
         self._manifest = replace(self._manifest, clocks=clocks)
 
     def count_duration(self, asked: float, *, since: float) -> None:
@@ -159,7 +169,10 @@ class RunRecorder:
         self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
-        """Set the time of the run's end to now, and its reason unless one was set before."""
+        """Set the time of the run's end to now, and its reason unless one was set before.
+
+        "completed" does not count as a reason that was set.
+        """
         self._ended = self._clock.now()
         if self._reason == "completed":
             self._reason = reason
@@ -287,7 +300,11 @@ class RunRecorder:
         log.flush()
 
     def _finish(self, files: RunFiles) -> None:
-        """Join the writers, end the log and write the end record; store a failure in both."""
+        """Join the writers, end the log and write the end record; close the file.
+
+        An exception of either becomes `failure`. The log is ended only without a failure, and the
+        file is closed only if all writers ended within `JOIN_LIMIT`.
+        """
         before = [thread for thread in self._threads if thread is not threading.current_thread()]
         for thread in before:
             thread.join(JOIN_LIMIT)
@@ -316,8 +333,8 @@ class RunRecorder:
         """Return the manifest of the ended run.
 
         Args:
-            whole: Whether the log is complete; else an experiment's point is not accepted and the
-                run is excluded.
+            whole: Whether the log is complete; else, of an experiment, the point is not accepted
+                and the run is excluded.
         """
         ended = self._clock.now() if self._ended is None else self._ended
         stop = self._manifest.began + timedelta(seconds=ended - self.start)

@@ -66,10 +66,13 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
         The run folders written, and notes.
 
     Raises:
-        SettingsError: An option or a `columns.toml` is invalid.
+        SettingsError: An option, a `columns.toml` or the robot's file is invalid, or neither leg
+            angles nor a rig's table are given.
         NotFound: A file is missing.
-        DataError: A file has invalid content; names file, column and row.
+        DataError: A file has invalid content, with file, column and row where there are such; or
+            two runs have the same name and start.
         AlreadyExists: The folder of one of the runs exists.
+        OSError: A folder cannot be written.
     """
     _require_something(request)
     watcher.step("reading", None)

@@ -44,9 +44,12 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
         The outcome of the run.
 
     Raises:
-        ZebroLabError: The plan, the folder or an option is invalid; nothing moved.
+        ZebroLabError: The plan, the folder or an option is invalid, an emergency stop is latched,
+            or the folder holds another experiment; nothing moved.
         InUse: Another program runs an experiment into this folder, or uses a device.
-        RigError: A limit is exceeded, or a guard or device stopped the run; motors are at rest.
+        RigError: The address or the profile is invalid, or a set-point exceeds a limit: nothing
+            moved. Or a guard, device, thread or the disk stopped the run: the drives are
+            de-energised.
     """
     plan = read_plan(request.plan)
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
@@ -120,7 +123,7 @@ def _require_no_points(data: Path) -> None:
 
 @contextmanager
 def _owned(data: Path) -> Iterator[None]:
-    """Create and lock the experiment's folder; remove a new one if no journal is begun in it."""
+    """Create and lock the experiment's folder; undo it after a ZebroLabError without a journal."""
     new = not data.exists()
     try:
         data.mkdir(parents=True, exist_ok=True)

@@ -247,7 +247,10 @@ def _write_band(log: _Stamped, draws: Poses, *, height: float) -> None:
 
 
 def _legs(robot: Robot, theta: Array) -> list[Transform]:
-    """Return the hip frames in the body frame from leg angles, shape (legs,) [rad], about y."""
+    """Return the poses of the hip frames `leg_1` … in the body frame, turned about y by `theta`.
+
+    `theta` are the leg angles, shape (legs,) [rad].
+    """
     turned = Rotation.from_euler("y", theta[:, None]).as_quat()
     return [
         Transform(BODY, f"leg_{leg}", hip, quaternion)

@@ -170,7 +170,8 @@ def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
 def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple[str, ...]]:
     """Return the start date of a run, the files' time at that date [s], and notes.
 
-    The date is `given` for time 0; else `first` read as Unix time, if large enough; else now.
+    The date is `given`, for time 0; else `first`, the first time in the file [s], as Unix time if
+    it is `_UNIX` or later; else now, for time 0.
     """
     if given is not None:
         return given.astimezone(UTC), 0.0, ()
@@ -185,7 +186,11 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
 def _apart(
     t: Array, imu: ImuLog | None, track: ForeignTrack | None, zero: float
 ) -> tuple[str, ...]:
-    """Return a note for IMU and track each if no time of it lies in the leg log's range `t` [s]."""
+    """Return a note for IMU and track each if no time of it lies in the leg log's range.
+
+    `t` and the track have times of the run, the IMU log times of the files, which are later by
+    `zero` [s].
+    """
     others = {
         IMU: None if imu is None else imu.t - zero,
         TRACK: None if track is None else track.track.poses.t,

@@ -35,7 +35,8 @@ class ImportedWalk:
         manifest: Manifest of the run, with its name, start and sources.
         zero: Time of the files at which the run began [s].
         legs: Leg angles, in the files' time.
-        imu: Orientation, rate and force of the body, in the files' time; None without a file.
+        imu: Orientation, angular rate and specific force of the body, in the files' time; None
+            without a file.
         track: Tracked path, in the run's time; None without a file.
         robot: The robot; the thesis's robot without a file.
     """

@@ -102,7 +102,10 @@ def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float)
 
 
 def _gradient(curve: SlipCurve, slip: Array, load: Array) -> Array:
-    """Differentiate the mean traction [N] by each parameter numerically, shape (k,)."""
+    """Differentiate the curve's mean traction [N] by its k parameters, shape (k,).
+
+    The mean is over the samples' slip ratios and loads; the differences are central.
+    """
     gradient = np.empty(len(curve.values))
     for k, value in enumerate(curve.values):
         step = STEP * max(abs(float(value)), STEP)

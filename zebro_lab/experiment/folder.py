@@ -39,7 +39,10 @@ LONGEST_JOB: Final = 10.0
 
 @dataclass(frozen=True)
 class _Job:
-    """Queued write job: a function to call in the writing thread, and the event set behind it."""
+    """Queued write job: a function to call in the writing thread, and the event set after it.
+
+    The event is also set if the function fails.
+    """
 
     write: Callable[[], None]
     done: threading.Event = field(default_factory=threading.Event)
@@ -276,7 +279,10 @@ class ExperimentFolder:
             raise SinkFailed(f"data cannot be kept: {self._failure}")
 
     def _fail(self, error: BaseException) -> None:
-        """Store the first failure as text, for the acquiring thread, which then stops the rig."""
+        """Store the first failure as text, for the acquiring thread, which then stops the rig.
+
+        Later failures are ignored.
+        """
         if self._failure is None:
             self._failure = " ".join(f"{type(error).__name__}: {error}".split())
 
@@ -322,7 +328,10 @@ class ExperimentFolder:
 
 
 def _why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
-    """Return the reason for excluding a run: failure, else why it ended, else failed checks."""
+    """Return the reason for excluding a run: failure, else why it ended, else failed checks.
+
+    Why it ended, `reason`, counts only without a verdict: the run was aborted.
+    """
     if failure is not None:
         return failure
     return reason if verdict is None else "; ".join(verdict.problems)

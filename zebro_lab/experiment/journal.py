@@ -216,7 +216,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
 
 
 def _resumed(data: Path, plan_text: str) -> Journal:
-    """Read the journal; raise SettingsError where it was started with another plan."""
+    """Read the journal as `read_journal`; SettingsError where it was started with another plan."""
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(

@@ -94,7 +94,10 @@ def holds_points(data: Path) -> bool:
 
 
 def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
-    """Read the manifests of all run folders by name; an unreadable one becomes a notice instead."""
+    """Read the manifests of the run folders directly in `data`, with their folders, by name.
+
+    The second list has a notice for each that cannot be read.
+    """
     manifests: list[tuple[Path, RunManifest]] = []
     notices: list[str] = []
     for run in sorted(file.parent for file in data.glob(f"*/{MANIFEST_FILE}")):
@@ -106,7 +109,10 @@ def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
 
 
 def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
-    """Return whether a run, by label a point of an earlier version, ended without an end record."""
+    """Return whether a run, by label a point of an earlier version, ended without an end record.
+
+    False for a run that is excluded already, or is being recorded.
+    """
     return (
         not manifest.point
         and manifest.excluded is None

@@ -18,7 +18,7 @@ def file_hash(path: Path) -> str:
 
 
 def file_hashes(paths: Iterable[Path]) -> dict[str, str]:
-    """Compute the SHA-256 of each file in hexadecimal, by its path as given; OSError if unread."""
+    """Compute the SHA-256 of each file, as `file_hash` does, by its path as given."""
     return {str(path): file_hash(path) for path in paths}
 
 

@@ -58,7 +58,7 @@ class StreamView:
 def legs_view(name: str, *, profile: LegProfile) -> StreamView:
     """Return the converter of leg counts to joint states of unwrapped angles, not of speeds.
 
-    They are at most `FASTEST` in each call. Counts that do not fit the profile raise ProtocolError.
+    Their rate in a call is at most `FASTEST`. Another number of counts raises ProtocolError.
 
     Args:
         name: Name of the stream; the topic is `/NAME/joint_states`.
@@ -113,7 +113,7 @@ def imu_view(name: str, *, profile: ImuProfile) -> StreamView:
     """Return the converter of IMU counts to orientation, rate and specific force of the body.
 
     Args:
-        name: Name of the stream; the topic is `/NAME/data`, at most `FASTEST` in each call.
+        name: Name of the stream; the topic is `/NAME/data`, its rate in a call at most `FASTEST`.
         profile: Profile of the inertial unit, with its mounting on the body.
     """
     topic, stride = f"/{name}/data", _stride(profile.rate)

@@ -64,8 +64,7 @@ class RunRecorder:
         start: Host time at which the run began [s]; 0 before.
 
     Raises:
-        RecordingError: On entering: too little disk space is free, a file cannot be written, or a
-            thread cannot be started; the folder is removed again.
+        RecordingError: On entering: no space, file or thread; the new folder is removed again.
         AlreadyExists: On entering: a run of this kind, start (to the second) and label exists.
         RigError: On entering: a profile is invalid.
     """
@@ -152,10 +151,7 @@ class RunRecorder:
         return self._queues[stream].dropped
 
     def compare_clocks(self, clocks: Mapping[str, Mapping[str, float]]) -> None:
-        """Store offset [s], drift [-] and delay [s] of the clocks, by stream, for the end record.
-
-        See `RunManifest.clocks`.
-        """
+        """Store `RunManifest.clocks`, the devices' clocks by stream, for the end record."""
         self._manifest = replace(self._manifest, clocks=clocks)
 
     def count_duration(self, asked: float, *, since: float) -> None:
@@ -169,10 +165,7 @@ class RunRecorder:
         self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
-        """Set the time of the run's end to now, and its reason unless one was set before.
-
-        "completed" does not count as a reason that was set.
-        """
+        """Set the run's end to now, and its reason unless another than `completed` is set."""
         self._ended = self._clock.now()
         if self._reason == "completed":
             self._reason = reason
@@ -251,14 +244,14 @@ class RunRecorder:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _fail(self, why: str) -> None:
-        """Store why writing has stopped as `failure`, unless a reason is stored already."""
+        """Store why something is not written as `failure`, unless one is stored already."""
         with self._failing:
             if self._failure is None:
                 self._failure = why
 
     @contextmanager
     def _storing_failure(self, where: object) -> Iterator[None]:
-        """Store any exception of the body as `failure`, prefixed with `where`; do not raise it."""
+        """Store any exception of the body as `failure`, behind `where` if not a RecordingError."""
         try:
             yield
         except RecordingError as error:
@@ -273,7 +266,7 @@ class RunRecorder:
             self._drain(files.log)
 
     def _check_loop(self, files: RunFiles) -> None:
-        """Check the folder every `FLUSH_EVERY` and free space every `SYNC_EVERY` until the end."""
+        """Check the folder and, every `SYNC_EVERY`, free space until the end; store the failure."""
         seen = self._clock.now()
         with self._storing_failure(files.folder):
             while not self._ending.wait(FLUSH_EVERY):
@@ -300,11 +293,7 @@ class RunRecorder:
         log.flush()
 
     def _finish(self, files: RunFiles) -> None:
-        """Join the writers, end the log and write the end record; close the file.
-
-        An exception of either becomes `failure`. The log is ended only without a failure, and the
-        file is closed only if all writers ended within `JOIN_LIMIT`.
-        """
+        """Join the writers, end the log if nothing failed, write the end record; store failures."""
         before = [thread for thread in self._threads if thread is not threading.current_thread()]
         for thread in before:
             thread.join(JOIN_LIMIT)

@@ -38,7 +38,7 @@ class RecordScreen:
         keys: Input file from which keys are read; None without a keyboard.
 
     Attributes:
-        signalled: Whether a signal, or a closed terminal, ended the recording.
+        signalled: Whether a signal or a lost terminal requested the end of the recording.
     """
 
     def __init__(self, live: Live | None, keys: Any = None) -> None:

@@ -86,9 +86,10 @@ class StreamWatch:
         return self._duration if began is None else began + self._duration - now
 
     def problem(self, now: float) -> str | None:
-        """Return a failure of recorder or reader, else that a stream sent no sample; else None.
+        """Return the failure of recorder or reader, or which streams are silent; None without.
 
-        The latter only with a planned duration, `FIRST_SAMPLE` after the run's start.
+        Silent is a stream without any sample `FIRST_SAMPLE` after the run's start; it is a problem
+        only with a planned duration.
         """
         problem = self._recorder.failure or reading_failure(self._readers)
         waited = now - self._recorder.start

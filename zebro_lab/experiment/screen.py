@@ -61,9 +61,10 @@ class ScreenPicture:
     points: tuple[tuple[float, float, float], ...] = ()
 
     def render(self) -> RenderableType:
-        """Return the content as Rich text: state, keys, step, bar, slip chart, prompt.
+        """Return the content as Rich text: state, keys, `head`, bar, slip chart, prompt.
 
-        The step, `head`, is left out while the run holds, stops or is latched.
+        `head`, with step, finished points and time left, is left out while the run holds, stops
+        or is latched; state and keys before it begins.
         """
         parts: list[RenderableType] = []
         if self.condition is not None:

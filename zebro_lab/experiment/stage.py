@@ -85,7 +85,7 @@ def _begin(request: RigRunRequest) -> tuple[Journal, Finished]:
 
 @contextmanager
 def _recording(folder: ExperimentFolder, data: Path, control: Control) -> Iterator[None]:
-    """Open the writer, stop on signals and serve the control socket while the body runs.
+    """Open the writer, serve the control socket, and stop on signals and thread failures.
 
     An emergency stop that is latched in `control` at the end is latched on disk, too.
     """
@@ -186,7 +186,7 @@ def _address(file: Path) -> tuple[int, str]:
 def _commandable(data: Path, control: Control) -> Iterator[None]:
     """Serve the control socket while the body runs; write its port and token to `control.json`.
 
-    Only the file's owner may read it.
+    Only the file's owner may read it; it is removed at the end.
     """
     file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
     with ControlServer(control) as server:

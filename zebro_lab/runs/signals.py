@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read all streams of a run as time series in SI, with gaps and events."""
+"""Read all streams of a run as curves in the units of a picture, with gaps and events."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Write samples that are already in SI as a finished run folder.
+"""Write samples that are already decoded as a finished run folder.
 
-They are stored like raw samples, with profiles whose conversion factors are 1.
+They are stored like raw samples, with profiles that decode them: of the rig and an IMU in SI with
+scale 1, of legs in degrees.
 """
 
 from collections.abc import Callable, Mapping
@@ -106,11 +107,11 @@ def _write_log(
 
 
 def table_samples(t: Array, values: Array) -> SampleColumns:
-    """Return values in SI as raw samples without device times, sequence numbers or status.
+    """Return decoded values as raw samples without device times, sequence numbers or status.
 
     Args:
         t: Time of each sample since the start of the run, shape (n,) [s].
-        values: Values in the order of the device's counts, shape (n, width).
+        values: Values in the order and the unit of the counts in the profile, shape (n, width).
     """
     n = len(t)
     return SampleColumns(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Store an experiment: one run folder for each point, and the journal.
+"""Store an experiment: one run folder for each attempt at a point, and the journal.
 
 A separate thread writes, so that the disk never blocks the thread that feeds the watchdogs. It also
 checks the free disk space and that the folder still exists.

@@ -33,7 +33,7 @@ LOCK_FILE: Final = ".experiment.lock"
 
 
 def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:
-    """Run a plan on a rig, and record each point into a run folder of its own.
+    """Run a plan on a rig, and record each attempt at a point into a run folder of its own.
 
     Args:
         request: Options of `zebro-lab rig run`.

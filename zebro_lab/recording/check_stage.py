@@ -69,6 +69,8 @@ class Checked:
 def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_CLOCK) -> Checked:
     """Find order, signs and zeros of a robot's legs, moving each leg, and write its profile.
 
+    The profile is written before the lift-off angle is sought, if that is asked for.
+
     Args:
         request: Address of the robot, file to write, touchdown angle.
         person: Observer of the robot: which leg moved, its direction, heights.

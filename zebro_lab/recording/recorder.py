@@ -64,7 +64,7 @@ class RunRecorder:
         start: Host time at which the run began [s]; 0 before.
 
     Raises:
-        RecordingError: On entering: no space, file or thread; the new folder is removed again.
+        RecordingError: On entering: too little space, or a file or thread fails; nothing is left.
         AlreadyExists: On entering: a run of this kind, start (to the second) and label exists.
         RigError: On entering: a profile is invalid.
     """
@@ -266,7 +266,7 @@ class RunRecorder:
             self._drain(files.log)
 
     def _check_loop(self, files: RunFiles) -> None:
-        """Check the folder and, every `SYNC_EVERY`, free space until the end; store the failure."""
+        """Check folder, each `FLUSH_EVERY`, and free space, each `SYNC_EVERY`; store a failure."""
         seen = self._clock.now()
         with self._storing_failure(files.folder):
             while not self._ending.wait(FLUSH_EVERY):

@@ -41,7 +41,7 @@ class ColumnGuess:
         name: Header in the file.
         unit: Unit parsed from the header; None without a unit that fits the canonical column.
         negative: Whether the median of the column's numbers is negative.
-        others: Other headers that match the canonical column.
+        others: Other headers that match the canonical column, in the table's order.
     """
 
     name: str
@@ -54,6 +54,7 @@ def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
     """Guess which column of a table holds each canonical column, by canonical name.
 
     Columns are matched by their headers, each at most once; the numbers only determine the sign.
+    Of several matches the header that is the canonical name is taken, else the first in the table.
     Canonical columns without a match are omitted.
     """
     guesses: dict[str, ColumnGuess] = {}
@@ -71,9 +72,9 @@ def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
 
 
 def guess_set_points(table: RawTable) -> list[str]:
-    """Return headers of set-point columns: numbers that change at under 10 % of rows, 200 at most.
+    """Return headers of set-point columns: numbers that change, but at less than 10 % of the rows.
 
-    Columns with an empty cell are left out.
+    Columns with an empty cell, or with `_MOST_SET_POINTS` changes or more, are left out.
     """
     found = []
     for name in table.columns:
@@ -115,7 +116,10 @@ def _unit(header: str, canonical: str) -> str | None:
 
 
 def _without_unit(header: str) -> tuple[str, str | None]:
-    """Split a header, `FZ [N]` or `t_ms`, into a lower-case name and a unit; None without one."""
+    """Split a header, `FZ [N]` or `t_ms`, into a lower-case name and a unit; None without one.
+
+    Blanks, points and hyphens of the name become underscores.
+    """
     if match := _BRACKETED.fullmatch(header):
         return _plain(match["name"]), match["unit"].strip()
     plain = _plain(header)

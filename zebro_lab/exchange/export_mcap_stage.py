@@ -64,7 +64,7 @@ class Exported:
     Attributes:
         file: The written file.
         topics: Number of messages by topic.
-        notes: Notes on a missing track, prediction or band, one line each.
+        notes: A note on the first that is missing of track, prediction and band; else empty.
     """
 
     file: Path
@@ -74,14 +74,14 @@ class Exported:
 
 @dataclass(frozen=True)
 class _Predicted:
-    """Prediction of a walk in the floor frame, anchored to the track where there is one.
+    """Prediction of a walk in the floor frame, anchored to the track where one has yaw.
 
     Attributes:
         walk: Predicted path as written by `predict`, not anchored, with leg angles and height.
         robot: The robot that walked.
         source: Where the leg angles come from.
-        path: Predicted path, anchored.
-        draws: Paths of the band, anchored; None without a band.
+        path: Predicted path, anchored to the tracked pose.
+        draws: Paths of the band, anchored to draws of that uncertain pose; None without a band.
     """
 
     walk: WalkPath
@@ -110,16 +110,20 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     """Write legs, frames, track and predicted band as one MCAP file of ROS 2 messages.
 
     As in validation, the prediction is anchored at the first tracked pose in its time range.
-    Without a track, or with one without yaw, it starts at the origin.
+    Without a track, or with one without yaw, it stays as predicted, from the origin.
 
     Args:
-        run: Run folder, or another folder, with track/ or prediction/ or both.
+        run: Run folder, or another folder, with track/ or prediction/ or both. Times of a folder
+            without `run.json` are written as seconds since 1970.
         out: File to write, atomically.
 
     Raises:
         AlreadyExists: `out` exists.
-        NotFound: The folder has neither a track nor a prediction.
-        DataError: A file is damaged, or track and prediction do not overlap in time.
+        NotFound: The folder has neither a track nor a prediction, or the prediction's manifest, or
+            log or leg profile of the run, is missing.
+        DataError: A file is damaged, the run has no leg angles, or fewer than two tracked poses lie
+            in the prediction's time range (checked if the track has yaw).
+        OSError: The file cannot be written.
     """
     if out.exists():
         raise AlreadyExists(f"{out} exists already; choose another name with --out")
@@ -243,7 +247,10 @@ def _write_band(log: _Stamped, draws: Poses, *, height: float) -> None:
 
 
 def _legs(robot: Robot, theta: Array) -> list[Transform]:
-    """Return the hip frames in the body frame from leg angles, shape (legs,) [rad], about y."""
+    """Return the poses of the hip frames `leg_1` … in the body frame, turned about y by `theta`.
+
+    `theta` are the leg angles, shape (legs,) [rad].
+    """
     turned = Rotation.from_euler("y", theta[:, None]).as_quat()
     return [
         Transform(BODY, f"leg_{leg}", hip, quaternion)
@@ -256,7 +263,10 @@ def _level(yaw: Array) -> Array:
 
 
 def _thinned(t: Array, rate: float) -> Sequence[int]:
-    """Return indices of every k-th row, so that the rate is at most `rate` [Hz], and the last."""
+    """Return indices of every k-th row, so that the rate is at most `rate` [Hz], and the last.
+
+    `t` are the rows' times, two or more [s]; their median interval determines k.
+    """
     usual = float(np.median(np.diff(t)))
     rows = list(range(0, len(t), max(int(np.ceil(1 / (rate * usual) - 1e-6)), 1)))
     return rows if rows[-1] == len(t) - 1 else [*rows, len(t) - 1]

@@ -24,9 +24,9 @@ Columns = Mapping[str, Any]
 def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
     """Write a run as tables: raw samples of each stream, and decoded values in SI.
 
-    `legs` has the columns `t` and `theta1` to `theta6`, `slip_rig` those of a calibration,
-    `NAME_raw` the raw samples of a device. A Parquet table has the source in its metadata, a CSV
-    table in its first line.
+    `legs` has the columns `t` and `theta1` to `theta6`, `slip_rig` those of a calibration, forces
+    without the zero offset, `NAME_raw` the raw samples of a device. A Parquet table has the source
+    in its metadata, a CSV table in its first line. A damaged log is exported up to the damage.
 
     Args:
         folder: The run folder.
@@ -40,6 +40,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
         NotFound: The folder is not a run folder, or its log or profile is missing.
         DataError: The run cannot be read, or has no samples.
         AlreadyExists: `out` exists.
+        OSError: The tables cannot be written.
     """
     if out.exists():
         raise AlreadyExists(f"{out} exists already; choose another folder with --out")

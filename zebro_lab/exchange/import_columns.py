@@ -20,7 +20,7 @@ LEGS, IMU, TRACK, RIG = "legs", "imu", "track", "rig"
 SERIES: Final[Mapping[str, Mapping[str, str]]] = {
     LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: TRACK_UNITS,
 }  # fmt: skip
-"""SI unit of each column, by column and kind of time series."""
+"""SI unit of each column: by kind of time series, then by the column's canonical name."""
 _SECTIONS: Final = (*SERIES, RIG)
 _PLAIN: Final = (LEGS, RIG)
 """Kinds whose columns.toml may be without sections, as `predict` and `calibrate-slip` read it."""
@@ -79,11 +79,12 @@ def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumn
     Args:
         what: Kind of file: `legs`, `imu`, `track` or `rig`.
         table: Path of the imported file.
-        named: A `columns.toml` instead of the one beside the file.
+        named: A `columns.toml` instead of the one beside the file, if any; None for that.
 
     Raises:
         NotFound: The named `columns.toml` does not exist.
-        SettingsError: The `columns.toml` is not TOML, or has unknown keys beside its sections.
+        SettingsError: The `columns.toml` cannot be read as TOML, has unknown keys beside its
+            sections, or a section is no table.
     """
     beside = table.parent / COLUMNS_FILE
     file = named or (beside if beside.is_file() else None)

@@ -66,10 +66,13 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
         The run folders written, and notes.
 
     Raises:
-        SettingsError: An option or a `columns.toml` is invalid.
+        SettingsError: An option, a `columns.toml` or the robot's file is invalid, or neither leg
+            angles nor a rig's table are given.
         NotFound: A file is missing.
-        DataError: A file has invalid content; names file, column and row.
+        DataError: A file has invalid content, with file, column and row where there are such; or
+            two runs have the same name and start.
         AlreadyExists: The folder of one of the runs exists.
+        OSError: A folder cannot be written.
     """
     _require_something(request)
     watcher.step("reading", None)
@@ -167,7 +170,8 @@ def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
 def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple[str, ...]]:
     """Return the start date of a run, the files' time at that date [s], and notes.
 
-    The date is `given` for time 0; else `first` read as Unix time, if large enough; else now.
+    The date is `given`, for time 0; else `first`, the first time in the file [s], as Unix time if
+    it is `_UNIX` or later; else now, for time 0.
 
     Raises:
         SettingsError: A date is given, but `first` is a Unix time.
@@ -191,7 +195,11 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
 def _apart(
     t: Array, imu: ImuLog | None, track: ForeignTrack | None, zero: float
 ) -> tuple[str, ...]:
-    """Return a note for IMU and track each if no time of it lies in the leg log's range `t` [s]."""
+    """Return a note for IMU and track each if no time of it lies in the leg log's range.
+
+    `t` and the track have times of the run, the IMU log times of the files, which are later by
+    `zero` [s].
+    """
     others = {
         IMU: None if imu is None else imu.t - zero,
         TRACK: None if track is None else track.track.poses.t,

@@ -67,7 +67,7 @@ def rig_runs(
     Args:
         path: CSV or Parquet file.
         columns: Column map, radii, and the rule that separates runs.
-        label: Prefix of every run's name.
+        label: Prefix of every run's name; the whole name of a single run without a rule.
         material: Leg and ground material.
         operator: Name of the operator.
 
@@ -75,8 +75,10 @@ def rig_runs(
         The runs, not begun yet, and notes, one line each.
 
     Raises:
-        DataError: The table cannot be read, a column is missing, a radius changes, rows are
-            averages of trials, or time does not increase within a run.
+        NotFound: The file does not exist.
+        DataError: The table cannot be read or keeps no row, a column or a radius is missing, a cell
+            is no finite number, a radius changes, rows are averages of trials, or time decreases or
+            repeats within a run.
     """
     raw = read_table_file(path)
     table = RigTable(raw, columns, kept_rows(raw, columns))
@@ -125,7 +127,9 @@ def write_rig_run(data_dir: Path, run: RigRun) -> Path:
         The run folder.
 
     Raises:
-        AlreadyExists: A run of this start and label exists.
+        AlreadyExists: A run of this kind, start (to the second) and label exists.
+        DataError: The run has no samples.
+        OSError: The folder cannot be written.
     """
     return write_slip_rig_run(
         data_dir,

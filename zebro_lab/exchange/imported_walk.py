@@ -35,7 +35,8 @@ class ImportedWalk:
         manifest: Manifest of the run, with its name, start and sources.
         zero: Time of the files at which the run began [s].
         legs: Leg angles, in the files' time.
-        imu: Orientation of the body, in the files' time; None without a file.
+        imu: Orientation, angular rate and specific force of the body, in the files' time; None
+            without a file.
         track: Tracked path, in the run's time; None without a file.
         robot: The robot; the thesis's robot without a file.
     """
@@ -66,7 +67,8 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
         The run folder.
 
     Raises:
-        AlreadyExists: A run of this start and label exists.
+        AlreadyExists: A run of this kind, start (to the second) and label exists.
+        OSError: The folder cannot be written.
     """
     t, theta, imu = walk.legs.reference.t - walk.zero, walk.legs.reference.theta, walk.imu
     profiles = {LEGS: render_leg_profile(_leg_profile(_rate(t)))}

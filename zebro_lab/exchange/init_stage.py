@@ -58,6 +58,7 @@ def write_columns_template(file: Path, *, force: bool = False) -> Path:
         NotFound: The table file does not exist.
         DataError: The table cannot be read.
         AlreadyExists: A `columns.toml` exists beside the table, and `force` is not set.
+        OSError: The file cannot be written.
     """
     file = Path(file)
     target = file.parent / COLUMNS_FILE

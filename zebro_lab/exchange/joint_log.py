@@ -20,7 +20,7 @@ def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
 
     Args:
         path: The log.
-        topic: Topic to read; None for the only topic with joint positions.
+        topic: Topic to read; None for the only topic that has joint positions.
 
     Returns:
         A row per message with positions: `t`, its stamp, or log time without one [s], and the
@@ -28,7 +28,7 @@ def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
 
     Raises:
         NotFound: The file does not exist.
-        DataError: The file is not MCAP, or has joint positions on no topic or on several.
+        DataError: Not MCAP, no joint positions (on `topic`), or several topics and no `topic`.
     """
     messages, damage = read_messages(path, schema=JOINT_STATE.name)
     rows: dict[str, list[tuple[float, dict[str, float]]]] = {}

@@ -34,7 +34,8 @@ class CheckedRun:
         load: Mean normal force [N].
         traction: Mean measured traction [N].
         expected: Mean traction of the calibrated curve at the run's slip ratios and loads [N].
-        sd: Standard deviation of traction minus expected, from fit, noise and zero offset [N].
+        sd: Standard deviation of traction minus expected, from fit, noise and zero offset; NaN for
+            a run of fewer than `BATCHES` samples [N].
     """
 
     name: str
@@ -51,7 +52,7 @@ class CheckedRun:
 
     @property
     def drifted(self) -> bool:
-        """Whether the deviation is larger than `SUSPICIOUS` in either direction."""
+        """Whether the deviation is larger than `SUSPICIOUS` in either direction; False if NaN."""
         return abs(self.deviation) > SUSPICIOUS
 
 
@@ -61,7 +62,7 @@ def check_runs(
     """Compare the mean traction of each run with the calibrated slip curve.
 
     Args:
-        data: Run folders, or folders of them.
+        data: Run folders or tables, or folders of them; excluded runs and copies are left out.
         calibration: `slip.toml` of the calibration, or its folder.
         zero_sd: Standard deviation of the zero offset of traction between runs [N].
 
@@ -101,7 +102,10 @@ def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float)
 
 
 def _gradient(curve: SlipCurve, slip: Array, load: Array) -> Array:
-    """Differentiate the mean traction [N] by each parameter numerically, shape (k,)."""
+    """Differentiate the curve's mean traction [N] by its k parameters, shape (k,).
+
+    The mean is over the samples' slip ratios and loads; the differences are central.
+    """
     gradient = np.empty(len(curve.values))
     for k, value in enumerate(curve.values):
         step = STEP * max(abs(float(value)), STEP)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Store an experiment: one run folder for each point, and the journal.
+"""Store an experiment: one run folder for each attempt at a point, and the journal.
 
 A separate thread writes, so that the disk never blocks the thread that feeds the watchdogs. It also
 checks the free disk space and that the folder still exists.
@@ -39,7 +39,10 @@ LONGEST_JOB: Final = 10.0
 
 @dataclass(frozen=True)
 class _Job:
-    """Queued write job: a function to call in the writing thread, and the event set behind it."""
+    """Queued write job: a function to call in the writing thread, and the event set after it.
+
+    The event is also set if the function fails.
+    """
 
     write: Callable[[], None]
     done: threading.Event = field(default_factory=threading.Event)
@@ -48,13 +51,20 @@ class _Job:
 class ExperimentFolder:
     """Recorder of an experiment's runs; implements the protocol `RunSink`; a context manager.
 
+    Leaving it waits for the queued writes, at most `JOIN_LIMIT`.
+
     Args:
-        data: Folder of the experiment; must exist on entry.
+        data: Folder of the experiment; created when missing.
         plan: Fingerprint of the plan.
         manifest: Manifest entries common to all runs.
-        profiles: Name and text of the rig's profile, by its role in a run folder.
+        profiles: Name and text of the rig's profile, by its role in a run folder (`rig`).
         clock: Clock of host time.
         in_step: Wait until a run's start and end are on disk, for a twin with simulated time.
+
+    Raises:
+        SinkFailed: The thread cannot be started on entering; or on leaving without an exception,
+            something could not be written. In between, each method that refers to `RunSink` raises
+            it after a failure of the writing thread, or where the queue is full.
     """
 
     def __init__(
@@ -87,7 +97,10 @@ class ExperimentFolder:
         self._thread = threading.Thread(target=self._work, daemon=True, name="writer")
 
     def open_run(self, start: RunStart) -> None:
-        """Queue the opening of a run folder, excluded until its end; see `RunSink.open_run`."""
+        """Queue the opening of a run folder, excluded until its end; see `RunSink.open_run`.
+
+        The zero is stored as the run's constants `zero_normal` and `zero_traction` [N].
+        """
         label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
         manifest = replace(
@@ -133,11 +146,15 @@ class ExperimentFolder:
         self._put(lambda: self._close_now(verdict, reason), wait=True)
 
     def event(self, kind: str, text: str) -> None:
-        """Queue an event for the journal and the open run's log, also after a failure.
+        """Queue an event for the journal and the open run's log, if any, also after a failure.
 
         Args:
             kind: Kind of event, such as `note`.
             text: Description of the event.
+
+        Raises:
+            SinkFailed: The queue is full; or, the event queued, the writing thread has failed
+                before and `kind` is not `end`.
         """
 
         def note() -> None:
@@ -152,6 +169,8 @@ class ExperimentFolder:
     def require_room(self, least: float) -> None:
         """Set the least free disk space, and raise SinkFailed where the writer has failed.
 
+        Too little space is found by the writer, so that a later call raises.
+
         Args:
             least: Least free space [bytes]; checked by the writing thread from now on.
         """
@@ -159,7 +178,10 @@ class ExperimentFolder:
         self._require_working()
 
     def latch(self, reason: str) -> None:
-        """Latch an emergency stop on disk at once, without the queue; see `RunSink.latch`."""
+        """Latch an emergency stop on disk at once, without the queue; see `RunSink.latch`.
+
+        An error of the file system is not raised here, but by the next other call, as SinkFailed.
+        """
         try:
             self._latch.latch(f"{EMERGENCY}: {reason}")
         except OSError as error:
@@ -257,7 +279,10 @@ class ExperimentFolder:
             raise SinkFailed(f"the data cannot be saved: {self._failure}")
 
     def _fail(self, error: BaseException) -> None:
-        """Store the first failure as text, for the acquiring thread, which then stops the rig."""
+        """Store the first failure as text, for the acquiring thread, which then stops the rig.
+
+        Later failures are ignored.
+        """
         if self._failure is None:
             self._failure = " ".join(f"{type(error).__name__}: {error}".split())
 
@@ -282,7 +307,10 @@ class ExperimentFolder:
             job.done.set()
 
     def _check_disk(self) -> None:
-        """Raise SinkFailed where the folder is gone, the recorder failed or the disk is full."""
+        """Raise SinkFailed where the folder is gone, the recorder failed or the disk is full.
+
+        Nothing is checked within `DISK_PERIOD` of the last check.
+        """
         now = time.monotonic()
         if now - self._checked_at < DISK_PERIOD:
             return
@@ -300,7 +328,10 @@ class ExperimentFolder:
 
 
 def _why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
-    """Return the reason for excluding a run: failure, else why it ended, else failed checks."""
+    """Return the reason for excluding a run: failure, else why it ended, else failed checks.
+
+    Why it ended, `reason`, counts only without a verdict: the run was aborted.
+    """
     if failure is not None:
         return failure
     return reason if verdict is None else "; ".join(verdict.problems)

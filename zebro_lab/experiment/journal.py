@@ -87,7 +87,7 @@ class JournalWriter:
             more: Further entries of the line; values that JSON can hold.
 
         Raises:
-            OSError: The write failed; the journal is unchanged.
+            OSError: The write failed, and the journal is unchanged; or it could not be flushed.
         """
         entry = {"time": datetime.now(UTC).isoformat(), "kind": kind, "text": text, **more}
         # ASCII escapes: no character of a text can end a line or fail to be encoded.
@@ -101,7 +101,10 @@ class JournalWriter:
             self._write(line)
 
     def repair(self) -> None:
-        """Remove a last line without a newline (a crash), and append its text as an event."""
+        """Remove a last line without a newline (a crash), and append its text as an event.
+
+        The event is of kind `cut short`; nothing happens without such a line.
+        """
         content = read_bytes(self._file, most=LARGEST)
         whole, _, cut = content.rpartition(b"\n")
         if not cut:
@@ -178,8 +181,10 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
     Raises:
         NotFound, DataError: `resume` is set, and there is no readable journal.
         AlreadyExists: The folder has a journal, and `resume` is not set.
-        SettingsError: The journal is of another plan, or an emergency stop is latched.
-        RecordingError: The latch file cannot be created.
+        SettingsError: The journal is of another plan, or an emergency stop is latched and `reset`
+            is not set.
+        RecordingError: The latch file cannot be created or opened.
+        OSError: The journal or the latch file cannot be written.
     """
     writer, latch = JournalWriter(data), EmergencyLatch(data)
     journal = _resumed(data, plan_text) if resume else None
@@ -211,7 +216,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
 
 
 def _resumed(data: Path, plan_text: str) -> Journal:
-    """Read the journal; raise SettingsError where it was started with another plan."""
+    """Read the journal as `read_journal`; SettingsError where it was started with another plan."""
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(

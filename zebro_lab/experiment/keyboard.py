@@ -31,7 +31,10 @@ class Keyboard:
         self._over = False
 
     def close(self) -> None:
-        """End `listen` within the polling interval `WAIT`; the terminal stays open."""
+        """End `listen` within the polling interval `WAIT`; the terminal stays open.
+
+        On Windows it ends only after the next input.
+        """
         self._over = True
 
     def listen(self) -> None:

@@ -32,7 +32,10 @@ class EmergencyLatch:
 
     @property
     def reason(self) -> str | None:
-        """Reason of the latched stop, or that the file is unreadable; None if not latched."""
+        """Reason of the latched stop, or that the file is unreadable or damaged.
+
+        None if it is not latched: the file is missing or blank.
+        """
         try:
             handle = self._open(os.O_RDONLY)
         except FileNotFoundError:
@@ -63,16 +66,16 @@ class EmergencyLatch:
         """Write the reason of an emergency stop, cut to 256 characters, into the prepared file.
 
         Raises:
-            OSError: The file is missing, or the write failed.
+            OSError: The file is missing or not a regular one, or the write failed.
         """
         text = json.dumps(reason[: SIZE // 16])  # an escaped character takes up to twelve bytes
         self._write(text.encode("ascii"), 0)
 
     def reset(self) -> None:
-        """Overwrite the file as not latched; only on a person's explicit request.
+        """Overwrite or create the file as not latched; only on a person's explicit request.
 
         Raises:
-            OSError: The write failed.
+            OSError: The write failed, or the file is not a regular one.
         """
         self._write(b"", os.O_CREAT)
 

@@ -38,7 +38,8 @@ def foresee(file: Path, rig: str) -> Foreseen:
 
     Raises:
         ZebroLabError: The plan cannot be read.
-        LimitExceeded: A set-point of the plan exceeds a limit.
+        RigError: The profile is missing or invalid, the plan limits a quantity that the rig does
+            not measure, or a set-point exceeds a limit (`LimitExceeded`).
     """
     plan = read_plan(file)
     name = resolve(rig, default=TWIN_PROFILE)[0] if "@" in rig or rig == "sim" else rig

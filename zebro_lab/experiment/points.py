@@ -52,11 +52,15 @@ def finished_points(data: Path, journal: Journal) -> Finished:
     """Find the points of a plan that are finished; exclude repeated, lost and interrupted runs.
 
     A run is excluded by an entry in its `run.json`. For runs of earlier versions, without `point`
-    in their end record, the journal decides. Other recordings and plans are left as they are.
+    in their end record, the journal decides. Other recordings and plans are left as they are. A
+    point counts as finished also if its accepted run was excluded since.
 
     Args:
         data: Folder of the experiment; the caller holds its lock.
         journal: Journal of the experiment.
+
+    Raises:
+        OSError: A `run.json` cannot be written.
     """
     numbers: set[int] = set()
     manifests, notices = _read_all(data)
@@ -82,7 +86,10 @@ def finished_points(data: Path, journal: Journal) -> Finished:
 
 
 def holds_points(data: Path) -> bool:
-    """Return whether any run folder in `data` is a point of an experiment, of whatever plan."""
+    """Return whether any run folder in `data` is a point of an experiment, of whatever plan.
+
+    Folders whose manifest cannot be read do not count.
+    """
     return any(manifest.point for _, manifest in _read_all(data)[0])
 
 
@@ -92,7 +99,10 @@ def point_sources(data: Path) -> frozenset[str]:
 
 
 def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
-    """Read the manifests of all run folders by name; an unreadable one becomes a notice instead."""
+    """Read the manifests of the run folders directly in `data`, with their folders, by name.
+
+    The second list has a notice for each that cannot be read.
+    """
     manifests: list[tuple[Path, RunManifest]] = []
     notices: list[str] = []
     for run in sorted(file.parent for file in data.glob(f"*/{MANIFEST_FILE}")):
@@ -104,7 +114,10 @@ def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
 
 
 def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
-    """Return whether a run, by label a point of an earlier version, ended without an end record."""
+    """Return whether a run, by label a point of an earlier version, ended without an end record.
+
+    False for a run that is excluded already, or is being recorded.
+    """
     return (
         not manifest.point
         and manifest.excluded is None
@@ -116,7 +129,10 @@ def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
 
 
 def _lost_log(run: Path, manifest: RunManifest) -> str | None:
-    """Return what is wrong with a run's log (missing, incomplete); None where it is intact."""
+    """Return that a run's log is missing or not the one of the checksum in the manifest, else None.
+
+    Without a checksum in the manifest, any file counts as intact.
+    """
     log = run / LOG_FILE
     if not log.is_file():  # nor is a FIFO one, which would be waited for
         return f"{run.name}/{LOG_FILE} is missing"

@@ -108,8 +108,8 @@ def rig_at_hand(
         The rig; its bench is not yet entered.
 
     Raises:
-        RigError: The address or the profile is invalid.
-        SettingsError: The rig cannot run in simulated time.
+        RigError: The address or the profile is invalid, or a port cannot be opened.
+        SettingsError: `fast` is set for a real rig, or for a profile without a board.
     """
     name, port = resolve(address, default=TWIN_PROFILE)
     profile = load_rig_profile(name)

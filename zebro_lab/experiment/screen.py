@@ -61,7 +61,11 @@ class ScreenPicture:
     points: tuple[tuple[float, float, float], ...] = ()
 
     def render(self) -> RenderableType:
-        """Return the content as Rich text: state, keys, progress bar, slip chart, prompt."""
+        """Return the content as Rich text: state, keys, `head`, bar, slip chart, prompt.
+
+        `head`, with step, finished points and time left, is left out while the run holds, stops
+        or is latched; state and keys before it begins.
+        """
         parts: list[RenderableType] = []
         if self.condition is not None:
             style = _STYLES.get(self.condition.state, "")
@@ -92,13 +96,16 @@ class ExperimentScreen(ExperimentWatcher):
         self._over = threading.Event()
 
     def changed(self, condition: Condition) -> None:
-        """Show a new state of the run and clear the prompt; see `ExperimentWatcher.changed`."""
+        """Show a new state of the run and clear the prompt; see `ExperimentWatcher.changed`.
+
+        Without a terminal the state is printed as a line.
+        """
         self._picture = replace(self._picture, condition=condition, prompt="")
         if self._live is None:
             self._lines.append(f"{condition.headline}; {condition.keys}")
 
     def notice(self, text: str) -> None:
-        """Print a line above the redrawn part; see `ExperimentWatcher.notice`."""
+        """Print a line, on a terminal above the redrawn part; see `ExperimentWatcher.notice`."""
         self._lines.append(text)
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:

@@ -40,7 +40,7 @@ LOCK_FILE: Final = ".experiment.lock"
 
 
 def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:
-    """Run a plan on a rig, and record each point into a run folder of its own.
+    """Run a plan on a rig, and record each attempt at a point into a run folder of its own.
 
     Args:
         request: Options of `zebro-lab rig run`.
@@ -51,9 +51,12 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
         The outcome of the run.
 
     Raises:
-        ZebroLabError: The plan, the folder or an option is invalid; nothing moved.
+        ZebroLabError: The plan, the folder or an option is invalid, an emergency stop is latched,
+            or the folder holds another experiment; nothing moved.
         InUse: Another program runs an experiment into this folder, or uses a device.
-        RigError: A limit is exceeded, or a guard or device stopped the run; motors are at rest.
+        RigError: The address or the profile is invalid, or a set-point exceeds a limit: nothing
+            moved. Or a guard, device, thread or the disk stopped the run: the drives are
+            de-energised.
     """
     plan = read_plan(request.plan)
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
@@ -100,7 +103,7 @@ def _begin(request: RigRunRequest, *, source: str) -> tuple[Journal, Finished]:
 
 @contextmanager
 def _recording(folder: ExperimentFolder, data: Path, control: Control) -> Iterator[None]:
-    """Open the writer, stop on signals and serve the control socket while the body runs.
+    """Open the writer, serve the control socket, and stop on signals and thread failures.
 
     An emergency stop that is latched in `control` at the end is latched on disk, too.
     """
@@ -149,7 +152,7 @@ def _require_same_source(data: Path, source: str) -> None:
 
 @contextmanager
 def _owned(data: Path) -> Iterator[None]:
-    """Create and lock the experiment's folder; remove a new one if no journal is begun in it."""
+    """Create and lock the experiment's folder; undo it after a ZebroLabError without a journal."""
     new = not data.exists()
     try:
         data.mkdir(parents=True, exist_ok=True)
@@ -211,7 +214,7 @@ def _address(file: Path) -> tuple[int, str]:
 def _commandable(data: Path, control: Control) -> Iterator[None]:
     """Serve the control socket while the body runs; write its port and token to `control.json`.
 
-    Only the file's owner may read it.
+    Only the file's owner may read it; it is removed at the end.
     """
     file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
     with ControlServer(control) as server:

@@ -34,16 +34,19 @@ def weigh_masses(
 
     Args:
         request: Options of `zebro-lab rig weigh`.
-        prompt: Called with the instruction for the operator and the present normal force [N].
+        prompt: Called repeatedly with the operator's instruction and the present normal force [N].
         control: Mailbox that receives the operator's confirmation.
 
     Returns:
         The readings, the line through them, and the written file; None without `--data`.
 
     Raises:
-        SettingsError: A mass is missing or not positive, or a number is not finite.
+        SettingsError: A mass is missing or not positive, a number is not finite, or `--fast` is
+            given for a rig that cannot run in simulated time.
         AlreadyExists: The folder has a `columns.toml` already; nothing was measured.
-        RigError: A weight is beyond the rig's limit, or a device failed.
+        RigError: The address or profile is invalid, a weight is beyond the rig's limit, a disc
+            turns, the load cell sends too few samples, or a device failed.
+        OSError: The file cannot be written.
     """
     _require_finite(request)
     if not request.masses or min(request.masses) <= 0:

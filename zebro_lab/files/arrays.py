@@ -29,15 +29,16 @@ def read_arrays(
         path: The archive.
         names: Names of the arrays to read.
         advice: What to do if the file is missing or cannot be read; part of the error message.
-        most: Largest unpacked size of all arrays together [bytes].
+        most: Largest unpacked size of all named arrays together [bytes].
 
     Returns:
         Read-only arrays by name.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not an archive, lacks an array, has one that does not hold numbers,
-            booleans or strings, or the arrays unpack to more than `most`.
+        DataError: The file is not regular, cannot be opened, is not an archive, or lacks an array;
+            an array does not hold integers, floats, booleans or strings of fixed length, or not as
+            many bytes as its header says; or the arrays unpack to more than `most`.
     """
     with (
         open_file(path, advice=advice) as file,
@@ -62,7 +63,7 @@ def _member(archive: zipfile.ZipFile, name: str, path: Path) -> zipfile.ZipInfo:
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDArray:
-    """Read one array; raise if its header does not match the number of bytes in the archive."""
+    """Read one array; raise DataError if not of `_NUMBERS`, or not of the size that it states."""
     with archive.open(member) as file:
         shape, fortran, dtype = _header(file, member, path)
         data = file.read()

@@ -15,11 +15,14 @@ def atomic_write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
     """Write a file atomically: a reader sees the old content or the complete new content.
 
     Args:
-        path: File to write; its folder must exist.
+        path: File to write; its folder must exist. A symbolic link is replaced, not its target.
         data: The complete content of the file.
 
     Returns:
         The path written.
+
+    Raises:
+        OSError: The file cannot be written; an old content is unchanged.
     """
     target = Path(path)
     draft = target.with_name(draft_name(target))
@@ -44,6 +47,9 @@ def atomic_write_text(path: str | os.PathLike[str], text: str) -> Path:
 
     Returns:
         The path written.
+
+    Raises:
+        OSError: The file cannot be written; an old content is unchanged.
     """
     return atomic_write_bytes(path, text.encode())
 
@@ -63,7 +69,8 @@ def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
         The empty draft folder to write into.
 
     Raises:
-        AlreadyExists: The target is a file, or a folder that is not empty.
+        AlreadyExists: The target is a file, or a folder that is not empty, at the start or end.
+        OSError: The draft or a parent cannot be created, or the draft cannot be renamed.
     """
     folder = Path(target).absolute()
     _require_empty(folder, target)
@@ -81,7 +88,7 @@ def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def nearest_folder(path: Path) -> Path:
-    """Return the nearest existing parent folder of a path, where drafts are created.
+    """Return the nearest existing parent folder of a path, not itself, where drafts are created.
 
     A draft there is on the same file system as the path, so that it can be renamed to it, and no
     parent folder has to be created first.
@@ -95,7 +102,7 @@ def draft_name(path: Path) -> str:
 
 
 def sync_files(folder: Path) -> None:
-    """Flush every file in a folder and its subfolders to disk (fsync)."""
+    """Flush every file in a folder and its subfolders, not the folders, to disk (fsync)."""
     for path in folder.rglob("*"):
         if path.is_file():
             with path.open("rb") as file:

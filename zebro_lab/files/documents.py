@@ -26,8 +26,9 @@ def read_toml_document(
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: The file is not regular, too large, not TOML, or nested too deeply
-            (`DataError` if `fault` is that type).
+        SettingsError: The file is not regular, cannot be opened, is larger than `MOST_BYTES` of
+            `rig.toml_text`, or is not TOML within the limits of `parse_toml` (`DataError` if
+            `fault` is that type).
     """
     data = read_bytes(path, most=MOST_BYTES, advice=advice, fault=fault)
     with parsing(path, "cannot be read as TOML", advice=remedy, fault=fault):
@@ -46,7 +47,9 @@ def read_json_document(path: Path, *, advice: str = "") -> Any:
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not regular, larger than `MOST_JSON`, not JSON, or nested too deeply.
+        DataError: The file is not regular, cannot be opened, is larger than `MOST_JSON`, not UTF-8
+            or not JSON; or is nested too deeply, has an integer of more than 64 bits or an unpaired
+            surrogate (`rig.toml_text.require_bounded`).
     """
     text = read_text(path, most=MOST_JSON, advice=advice)
     with parsing(path, "cannot be read as JSON", advice="restore or create the file again"):

@@ -32,12 +32,15 @@ def read_draws_of(
         advice: What to do if the file cannot be read; part of the error message.
 
     Returns:
-        Draws by parameter, chains joined, each of shape (n,); and names of all group members.
+        Draws by parameter, chains joined, each of shape (n,), NaN included; and the names of all
+        members of the group.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not HDF5 or lacks the group, or draws of a parameter are not numbers,
-            not 1 to `MOST_DRAWS`, not as many as of another parameter, or stored elsewhere.
+        DataError: The file is not regular, cannot be opened, is not HDF5, or lacks the group; the
+            group or a parameter is a soft or external link; or draws of a parameter are not
+            integers or floats, not 1 to `MOST_DRAWS`, not as many as of another parameter, or
+            stored in another file.
     """
     import h5py
 
@@ -62,7 +65,7 @@ def _text(name: object) -> str:
 
 
 def _own(group: "h5py.Group", name: str, path: Path) -> object:
-    """Return a member of a group; raise if it is missing or a soft or external link."""
+    """Return a member of a group; raise DataError if it is missing or a soft or external link."""
     import h5py
 
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):

@@ -81,7 +81,8 @@ class UnitError(ZebroLabError, ValueError):
     """A unit is unknown or measures another quantity, or a quantity is not a finite number.
 
     Attributes:
-        unit: The unit as written; "" for text without a number; the SI unit for an infinite number.
+        unit: The unit as written; "" for text without a number; the expected SI unit if the number
+            is infinite or NaN.
     """
 
     def __init__(self, problem: str, *, unit: str) -> None:
@@ -94,7 +95,7 @@ class NotFound(ZebroLabError, FileNotFoundError):
 
 
 class AlreadyExists(ZebroLabError, FileExistsError):
-    """Writing would overwrite an existing file or folder."""
+    """Writing would overwrite an existing file or folder, or another process is replacing it."""
 
 
 class NotWritten(ZebroLabError, OSError):
@@ -102,7 +103,7 @@ class NotWritten(ZebroLabError, OSError):
 
 
 class RecordingError(ZebroLabError, OSError):
-    """A run cannot be recorded, or could not be recorded to its end."""
+    """A run cannot be recorded or resumed, or was not recorded or done to its end."""
 
 
 def _one_line(place: str, problem: str) -> str:

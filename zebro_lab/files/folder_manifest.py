@@ -10,15 +10,16 @@ from zebro_lab.files.errors import DataError, NotFound
 
 
 def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
-    """Read a JSON file of a folder that must hold an object.
+    """Read a JSON file whose content must be an object; the file marks a kind of folder.
 
     Args:
         file: The file.
-        of: Kind of folder that is expected, e.g. "walk folder"; part of the error message.
+        of: Kind of folder that holds such a file, e.g. "walk folder"; part of the message of
+            `NotFound`.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is damaged, or not a JSON object.
+        DataError: `read_json_document` cannot read the file, or its content is no object.
     """
     try:
         return require_object(read_json_document(file), file)
@@ -39,7 +40,8 @@ def read_folder_manifest(
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is damaged, or its kind or schema is another.
+        DataError: The file cannot be read as JSON, is no JSON object, or its kind or schema is
+            missing or another.
     """
     content = read_json_object(file, of=f"{of} folder")
     if content.get("kind") not in tuple(kinds):

@@ -33,15 +33,18 @@ class OwnFile:
 
 
 def html_page(command: str) -> OwnFile:
-    """Return the kind of an HTML page by `command`, recognised by zebro-lab's generator tag."""
+    """Return the kind of an HTML page by `command`, recognised by zebro-lab's generator tag.
+
+    The tag does not name the command, so pages by other commands are recognised as well.
+    """
     return OwnFile(command, lambda head: b'<meta name="generator" content="zebro-lab ' in head)
 
 
 def picture(command: str) -> OwnFile:
-    """Return the kind of a PNG picture, recognised by its texts `Software` and `Comment`.
+    """Return the kind of a PNG picture by `command`, recognised by two of its texts.
 
-    `Comment` names the command that drew it; pictures without one, of an earlier version, count as
-    drawn by any command.
+    `Software` must be "zebro-lab", and `Comment` name the command; pictures without `Comment`, of
+    an earlier version, count as drawn by any command.
     """
 
     def is_ours(head: bytes) -> bool:
@@ -62,20 +65,19 @@ def text_file(command: str, heading: str) -> OwnFile:
 
 
 def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Path:
-    """Check that an output file is new, empty or was written by the same command.
-
-    Called before anything is computed.
+    """Check, before anything is computed, that an output file is new, empty or of the same command.
 
     Args:
         out: File that is to be written.
         kind: Kind of file that the command writes.
-        inputs: Files and folders that are read.
+        inputs: Files that are read; a folder does not protect the files in it.
 
     Returns:
         The path to write, with symbolic links resolved.
 
     Raises:
-        AlreadyExists: `out` is a folder, an input, part of a result, or of another command.
+        AlreadyExists: `out` is a folder, no regular file, an input, not empty and not of `kind`, or
+            one of the outputs that `manifest.json` beside it lists.
         NotFound: The folder to write it into does not exist.
     """
     file = Path(os.path.realpath(out))

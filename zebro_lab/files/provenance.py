@@ -12,13 +12,13 @@ RECORDED = ("zebro-lab", "numpy", "scipy", "emcee", "arviz", "numba")
 
 
 def file_hash(path: Path) -> str:
-    """Compute the SHA-256 of a file's content, in hexadecimal."""
+    """Compute the SHA-256 of a file's content, in hexadecimal; OSError if it cannot be read."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def file_hashes(paths: Iterable[Path]) -> dict[str, str]:
-    """Compute the SHA-256 of each file in hexadecimal, by its path as given."""
+    """Compute the SHA-256 of each file, as `file_hash` does, by its path as given."""
     return {str(path): file_hash(path) for path in paths}
 
 

@@ -63,7 +63,9 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
 
     Raises:
         AlreadyExists: Another process still replaces it after `PATIENCE`, or NAME.previous exists.
-        OSError: The folder cannot be moved or written; the old one is unchanged.
+        OSError: The folder cannot be moved or written: the old one is unchanged. Or the new one is
+            in place, but user's files cannot be moved into it from NAME.previous; the next
+            `settle` tries again.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
     with _locked(folder) as note:
@@ -84,19 +86,19 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
 def settle(path: Path, *, writing: bool = False) -> Path:
     """Restore a result folder after an interrupted replacement that left only NAME.previous.
 
-    Every reader and writer of a result calls this function first. If NAME exists, NAME.previous and
-    the note that an interrupted replacement left are removed.
+    Every reader and writer of a result calls this function first. If NAME exists and a note says
+    that a replacement left NAME.previous, its user's files are moved to NAME, and it is removed.
+    Without a note it is a user's copy, which is kept if NAME exists.
 
     Args:
         path: Folder of a result, or a file in it.
-        writing: Whether NAME is about to be replaced. Then NAME.previous is restored only if a note
-            says that a replacement made it; otherwise it may be a user's copy and is kept.
+        writing: Whether NAME is to be replaced; then a user's copy is kept without NAME as well.
 
     Returns:
         The path, as given.
 
     Raises:
-        DataError: Only NAME.previous exists and it cannot be renamed.
+        DataError: NAME does not exist, and NAME.previous cannot be renamed to it.
         AlreadyExists: Another process still replaces the folder after `PATIENCE`.
     """
     absolute = Path(os.path.realpath(path))
@@ -184,6 +186,8 @@ def _carry(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> No
     """Hard-link the user's files, names not in `owned`, from the old folder into the new one.
 
     Files that cannot be linked are moved by `_sweep` after the swap; owned files are left behind.
+    A file that the new folder has already stays as it is there. `prefix` is the path of `old`
+    relative to the folder that is replaced, with a final `/`; names in `owned` begin with it.
     """
     for path in sorted(old.iterdir()):
         name, target = prefix + path.name, new / path.name
@@ -216,7 +220,10 @@ def _drop_emptied(folder: Path, name: str, owned: Collection[str]) -> None:
 
 
 def _sweep(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> None:
-    """Move the user's files that `new` lacks, or has in an older version, from `old` to `new`."""
+    """Move the user's files that `new` lacks, or has in an older version, from `old` to `new`.
+
+    The user's are those not in `owned`; `prefix` as in `_carry`.
+    """
     for path in sorted(old.iterdir()):
         name, target = prefix + path.name, new / path.name
         if name in owned:
@@ -243,7 +250,12 @@ def _note_of(folder: Path) -> Path:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[IO[bytes]]:
-    """Open and lock a folder's note; remove it at the end unless it records NAME.previous."""
+    """Open and lock a folder's note; remove it at the end unless NAME.previous, as noted, is left.
+
+    Raises:
+        AlreadyExists: Another process still holds the lock after `PATIENCE`.
+        OSError: The note cannot be opened or read.
+    """
     with _open_locked(folder) as note:
         try:
             yield note

@@ -54,15 +54,21 @@ class ResultKind:
 def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] = ()) -> None:
     """Check that a result folder can be created or replaced, before anything is computed.
 
+    An interrupted replacement of the folder, or of a result inside it, is first finished or undone.
+
     Args:
         out: Folder that is to be written.
-        kind: Kind of result to write.
+        kind: Kind of result to write; names with `*` are not checked here.
         inputs: Files and folders that are read.
 
     Raises:
-        AlreadyExists: `out` is a file or below one, a broken link, an input, the working folder or
-            above it, of another command, has changed results, or a user's file is in the way.
+        AlreadyExists: `out` is a file or below one, a broken link or behind one, the working folder
+            or above it, or the result of another command; its manifest cannot be read; a file that
+            the manifest lists was changed; a file to be written exists and is not listed;
+            `out.previous` exists; `out` is an input, or has one among the files to be replaced; or
+            another process is replacing it.
         NotWritten: The nearest existing parent folder cannot be written to.
+        DataError: Only `out.previous` is left of an interrupted replacement; it cannot be renamed.
     """
     folder = real_place(out)
     settle(folder, writing=True)
@@ -88,19 +94,25 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
 def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object]) -> Iterator[Path]:
     """Write a result folder atomically; after an exception the earlier result is unchanged.
 
-    The manifest is written last: schema, kind, content, hashes of the files, and software.
+    The manifest is written last: schema, kind, content, hashes of the files (not of those in
+    subfolders), and software. All files of the earlier result are removed, also those in
+    `kind.inside`; the user's other files are kept.
 
     Args:
         out: Folder to create or to replace; missing parents are created.
         kind: Kind of result to write.
-        content: Further keys of the manifest; read when the body has ended.
+        content: Further keys of the manifest, NaN and infinity as null; read when the body has
+            ended.
 
     Yields:
         The draft folder to write into.
 
     Raises:
-        AlreadyExists: As in `require_replaceable`.
-        NotWritten: The folder cannot be created or moved.
+        AlreadyExists: As in `require_replaceable`, now or at the end; then also a user's file has
+            the name of any file that was written.
+        NotWritten: The parent folder cannot be written to, or the draft cannot be moved to `out`.
+        DataError: As in `require_replaceable`.
+        OSError: The draft, its files or the manifest cannot be written.
     """
     require_replaceable(out, kind)
     folder = real_place(out)
@@ -180,10 +192,12 @@ def _require_not_inside(out: Path, folder: Path) -> None:
 
 
 def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
-    """List the files that the same command wrote earlier, relative to the folder, if any.
+    """List the files that the same command wrote earlier and that exist, relative to the folder.
+
+    They include the manifest, without which the list is empty, and the results in `kind.inside`.
 
     Raises:
-        AlreadyExists: The folder is of another command, or a listed file or the manifest changed.
+        AlreadyExists: The manifest cannot be read or has another kind, or a listed file changed.
     """
     if not os.path.lexists(folder / MANIFEST):
         return frozenset()
@@ -208,7 +222,10 @@ def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
 
 
 def _void(folder: Path, kind: str) -> frozenset[str]:
-    """List the files of an invalidated result in a subfolder; none if one of them was changed."""
+    """List the files of an invalidated result of a kind in a subfolder, relative to the subfolder.
+
+    None if one of them was changed, or if the subfolder has no result of this kind.
+    """
     try:
         return _owned(folder, ResultKind(kind, kind, ()))
     except AlreadyExists:
@@ -226,7 +243,10 @@ def _manifest_of(folder: Path) -> Mapping[str, Any]:
 
 
 def _outputs(manifest: Mapping[str, Any]) -> Mapping[str, object]:
-    """Return the hashes in a manifest by file name; names with a folder are left out."""
+    """Return the hashes under `outputs` in a manifest by file name; none if it has no such table.
+
+    Names with a folder, and the name of the manifest itself, are left out.
+    """
     listed = manifest.get("outputs")
     if not isinstance(listed, Mapping):
         return {}
@@ -245,7 +265,10 @@ def _require_free(
 
 
 def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]) -> None:
-    """Raise `AlreadyExists` if an input is the folder, or lies in it under a `replaced` name."""
+    """Raise `AlreadyExists` if an input, at `path`, is the folder or among the files it loses.
+
+    These are the files and subfolders directly in the folder whose names are in `replaced`.
+    """
     place = real_place(path)
     inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
     if place == folder or (inside and inside[0] in replaced):

@@ -35,15 +35,13 @@ class SettingsTable(TomlTable):
         Args:
             key: Key of the value.
             unit: SI unit of the result.
-            default: Value to return if the key is missing, in SI.
-            above: Exclusive lower limit, in SI.
-            least: Inclusive lower limit, in SI.
-
-        Returns:
-            The number in SI.
+            default: Value if the key is missing, in SI; None if the key is required.
+            above: Exclusive lower limit, in SI; holds for the default too.
+            least: Inclusive lower limit, in SI; holds for the default too.
 
         Raises:
-            SettingsError: The value is missing without a default, not a number, or too small.
+            SettingsError: The value is missing without a default, not a finite number (with a known
+                unit of this quantity, if it is a string), or below a limit.
         """
         number = self._to_si(key, self.value(key, default), unit)
         if number <= above:
@@ -65,7 +63,7 @@ class SettingsTable(TomlTable):
 
         Raises:
             SettingsError: The list is missing, of another length, or has an element that is not a
-                quantity.
+                finite number or a string with one in a known unit of this quantity.
         """
         found = self._list(key, count)
         return tuple(self._to_si(f"{key}[{i}]", each, unit) for i, each in enumerate(found))
@@ -81,7 +79,8 @@ class SettingsTable(TomlTable):
             Name of the unit, and the factor from it to the SI unit.
 
         Raises:
-            SettingsError: The unit is unknown or measures another quantity.
+            SettingsError: The value is not a string, or the unit is unknown or measures another
+                quantity.
         """
         name = self.text(key, unit)
         try:
@@ -115,6 +114,7 @@ def read_settings(file: Path, *, advice: str) -> SettingsTable:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: The file cannot be read as TOML.
+        SettingsError: The file is not regular, cannot be opened, is too large, or is not TOML
+            within the limits of `parse_toml`.
     """
     return SettingsTable(read_toml_document(file, advice=advice), file=file)

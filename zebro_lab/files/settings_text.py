@@ -13,7 +13,8 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
 
     Args:
         template: TOML with a placeholder value at each key; keys that it lacks are added.
-        values: Values to write, tables as mappings; numbers are rounded to twelve digits, which
+        values: Values to write, tables as mappings; keys that are missing here keep their
+            placeholder. Numbers other than integers are rounded to twelve significant digits, which
             removes rounding errors of unit conversion.
 
     Returns:
@@ -30,7 +31,10 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
 
 
 def inline_table(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Create a TOML inline table (on one line) of `values`, to use as a value in `fill_in`."""
+    """Create a TOML inline table (on one line) of `values`, to use as a value in `fill_in`.
+
+    Numbers are rounded as in `fill_in`.
+    """
     import tomlkit
 
     table = tomlkit.inline_table()
@@ -48,7 +52,11 @@ def _fill(table: MutableMapping[str, Any], values: Mapping[str, Any]) -> None:
 
 
 def _plain(value: Any) -> Any:
-    """Convert arrays and tuples to lists, and round floats to twelve digits, in nested values."""
+    """Convert a value, also nested, for tomlkit: arrays and tuples to lists, mappings to dicts.
+
+    Numbers other than integers are rounded to twelve significant digits; an inline table, string,
+    bool or integer is returned as it is.
+    """
     if isinstance(value, str | bool | numbers.Integral):
         return value
     if isinstance(value, Mapping):

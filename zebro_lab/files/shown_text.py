@@ -23,6 +23,8 @@ _HARMFUL = re.compile(
 def shown(text: str) -> str:
     r"""Replace control, direction and invisible characters by Python escapes such as `\x1b`.
 
+    Line breaks, tabs and lone surrogates are replaced too; zero-width joiners are kept.
+
     >>> shown("completed\nall well \x1b[31m")
     'completed\\nall well \\x1b[31m'
     """

@@ -6,7 +6,9 @@ from pathlib import Path
 
 
 def joined_source(sources: Sequence[str]) -> str:
-    """Join different sources of a run's streams: KIND:A+B if all are of one kind, else mixed:A,B.
+    """Join the sources of a run's streams: KIND:A+B if all are of one kind, else mixed:A,B.
+
+    Equal sources count once; a single one is returned as it is. None at all gives "mixed:".
 
     >>> joined_source(["sim:zebro", "sim:imu"]), joined_source(["real", "sim:imu"])
     ('sim:zebro+imu', 'mixed:real,sim:imu')

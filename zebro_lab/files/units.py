@@ -67,8 +67,8 @@ def quantity_to_si(quantity: str | float, si_unit: str) -> float:
         si_unit: SI unit of the result.
 
     Raises:
-        UnitError: The string is not a finite number with a unit, or the unit measures another
-            quantity.
+        UnitError: The string is not a number with a unit, the number is infinite or NaN, or the
+            unit is unknown or measures another quantity.
 
     >>> quantity_to_si("35 mm", "m"), quantity_to_si(0.035, "m")
     (0.035, 0.035)

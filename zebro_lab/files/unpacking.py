@@ -36,8 +36,9 @@ def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not regular or not complete gzip; unpacked it exceeds `FREELY` plus
-            `MOST_RATIO` times its size, `MOST_CELLS`, or `LONGEST_LINE` in a line.
+        DataError: The file is not regular, not opened, or not complete gzip; or unpacked has more
+            than `FREELY` plus `MOST_RATIO` times its size, than `MOST_CELLS` (lines times `width`),
+            or than `LONGEST_LINE` in a line. It then replaces any exception of the body.
     """
     with open_file(path) as file:
         most = FREELY + MOST_RATIO * os.fstat(file.fileno()).st_size
@@ -51,7 +52,17 @@ def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
 
 
 class _Counted(io.BufferedIOBase):
-    """A file wrapper that counts bytes and lines read, and raises beyond the limits."""
+    """A file wrapper that counts bytes and lines read, and raises DataError beyond the limits.
+
+    Args:
+        source: File to read from; incomplete gzip also raises DataError.
+        path: Path of the file, for messages.
+        most: Largest number of bytes that may be read.
+        width: Number of cells per line.
+
+    Attributes:
+        refusal: The DataError that was raised last; None before.
+    """
 
     def __init__(
         self, source: IO[bytes] | gzip.GzipFile, path: Path, most: int, width: int

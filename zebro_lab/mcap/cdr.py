@@ -20,7 +20,8 @@ _NANOSECONDS = 1_000_000_000
 class CdrWriter:
     """Encoder of one CDR message; each field method appends a field and returns the writer.
 
-    Numbers are aligned to multiples of their size, counted from the end of the 4-byte header.
+    Numbers are aligned to multiples of their size, counted from the end of the 4-byte header. A
+    number outside the range of its field raises struct.error.
 
     >>> CdrWriter().uint32(7).text("ab").message().hex()
     '000100000700000003000000616200'
@@ -46,7 +47,10 @@ class CdrWriter:
         return self._packed(f"<{len(values)}d", 8, *values)
 
     def text(self, value: str) -> Self:
-        """Append a string in UTF-8, with its length in bytes before and a zero byte behind."""
+        """Append a string in UTF-8, with its length in bytes before and a zero byte behind.
+
+        The length counts the zero byte; lone surrogates are written as Python escapes.
+        """
         self._align(4)
         self._parts += _text_block(value)
         return self
@@ -58,7 +62,7 @@ class CdrWriter:
         return self
 
     def array(self, values: NDArray[Any]) -> Self:
-        """Append a one-dimensional array as a sequence of its dtype, preceded by its length."""
+        """Append a one-dimensional array of a little-endian dtype, preceded by its length."""
         self.uint32(len(values))
         if len(values):  # an empty sequence is its length alone
             self._align(values.itemsize)
@@ -66,7 +70,7 @@ class CdrWriter:
         return self
 
     def time(self, nanoseconds: int) -> Self:
-        """Append a `builtin_interfaces/Time` from nanoseconds since the Unix epoch."""
+        """Append a `builtin_interfaces/Time` (int32 s, uint32 ns) from ns since the Unix epoch."""
         seconds, rest = divmod(nanoseconds, _NANOSECONDS)
         return self._packed("<iI", 4, seconds, rest)
 
@@ -118,6 +122,8 @@ class CdrReader:
 
     def array(self, dtype: str) -> NDArray[Any]:
         """Read the next sequence of numbers of a NumPy dtype such as `<f8`, shape (length,).
+
+        The array is read-only unless it is empty.
 
         Raises:
             ValueError: The message ends before the sequence does.

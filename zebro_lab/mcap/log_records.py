@@ -28,17 +28,21 @@ _WIDEST_WINDOW: Final = 1 << 27  # memory that a zstd frame may ask for while it
 def read_records(path: Path, take: "Callable[[McapRecord], object]") -> str | None:
     """Pass each record of an MCAP log to a function, up to the first damage.
 
+    A missing end, a wrong checksum, an unknown compression and a chunk that would unpack to more
+    than the limits count as damage, too; so does an exception in `take`.
+
     Args:
         path: The log.
-        take: Called with each record, those inside chunks included; an exception in it also counts
-            as damage, except a ZebroLabError, which is raised.
+        take: Called with each record, with those inside a chunk instead of the chunk.
 
     Returns:
         Why reading stopped before the end; None for a log read to its end.
 
     Raises:
         NotFound: The file does not exist.
-        DataError: The file is not a regular file, or not MCAP.
+        DataError: The file is not regular, cannot be opened, or does not begin (or, though it is
+            complete, end) with the magic bytes of MCAP.
+        ZebroLabError: `take` raised it.
     """
     from mcap.exceptions import InvalidMagic
     from mcap.records import Chunk
@@ -72,8 +76,9 @@ def _unpacked(chunk: "Chunk", most: int) -> "Chunk":
     """Decompress a chunk (zstd or lz4) of at most `most` bytes; return an uncompressed one as is.
 
     Raises:
-        ValueError: The chunk claims more than `most` bytes, or holds more than it claims.
+        ValueError: The chunk claims more than `most` bytes unpacked, or holds more than it claims.
         KeyError: The compression is unknown.
+        Exception: Any other, by the libraries: the packed data are damaged.
     """
     if chunk.compression == "":
         return chunk

@@ -29,7 +29,7 @@ class LogWriter:
     """Writer of a run's MCAP log: raw samples, display messages, events; not thread-safe.
 
     Args:
-        file: Output file.
+        file: Binary output file; writing to it begins at once.
         views: Converter of each stream's samples to display messages, by the stream's name.
         attachments: Texts of the device profiles to attach, by file name.
         start: Host time at which the run began [s].
@@ -61,8 +61,10 @@ class LogWriter:
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
         """Write samples of a stream: one message of raw counts, and its display messages.
 
+        The message of raw counts is stamped with the time of the last sample.
+
         Args:
-            stream: Name of the stream.
+            stream: Name of the stream, one of `views`.
             samples: Next samples of the stream, at least one.
         """
         view = self._views[stream]

@@ -15,7 +15,7 @@ class MessageLog:
         chunk_size: Uncompressed size at which a chunk is compressed and written [bytes].
 
     Attributes:
-        counts: Number of messages written, by topic.
+        counts: Number of messages written, by topic; without topics that have none.
     """
 
     def __init__(self, file: IO[bytes], *, chunk_size: int = 1 << 20) -> None:

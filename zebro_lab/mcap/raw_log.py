@@ -65,8 +65,11 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
         start: Host time at which the run began [s]; subtracted from the samples' host times.
 
     Raises:
-        ValueError: The samples differ in their number of counts, or a count does not fit `dtype`.
-        OverflowError: A count does not fit `dtype`.
+        ValueError: The samples differ in their number of counts, or a count is NaN with a `dtype`
+            of integers.
+        OverflowError: A count is too large for the `dtype`; in `SampleColumns` it wraps instead.
+        TypeError: `SampleColumns` hold floats, and `dtype` is one of integers. Fractions of other
+            samples are cut off.
     """
     columns = as_columns(samples, dtype)
     message = CdrWriter()
@@ -105,9 +108,12 @@ def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
 def read_raw_log(path: Path) -> SalvagedStreams:
     """Read the raw samples of all devices from an MCAP log; a damaged log up to the damage.
 
+    A message that cannot be decoded, or whose samples have another number of counts than those
+    before, counts as damage. Streams without samples are omitted.
+
     Raises:
         NotFound: The file does not exist.
-        DataError: The file is not a regular file, or not MCAP.
+        DataError: The file is not regular, cannot be opened, or is not MCAP.
     """
     from mcap.records import Channel, Message, Schema
 

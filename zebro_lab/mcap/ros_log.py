@@ -27,6 +27,8 @@ class LoggedMessage(NamedTuple):
 def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:
     """Read all ROS 2 messages of one type from an MCAP log, up to the first damage.
 
+    A message or a definition of the type that cannot be decoded counts as damage.
+
     Args:
         path: The log, in MCAP.
         schema: Name of the type, such as `sensor_msgs/msg/JointState`.
@@ -37,7 +39,7 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
 
     Raises:
         NotFound: The file does not exist.
-        DataError: The file is not a regular file, or not MCAP.
+        DataError: The file is not regular, cannot be opened, or is not MCAP.
     """
     from mcap.records import Channel, McapRecord, Message, Schema
     from mcap_ros2.decoder import DecoderFactory

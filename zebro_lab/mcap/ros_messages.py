@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Encode the standard ROS 2 messages that recorded runs contain besides raw counts, for viewers.
 
-Stamps are nanoseconds since the Unix epoch; numbers are SI. Quantities that a device does not
-measure are NaN, as in ROS.
+Stamps are nanoseconds since the Unix epoch; numbers are SI. As in ROS, quantities that a device
+does not measure are NaN, or empty where they are a list; unknown covariances are zeros.
 """
 
 import math
@@ -123,7 +123,7 @@ def joint_state(
     position: Sequence[float] = (),
     velocity: Sequence[float] = (),
 ) -> bytes:
-    """Encode angles and speeds of joints as a `sensor_msgs/JointState` in CDR.
+    """Encode angles and speeds of joints as a `sensor_msgs/JointState` in CDR, without efforts.
 
     Args:
         stamp: Time since the Unix epoch [ns].
@@ -160,9 +160,11 @@ def imu(
 ) -> bytes:
     """Encode the body's orientation, rate and specific force as a `sensor_msgs/Imu` in CDR.
 
+    The frame is `body`; the covariances are zeros, which means unknown.
+
     Args:
         stamp: Time since the Unix epoch [ns].
-        orientation: Orientation of the body, quaternion x, y, z, w.
+        orientation: Orientation of the body, quaternion x, y, z, w, shape (4,) [-].
         angular_rate: Angular rate in the body's axes, shape (3,) [rad/s].
         specific_force: Acceleration minus gravity, in the body's axes, shape (3,) [m/s^2].
     """
@@ -177,7 +179,7 @@ def log_entry(stamp: int, text: str, *, level: int = INFO) -> bytes:
     Args:
         stamp: Time since the Unix epoch [ns].
         text: Description of the event.
-        level: Severity, `INFO`, `WARNING` or `ERROR`.
+        level: Severity, `INFO`, `WARNING` or `ERROR`, 0 to 255.
     """
     message = CdrWriter().time(stamp).uint8(level).text("zebro_lab")
     return message.text(text).text("").text("").uint32(0).message()

@@ -94,7 +94,8 @@ def read_log(path: Path) -> SalvagedLog:
 
     Raises:
         NotFound: The file does not exist.
-        DataError: The file is not MCAP, or no sample on `TOPIC` can be read.
+        DataError: The file is not regular, cannot be opened, is not MCAP, or no sample on `TOPIC`
+            can be read.
     """
     from mcap.records import Channel, Message, Schema
 

@@ -23,13 +23,13 @@ from zebro_lab.mcap.raw_log import COUNTS_NAME, VALUES_NAME
 from zebro_lab.mcap.ros_messages import IMU, JOINT_STATE, WRENCH, Schema, imu, joint_state, wrench
 
 FASTEST: Final = 50.0
-"""Largest rate of display messages [Hz]."""
+"""Largest rate of display messages of legs and IMU; each call begins with a message [Hz]."""
 
 
 MEAN_OVER: Final = 0.02
-"""Interval over which forces and speeds are averaged for display [s]."""
+"""Interval over which forces and speeds are averaged for display, with the last time in it [s]."""
 ENOUGH: Final = 1000.0
-"""Rate to which samples of the load cell are thinned before averaging for display [Hz]."""
+"""Least rate to which samples of the load cell are thinned before averaging for display [Hz]."""
 _DISCS: Final = ("leg_disc", "ground_disc")
 
 
@@ -56,10 +56,12 @@ class StreamView:
 
 
 def legs_view(name: str, *, profile: LegProfile) -> StreamView:
-    """Return the converter of leg counts to joint states, unwrapped, at `FASTEST` at most.
+    """Return the converter of leg counts to joint states of unwrapped angles, not of speeds.
+
+    Their rate in a call is at most `FASTEST`. Another number of counts raises ProtocolError.
 
     Args:
-        name: Name of the stream.
+        name: Name of the stream; the topic is `/NAME/joint_states`.
         profile: Profile of the robot's legs.
     """
     topic, unwrapped = f"/{name}/joint_states", UnwrappedAngles(profile)
@@ -92,7 +94,11 @@ class UnwrappedAngles:
         self._last: tuple[Sample, Array] | None = None
 
     def __call__(self, samples: Sequence[Sample]) -> Array:
-        """Decode the unwrapped angles of the next samples, at least one, shape (n, legs) [rad]."""
+        """Decode the unwrapped angles of the next samples, at least one, shape (n, legs) [rad].
+
+        Columns by ascending leg number; the first angles of all are in [-pi, pi]. Another number of
+        counts than the profile's legs raises ProtocolError.
+        """
         if self._last is None:
             theta = decode_angles(self._profile, samples).theta
         else:
@@ -104,10 +110,10 @@ class UnwrappedAngles:
 
 
 def imu_view(name: str, *, profile: ImuProfile) -> StreamView:
-    """Return the converter of IMU counts to messages of the body, at `FASTEST` at most.
+    """Return the converter of IMU counts to orientation, rate and specific force of the body.
 
     Args:
-        name: Name of the stream.
+        name: Name of the stream; the topic is `/NAME/data`, its rate in a call at most `FASTEST`.
         profile: Profile of the inertial unit, with its mounting on the body.
     """
     topic, stride = f"/{name}/data", _stride(profile.rate)
@@ -138,8 +144,8 @@ def drives_view(name: str, *, profile: DriveProfile) -> StreamView:
     """Return the converter of motor counts to joint states: each sample's disc, angle and speed.
 
     Args:
-        name: Name of the stream.
-        profile: Profile of both drives.
+        name: Name of the stream; the topic is `/NAME/joint_states`.
+        profile: Profile of both drives; a sample of another node raises KeyError.
     """
     topic = f"/{name}/joint_states"
     discs = {
@@ -168,8 +174,10 @@ def drives_view(name: str, *, profile: DriveProfile) -> StreamView:
 def load_cell_view(name: str, *, profile: LoadCellProfile) -> StreamView:
     """Return the converter of load cell counts to wrenches: mean forces over `MEAN_OVER`.
 
+    The zero offset is not subtracted; each mean is stamped with its last sample's time.
+
     Args:
-        name: Name of the stream.
+        name: Name of the stream; the topic is `/NAME/wrench`.
         profile: Profile of the load cell.
     """
     topic, step = f"/{name}/wrench", max(int(profile.rate / ENOUGH), 1)
@@ -191,7 +199,7 @@ def board_view(name: str, *, profile: BoardProfile) -> StreamView:
     """Return the converter of the board's counts to wrenches and joint states: `MEAN_OVER` means.
 
     Args:
-        name: Name of the stream.
+        name: Name; topics `/NAME/wrench`, zero not subtracted, and `/NAME/joint_states`, no angles.
         profile: Profile of the rig's board.
     """
     wrenches, joints = f"/{name}/wrench", f"/{name}/joint_states"
@@ -233,7 +241,10 @@ def _mean_wrenches(topic: str, forces: Forces, stamps: Sequence[int], rate: floa
 
 
 def _parts(count: int, rate: float) -> Iterator[slice]:
-    """Yield slices of `count` samples at `rate` [Hz] over `MEAN_OVER` each; the last is shorter."""
+    """Yield slices of `count` samples at `rate` [Hz] over `MEAN_OVER` each, at least one sample.
+
+    The last may be shorter.
+    """
     length = max(round(rate * MEAN_OVER), 1)
     for first in range(0, count, length):
         yield slice(first, min(first + length, count))

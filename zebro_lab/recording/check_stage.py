@@ -69,6 +69,8 @@ class Checked:
 def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_CLOCK) -> Checked:
     """Find order, signs and zeros of a robot's legs, moving each leg, and write its profile.
 
+    The profile is written before the lift-off angle is sought, if that is asked for.
+
     Args:
         request: Address of the robot, file to write, touchdown angle.
         person: Observer of the robot: which leg moved, its direction, heights.
@@ -79,7 +81,9 @@ def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_
 
     Raises:
         AlreadyExists: The file to write exists; the robot was not moved.
-        RigError: The robot cannot be reached, sends no samples, or does not follow.
+        RigError: The address is invalid, the robot cannot be reached, sends no samples or does not
+            follow, or one leg was reported for two channels.
+        OSError: The profile cannot be written.
     """
     if request.save.exists():
         raise AlreadyExists(f"{request.save} exists already; choose another file with --save")
@@ -106,7 +110,10 @@ def _robot(address: str) -> Iterator[Any]:
 
 
 def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
-    """Return the present count of each leg within one turn; as set-points they stop a gait."""
+    """Return the present count of each leg within one turn; as set-points they stop a gait.
+
+    RigTimeout if the robot sends no sample.
+    """
     around = robot.profile.counts_per_revolution
     return tuple(int(count) % around for count in latest_counts(robot))
 

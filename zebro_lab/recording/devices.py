@@ -67,9 +67,10 @@ class OpenDevices:
     Attributes:
         devices: The devices, a stream each.
         profiles: Name and TOML text of each profile, by its name in the run folder.
-        constants: Radii of the rig's discs [m]; of a replayed rig all constants of its run.
+        constants: Radii of the rig's discs [m]; of a replayed rig all constants of its run, its
+            zero offsets included; empty without a rig.
         truth: True parameters of a simulated rig; else empty.
-        replayed: Duration of each replayed run [s].
+        replayed: Duration of each replayed device, see `Replayed.lasts` [s].
     """
 
     devices: list[Device] = field(default_factory=list)
@@ -83,15 +84,14 @@ class OpenDevices:
 def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
     """Open every requested device; close each when the body ends, which de-energises its motors.
 
-    Args:
-        request: Addresses of the devices.
-
     Yields:
-        The devices, their drivers entered.
+        The devices, their drivers entered. One IMU is named `imu`, several `imu1`, `imu2`, ...
 
     Raises:
-        SettingsError: No device is requested, or a gait is given without a robot.
+        SettingsError: No device is requested, a gait is given without a robot or for a replayed
+            one, or the rig's profile has neither a board nor a load cell.
         RigError: An address, a profile or a port is invalid.
+        ZebroLabError: A replayed run is missing or invalid, see `read_replay`.
     """
     _require_any(request)
     rng = np.random.default_rng(request.seed)
@@ -111,7 +111,7 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
 
 
 def default_gait() -> LegReference:
-    """Return the default gait, leg angles over time, which a simulated robot walks."""
+    """Return the default gait, leg angles over time of half-circle legs, for a simulated robot."""
     return make_gait(GaitRequest(), leg_arc=np.pi).reference
 
 
@@ -123,7 +123,11 @@ def twin_rig(rng: np.random.Generator) -> SimulatedRig:
 
 
 def profile_text(name: str) -> str:
-    """Read the TOML text of a profile: of the file `name`, else of the shipped `name.toml`."""
+    """Read the TOML text of a profile: of the file `name`, else of the shipped `name.toml`.
+
+    Raises:
+        OSError: There is neither, or it cannot be read.
+    """
     path = Path(name)
     return (path if path.is_file() else shipped_file(f"{name}.toml")).read_text(encoding="utf-8")
 
@@ -232,7 +236,8 @@ class ForceCheck:
             samples: Next samples of the board or the load cell.
 
         Raises:
-            LimitExceeded: Several samples in a row, also across calls, are beyond a force limit.
+            LimitExceeded: Three of the latest five values of a force, also across calls, the last
+                one included, are beyond its limit or not finite.
         """
         forces = self._forces(samples)
         self._normal.check_all(forces.normal)

@@ -40,7 +40,10 @@ class Display:
             self._end(f"the display cannot start, the recording continues without it: {error}")
 
     def show(self, status: RecordStatus) -> None:
-        """Set the status to show next, replacing one not shown yet; does not block."""
+        """Set the status to show next, replacing one not shown yet; does not block.
+
+        A display whose present call has taken longer than `PATIENCE` is abandoned.
+        """
         with self._changed:
             self._newest = status
             self._changed.notify()
@@ -79,7 +82,10 @@ class Display:
                 self._end(f"the display failed, the recording continues without it: {error!r}")
 
     def _take(self) -> RecordStatus | None:
-        """Wait for a status and return it; None after `close` or a failure of the display."""
+        """Wait for a status and return it; None after a failure of the display.
+
+        After `close` a status that is not shown yet is returned first, then None.
+        """
         with self._changed:
             self._since = None
             self._changed.wait_for(lambda: self._newest is not None or self._ending or self._over)

@@ -67,6 +67,9 @@ def examine(data: Path) -> Iterator[Finding]:
 
     Args:
         data: Folder for recordings; need not exist.
+
+    Raises:
+        PackageNotFoundError: zebro-lab is not installed.
     """
     yield check_python(sys.version_info[:3])
     yield from check_requirements(requires("zebro-lab") or ())
@@ -113,7 +116,9 @@ def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
 
 
 def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
-    """Check that `OURS` and `FOREIGN` modules are not shadowed by other modules of their names.
+    """Check that `OURS` and `FOREIGN` modules are not shadowed: OK or BROKEN for each.
+
+    Also BROKEN if another package provides a `FOREIGN` one, NOTE for each shadow in `folder`.
 
     Args:
         folder: Working folder, which `python` puts first on the search path.
@@ -152,7 +157,9 @@ def check_serial_ports() -> Iterator[Finding]:
 def check_port(
     device: Path, description: str, *, may: Callable[[Path, int], bool] = os.access
 ) -> Finding:
-    """Check the permission to read and write one serial port; NOTE without it.
+    """Check the permission to read and write one serial port; NOTE without it, else OK.
+
+    On Windows the result is always OK.
 
     Args:
         device: Path of the port.
@@ -211,7 +218,9 @@ def check_udp(limit: Path) -> Iterator[Finding]:
 
 
 def check_disk(data: Path) -> Finding:
-    """Check write permission (else BROKEN) and free disk space (BROKEN, NOTE or OK) for recordings.
+    """Check write permission and free disk space for recordings.
+
+    BROKEN without permission or below `LEAST_FREE`, NOTE below `COMFORTABLE`, else OK.
 
     Args:
         data: Folder for recordings; where it does not exist, its nearest parent is checked.

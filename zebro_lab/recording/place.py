@@ -20,6 +20,9 @@ class OpenPlace:
     Args:
         path: Path of the file.
         file: The file, open.
+
+    Raises:
+        OSError: The file or its folder cannot be examined.
     """
 
     def __init__(self, path: Path, file: IO[bytes]) -> None:
@@ -62,7 +65,7 @@ def require_space(folder: Path, least: float) -> None:
     """Raise where the disk of a folder has too little free space.
 
     Args:
-        folder: The folder.
+        folder: The folder, which exists.
         least: Least free space [bytes].
 
     Raises:

@@ -38,7 +38,7 @@ LIMIT: Final = 100_000
 LEAST_FREE: Final = 64 << 20
 """Free space below which a run does not start, or ends [bytes]."""
 JOIN_LIMIT: Final = 30.0
-"""Timeout for the writer threads to end [s]."""
+"""Timeout for each of the writer threads to end [s]."""
 END_LIMIT: Final = 60.0
 """Timeout for the end of the log and the end record [s]."""
 
@@ -60,7 +60,13 @@ class RunRecorder:
 
     Attributes:
         folder: The run folder; after the end its new path if it was renamed and can be found.
-        start: Host time at which the run began [s].
+            Before the run `data_dir`.
+        start: Host time at which the run began [s]; 0 before.
+
+    Raises:
+        RecordingError: On entering: too little space, or a file or thread fails; nothing is left.
+        AlreadyExists: On entering: a run of this kind, start (to the second) and label exists.
+        RigError: On entering: a profile is invalid.
     """
 
     def __init__(
@@ -95,7 +101,7 @@ class RunRecorder:
 
     @property
     def failure(self) -> str | None:
-        """First reason why writing stopped or the end is incomplete; None without a failure.
+        """First reason why samples, or the end of the run, were not written; None without one.
 
         A failure of a recorder thread appears here within a second: a full or failing disk, a
         folder that was removed or renamed. A program that drives motors must check it.
@@ -145,7 +151,7 @@ class RunRecorder:
         return self._queues[stream].dropped
 
     def compare_clocks(self, clocks: Mapping[str, Mapping[str, float]]) -> None:
-        """Store offset [s], drift [-] and delay [s] of each device's clock for the end record."""
+        """Store `RunManifest.clocks`, the devices' clocks by stream, for the end record."""
         self._manifest = replace(self._manifest, clocks=clocks)
 
     def count_duration(self, asked: float, *, since: float) -> None:
@@ -159,7 +165,7 @@ class RunRecorder:
         self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
-        """Set the run's end to now and its reason, each unless one was set before."""
+        """Set the run's end to now if none is set, and its reason if that is `completed`."""
         if self._ended is None:
             self._ended = self._clock.now()
         if self._reason == "completed":
@@ -236,14 +242,14 @@ class RunRecorder:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _fail(self, why: str) -> None:
-        """Store why writing has stopped as `failure`, unless a reason is stored already."""
+        """Store why something is not written as `failure`, unless one is stored already."""
         with self._failing:
             if self._failure is None:
                 self._failure = why
 
     @contextmanager
     def _storing_failure(self, where: object) -> Iterator[None]:
-        """Store any exception of the body as `failure`, prefixed with `where`; do not raise it."""
+        """Store any exception of the body as `failure`, behind `where` if not a RecordingError."""
         try:
             yield
         except RecordingError as error:
@@ -258,7 +264,7 @@ class RunRecorder:
             self._drain(files.log)
 
     def _check_loop(self, files: RunFiles) -> None:
-        """Check the folder every `FLUSH_EVERY` and free space every `SYNC_EVERY` until the end."""
+        """Check folder, each `FLUSH_EVERY`, and free space, each `SYNC_EVERY`; store a failure."""
         seen = self._clock.now()
         with self._storing_failure(files.folder):
             while not self._ending.wait(FLUSH_EVERY):
@@ -285,7 +291,7 @@ class RunRecorder:
         log.flush()
 
     def _finish(self, files: RunFiles) -> None:
-        """Join the writers, end the log and write the end record; store a failure in both."""
+        """Join the writers, end the log if nothing failed, write the end record; store failures."""
         before = [thread for thread in self._threads if thread is not threading.current_thread()]
         for thread in before:
             thread.join(JOIN_LIMIT)
@@ -314,8 +320,8 @@ class RunRecorder:
         """Return the manifest of the ended run.
 
         Args:
-            whole: Whether the log is complete; else an experiment's point is not accepted and the
-                run is excluded.
+            whole: Whether the log is complete; else, of an experiment, the point is not accepted
+                and the run is excluded.
         """
         ended = self._clock.now() if self._ended is None else self._ended
         stop = self._manifest.began + timedelta(seconds=ended - self.start)

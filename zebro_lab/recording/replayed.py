@@ -42,14 +42,16 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
         address: `replay:RUN`, with the run folder.
         what: Kind of device: `legs`, `imu` or `rig`.
         name: Name of the replayed IMU stream; the run's stream of this name is replayed, or its
-            first IMU if it has none.
+            first IMU if it has none. None for other devices.
 
     Returns:
-        The streams. Their source is `replay:RUN`, or `sim:replay:RUN` for simulated samples.
+        The streams, of a damaged log up to the damage. Their source is `replay:RUN`, or
+        `sim:replay:RUN` for simulated samples.
 
     Raises:
         NotFound: The run, its log or its profile is missing.
-        DataError: The run has no such stream, or cannot be read.
+        DataError: The manifest is invalid, the log is not MCAP, or the log or the profile has no
+            such stream.
         RigError: The run's profile is invalid.
     """
     folder = Path(address.removeprefix(REPLAY))

@@ -30,6 +30,8 @@ _RESERVE_FILE = ".reserve"
 class RunFiles:
     """Open files of a run folder; the constructor writes profiles, manifest and start of the log.
 
+    It also reserves disk space for the end in a hidden file of `RESERVE` bytes.
+
     Args:
         folder: The run folder, empty.
         manifest: Manifest of the run that begins.
@@ -80,7 +82,7 @@ class RunFiles:
             raise
 
     def sync_first(self) -> None:
-        """Flush manifest and profiles to the disk (fsync)."""
+        """Flush manifest and profiles to the disk (fsync); OSError if one is missing."""
         sync_files(self._first)
 
     def sync_log(self) -> None:
@@ -111,8 +113,8 @@ class RunFiles:
         """Write the end record with sample counts and checksum, also into a renamed folder.
 
         Args:
-            manifest: Manifest of the run that ended.
-            whole: Whether the log is complete, so that its SHA-256 is stored.
+            manifest: Manifest of the run that ended; `streams` and `log_sha256` are set here.
+            whole: Whether the log is complete; else its SHA-256 is None.
 
         Raises:
             RecordingError: The folder is gone.

@@ -38,7 +38,7 @@ class RecordScreen:
         keys: Input file from which keys are read; None without a keyboard.
 
     Attributes:
-        signalled: Whether a signal, or a closed terminal, ended the recording.
+        signalled: Whether a signal or a lost terminal requested the end of the recording.
     """
 
     def __init__(self, live: Live | None, keys: Any = None) -> None:
@@ -55,7 +55,8 @@ class RecordScreen:
         """Draw the status, at most every `DRAW_EVERY` s; called in a separate thread.
 
         Raises:
-            OSError: The terminal cannot be written; a lost terminal also requests a stop.
+            OSError: The terminal cannot be written; a lost terminal also requests a stop, unless
+                hangups are ignored.
         """
         if self._live is None or time.monotonic() - self._drawn < DRAW_EVERY:
             return
@@ -70,7 +71,10 @@ class RecordScreen:
         self._drawn = time.monotonic()
 
     def stop_reason(self) -> str | None:
-        """Read keys; return a stop's reason: signal name, `key` or `terminal closed`; else None."""
+        """Read keys; return the first reason to stop, or None without one.
+
+        It is a signal's name, `key` (q, Q or Esc) or `terminal closed`.
+        """
         typed = self._typed()
         if any(key in STOP_KEYS for key in typed):
             self._reason = self._reason or "key"
@@ -100,7 +104,10 @@ class RecordScreen:
         return live is None or in_time(live.stop)
 
     def _typed(self) -> bytes:
-        """Read typed bytes without blocking, empty without any; a lost keyboard requests a stop."""
+        """Read typed bytes without blocking, empty without any.
+
+        A lost keyboard requests a stop, unless hangups are ignored.
+        """
         if self._keys is None:
             return b""
         try:
@@ -125,6 +132,8 @@ class RecordScreen:
 @contextmanager
 def record_screen(console: Console) -> Iterator[RecordScreen]:
     """Provide the display of a recording; handle SIGINT, SIGTERM and SIGHUP while the body runs.
+
+    SIGHUP stays ignored if it is. For the main thread only.
 
     Args:
         console: Output; nothing is drawn and no key is read unless it is a terminal.

@@ -44,7 +44,8 @@ class Served:
     Attributes:
         source: Source of the device's data, `sim:WHAT`.
         places: Port of each part of the device, by the name of the part.
-        address: `PROFILE@PORT` under which a driver finds the device.
+        address: `PROFILE@PORT` under which a driver finds the device; the profile may be a
+            temporary file.
     """
 
     source: str
@@ -55,6 +56,8 @@ class Served:
 @contextmanager
 def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
     """Serve a simulated robot, on a port or a CAN bus, while the context lasts.
+
+    It walks the requested leg angles, or the default gait.
 
     Raises:
         SettingsError: The named CAN bus cannot be opened.
@@ -96,6 +99,8 @@ def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
 def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
     """Serve a simulated slip rig while the context lasts: a board, or drives and load cell.
 
+    The address of the latter names a temporary profile, with the port of the load cell.
+
     Raises:
         SettingsError: The profile has neither a board nor drives with a load cell, or the named
             CAN bus cannot be opened.
@@ -132,7 +137,7 @@ def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def _profile_of_cell(name: str, cell: SimulatedLoadCell) -> Iterator[Path]:
-    """Yield a temporary copy of profile `name` with host and port of the simulated load cell."""
+    """Yield a temporary copy of profile `name`, with host and port of the simulated load cell."""
     document = tomlkit.parse(profile_text(name))
     load_cell = cast("dict[str, object]", document["load_cell"])
     load_cell |= {"host": cell.host, "port": cell.port}

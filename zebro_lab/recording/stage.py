@@ -61,6 +61,8 @@ def record(
 ) -> Recorded:
     """Record devices into a new run folder until the duration, a stop or a failure ends it.
 
+    The end of a played gait or of the longest replayed run ends it too.
+
     Args:
         request: Devices, duration and description of the run.
         watcher: Display of the status, which may also request the end.
@@ -70,10 +72,14 @@ def record(
         The run folder and its manifest.
 
     Raises:
-        SettingsError: No device is named, or the settings contradict each other.
+        SettingsError: No device is named, the duration is not positive, a gait has no robot to
+            play it, or the rig's profile has neither a board nor a load cell.
+        NotFound: The leg angles to play or a replayed run are missing.
+        DataError: They are invalid.
         RigError: A profile, an address or a port is invalid.
+        AlreadyExists: A run of this kind, label and second exists.
         RecordingError: The run cannot begin, or ended early; then its folder holds the samples
-            until then, and the reason.
+            until then, and the reason, unless it was removed.
     """
     play = None if request.play is None else _played(request.play)
     duration = _duration(request, play)

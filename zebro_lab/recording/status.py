@@ -13,7 +13,7 @@ from zebro_lab.recording.recorder import RunRecorder
 COUNT_EVERY: Final = 1.0
 """Interval at which counters are logged and rates computed [s]."""
 FIRST_SAMPLE: Final = 10.0
-"""Timeout for the first sample of every stream, from which a duration counts [s]."""
+"""Timeout for the first sample of every stream, if a duration is set; it counts from then [s]."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class StreamStatus:
 
     Attributes:
         source: Source of the samples.
-        rate: Sample rate over about the last second [Hz].
+        rate: Sample rate over about the last second; 0 in the first one [Hz].
         counters: Counters of the stream so far.
         dropped: Number of samples dropped because the recorder's queue was full.
     """
@@ -76,14 +76,21 @@ class StreamWatch:
         self._began: float | None = None
 
     def left(self, now: float) -> float:
-        """Return the remaining duration at host time `now` [s]; all of it before streams begin."""
+        """Return the remaining duration at host time `now` [s], 0 or less after the end.
+
+        All of it before every stream has sent a sample; infinity without a planned duration.
+        """
         if self._duration is None:
             return float("inf")
         began = self._first_samples()
         return self._duration if began is None else began + self._duration - now
 
     def problem(self, now: float) -> str | None:
-        """Return a failure of recorder or reader, or that a stream sent no sample; else None."""
+        """Return the failure of recorder or reader, or which streams are silent; None without.
+
+        Silent is a stream without any sample `FIRST_SAMPLE` after the run's start; it is a problem
+        only with a planned duration.
+        """
         problem = self._recorder.failure or reading_failure(self._readers)
         waited = now - self._recorder.start
         if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
@@ -123,8 +130,8 @@ class StreamWatch:
     def _first_samples(self) -> float | None:
         """Return the host time of the last stream's first sample, from which `duration` counts.
 
-        None before. The first time, the duration is stored for the end record and the readers get
-        their end.
+        None before. The first time, a planned duration is stored for the end record, and the
+        readers are told when to end.
         """
         firsts = [reader.first for reader in self._readers.values()]
         known = [first for first in firsts if first is not None]

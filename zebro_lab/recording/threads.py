@@ -12,7 +12,7 @@ def needing_threads() -> Iterator[None]:
     """Convert a failure to start a thread in the `with` statement to a `RecordingError`.
 
     Raises:
-        RecordingError: A thread could not be started.
+        RecordingError: A thread could not be started. Other exceptions pass unchanged.
     """
     try:
         yield

@@ -23,7 +23,10 @@ _T = TypeVar("_T")
 
 
 def content_hash(file: Path) -> str:
-    """Compute the SHA-256 of a file, of the content for `.gz`; a damaged or huge one as it is."""
+    """Compute the SHA-256 of a file, of the unpacked content for `.gz`.
+
+    A `.gz` that is damaged or unpacks to more than `_MOST` is hashed as it is.
+    """
     if file.name.lower().endswith(".gz"):
         try:
             return _unpacked_hash(file) or file_hash(file)
@@ -79,7 +82,7 @@ def first_of_each(
     """Remove duplicates, keeping the first item of each key.
 
     Args:
-        items: Items in order.
+        items: Items in order; the same object again is dropped without a pair.
         key: Returns the key by which two items are duplicates.
 
     Returns:

@@ -46,11 +46,13 @@ class DataSource:
 def find_sources(paths: Sequence[Path]) -> list[DataSource]:
     """Find table files and run folders recursively; a path reached twice is listed once.
 
-    A folder stands for every CSV and Parquet file and every run folder below it, sorted by name.
-    Links are followed; hidden files and folders and calibration folders are skipped.
+    A folder that is no run folder stands for every CSV and Parquet file and every run folder below
+    it, sorted by name. Links are followed; hidden files and folders, calibration folders, and all
+    that is inside run folders, are skipped.
 
     Args:
-        paths: Files and folders, as named; `run.json` and `log.mcap` stand for their folder.
+        paths: Files and folders, as named; `run.json` and `log.mcap` stand for their folder, any
+            other file is taken for a table.
 
     Raises:
         NotFound: A path does not exist, or `paths` is empty.
@@ -80,6 +82,8 @@ def _sources_at(path: Path) -> list[DataSource]:
 
 def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
     """Yield a run folder itself, or the tables and run folders below another folder, by name.
+
+    A calibration folder yields nothing; hidden files and folders below are skipped.
 
     Args:
         folder: Folder to search; one already visited, as by cyclic links, yields nothing.

@@ -24,7 +24,8 @@ def exclude_run(folder: Path, *, why: str) -> RunManifest:
 
     Raises:
         NotFound: The folder is not a run folder.
-        DataError: The manifest is damaged, or the reason is blank.
+        DataError: The manifest is invalid, or the reason is blank.
+        OSError: The manifest cannot be written.
     """
     if not why.strip():
         raise DataError("the reason is blank; state why the run is excluded", file=folder)
@@ -40,7 +41,8 @@ def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
 
     Raises:
         NotFound: The folder is not a run folder.
-        DataError: The manifest is damaged, or the run is not excluded.
+        DataError: The manifest is invalid, or the run is not excluded.
+        OSError: The manifest cannot be written.
     """
     if read_manifest(folder).excluded is None:
         raise DataError("the run is not excluded; there is nothing to undo", file=folder)

@@ -32,8 +32,8 @@ class SlipRigRun:
     Attributes:
         folder: Run folder.
         manifest: Content of `run.json`.
-        table: Samples in SI, forces with the zero offset subtracted.
-        files: Files read: manifest and log.
+        table: Samples in SI; the manifest's zero offsets, if any, are subtracted from forces.
+        files: Manifest and log, without the profile that decoded the log's counts.
         notes: Notes on damage and dropped samples, one line each.
     """
 
@@ -51,13 +51,13 @@ def require_new(folder: Path) -> None:
 
 
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
-    """Read the samples of a slip-rig run from its folder.
-
-    A truncated log is read up to its last complete chunk, with a note.
+    """Read the samples of a slip-rig run; of a damaged log those before the damage, with a note.
 
     Raises:
         NotFound: The manifest or the log is missing.
-        DataError: The kind, a radius or the log's checksum is wrong, or the log has no samples.
+        DataError: Manifest, log or the rig's profile is invalid, or the profile is missing; or the
+            run has another kind, no positive radius, no samples of a stream, or an undamaged log
+            with another checksum.
     """
     manifest = read_manifest(folder)
     if manifest.kind != "slip-rig":
@@ -139,8 +139,8 @@ def require_ended(folder: Path) -> None:
 
     Raises:
         NotFound: The folder is not a run folder.
-        DataError: The manifest is damaged.
-        RecordingError: The run is being recorded.
+        DataError: The manifest is invalid, see `read_manifest`.
+        RecordingError: The run is being recorded, by `run_state`.
     """
     if run_state(folder, read_manifest(folder)) == RECORDING:
         raise RecordingError(f"{folder} is being recorded; wait until it has ended")
@@ -149,7 +149,10 @@ def require_ended(folder: Path) -> None:
 def _slip_rig_table(
     folder: Path, manifest: RunManifest
 ) -> tuple[SlipRigTable, str | None, tuple[str, ...]]:
-    """Read the samples in SI, or compute them from raw counts; return also log damage and notes."""
+    """Compute the samples from raw counts and the profile; return also log damage and notes.
+
+    A log without profiles, of an early version, has them in SI. The damage is None without one.
+    """
     path = folder / LOG_FILE
     if not manifest.profiles:
         log = read_log(path)
@@ -180,7 +183,7 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
 
     Args:
         path: Log file.
-        manifest: Manifest of the run; without a checksum nothing is checked.
+        manifest: Manifest of the run; nothing is checked if its `log_sha256` is None.
 
     Raises:
         DataError: The SHA-256 checksums differ.
@@ -205,7 +208,8 @@ def run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
     Args:
         data_dir: Folder of run folders.
         kind: Kind of the run.
-        label: Label of the run; characters unfit for a file name become hyphens.
+        label: Label of the run; characters unfit for a file name become hyphens, and "run" stands
+            for a label with no others.
         start: Start of the run; converted to UTC, to the second.
     """
     return Path(data_dir) / f"{start.astimezone(UTC):%Y%m%dT%H%M%SZ}_{kind}_{_slug(label)}"

@@ -24,16 +24,16 @@ def read_leg_log(
     Other names and units are mapped by a `columns.toml`. Angles may be wrapped to one turn.
 
     Args:
-        path: Table file; a walk folder, whose path.csv holds the same columns; or a recorded run,
-            whose counts are decoded with the profile in its folder.
+        path: Table file; a walk folder, read from its path.csv; or a recorded run, to be decoded.
         columns: A `columns.toml` instead of the one beside the table; ignored for a recorded run.
         leg_sign: Factor of each leg's angles, 1 or -1, shape (6,); see robot.toml.
 
     Raises:
         NotFound: A file does not exist.
         SettingsError: The `columns.toml` has an invalid value.
-        DataError: A leg is missing, a cell holds no finite number, time does not increase or has
-            a gap, or a leg turns too far between samples; names file, row and column.
+        DataError: The file or run cannot be read, a leg is missing, a cell holds no finite number,
+            there are not two rows, time does not increase or has a gap of over 5 median intervals,
+            or a leg turns by more than 2.5 rad between samples; names the cell, if it is one.
     """
     if is_recorded(path):
         table, files = read_recorded_legs(path)

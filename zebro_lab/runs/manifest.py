@@ -41,7 +41,10 @@ def profile_file(folder: Path, stream: str) -> Path:
 
 
 def software_version() -> dict[str, str]:
-    """Return the installed `version` of zebro-lab and its `commit`, each `unknown` if not known."""
+    """Return the installed `version` of zebro-lab, "unknown" if it is not installed, and `commit`.
+
+    The commit is always "unknown".
+    """
     try:
         return {"version": version("zebro-lab"), "commit": "unknown"}
     except PackageNotFoundError:
@@ -57,8 +60,9 @@ class RunManifest:
         label: Name given by the operator.
         material: Leg and ground material.
         operator: Name of the operator.
-        source: "real", "sim:what", "replay:what", or "import:FILE" for an imported file without a
-            stated source.
+        source: "real", "sim:what", "replay:what", "sim:replay:what" for a replay of simulated data,
+            "mixed:A,B" of different streams; of an imported run the source that its file states, or
+            "import:FILE".
         start: Start, UTC, ISO 8601; empty before the run.
         stop: Stop, UTC, ISO 8601; None while the run is recorded, or if the recorder died.
         exit_status: "completed", "recording", "imported", or why the run ended.
@@ -66,23 +70,26 @@ class RunManifest:
         constants: Canonical columns that are one number for the rig, SI: radius_leg,
             radius_ground; also zero_normal and zero_traction [N], where the unloaded load cell's
             zero is to be subtracted.
-        streams: Number of samples recorded, by topic.
-        log_sha256: SHA-256 of `log.mcap`; None if the recorder could not close it.
-        excluded: {"why": reason} if the run is excluded from every calibration.
+        streams: Number of samples recorded, by topic; empty before the end.
+        log_sha256: SHA-256 of `log.mcap`; None before the end, or if the recorder could not close
+            the log.
+        excluded: {"why": reason} if the run is excluded from every calibration, else None.
         exclusions: Exclusions and their undoing, in order: {"did": "excluded" or "undone", "why":
             reason, "at": time}.
-        profiles: Name of each device's profile, by stream; its text is in the folder.
+        profiles: Name of each device's profile, by its file in the folder (`profile_file`); empty
+            in runs of an early version, whose log has samples in SI.
         sources: Source of each stream, by the stream's name.
         counters: Numbers of samples received, lost, damaged and so on, and of those that the
             recorder dropped, by stream.
-        clocks: Offset [s], drift [-] and delay [s] of each device's clock against the time of the
-            run, by stream, for devices that send their time.
+        clocks: Offset [s], drift [-] and delay [s] of each device's clock, by stream, for devices
+            that send their time: time of the run = offset + (1 + drift) device time. Half of the
+            samples arrive later than the fastest by more than the delay.
         duration: Requested duration ("asked") and the time of the run from which it counts
             ("from"), when every stream had sent its first sample; empty for a run without a set
             duration [s].
-        robot: Name of the robot, for a walk.
-        truth: True values of a simulated device.
-        inputs: SHA-256 of the files that an imported run was made from, by their names.
+        robot: Name of the robot, as given or as its file's; None if unknown.
+        truth: True values of a simulated rig; else empty.
+        inputs: SHA-256 of the files that an imported run was made from, by their paths.
         point: Plan, number and attempt of the experiment's point that the run measures, and
             whether it is accepted; empty outside experiments.
         schema_version: Version of the manifest's format.
@@ -124,7 +131,8 @@ def read_manifest(folder: Path) -> RunManifest:
 
     Raises:
         NotFound: The manifest does not exist.
-        DataError: The manifest is damaged, incomplete, or of another version.
+        DataError: The manifest is no JSON object, lacks an entry, is of another schema version or
+            an unknown kind, or an entry has the wrong type, or is a time without time zone.
     """
     file = folder / MANIFEST_FILE
     return _checked(read_json_object(file, of="run folder"), file)
@@ -147,7 +155,11 @@ def write_manifest(folder: Path, manifest: RunManifest) -> Path:
 
 
 def manifest_text(manifest: RunManifest) -> str:
-    """Format a manifest as JSON text; optional fields that are None or empty are omitted."""
+    """Format a manifest as JSON text; fields that are None, and empty optional ones, are omitted.
+
+    Optional are stop, log_sha256, excluded, and exclusions and all fields after it except
+    schema_version.
+    """
     document = {
         key: value for key, value in asdict(manifest).items()
         if value is not None and (value or key not in _OPTIONAL)

@@ -24,7 +24,7 @@ def raw_streams(run: RunSignals) -> Figure:
     """Draw every stream of a run, one panel per quantity, above them the events; return the figure.
 
     Args:
-        run: Signals of the run; a panel without any finite value is left out.
+        run: Signals; a panel without any finite value is left out, ValueError if none is drawn.
     """
     drawn = [panel for panel in run.panels if _known(panel)]
     rows = len(drawn) + bool(run.events)
@@ -51,7 +51,7 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
 
     Args:
         t: Times, shape (n,) [s].
-        values: Values, shape (n,); NaN counts as 0.
+        values: Values, shape (n,); NaN is compared as 0, and returned where it is chosen.
         columns: Number of intervals of n // columns samples; the samples behind them are kept.
 
     Returns:

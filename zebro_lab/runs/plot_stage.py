@@ -21,7 +21,7 @@ class Drawn:
     """Written picture of a run.
 
     Attributes:
-        file: Path of the picture.
+        file: Path of the picture, as named.
         signals: Signals drawn in the picture.
     """
 
@@ -38,9 +38,10 @@ def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
 
     Raises:
         SettingsError: `out` does not end in `.png`, or is a folder.
-        AlreadyExists: `out` exists and is not a picture of this command.
+        AlreadyExists: `out` exists and is not a picture of this command, or is part of a result.
         NotFound: The folder is not a run folder, or the log or the picture's folder is missing.
         DataError: The run cannot be read, or holds no samples.
+        OSError: The picture cannot be written.
     """
     place = folder.absolute()
     file = out or place.with_name(place.name + SUFFIX)

@@ -21,7 +21,7 @@ def profile_views(file: Path) -> dict[str, StreamView]:
         file: Profile in a run folder; its name selects the kind: `rig`, `imu…`, else legs.
 
     Raises:
-        RigError: The profile is invalid.
+        RigError: The profile is missing or invalid.
     """
     name = file.stem
     if name == RIG:
@@ -39,7 +39,7 @@ def stored_views(folder: Path, profiles: Iterable[str]) -> dict[str, StreamView]
         profiles: Names of the profiles in the run folder, such as `rig` and `imu`.
 
     Raises:
-        RigError: A profile is invalid.
+        RigError: A profile is missing or invalid.
     """
     views: dict[str, StreamView] = {}
     for name in profiles:

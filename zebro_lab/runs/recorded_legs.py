@@ -26,7 +26,8 @@ def is_recorded(path: Path) -> bool:
 def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     """Read leg angles of a run: `t` [s] and `theta1` to `theta6` [rad], unwrapped.
 
-    Samples whose time does not increase are dropped; a truncated log is read up to the damage.
+    Samples whose time does not increase are dropped. A damaged log is read up to the damage, with a
+    note, and its checksum is not compared. Legs that the profile lacks have no column.
 
     Args:
         folder: The run folder.
@@ -36,7 +37,8 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
 
     Raises:
         NotFound: Manifest, log or profile is missing.
-        DataError: One of them is damaged, or no legs were recorded.
+        DataError: Manifest or profile is invalid, the log is not MCAP or has another checksum than
+            the manifest, its samples do not fit the profile, or no legs were recorded.
     """
     import pandas as pd
 

@@ -16,8 +16,8 @@ def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]
     """Number the sweeps of a recorded run: stretches without jumps of slip, leg disc turning.
 
     Returns:
-        Sweep number of each sample, from 1; 0 outside sweeps, shape (n,). Then notes, one line
-        each.
+        Sweep number of each sample, from 1; 0 outside sweeps, shape (n,). Then a note with the
+        share of samples outside sweeps, if there are any.
 
     Raises:
         DataError: No sample is in a sweep: the leg disc never turned, or slip jumped throughout.

@@ -16,7 +16,7 @@ from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import profile_file
 
 IMUS = ("imu", "imu1", "imu2")
-"""Names of IMU streams; the first that was recorded is used."""
+"""Names of IMU streams; the first that has a profile in the run folder is used."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,10 @@ class Tilt:
 def read_recorded_tilt(folder: Path) -> Tilt | None:
     """Read roll and pitch of a run; None without log, IMU profile or samples of that IMU.
 
-    Args:
-        folder: The run folder.
+    Samples whose time does not increase are dropped; a damaged log is read up to the damage.
 
     Raises:
-        DataError: The log is not MCAP, or the IMU's profile is invalid.
+        DataError: The log cannot be opened or is not MCAP, or the IMU's profile is invalid.
     """
     log = folder / LOG_FILE
     name = next((name for name in IMUS if profile_file(folder, name).is_file()), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read all streams of a run as time series in SI, with gaps and events."""
+"""Read all streams of a run as curves in the units of a picture, with gaps and events."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -75,7 +75,7 @@ class RunSignals:
         name: Name of the run folder.
         state: State of the run, such as `completed`; `excluded: REASON` if it is excluded.
         source: Where the data come from.
-        panels: Curves of all streams.
+        panels: Curves of all streams; zero offsets are not subtracted from forces.
         events: Events in the order of the log.
         notes: Notes on damage and dropped samples, one line each.
     """
@@ -93,7 +93,7 @@ def read_signals(folder: Path) -> RunSignals:
 
     Raises:
         NotFound: The folder is not a run folder, or its log is missing.
-        DataError: Manifest, log or a profile is invalid, or the run holds no samples.
+        DataError: Manifest, log or a profile is invalid, a profile is missing, or nothing was read.
     """
     manifest = read_manifest(folder)
     log = folder / LOG_FILE
@@ -117,6 +117,8 @@ def read_signals(folder: Path) -> RunSignals:
 
 def find_gaps(t: Array, sequence: NDArray[np.int64] | None = None) -> Array:
     """Find gaps in a stream: long intervals between samples, and missing sequence numbers.
+
+    Long is more than `GAP_STEPS` times the median positive interval, and more than `GAP_LEAST`.
 
     Args:
         t: Time of each sample, shape (n,) [s].
@@ -156,7 +158,10 @@ _Curves = Iterator[tuple[str, str, Array, Mapping[str, Array]]]
 
 
 def _decoded(name: str, place: Path, t: Array, stream: SampleColumns) -> _Curves:
-    """Yield quantity, unit, times [s] and curves of a stream, decoded by the profile at `place`."""
+    """Yield quantity, unit, times [s] and curves of a stream, decoded by the profile at `place`.
+
+    Nothing is yielded for a stream of the rig that its profile does not describe.
+    """
     if name == LEGS:
         yield from _legs(place, t, stream)
     elif name.startswith("imu"):

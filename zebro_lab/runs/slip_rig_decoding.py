@@ -26,11 +26,12 @@ def derive_table(
 ) -> tuple[SlipRigTable, tuple[str, ...]]:
     """Compute speeds and forces of a recorded run from the raw samples of its devices.
 
-    With drives and load cell as separate streams and over `_MANY` forces per speed, the rows are
-    the speeds' times, and forces are averaged around them: speeds interpolated to many forces
-    would turn speed noise into changes of slip without effect on force. With fewer forces, the
-    rows are the forces' times and speeds are interpolated. Forces outside the speeds' time range
-    are dropped.
+    Each sample of a board gives a row. With drives and load cell as separate streams and over
+    `_MANY` forces per speed of the leg disc, the rows are those speeds' times, and forces are
+    averaged around them (`averages_around`): speeds interpolated to many forces would turn speed
+    noise into changes of slip without effect on force. With fewer forces, the rows are the forces'
+    times inside the speeds' range, and speeds are interpolated. Rows whose time does not increase
+    are dropped, with a note.
 
     Args:
         folder: The run folder, which has the profile.
@@ -39,10 +40,11 @@ def derive_table(
             0 if absent [N].
 
     Returns:
-        The samples with strictly increasing time, and notes on dropped samples.
+        The samples with strictly increasing time, and the note, if any.
 
     Raises:
-        DataError: A stream is missing, no sample has speeds and forces, or the profile is invalid.
+        DataError: A stream or a drive has no samples, no sample has speeds and forces, or the
+            profile is missing, invalid, or has neither a board nor drives with a load cell.
     """
     file = profile_file(folder, RIG)
     try:
@@ -89,7 +91,7 @@ def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp
     """Average values around given times; each value counts for the nearest time.
 
     Values further from the nearest time than the median interval of `at` are dropped, and before
-    the first and behind the last time those further than half of it.
+    the first and behind the last time those further than half of it; a single time takes all.
 
     Args:
         at: Times to average around, increasing, shape (m,) [s].

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Write samples that are already in SI as a finished run folder.
+"""Write samples that are already decoded as a finished run folder.
 
-They are stored like raw samples, with profiles whose conversion factors are 1.
+They are stored like raw samples, with profiles that decode them: of the rig and an IMU in SI with
+scale 1, of legs in degrees.
 """
 
 from collections.abc import Callable, Mapping
@@ -42,8 +43,10 @@ def write_table_run(
 
     Args:
         data_dir: Folder of run folders; created when missing.
-        manifest: Manifest of the run; stop, streams, checksum and profiles are set here.
-        samples: Samples of each stream, at least one, by the stream's name.
+        manifest: Manifest of the run, with its start; stop, streams, checksum and profiles are set
+            here.
+        samples: Samples of each stream, at least one each, by the stream's name; host times since
+            the start of the run.
         profiles: TOML text of each profile, by its name in the run folder.
         event: Text of an event to log at time 0; empty for none.
         extra: Called with the draft folder, to write more files before the folder gets its name.
@@ -53,6 +56,8 @@ def write_table_run(
 
     Raises:
         AlreadyExists: A run of this kind, start and label exists.
+        RigError: A profile is invalid.
+        OSError: The folder cannot be written.
     """
     folder = run_path(data_dir, manifest.kind, manifest.label, manifest.began)
     require_new(folder)
@@ -102,11 +107,11 @@ def _write_log(
 
 
 def table_samples(t: Array, values: Array) -> SampleColumns:
-    """Return values in SI as raw samples without device times, sequence numbers or status.
+    """Return decoded values as raw samples without device times, sequence numbers or status.
 
     Args:
         t: Time of each sample since the start of the run, shape (n,) [s].
-        values: Values in the order of the device's counts, shape (n, width).
+        values: Values in the order and the unit of the counts in the profile, shape (n, width).
     """
     n = len(t)
     return SampleColumns(
@@ -131,7 +136,7 @@ def write_slip_rig_run(
     Args:
         data_dir: Folder of run folders; created when missing.
         table: The samples, at least one.
-        manifest: Manifest of the run, with both radii among its constants.
+        manifest: Manifest of the run, with its start, and both radii among its constants.
         extra: Called with the draft folder, to write more files before the folder gets its name.
 
     Returns:
@@ -140,6 +145,7 @@ def write_slip_rig_run(
     Raises:
         DataError: The table is empty.
         AlreadyExists: A run of this kind, start and label exists.
+        OSError: The folder cannot be written.
     """
     if len(table) == 0:
         raise DataError(f"run '{manifest.label}' has no samples to write")
@@ -156,7 +162,10 @@ def write_slip_rig_run(
 
 
 def _profile(t: Array, constants: Mapping[str, float]) -> str:
-    """Return the TOML of a rig profile with scale 1, the radii, and the median rate of `t`."""
+    """Return the TOML of a rig profile with scale 1, the radii, and the rate of samples at `t`.
+
+    The rate is 1 over the median interval; 1 Hz for one sample, or where that is not positive.
+    """
     step = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
     return render_table_profile(
         radius_leg=constants["radius_leg"],

@@ -51,9 +51,11 @@ class CheckedRun:
         return (self.traction - self.expected) / self.sd
 
     @property
-    def drifted(self) -> bool:
-        """Whether the deviation is larger than `SUSPICIOUS` in either direction; False if NaN."""
-        return abs(self.deviation) > SUSPICIOUS
+    def verdict(self) -> str:
+        """Whether the run deviates by more than `SUSPICIOUS`, as text; empty if it does not."""
+        if np.isnan(self.deviation):
+            return f"NOT TESTABLE: fewer than {BATCHES} samples"
+        return "DRIFTED" if abs(self.deviation) > SUSPICIOUS else ""
 
 
 def check_runs(
@@ -88,8 +90,10 @@ def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float)
     traction = samples.traction_force[chosen]
     expected = curve.force(slip, load, definition=curve.definition)
     gradient = _gradient(curve, slip, load)
-    batches = [part.mean() for part in np.array_split(traction - expected, BATCHES)]
-    noise = float(np.std(batches, ddof=1)) / np.sqrt(BATCHES)
+    noise = np.nan
+    if len(traction) >= BATCHES:
+        batches = [part.mean() for part in np.array_split(traction - expected, BATCHES)]
+        noise = float(np.std(batches, ddof=1)) / np.sqrt(BATCHES)
     fitted = float(gradient @ curve.covariance @ gradient)
     return CheckedRun(
         name=samples.run_names[index],

@@ -151,11 +151,11 @@ def check(
         say(
             f"{found.name}: mean slip {found.slip:.4f}, normal force {found.load:.2f} N, traction "
             f"{found.traction:.3f} N, expected {found.expected:.3f} +/- {found.sd:.3f} N, off by "
-            f"{found.deviation:+.1f} sd{' DRIFTED' if found.drifted else ''}"
+            f"{found.deviation:+.1f} sd {found.verdict}".rstrip()
         )
-    drifted = sum(found.drifted for found in runs)
+    drifted = sum(found.verdict == "DRIFTED" for found in runs)
     say(f"{drifted} of {len(runs)} runs deviate from the calibration by over {SUSPICIOUS:g} sd")
-    if drifted:
+    if any(found.verdict for found in runs):
         raise typer.Exit(REFUSED)
 
 

@@ -29,10 +29,33 @@ def test_a_rig_that_lost_friction_has_drifted(plan, tmp_path, monkeypatch):
     assert zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", data).exit_code == 0
     curve = thesis_curve()
     monkeypatch.setattr(rig_check, "read_slip", lambda path: curve)
-    assert not any(found.drifted for found in check_runs([data], tmp_path))
+    assert not any(found.verdict for found in check_runs([data], tmp_path))
     slippery = replace(curve, values=curve.values * np.array([1.0, 1.0, 0.6, 1.0]))
     monkeypatch.setattr(rig_check, "read_slip", lambda path: slippery)
-    assert all(found.drifted for found in check_runs([data], tmp_path))
+    assert {found.verdict for found in check_runs([data], tmp_path)} == {"DRIFTED"}
     result = zebro_lab("check", data, "--slip", tmp_path)
     assert result.exit_code == 3
     assert "2 of 2 runs deviate from the calibration" in result.output
+
+
+def test_a_run_of_a_few_samples_is_not_testable_and_not_passed(tmp_path, monkeypatch):
+    from model.slip.thesis import thesis_curve
+    from zebro_lab.experiment import check_stage as rig_check
+
+    curve = thesis_curve()
+    monkeypatch.setattr(rig_check, "read_slip", lambda path: curve)
+    data = tmp_path / "data"
+    data.mkdir()
+    for name, n in (("many", 50), ("few", 5)):
+        slip = np.linspace(0.1, 0.2, n)
+        force = curve.force(slip, 8.0, definition=curve.definition)
+        rows = np.column_stack([np.arange(n), slip, np.full(n, 8.0), force])
+        names = "t,slip_ratio,normal_force,traction_force"
+        np.savetxt(data / f"{name}.csv", rows, delimiter=",", header=names, comments="")
+    (data / "columns.toml").write_text('[columns.slip_ratio]\ndefinition = "material"\n')
+    result = zebro_lab("check", data, "--slip", tmp_path)
+    few, many, _ = sorted(result.output.splitlines(), key=lambda line: "NOT" not in line)
+    assert few.startswith("few: ")
+    assert few.endswith("NOT TESTABLE: fewer than 8 samples")
+    assert many.startswith("many: ")
+    assert result.exit_code == 3

@@ -69,12 +69,16 @@ class RigGuards:
     def check(
         self, batch: Batch, *, wanted: tuple[float, float], standing: bool, now: float
     ) -> None:
-        """Check values, age, silence, losses and freezing of samples, and the devices' status.
+        """Check values, age, silence, losses and freezing of samples, following, and status.
+
+        Following: each disc's speed error is within its limit. Silence is checked from
+        `expect_samples` on.
 
         Args:
             batch: Samples of one poll.
             wanted: Set-points of leg and ground disc [rad/s].
-            standing: Whether both discs have been verified to stand.
+            standing: Whether both discs have been verified to stand; a speed error is then limited
+                to `TURNING` as well.
             now: Host time at which the samples arrived [s].
 
         Raises:

@@ -98,6 +98,9 @@ class Stream(Protocol):
 
         Returns:
             Samples in the order of the device; none after a timeout or without a connection.
+
+        Raises:
+            RigError: It is another device than expected, or its link takes no bytes.
         """
         ...
 
@@ -131,6 +134,7 @@ class Drive(Protocol):
 
         Raises:
             LimitExceeded: The magnitude of the speed is above the rig's limit, or NaN.
+            RigTimeout: The link does not take the command.
         """
         ...
 

@@ -87,6 +87,7 @@ class Bench(ABC):
 
         Raises:
             LimitExceeded: A speed is NaN or beyond the limit of the rig's profile.
+            RigTimeout: A link does not take the command.
         """
         self._leg.set_speed(leg)
         self._ground.set_speed(ground)

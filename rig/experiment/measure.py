@@ -28,6 +28,7 @@ def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
 
     Raises:
         ProtocolError: The last recording has fewer than ten readings.
+        RigError: As `GuardedAcquisition.poll`.
     """
     readings = join([])
     for _ in range(ZERO_ATTEMPTS):

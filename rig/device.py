@@ -100,7 +100,7 @@ class Stream(Protocol):
             Samples in the order of the device; none after a timeout or without a connection.
 
         Raises:
-            RigError: It is another device than expected, or its link takes no bytes.
+            RigError: The device is not the one of the profile, or its link takes no bytes.
         """
         ...
 

@@ -41,7 +41,7 @@ class Bench(ABC):
         profile: Profile of the rig.
         source: Origin of the samples: `real` or `sim:WHAT`.
         streams: Streams of the devices, for their counters.
-        watched: Names of the devices and answers that are checked for silence.
+        watched: Names of the devices, and of requested answers, that are checked for silence.
     """
 
     watched: tuple[str, ...]

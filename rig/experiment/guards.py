@@ -69,10 +69,9 @@ class RigGuards:
     def check(
         self, batch: Batch, *, wanted: tuple[float, float], standing: bool, now: float
     ) -> None:
-        """Check values, age, silence, losses and freezing of samples, following, and status.
+        """Check samples (value, age, silence, losses, freezing), discs' speed errors, and status.
 
-        Following: each disc's speed error is within its limit. Silence is checked from
-        `expect_samples` on.
+        Silence is checked from `expect_samples` on.
 
         Args:
             batch: Samples of one poll.

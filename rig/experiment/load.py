@@ -16,7 +16,7 @@ FASTEST: Final = 2e-3
 
 
 class LoadSetter(Protocol):
-    """Setter of the normal force: called once with the target, then polled at standstill."""
+    """Setter of the normal force: `request` once with the target, then `follow` at standstill."""
 
     def request(self, target: float) -> str:
         """Request a normal force; 0 removes all load.
@@ -151,7 +151,7 @@ class DrivenShaft:
             it has not fallen further for that time.
 
         Raises:
-            RigTimeout: `patience` has passed before that; the axis has been halted.
+            RigTimeout: `patience` has passed since `request`; the axis has been halted.
         """
         now, missing = self._clock.now(), self._target - normal
         if self._target == 0:

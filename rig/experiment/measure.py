@@ -88,7 +88,7 @@ def record(
         clock: Host time.
 
     Returns:
-        The recorded samples, zero subtracted.
+        The recorded samples, taken since the start, zero subtracted.
     """
     duration = plan.points.duration
     start = clock.now()

@@ -141,8 +141,8 @@ class RunLimits:
         acceleration: Rate at which the set-points of the discs ramp [rad/s^2].
         normal_force: Largest magnitude of the normal force [N].
         traction_force: Largest magnitude of the traction force [N].
-        in_a_row: Number of samples beyond a force limit, among the latest 2 in_a_row - 1, that are
-            a fault.
+        in_a_row: Number of samples beyond a limit of force, torque or temperature, among the latest
+            2 in_a_row - 1, that are a fault.
         speed_error: Largest difference of a disc's speed from its set-point [rad/s].
         speed_error_time: Longest duration of a speed error beyond that [s].
         silence: Longest time for which a device may send no samples [s].

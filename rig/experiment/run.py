@@ -69,10 +69,10 @@ def run_plan(
         load: Setter of the normal force.
         sink: Recorder of samples and events.
         control: Mailbox for pauses, notes and stops.
-        watcher: Progress display.
+        watcher: Progress display; None shows nothing.
         clock: Host time.
         period: Polling period of the rig [s].
-        done: Numbers of the points that an earlier run finished.
+        done: Numbers of the points that an earlier run finished; they are left out.
 
     Returns:
         The outcome of a run that was completed or stopped on request.

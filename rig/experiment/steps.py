@@ -74,9 +74,10 @@ Step: TypeAlias = Tare | Point
 def spell_out(plan: Plan) -> tuple[Step, ...]:
     """Expand a plan into its steps: zeros of the load cell, points and check points, in order.
 
-    A zero comes first, and then before the next of every `tare_every` points; a check point comes
-    before the first point and before the next of every `check_every`, at that point's load. The
-    same plan always gives the same steps, also when shuffled: a resumed run relies on this.
+    A zero comes first and, if a point follows, after every `tare_every` points; a check point comes
+    before the first point and then after every `check_every`, at the load of the point that
+    follows. The same plan always gives the same steps, also when shuffled: a resumed run relies on
+    this.
     """
     steps: list[Step] = [Tare(1)]
     since_tare = 0
@@ -126,7 +127,7 @@ def _passes(plan: Plan, rng: np.random.Generator) -> list[tuple[tuple[float, ...
 
 
 def require_allowed(plan: Plan, profile: RigProfile) -> None:
-    """Check every set-point of a plan against the limits before motion, and its limits' size.
+    """Check before motion that a plan's set-points and limits are within the rig's limits.
 
     Args:
         plan: The plan.

@@ -26,8 +26,8 @@ class PointVerdict:
         problems: Why the point must be repeated, one phrase each; empty where it is good.
         samples: Number of recorded samples.
         slip: Mean slip ratio; NaN with fewer than 8 samples [-].
-        friction: Sum of the traction over sum of the normal force; NaN where that is not above 0,
-            or with fewer than 8 samples [-].
+        friction: Sum of the traction over sum of the normal force; NaN where the latter is not
+            above 0, or with fewer than 8 samples [-].
         normal_force: Median normal force; NaN with fewer than 8 samples [N].
     """
 
@@ -49,7 +49,7 @@ def span(readings: Readings) -> float:
 
 
 def halves(readings: Readings) -> tuple[Readings, Readings]:
-    """Split readings, at least one, halfway from first to last time; that belongs to the second."""
+    """Split one or more readings at the middle of their time, which the second half includes."""
     middle = (readings.t[0] + readings.t[-1]) / 2
     late = readings.since(middle)
     early = len(readings) - len(late)

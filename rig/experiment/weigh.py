@@ -85,6 +85,7 @@ def weigh(
 
     Raises:
         NotAtRest: A disc turns, or its speed is unknown.
+        RigError: A device failed, or `load` did.
         ProtocolError: Fewer than 2 `BATCHES` forces arrived in `duration`.
     """
 

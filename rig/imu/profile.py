@@ -137,7 +137,7 @@ def render_table_profile(rate: float) -> str:
 
 
 def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orientation:
-    """Compute roll, pitch and yaw from raw counts, in the order of `docs/conventions.md`.
+    """Compute roll, pitch and yaw of the body, R = R_z(yaw) R_y(pitch) R_x(roll), from raw counts.
 
     Args:
         profile: Profile of the unit.
@@ -165,7 +165,7 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
 def encode_orientation(
     profile: ImuProfile, rotation: Rotation, angular_rate: Array, specific_force: Array
 ) -> tuple[int, ...]:
-    """Compute the counts of one reading; the inverse of `decode_orientation`.
+    """Compute the counts of one reading; the inverse of `decode_orientation` but for rounding.
 
     Args:
         profile: Profile of the unit.

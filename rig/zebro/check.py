@@ -86,7 +86,7 @@ def check_legs(
 
 
 def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOCK) -> None:
-    """Increase one channel's count by `STEP`, at least 1, hold all others; check each motion.
+    """Move one channel up by `STEP` (at least 1 count), hold the others, and check each motion.
 
     Args:
         robot: The robot, open.

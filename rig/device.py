@@ -72,7 +72,7 @@ class Counters:
 class Stream(Protocol):
     """Context manager that returns the samples of a device at each call of `read`.
 
-    A stream is read by one thread. Leaving it closes the link and de-energises what it drives.
+    A stream is read by one thread. Leaving it closes the link; before, discs of a rig are stopped.
     """
 
     @property
@@ -139,7 +139,7 @@ class Drive(Protocol):
         ...
 
     def disarm(self) -> None:
-        """Command standstill and de-energise; errors of sending are suppressed."""
+        """Command standstill and, if possible, de-energise; errors of sending are suppressed."""
         ...
 
 

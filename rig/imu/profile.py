@@ -71,7 +71,8 @@ class Orientation:
         pitch: Pitch angle, nose down, shape (n,) [rad].
         yaw: Unwrapped yaw angle from an arbitrary heading, to the left, shape (n,) [rad].
         angular_rate: Angular velocity of the body, columns x, y, z, shape (n, 3) [rad/s].
-        specific_force: Acceleration less gravity, columns x, y, z, shape (n, 3) [m/s²].
+        specific_force: Acceleration less that of gravity, hence upward at rest, columns x, y, z,
+            shape (n, 3) [m/s²].
     """
 
     host_time: Array

@@ -72,7 +72,7 @@ class RigDynamics:
 
 @dataclass(frozen=True)
 class RigTruth:
-    """True states of the rig over a stretch of time, one entry for each grid step.
+    """True states of the rig over a stretch of time, one entry for each step of `GRID`.
 
     Attributes:
         time: Time since the rig was switched on, shape (n,) [s].
@@ -94,7 +94,7 @@ class RigTruth:
 
 
 class SimulatedRig:
-    """Simulated discs, contact and load cell, which devices read through `advance` and `speeds`.
+    """Simulated discs, contact and load cell, which simulated devices advance, command and read.
 
     Args:
         law: The true slip law, in the material slip ratio.

@@ -28,7 +28,7 @@ QUIET_AFTER_FAILURE: Final = 0.1
 
 
 class _RegisterStream(LinkedStream[ByteLink]):
-    """Base of the streams of both layouts, with link, profile and counters."""
+    """Base of the streams of the layouts `dump` and `poll`, with link, profile and counters."""
 
     def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
         super().__init__(link, name="legs", clock=clock)

@@ -27,7 +27,7 @@ class SampleQueue:
         self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> bool:
-        """Append all samples, or drop all if they exceed `limit`; return whether they were added."""
+        """Append all samples, or drop all if they exceed `limit`; return whether they fit."""
         with self._lock:
             if self._count + len(samples) > self._limit:
                 self.dropped += len(samples)

@@ -132,7 +132,7 @@ class GuardedAcquisition:
         self.energised = False
 
     def start_ramp(self, leg: float, slip: float | None) -> None:
-        """Start a linear ramp from the present set-points; the larger change has the plan's rate.
+        """Start a ramp from the present set-points; the larger change has the plan's acceleration.
 
         Args:
             leg: Final speed of the leg disc [rad/s].

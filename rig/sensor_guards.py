@@ -28,9 +28,9 @@ SINGLE_PRECISION: Final = 2.0**-22
 RESTART_WINDOW: Final = 10.0
 """Time within which a device may restart its record numbers once [s]."""
 BAD_FRACTION_WINDOW: Final = 0.25
-"""Time over which the fraction of missing and refused records is computed [s]."""
+"""Time over which the fraction of missing and rejected records is computed [s]."""
 MAX_BAD_FRACTION: Final = 0.5
-"""Largest allowed fraction of missing and refused records [-]."""
+"""Largest allowed fraction of missing and rejected records [-]."""
 MIN_RECORDS: Final = 20
 """Least number of records from which the fraction is computed."""
 

@@ -77,7 +77,10 @@ class Device:
 
 
 class Acquisition:
-    """Reader thread of one device, which runs until a stop is requested.
+    """Reader thread of one device, until a stop is requested, its end time has passed, or it fails.
+
+    It writes samples to the sink, and events when samples are lost, or when the device restarts, is
+    connected again, is silent for `SILENCE` or sends again.
 
     Args:
         device: The device; its driver has been entered.
@@ -198,7 +201,8 @@ def acquiring(
 ) -> Iterator[Mapping[str, Acquisition]]:
     """Read each device in a thread of its own while the body of the `with` statement runs.
 
-    After the body the threads are stopped, and then each device's `at_end` is called.
+    After the body the threads are stopped, and then each device's `at_end` is called. A failure in
+    a thread ends only that thread, and is kept in its `Acquisition.failure`.
 
     Args:
         devices: The devices; their drivers have been entered.

@@ -92,8 +92,9 @@ def sample_times(stream: SampleColumns) -> Array:
     """Estimate when samples were taken, in the time base of their `host_time`, shape (n,) [s].
 
     Between restarts of the device (host minus device time jumps by more than `RESTART_JUMP`), the
-    result is `fit_clock`'s map of the device times. It is the time of reading where the device
-    sends no time, or a part has fewer than `FEWEST` samples or a clock that stands still.
+    result is `fit_clock`'s map of the device times; missing ones are interpolated over the sequence
+    number. It is the time of reading where fewer than `FEWEST` samples have a device time, or a
+    part has fewer samples than that or a clock that stands still.
 
     Args:
         stream: A recorded stream.

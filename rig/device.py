@@ -72,7 +72,7 @@ class Counters:
 class Stream(Protocol):
     """Context manager that returns the samples of a device at each call of `read`.
 
-    A stream is read by one thread. Leaving it closes the link and de-energises what it drives.
+    A stream is read by one thread. Leaving it closes the link; before, discs of a rig are stopped.
     """
 
     @property
@@ -98,6 +98,9 @@ class Stream(Protocol):
 
         Returns:
             Samples in the order of the device; none after a timeout or without a connection.
+
+        Raises:
+            RigError: The device is not the one of the profile, or its link takes no bytes.
         """
         ...
 
@@ -131,11 +134,12 @@ class Drive(Protocol):
 
         Raises:
             LimitExceeded: The magnitude of the speed is above the rig's limit, or NaN.
+            RigTimeout: The link does not take the command.
         """
         ...
 
     def disarm(self) -> None:
-        """Command standstill and de-energise; errors of sending are suppressed."""
+        """Command standstill and, if possible, de-energise; errors of sending are suppressed."""
         ...
 
 

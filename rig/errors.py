@@ -52,7 +52,8 @@ class DeviceFault(RigError, RuntimeError):
     """A device reports a fault, or does not do what was commanded.
 
     Attributes:
-        status: Error or status word as the device sent it; for a leg the channel, from 0.
+        status: Error or status word as the device sent it; for a leg the channel, from 0; for the
+            load cell of an experiment 1.
     """
 
     def __init__(self, problem: str, *, status: int) -> None:
@@ -103,7 +104,7 @@ class FrozenReading(RigError, ValueError):
 
 
 class UnreliableRecords(RigError, ValueError):
-    """A device's record numbers restart repeatedly, or most records are missing."""
+    """A device's record numbers restart repeatedly, or most records are missing or rejected."""
 
 
 class NotAtRest(RigError, TimeoutError):

@@ -74,7 +74,10 @@ class Exclusive:
         self._taken = True
 
     def release(self) -> None:
-        """Release the lock; has no effect where it is not held."""
+        """Release the lock; has no effect where it is not held.
+
+        One that this process has taken several times becomes free with the last release.
+        """
         if not self._taken:
             return
         self._taken = False

@@ -15,7 +15,8 @@ def nearest(name: str, known: Collection[str]) -> str:
         known: All known names.
 
     Returns:
-        Text with the most similar name, if any, and up to 15 of the known ones in their order.
+        Text with the most similar name, if any, upper and lower case alike, and up to 15 of the
+        known ones in their order, with the number of the others.
 
     >>> nearest("normal_froce", ["normal_force", "t"])
     "did you mean 'normal_force'? known: 'normal_force', 't'"

@@ -63,7 +63,8 @@ def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> It
         A `Stream` that also takes `LegCommands`, not yet entered.
 
     Raises:
-        ProfileError: The address or the profile is invalid, or the address is a replay.
+        ProfileError: The address or the profile is invalid, the profile describes a table, or the
+            address is a replay.
         LinkError: The system provides no port for a twin.
     """
     name, port = resolve(address, default=LEGS_PROFILE)
@@ -87,7 +88,8 @@ def imu_at(address: str, *, name: str, rng: np.random.Generator) -> Iterator[Imu
         The driver, not yet entered.
 
     Raises:
-        ProfileError: The address or the profile is invalid, or the address is a replay.
+        ProfileError: The address or the profile is invalid, the profile at a port describes a
+            table, or the address is a replay.
         LinkError: The system provides no port for a twin.
     """
     profile, port = resolve(address, default=IMU_PROFILE)

@@ -19,8 +19,8 @@ def open_profile(name: str, *, device: str) -> TomlTable:
     """Open a device profile by name or path as a validated TOML table.
 
     Args:
-        name: Name of a shipped profile, or path of a TOML file.
-        device: Kind of device that the profile must describe.
+        name: Path of a TOML file, or name of a shipped profile where there is no such file.
+        device: Kind of device that the profile must describe: `legs`, `imu` or `slip-rig`.
 
     Returns:
         The whole file as a table; `schema` and `device` are already read.
@@ -43,7 +43,7 @@ def open_profile(name: str, *, device: str) -> TomlTable:
 
 
 def shipped_profiles() -> tuple[str, ...]:
-    """List the names of the profiles that come with the package, sorted."""
+    """List the names of the device profiles (legs, IMU, slip rig) in the package, sorted."""
     files = resources.files("rig").joinpath("profiles").iterdir()
     return tuple(sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml")))
 

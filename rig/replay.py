@@ -61,7 +61,8 @@ class ReplayStream:
     def read(self, timeout: float) -> list[Sample]:
         """Return the samples that are due, waiting at most `timeout` for the first [s].
 
-        Before the stream is entered, and after the last sample, there are none.
+        Before the stream is entered, and after the last sample, there are none; the call then waits
+        the whole `timeout`.
         """
         if self._began is None or self.finished:
             self._clock.sleep(timeout)

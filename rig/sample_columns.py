@@ -71,7 +71,7 @@ def as_columns(samples: Sequence[Sample], dtype: DTypeLike = float) -> SampleCol
 
     Args:
         samples: Samples of one stream, with equal numbers of counts.
-        dtype: Type of the counts.
+        dtype: Type of the counts; not applied to columns.
 
     Raises:
         ValueError: The samples differ in their number of counts.

@@ -27,7 +27,10 @@ class SampleQueue:
         self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> bool:
-        """Append all samples, or none where `limit` would be exceeded; return whether they were."""
+        """Append all samples, or drop them all if the queue would then exceed `limit`.
+
+        Returns whether they were appended.
+        """
         with self._lock:
             if self._count + len(samples) > self._limit:
                 self.dropped += len(samples)

@@ -28,9 +28,9 @@ SINGLE_PRECISION: Final = 2.0**-22
 RESTART_WINDOW: Final = 10.0
 """Time within which a device may restart its record numbers once [s]."""
 BAD_FRACTION_WINDOW: Final = 0.25
-"""Time over which the fraction of missing and refused records is computed [s]."""
+"""Time over which the fraction of missing and rejected records is computed [s]."""
 MAX_BAD_FRACTION: Final = 0.5
-"""Largest allowed fraction of missing and refused records [-]."""
+"""Largest allowed fraction of missing and rejected records [-]."""
 MIN_RECORDS: Final = 20
 """Least number of records from which the fraction is computed."""
 
@@ -75,7 +75,7 @@ class FrozenGuard:
     Args:
         what: Name of the quantity, for the message.
         limit: Longest time without any change [s].
-        follows: Whether the quantity is the commanded speed.
+        follows: Whether the quantity is a disc's speed, which the set-point commands.
     """
 
     def __init__(self, what: str, *, limit: float, follows: bool = False) -> None:
@@ -100,7 +100,7 @@ class FrozenGuard:
 
         Raises:
             FrozenReading: No channel has changed for longer than the limit, over at least
-                `MIN_REPEATS` readings, though one of them must have changed.
+                `MIN_REPEATS` readings, though one scattered or a speed's set-point moved.
         """
         if abs(wanted) <= TURNING:
             self._last = None
@@ -117,7 +117,13 @@ class FrozenGuard:
                 raise FrozenReading(self._what, value=now - self._changed, limit=self._limit)
 
     def _learn(self, values: Values, last: Values, now: float) -> None:
-        """Update each channel's smallest step, and whether any scatters beyond its rounding."""
+        """Update each channel's smallest step, and whether any scatters beyond its rounding.
+
+        Args:
+            values: Values of a batch, shape (n, channels), n > 0.
+            last: Values before the batch, shape (channels,).
+            now: Host time [s].
+        """
         steps = np.abs(np.diff(values, axis=0, prepend=last[None]))
         if not len(self._smallest):
             self._smallest, self._large_fraction = np.full(len(last), np.inf), np.zeros(len(last))
@@ -136,7 +142,8 @@ class RecordGuard:
     """Check for a stream whose record numbers restart repeatedly, or of which most records fail.
 
     Random record numbers count as restarts. One restart within `RESTART_WINDOW` is tolerated, and
-    so is a fraction of missing and rejected records of up to `MAX_BAD_FRACTION`.
+    so is a fraction of missing and rejected records of up to `MAX_BAD_FRACTION`. That fraction is
+    checked after each `BAD_FRACTION_WINDOW`, if that had at least `MIN_RECORDS` records.
 
     Args:
         name: Name of the stream, for the message.
@@ -150,7 +157,7 @@ class RecordGuard:
         self._since = 0.0
 
     def check(self, counters: Counters, *, now: float) -> None:
-        """Check the stream's counters.
+        """Check the stream's counters; losses are checked only among `MIN_RECORDS` or more records.
 
         Args:
             counters: Counters of the stream so far.
@@ -158,7 +165,7 @@ class RecordGuard:
 
         Raises:
             UnreliableRecords: The record numbers restarted twice within `RESTART_WINDOW`, or more
-                than `MAX_BAD_FRACTION` of the last `BAD_FRACTION_WINDOW` is missing or discarded.
+                than `MAX_BAD_FRACTION` of one `BAD_FRACTION_WINDOW` is missing or rejected.
         """
         if self._base is None:
             self._base, self._since, self._restarted = counters, now, counters.restarted

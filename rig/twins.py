@@ -122,6 +122,9 @@ def simulated_imu(
 
     Yields:
         The driver, not yet entered.
+
+    Raises:
+        LinkError: The system provides no port.
     """
     twin = SimulatedImu(profile=profile, rng=rng)
     with PortServer(twin) as server:
@@ -153,6 +156,7 @@ def simulated_rig_devices(
     Raises:
         ProfileError: The profile has neither a board nor drives and load cell, or describes a
             table.
+        LinkError: The system provides no port for a board.
     """
     found = device_profiles(profile)
     if isinstance(found, BoardProfile):

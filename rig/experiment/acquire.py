@@ -48,7 +48,7 @@ class Ramp:
     def at(self, now: float) -> tuple[float, float]:
         """Interpolate the set-points of leg and ground disc [rad/s] at a host time `now` [s].
 
-        Before the ramp they are `before`, after it `after`.
+        Before the ramp they are `before`, after it `after`; with duration 0 always `after`.
         """
         done = 1.0 if self.duration <= 0 else min(max((now - self.start) / self.duration, 0.0), 1.0)
         leg, ground = (b + done * (a - b) for b, a in zip(self.before, self.after, strict=True))
@@ -136,7 +136,7 @@ class GuardedAcquisition:
         self.energised = False
 
     def start_ramp(self, leg: float, slip: float | None) -> None:
-        """Start a linear ramp from the present set-points, at the plan's acceleration.
+        """Start a ramp from the present set-points; the larger change has the plan's acceleration.
 
         Args:
             leg: Final speed of the leg disc [rad/s].
@@ -144,7 +144,7 @@ class GuardedAcquisition:
                 disc [-].
 
         Raises:
-            LimitExceeded: A final speed is beyond the smaller of the plan's and the rig's limit.
+            LimitExceeded: A final speed is NaN or beyond the smaller limit of plan and rig.
         """
         profile = self._bench.profile
         ground = 0.0 if slip is None else ground_speed(
@@ -160,7 +160,7 @@ class GuardedAcquisition:
         self._standing = False
 
     def poll(self) -> Batch:
-        """Wait for the next period, read and check the samples, then command the set-points.
+        """Wait for the next period, read and check the samples, then command changed set-points.
 
         Returns:
             The samples that have arrived.
@@ -198,8 +198,8 @@ class GuardedAcquisition:
 
         Raises:
             NotAtRest: Standstill was not verified in time; the drives have been de-energised.
-            RigError: As `poll`.
-            StopRequested: A stop was requested that is not ignored, see `ignore_stops`.
+            RigError, SinkFailed: As `poll`.
+            StopRequested: A stop is pending that is not ignored, see `ignore_stops`.
         """
         self.start_ramp(0.0, None)
         self.until(lambda _: not self.ramping, float("inf"))

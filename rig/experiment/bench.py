@@ -41,7 +41,7 @@ class Bench(ABC):
         profile: Profile of the rig.
         source: Origin of the samples: `real` or `sim:WHAT`.
         streams: Streams of the devices, for their counters.
-        watched: Names of the devices and answers that are checked for silence.
+        watched: Names of the devices, and of requested answers, that are checked for silence.
     """
 
     watched: tuple[str, ...]
@@ -58,10 +58,11 @@ class Bench(ABC):
 
     @abstractmethod
     def watch(self, limits: Collection[str]) -> None:
-        """Start to return the quantities of some of `FURTHER_LIMITS` in `Batch.further`.
+        """Select the quantities to return in `Batch.further`, which need further measurements.
 
         Args:
-            limits: Names of the limits, all among `RigProfile.measured`.
+            limits: Names of their limits in `FURTHER_LIMITS`: of lateral force, torque and
+                temperature; all among `RigProfile.measured`.
         """
 
     @abstractmethod
@@ -83,6 +84,10 @@ class Bench(ABC):
         Args:
             leg: Speed of the leg disc [rad/s].
             ground: Speed of the ground disc [rad/s].
+
+        Raises:
+            LimitExceeded: A speed is NaN or beyond the limit of the rig's profile.
+            RigTimeout: A link does not take the command.
         """
         self._leg.set_speed(leg)
         self._ground.set_speed(ground)

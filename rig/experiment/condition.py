@@ -52,7 +52,7 @@ class Condition:
         state: State of the run.
         energised: Whether the drives of the discs are energised.
         why: Reason for the state; empty where there is none.
-        pending: Hardest stop being carried out; None where there is none.
+        pending: Hardest stop that was requested and not released; None where there is none.
         hold: Longest duration of a hold, after which a safe stop follows [s].
     """
 
@@ -75,6 +75,9 @@ class Condition:
     @property
     def keys(self) -> str:
         """Text with the keys that apply now; each but Ctrl-C is followed by Enter.
+
+        While the run holds it also says when a safe stop follows; after its end, that no key has an
+        effect.
 
         >>> Condition(RigState.STOPPING, True, "", StopCategory.SAFE).keys
         'Ctrl-C or e: emergency stop (de-energise at once, latched)'

@@ -33,9 +33,9 @@ class Control:
 
     Attributes:
         stop: Switch that collects requests to stop.
-        status: Progress of the run in one line.
-        paused: Whether the run holds after the present point.
-        failure: First part of the run that failed; None without a failure.
+        status: Progress, prompt or state of the run in one line.
+        paused: Whether the run is to hold before its next step, until `resume`.
+        failure: Error of the first part of the run that failed; None without a failure.
     """
 
     def __init__(self) -> None:
@@ -50,8 +50,9 @@ class Control:
         """Execute a command given as a line of text.
 
         Args:
-            line: One of `COMMANDS`; a reason may follow the name of a stop.
-            who: Origin of the command, for the log.
+            line: One of `COMMANDS`; a reason may follow the name of a stop. Reasons and notes are
+                truncated to `LONGEST_NOTE`; text behind other commands is ignored.
+            who: Origin of the command, for the log of notes and of stops without a reason.
 
         Returns:
             The status for the command `status`, else `done`.
@@ -88,7 +89,7 @@ class Control:
         self.stop.request(StopCategory.SAFE, str(failure))
 
     def pause(self) -> None:
-        """Request a hold after the point that is being measured; logged."""
+        """Request a hold before the next step, after all attempts at the present point; logged."""
         self.paused = True
         self._notes.append(Note("pause", "requested"))
 

@@ -69,12 +69,15 @@ class RigGuards:
     def check(
         self, batch: Batch, *, wanted: tuple[float, float], standing: bool, now: float
     ) -> None:
-        """Check values, age, silence, losses and freezing of samples, and the devices' status.
+        """Check samples (value, age, silence, losses, freezing), discs' speed errors, and status.
+
+        Silence is checked from `expect_samples` on.
 
         Args:
             batch: Samples of one poll.
             wanted: Set-points of leg and ground disc [rad/s].
-            standing: Whether both discs have been verified to stand.
+            standing: Whether both discs have been verified to stand; a speed error is then limited
+                to `TURNING` as well.
             now: Host time at which the samples arrived [s].
 
         Raises:

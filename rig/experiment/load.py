@@ -17,7 +17,7 @@ FASTEST: Final = 2e-3
 
 
 class LoadSetter(Protocol):
-    """Setter of the normal force: called once with the target, then polled at standstill."""
+    """Setter of the normal force: `request` once with the target, then `follow` at standstill."""
 
     def request(self, target: float) -> str:
         """Request a normal force; 0 removes all load.
@@ -107,6 +107,9 @@ class LoadAxis(Protocol):
 class DrivenShaft:
     """Proportional control of a linear axis to a normal force; velocity is `GAIN` times error.
 
+    The error is target minus force; the velocity is at most `FASTEST`. To target 0 the axis
+    retracts at `FASTEST`.
+
     Args:
         axis: Linear drive that presses the discs together.
         tolerance: Largest difference of the normal force from the target [N].
@@ -150,7 +153,7 @@ class DrivenShaft:
             it has not fallen further for that time.
 
         Raises:
-            RigTimeout: The force was not reached within `patience`; the axis has been halted.
+            RigTimeout: `patience` has passed since `request`; the axis has been halted.
         """
         now, missing = self._clock.now(), self._target - normal
         if self._target == 0:
@@ -173,8 +176,9 @@ class DrivenShaft:
     def _withdraw(self, normal: float, now: float) -> float:
         """Return a force error [N] that retracts the axis with its largest velocity.
 
-        Whenever the force has fallen by a quarter of the tolerance, `AXIS_PERIOD` starts anew: the
-        zero of the load cell is not known yet, so that only the end of the fall shows no load.
+        At host time `now` [s] `AXIS_PERIOD` starts anew if the force has fallen by a quarter of the
+        tolerance since it last did: the zero of the load cell is not known yet, so that only the
+        end of the fall shows no load.
         """
         if normal < self._lowest - self._tolerance / 4:
             self._lowest, self._since = normal, now

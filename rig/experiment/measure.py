@@ -28,6 +28,7 @@ def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
 
     Raises:
         ProtocolError: The last recording has fewer than ten readings.
+        RigError: As `GuardedAcquisition.poll`.
     """
     readings = join([])
     for _ in range(ZERO_ATTEMPTS):
@@ -87,7 +88,7 @@ def record(
         clock: Host time.
 
     Returns:
-        The recorded samples, zero subtracted.
+        The recorded samples, taken since the start, zero subtracted.
     """
     duration = plan.points.duration
     start = clock.now()

@@ -37,11 +37,12 @@ class PointGrid:
         slips: Material slip ratios, Eq. (4-44) [-].
         omega_leg: Speed of the leg disc at every point [rad/s].
         duration: Recorded time of a point, or of a whole sweep [s].
-        order: `monotone` as given; `shuffled` both within and among the loads; or `up-down`: loads
-            as given, slips ascending, then descending.
+        order: `monotone` as given; `shuffled` both within and among the loads, of sweeps only the
+            loads; or `up-down`: loads as given, slips ascending, then descending, the largest once.
         seed: Seed of the shuffle.
         repeats: Number of passes through the slips at each load.
-        sweep: Whether the slip changes continuously through all its values in one run per load.
+        sweep: Whether the slip changes continuously through all its values in one run for each
+            pass; in the order `up-down` one up and one down.
     """
 
     loads: tuple[float, ...]
@@ -117,9 +118,11 @@ class Controls:
         tare_every: Number of points, check points not counted, between two zeros of the load
             cell; 0 means a single zero, before the first point.
         tare_duration: Time over which a zero is averaged [s].
-        zero_drift: Change of the zero that causes a warning [N].
-        check_every: Number of points between two check points; 0 means no check points.
-        check_slip: Slip ratio of the check point, at the present load [-].
+        zero_drift: Largest change of a zero without a warning; twice its standard error is added
+            [N].
+        check_every: Number of points between two check points, the first of which precedes all
+            points; 0 means no check points.
+        check_slip: Slip ratio of the check point, at the load of the next point [-].
     """
 
     tare_every: int
@@ -138,8 +141,8 @@ class RunLimits:
         acceleration: Rate at which the set-points of the discs ramp [rad/s^2].
         normal_force: Largest magnitude of the normal force [N].
         traction_force: Largest magnitude of the traction force [N].
-        in_a_row: Number of samples beyond a force limit, among the latest 2 in_a_row - 1, that are
-            a fault.
+        in_a_row: Number of samples beyond a limit of force, torque or temperature, among the latest
+            2 in_a_row - 1, that are a fault.
         speed_error: Largest difference of a disc's speed from its set-point [rad/s].
         speed_error_time: Longest duration of a speed error beyond that [s].
         silence: Longest time for which a device may send no samples [s].

@@ -66,14 +66,16 @@ class Batch:
     """Samples of one poll of the rig.
 
     Attributes:
-        readings: Samples on a common time base; a force appears once both speeds around it are
-            known.
-        normal: Every normal force that has just arrived, for guards, shape (m,) [N].
-        traction: Every traction force that has just arrived, shape (m,) [N].
+        readings: Samples on a common time base, zero not subtracted; a force appears once both
+            speeds around it are known.
+        normal: Every normal force that has just arrived, for guards, zero not subtracted, shape
+            (m,) [N].
+        traction: Every traction force that has just arrived, likewise, shape (m,) [N].
         speeds: Every speed of each disc that has just arrived, by `leg` and `ground`, each of
             shape (k,) [rad/s].
         arrived: New samples or answers of each name in `Bench.watched`, checked for silence.
-        further: New values of other guarded quantities, by the name of their limit, shape (m,).
+        further: New values of other guarded quantities, by the name of their limit, in its unit,
+            each of shape (m,).
         taken: Host times at which new readings were taken, by device; arrival times where the
             device sends no time, shape (n,) [s].
         fault: Description of a fault in a device's status; empty without one.
@@ -95,8 +97,9 @@ class HostTime:
     """Online conversion of device times to host times; the smallest delay gives the clock offset.
 
     Host times never decrease: when a sample with a smaller delay lowers the offset, the time stays
-    constant until later samples exceed it. The offset may grow by `FASTEST_DRIFT` because clocks
-    drift; a larger increase is a delay of the reading.
+    constant until later samples exceed it. The offset may grow by `FASTEST_DRIFT` of the time
+    passed, because clocks drift; a larger increase is a delay of the reading, or, beyond the time
+    passed plus `RESTART_DELAY`, a restart of the device, after which the offset is estimated anew.
     """
 
     def __init__(self) -> None:
@@ -106,7 +109,7 @@ class HostTime:
     def map(self, samples: Sequence[Sample]) -> Array:
         """Estimate the host times at which new samples were taken, shape (n,) [s].
 
-        Where a sample has no device time, the times of reading are returned.
+        Where any sample has no device time, the times at which all were read are returned.
         """
         columns = as_columns(samples)
         host, device = columns.host_time, columns.device_time

@@ -24,7 +24,8 @@ class RestProof:
     """Standstill detector: tests mean and root mean square of both discs' speeds over `WINDOW`.
 
     The mean over a window is tested, because an encoder's noise can exceed the limit. The root mean
-    square is bounded as well, because the mean speed of an oscillating disc is also small.
+    square is bounded as well, by `SCATTER` times the limit, because the mean speed of an
+    oscillating disc is also small.
 
     Args:
         limit: Largest mean speed of a disc that stands [rad/s].
@@ -38,7 +39,7 @@ class RestProof:
         self._seen: dict[str, deque[tuple[float, float]]] = {disc: deque() for disc in DISCS}
 
     def take(self, batch: Batch, *, now: float) -> None:
-        """Add the speeds of a batch; a reading older than `oldest` discards all earlier ones.
+        """Add the speeds of a batch; a reading in it older than `oldest` discards earlier batches.
 
         Args:
             batch: Samples of one poll of the rig.

@@ -45,7 +45,7 @@ class Outcome:
 
     @property
     def completed(self) -> bool:
-        """Return whether the plan was carried out to its end."""
+        """Return whether the plan was carried out to its end; points may have been refused."""
         return self.reason == "completed"
 
 
@@ -69,10 +69,10 @@ def run_plan(
         load: Setter of the normal force.
         sink: Recorder of samples and events.
         control: Mailbox for pauses, notes and stops.
-        watcher: Progress display.
+        watcher: Progress display; None shows nothing.
         clock: Host time.
         period: Polling period of the rig [s].
-        done: Numbers of the points that an earlier run finished.
+        done: Numbers of the points that an earlier run finished; they are left out.
 
     Returns:
         The outcome of a run that was completed or stopped on request.
@@ -81,7 +81,7 @@ def run_plan(
         LimitExceeded: A set-point exceeds a limit, found before motion; or a guard tripped.
         ProfileError: The plan limits a quantity that the rig does not measure.
         SinkFailed, PartFailed: Storing or a thread failed; the discs were ramped to rest first.
-        RigError: A guard tripped or a device failed; the drives were de-energised at once.
+        RigError: A guard, device, load or standstill failed; the drives were de-energised at once.
         ProtocolError: An emergency stop is latched, or a zero has too few readings.
     """
     require_allowed(plan, bench.profile)
@@ -167,7 +167,7 @@ class _Run:
         return "completed"
 
     def _remaining(self) -> list[Step]:
-        """List the steps without finished points; a resumed run begins with a zero.
+        """List the steps left, a zero first; none if every point is finished.
 
         Zeros without a remaining point since the previous zero are left out.
         """
@@ -179,7 +179,7 @@ class _Run:
                 or k + 1 == first or (k > first and isinstance(left[k - 1], Point))]  # fmt: skip
 
     def _carry_out(self, step: Step) -> None:
-        """Carry out a zero or a point; on a soft stop hold, and after it repeat the step."""
+        """Carry out a zero or a point; hold first if paused, and on a soft stop, then repeat it."""
         while True:
             try:
                 if self._control.paused:
@@ -202,7 +202,7 @@ class _Run:
     def _hold(self, why: str) -> None:
         """Ramp to standstill and wait, energised, until the run is resumed.
 
-        After the plan's `hold` without a command a safe stop is requested.
+        If that takes longer than the plan's `hold`, a safe stop is requested and raised.
         """
         if self._control.stop.pending is None:
             self._control.stop.request(StopCategory.SOFT, why)  # the next stop is a harder one
@@ -310,7 +310,7 @@ class _Run:
         self._watcher.doing(what, done=done, of=self._points, left=seconds)
 
     def _stop(self, asked: StopRequested) -> None:
-        """De-energise: at once for an emergency stop, after a ramp to rest for a safe stop."""
+        """De-energise: at once, and latch, for an emergency stop; else after a ramp to rest."""
         if asked.stop.category is StopCategory.EMERGENCY:
             self._acquire.disarm()
             self._sink.latch(asked.stop.reason)

@@ -17,13 +17,17 @@ Ctrl-Z, because a suspended program reads no samples and checks no limits."""
 
 @contextmanager
 def signal_stops(switch: StopSwitch) -> Iterator[None]:
-    """Install handlers: each SIGINT requests the next harder stop, each of `ENDING` a safe one.
+    """Install handlers: SIGINT requests a stop harder than the pending one, others a safe stop.
 
-    Only the main thread can install them. The previous handlers are restored afterwards. A signal
-    that is ignored stays ignored, as under `nohup`, which lets a run outlive its terminal.
+    The first SIGINT requests a soft stop; the other signals are `ENDING`: SIGTERM, SIGHUP, SIGQUIT
+    and SIGTSTP. The previous handlers are restored afterwards. A signal that is ignored stays
+    ignored, as under `nohup`, which lets a run outlive its terminal.
 
     Args:
         switch: Receiver of the stop requests.
+
+    Raises:
+        ValueError: This is not the main thread.
     """
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:

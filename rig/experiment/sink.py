@@ -33,7 +33,7 @@ class RunStart:
 
 
 class RunSink(Protocol):
-    """Recorder of runs, one for each point; called by the acquiring thread and must not block it.
+    """Recorder of runs, one for each attempt at a point; must not block the acquiring thread.
 
     Every method may raise `SinkFailed`, which stops the rig.
     """
@@ -61,7 +61,7 @@ class RunSink(Protocol):
         ...
 
     def event(self, kind: str, text: str) -> None:
-        """Store an event at once.
+        """Store an event of the experiment; no run need be open.
 
         Args:
             kind: Kind of event, such as `note`.
@@ -70,7 +70,7 @@ class RunSink(Protocol):
         ...
 
     def require_room(self, least: float) -> None:
-        """Raise `SinkFailed` where fewer than `least` bytes can still be written."""
+        """Raise `SinkFailed`, in this or a later call, where less than `least` [bytes] is free."""
         ...
 
     def latch(self, reason: str) -> None:

@@ -50,7 +50,7 @@ class Point:
 
     @property
     def label(self) -> str:
-        """Label with number, load and slip ratio.
+        """Label with kind, number, load, slip ratio (of a sweep first and last) and direction.
 
         >>> Point(7, 8.13, (0.25,)).label
         'point-0007 Fn 8.13 N slip 0.2500'
@@ -60,7 +60,10 @@ class Point:
         return f"{self.kind}-{self.number:04d} Fn {self.load:g} N slip {slip}{end}"
 
     def slip_at(self, fraction: float) -> float:
-        """Interpolate the commanded slip ratio at a fraction, 0 to 1, of the recorded time [-]."""
+        """Interpolate the commanded slip ratio at a fraction of the recorded time [-].
+
+        `slips` are equally spaced from 0 to 1, and held outside.
+        """
         at = np.linspace(0.0, 1.0, len(self.slips))
         return float(np.interp(fraction, at, self.slips))
 
@@ -71,9 +74,10 @@ Step: TypeAlias = Tare | Point
 def spell_out(plan: Plan) -> tuple[Step, ...]:
     """Expand a plan into its steps: zeros of the load cell, points and check points, in order.
 
-    A zero comes first and after every `tare_every` points, a check point before every
-    `check_every` points, at the load of the next point. The same plan always gives the same steps,
-    also when shuffled: a resumed run relies on this.
+    A zero comes first and, if a point follows, after every `tare_every` points; a check point comes
+    before the first point and then after every `check_every`, at the load of the point that
+    follows. The same plan always gives the same steps, also when shuffled: a resumed run relies on
+    this.
     """
     steps: list[Step] = [Tare(1)]
     since_tare = 0
@@ -123,16 +127,17 @@ def _passes(plan: Plan, rng: np.random.Generator) -> list[tuple[tuple[float, ...
 
 
 def require_allowed(plan: Plan, profile: RigProfile) -> None:
-    """Check every set-point of a plan against the limits before motion.
+    """Check before motion that a plan's set-points and limits are within the rig's limits.
 
     Args:
         plan: The plan.
         profile: Profile of the rig, whose limits apply as well as the plan's.
 
     Raises:
-        LimitExceeded: A speed, a load, or a limit of the plan exceeds a limit; the message has
-            value, limit and unit.
-        ProfileError: The plan limits a quantity that the rig does not measure.
+        LimitExceeded: A speed or a load exceeds the smaller of both limits, or a limit of the plan
+            that of the rig; the message has value, limit and unit.
+        ProfileError: The plan limits a quantity that the rig does not measure: lateral force,
+            torque or temperature.
     """
     allowed = rig_limits(plan.limits, profile.limits)
     for key, rigs in vars(profile.limits).items():
@@ -178,6 +183,8 @@ class DurationEstimate:
 
 def estimate(plan: Plan, steps: tuple[Step, ...]) -> DurationEstimate:
     """Estimate the duration of steps: setting loads, ramps, settling and recording.
+
+    The first step sets its load. A load takes `patience` and two ramps.
 
     Args:
         plan: Plan of the steps.

@@ -11,7 +11,9 @@ from rig.experiment.control import Control
 
 @contextmanager
 def supervised(control: Control) -> Iterator[None]:
-    """Request a safe stop of a run at an uncaught exception of any thread, until the context ends.
+    """Request a safe stop at an uncaught exception of a thread, until the context ends.
+
+    Exceptions of the main thread are not caught.
 
     Args:
         control: Mailbox of the run; `Control.fail` is called with the exception.
@@ -38,7 +40,7 @@ def start_thread(work: Callable[[], None], *, name: str, control: Control) -> th
         control: Mailbox of the run.
 
     Raises:
-        PartFailed: The system cannot start a thread.
+        PartFailed: The system cannot start a thread; a safe stop is requested as well.
     """
 
     def watched() -> None:

@@ -25,9 +25,10 @@ class PointVerdict:
     Attributes:
         problems: Why the point must be repeated, one phrase each; empty where it is good.
         samples: Number of recorded samples.
-        slip: Mean slip ratio; NaN with too few samples [-].
-        friction: Sum of the traction over sum of the normal force; NaN without load [-].
-        normal_force: Median normal force; NaN with too few samples [N].
+        slip: Mean slip ratio; NaN with fewer than 8 samples [-].
+        friction: Sum of the traction over sum of the normal force; NaN where the latter is not
+            above 0, or with fewer than 8 samples [-].
+        normal_force: Median normal force; NaN with fewer than 8 samples [N].
     """
 
     problems: tuple[str, ...]
@@ -43,12 +44,12 @@ class PointVerdict:
 
 
 def span(readings: Readings) -> float:
-    """Compute the time from the first sample to the last one; 0 where there is none [s]."""
+    """Compute the time from the first sample to the last one; 0 for fewer than two [s]."""
     return float(readings.t[-1] - readings.t[0]) if len(readings) else 0.0
 
 
 def halves(readings: Readings) -> tuple[Readings, Readings]:
-    """Split readings at the middle of their time; the middle belongs to the second half."""
+    """Split one or more readings at the middle of their time, which the second half includes."""
     middle = (readings.t[0] + readings.t[-1]) / 2
     late = readings.since(middle)
     early = len(readings) - len(late)
@@ -66,7 +67,7 @@ def friction(readings: Readings) -> float:
 
 
 def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCriterion) -> bool:
-    """Return whether speeds are at their set-points and both halves of a window agree.
+    """Return whether speeds are at their set-points, and halves agree in speeds and friction.
 
     Args:
         window: Readings of the latest `criterion.window`.
@@ -74,8 +75,8 @@ def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCr
         criterion: Length of the window and tolerances.
 
     Returns:
-        Whether they are; False also for fewer than 8 readings, or where the readings span less
-        than 0.9 of `criterion.window`.
+        Whether the means are within the tolerances; False also for fewer than 8 readings, where
+        they span less than 0.9 of `criterion.window`, or where a half has no normal force above 0.
     """
     if len(window) < 8 or window.t[-1] - window.t[0] < 0.9 * criterion.window:
         return False
@@ -98,10 +99,10 @@ def judge_point(
     duration: float,
     profile: RigProfile,
 ) -> PointVerdict:
-    """Check the quality of a recorded point.
+    """Check that a recorded point was settled, long enough, and kept its slip and friction.
 
     Args:
-        readings: Recorded samples, zero subtracted.
+        readings: Recorded samples, zero subtracted, to span `LEAST_COVERED` of `duration`.
         point: Point with the commanded slip ratio.
         accept: Largest deviations and drifts of an accepted point.
         settled: Whether the rig was steady when recording began.
@@ -130,7 +131,7 @@ def judge_point(
 
 
 def _deviations(readings: Readings, slip: Array, point: Point, accept: Acceptance) -> Iterator[str]:
-    """Yield a phrase for each excess of mean slip, slip drift and friction drift.
+    """Yield a phrase for each excess of mean slip, slip drift and friction drift; NaN is one.
 
     The drifts, second half less first half, are not checked in a sweep.
     """

@@ -19,10 +19,10 @@ class ExperimentWatcher:
         """Show which step begins, and the progress of the run.
 
         Args:
-            what: Name of the step.
-            done: Number of finished points.
-            of: Number of all points.
-            left: Estimated remaining time [s].
+            what: Name of the step, with the attempt from the second on and guards that are off.
+            done: Number of accepted points, those of an earlier run included.
+            of: Number of points of the plan, check points included.
+            left: Estimated time of the remaining steps [s].
         """
 
     def prompt(self, text: str, *, normal: float) -> None:
@@ -30,7 +30,7 @@ class ExperimentWatcher:
 
         Args:
             text: What the operator must do.
-            normal: Present normal force, zero subtracted [N].
+            normal: Present normal force less the zero, once one was measured [N].
         """
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:

@@ -85,7 +85,8 @@ def weigh(
 
     Raises:
         NotAtRest: A disc turns, or its speed is unknown.
-        ProtocolError: The load cell sends too few samples.
+        RigError: A device failed, or `load` did.
+        ProtocolError: Fewer than 2 `BATCHES` forces arrived in `duration`.
     """
 
     def poll() -> Batch:
@@ -106,9 +107,11 @@ def weigh(
 def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     """Fit gain and zero of the normal channel: readings on forces, weighted by 1 / error².
 
+    Their variances are multiplied by the reduced chi-square where it is above 1.
+
     Args:
         weighing: Readings under at least two different forces.
-        weight_sd: Relative error that all weights share [-].
+        weight_sd: Relative error that all weights share, included in `slope_sd` [-].
 
     Raises:
         ProtocolError: The forces are all the same.

@@ -71,7 +71,8 @@ class Orientation:
         pitch: Pitch angle, nose down, shape (n,) [rad].
         yaw: Unwrapped yaw angle from an arbitrary heading, to the left, shape (n,) [rad].
         angular_rate: Angular velocity of the body, columns x, y, z, shape (n, 3) [rad/s].
-        specific_force: Acceleration less gravity, columns x, y, z, shape (n, 3) [m/s²].
+        specific_force: Acceleration less that of gravity, hence upward at rest, columns x, y, z,
+            shape (n, 3) [m/s²].
     """
 
     host_time: Array
@@ -137,7 +138,7 @@ def render_table_profile(rate: float) -> str:
 
 
 def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orientation:
-    """Compute roll, pitch and yaw from raw counts, in the order of `docs/conventions.md`.
+    """Compute roll, pitch and yaw of the body, R = R_z(yaw) R_y(pitch) R_x(roll), from raw counts.
 
     Args:
         profile: Profile of the unit.
@@ -165,7 +166,7 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
 def encode_orientation(
     profile: ImuProfile, rotation: Rotation, angular_rate: Array, specific_force: Array
 ) -> tuple[int, ...]:
-    """Compute the counts of one reading; the inverse of `decode_orientation`.
+    """Compute the counts of one reading; the inverse of `decode_orientation` but for rounding.
 
     Args:
         profile: Profile of the unit.

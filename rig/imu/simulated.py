@@ -56,7 +56,7 @@ class SimulatedImu:
         self._number = 0
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Return the packets that are due; see `ByteTwin.poll`.
+        """Return the packets that are due; the first call switches the unit on.
 
         Args:
             now: Time, never decreasing [s].

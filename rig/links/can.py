@@ -75,7 +75,9 @@ class CanLink:
 
         Raises:
             InUse: Another program has the bus; the message says which.
-            LinkError: There is no such bus, its name is invalid, or permission is missing.
+            LinkError: There is no such bus, its name is invalid, permission is missing, or the
+                interface's Python package is not installed.
+            OSError: The lock file cannot be created or opened.
         """
         if self._lock is not None:
             self._lock.take()
@@ -191,13 +193,19 @@ class CanLink:
 
     @property
     def _stamped(self) -> bool:
-        """Whether frames have time stamps by the system's clock: `STAMPED`, or an open bus."""
+        """Whether frames have time stamps by the system's clock.
+
+        They have on the interfaces `STAMPED`, and on a bus that was given open and is no slcan.
+        """
         if isinstance(self._channel, str):
             return self._channel.partition(":")[0] in STAMPED
         return _serial_port(self._channel) is None
 
     def _drain(self, bus: can.BusABC, timeout: float, messages: list[can.Message]) -> None:
-        """Append frames to `messages` until none is left, or a limit of `read` is reached."""
+        """Append frames to `messages` until none is left, waiting `timeout` [s] for the first.
+
+        Ends after `MAX_PER_READ` frames, or `LONGEST_READ` longer than `timeout`.
+        """
         port = _serial_port(bus)
         began, wait = self._clock.now(), timeout
         for _ in range(MAX_PER_READ):

@@ -45,7 +45,10 @@ class CobsFramer:
         return [payload for piece in pieces if (payload := self._decode(piece)) is not None]
 
     def reset(self) -> None:
-        """Discard an incomplete frame, as after a reconnection."""
+        """Discard an incomplete frame, as after a reconnection.
+
+        The bytes before the next zero are then not counted as damaged.
+        """
         self._tail = b""
         self._joined = False
 
@@ -99,7 +102,10 @@ class TrailerFramer:
         self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Add received bytes and return the frames that are now complete, without trailers."""
+        """Add received bytes and return the frames that are now complete, without trailers.
+
+        Bytes before the first trailer, and after a damaged frame up to the next, are discarded.
+        """
         self._buffer += data
         frames: list[bytes] = []
         while self._aligned or self._align():

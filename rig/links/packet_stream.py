@@ -68,7 +68,10 @@ class PacketStream(LinkedStream[ByteLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; packets of other kinds or lengths count as refused."""
+        """Counters of the stream so far.
+
+        Packets of other kinds or lengths, or with impossible counts, count as refused.
+        """
         return Counters(
             received=self._received,
             lost=self._tracker.lost,

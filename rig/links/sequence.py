@@ -15,10 +15,10 @@ SLACK: Final = 64
 class SequenceTracker:
     """Unwraps the sequence numbers of one stream and counts losses, duplicates and restarts.
 
-    A jump forward counts as a loss up to the number of samples that the device can send since the
-    previous read at twice its rate. A longer jump, or one far back, is a restart of the device,
-    after which the number of missing samples is unknown. (The time is not counted from the last
-    sample, because samples of one read may have waited together in a buffer.)
+    A jump forward counts as a loss up to `SLACK` plus the number of samples that the device can
+    send since the previous read at twice its rate. A longer jump, or one far back, is a restart of
+    the device, after which the number of missing samples is unknown. (The time is not counted from
+    the last sample, because samples of one read may have waited together in a buffer.)
 
     Args:
         modulus: Modulus at which the device's numbers wrap.
@@ -117,6 +117,8 @@ class SequenceTracker:
 
 class TimeUnwrapper:
     """Converts the wrapping ticks of a device's clock to a non-decreasing time.
+
+    Ticks below the previous ones count as wrapped, also where the device has restarted.
 
     Args:
         modulus: Modulus at which the device's ticks wrap.

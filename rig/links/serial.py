@@ -54,6 +54,7 @@ class SerialLink:
         Raises:
             InUse: Another program has the port; the message says which.
             LinkError: There is no such port, its name is invalid, or permission is missing.
+            OSError: The lock file cannot be created or opened.
         """
         self._lock.take()
         try:
@@ -71,9 +72,10 @@ class SerialLink:
         self._lock.release()
 
     def read(self, timeout: float) -> bytes:
-        """Return all available bytes, waiting at most `timeout` for the first [s].
+        """Return the available bytes, waiting at most `timeout` for the first [s].
 
-        While the port is disconnected the call tries to reopen it, and returns nothing otherwise.
+        A read ends once it has `MAX_PER_READ`. While the port is disconnected the call tries to
+        reopen it, at most every `RETRY_AFTER`, and returns nothing without success.
         """
         if self._serial is None and not self._reconnect(timeout):
             return b""
@@ -144,6 +146,8 @@ class SerialLink:
 
 def _read_all(port: serial.Serial) -> bytes:
     """Read the available bytes of a port that has some, until there are `MAX_PER_READ`.
+
+    On Windows, and from a port without a file handle, at most `CHUNK`.
 
     Raises:
         OSError: The port is disconnected.

@@ -28,6 +28,9 @@ class UdpLink:
             each of 7,000 per second takes several times the CPU time [s].
         source: `real`, or `sim:WHAT` for a twin's address.
         clock: Host time.
+
+    Attributes:
+        address: `HOST:PORT`, for messages.
     """
 
     def __init__(
@@ -55,6 +58,7 @@ class UdpLink:
         Raises:
             InUse: Another program has the lock; the message says which.
             LinkError: The host name is unknown, or there is no network.
+            OSError: The lock file or a socket cannot be created.
         """
         self._lock.take()
         opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -81,7 +85,8 @@ class UdpLink:
         """Return the available datagrams, waiting at most `timeout` for the first [s].
 
         With a timeout, a read less than `gather` after the last one waits a little longer, so that
-        datagrams accumulate. One call returns at most `MAX_PER_READ`; each is cut to `LONGEST`.
+        datagrams accumulate. One call returns at most `MAX_PER_READ`; each is cut to `LONGEST`. A
+        closed link returns none at once.
         """
         opened = self._socket
         if opened is None or not select.select([opened], [], [], timeout)[0]:

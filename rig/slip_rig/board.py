@@ -28,12 +28,17 @@ def board_body(profile: BoardProfile) -> struct.Struct:
 
 
 def speed_body(profile: BoardProfile) -> struct.Struct:
-    """Return the layout of a speed command: leg and ground speed as signed counts of 32 bits."""
+    """Return the layout of a speed command: leg and ground speed as signed counts of 32 bits.
+
+    They are in the profile's byte order.
+    """
     return struct.Struct(("<" if profile.byte_order == "little" else ">") + "2i")
 
 
 class RigBoard(PacketStream):
     """Stream of the board and drives of both discs; reading feeds the board's watchdog.
+
+    Leaving it stops both discs.
 
     Args:
         link: Bytes to and from the board.
@@ -70,8 +75,12 @@ class RigBoard(PacketStream):
     def read(self, timeout: float) -> list[Sample]:
         """Return all samples that have arrived, waiting at most `timeout` for the first [s].
 
-        Counts are normal force, traction, leg and ground speed. While a disc is armed, both speeds
-        are sent every `feed_interval`, which feeds the watchdog.
+        Counts are normal force, traction, leg and ground speed; status is the board's. While a disc
+        is armed, both speeds are sent every `feed_interval`, which feeds the watchdog.
+
+        Raises:
+            DeviceMismatch: As `PacketStream.read`.
+            RigTimeout: The port accepts no bytes within its timeout.
         """
         end = self._clock.now() + timeout
         while True:
@@ -123,7 +132,12 @@ class RigBoard(PacketStream):
 
 
 class BoardDrive:
-    """One disc of the board; implements the protocol `rig.device.Drive`."""
+    """One disc of the board; implements the protocol `rig.device.Drive`.
+
+    Args:
+        board: Driver of the board.
+        disc: `leg` or `ground`.
+    """
 
     def __init__(self, board: RigBoard, disc: str) -> None:
         self.name = f"{disc} disc"
@@ -144,6 +158,7 @@ class BoardDrive:
 
         Raises:
             LimitExceeded: The magnitude of the speed is above the limit, or NaN.
+            RigTimeout: The port accepts no bytes within its timeout.
         """
         limit = self._board.limits.speed
         require_within(omega, limit, quantity=f"speed of the {self.name}", unit="rad/s")

@@ -45,7 +45,9 @@ class DriveBus(LinkedStream[CanLink]):
     """Stream of both drives: counts are position [rev] and velocity [rev/s] of a motor.
 
     A sample's channel is the drive's node, its status the axis error of the last heartbeat.
-    CANSimple has no sequence numbers and no device time, so that losses are not detected.
+    CANSimple has no sequence numbers and no device time, so that losses are not detected. Entering
+    waits for a heartbeat of each drive and raises `RigTimeout` after `HEARTBEAT_TIMEOUT`; leaving
+    de-energises both drives.
 
     Args:
         link: Link to the bus of both drives.
@@ -78,7 +80,10 @@ class DriveBus(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; frames with impossible estimates count as refused."""
+        """Counters of the stream so far, without losses, which are not detected.
+
+        Estimates of a wrong length, or that are not finite, count as refused.
+        """
         return Counters(
             received=self._received,
             damaged=self._link.damaged,
@@ -90,6 +95,9 @@ class DriveBus(LinkedStream[CanLink]):
         """Return samples of both drives by host time, waiting at most `timeout` for the first [s].
 
         Feeds the watchdogs of armed drives while it waits.
+
+        Raises:
+            RigTimeout: The bus takes no frame.
         """
         end = self._clock.now() + timeout
         while True:
@@ -108,7 +116,7 @@ class DriveBus(LinkedStream[CanLink]):
     def take_temperatures(self) -> dict[int, list[float]]:
         """Return and clear the temperatures received since the last call, by node [degC].
 
-        Each is the higher one of a drive's transistors and its motor.
+        Each is the higher finite one of a drive's transistors and its motor.
         """
         taken = {node: axis.temperatures for node, axis in self._axes.items()}
         for axis in self._axes.values():
@@ -225,7 +233,7 @@ class OdriveDrive:
     Attributes:
         armed: Whether the drive was commanded to closed loop, and not to idle since.
         state: Axis state of the last heartbeat; 0 before the first.
-        error: Axis error of the last heartbeat; 0 without a fault.
+        error: Axis error of the last heartbeat; 0 without a fault, and from `arm` to the next one.
         temperatures: Temperatures received since the last `take_temperatures` [degC].
     """
 
@@ -242,7 +250,8 @@ class OdriveDrive:
     def arm(self, timeout: float) -> None:
         """Clear errors and energise with velocity 0; see `Drive.arm`.
 
-        Waits at most `timeout` for closed-loop control [s]; after a failure the drive is disarmed.
+        Waits at most `timeout` for closed-loop control [s]; a drive that does not enter it, or that
+        reports a fault, is disarmed.
         """
         self._velocity = 0.0
         self._send(Command.CLEAR_ERRORS, b"")

@@ -43,7 +43,8 @@ class NetFtCell(LinkedStream[UdpLink]):
     """Stream of a Net F/T load cell: counts are Fx, Fy, Fz, Tx, Ty, Tz; status as in `rdt`.
 
     Losses show as gaps in the record numbers. The device time counts the cell's own readings.
-    Datagrams may hold one record or many, whatever was requested.
+    Datagrams may hold one record or many, whatever was requested. Entering sends the start request,
+    without waiting for an answer; leaving sends the stop request.
 
     Args:
         link: Datagrams to and from the cell.
@@ -76,7 +77,10 @@ class NetFtCell(LinkedStream[UdpLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; reconnected counts silences over 0.5 s that ended."""
+        """Counters of the stream so far; damaged counts datagrams, all others count records.
+
+        Reconnected counts silences longer than `START_AGAIN_AFTER` that ended.
+        """
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -134,7 +138,10 @@ class NetFtCell(LinkedStream[UdpLink]):
         )
 
     def _check_silence(self, heard: bool, now: float) -> None:
-        """Repeat the start request after each `START_AGAIN_AFTER` of silence; count its ends."""
+        """Repeat the start request after each `START_AGAIN_AFTER` of silence; count its ends.
+
+        Before the first sample, single records are requested, and the silence is not counted.
+        """
         if heard:
             self._last_arrival = now
             self._reconnected += self._silent

@@ -90,6 +90,8 @@ def encode_request(request: Request) -> bytes:
 def describe_status(status: int) -> str:
     """Describe the set bits of a status word as text, joined by commas; empty without a fault.
 
+    Bit 31, which any fault sets, is left out; unknown bits add the whole word in hexadecimal.
+
     >>> describe_status(0x80020000)
     'transducer saturated'
     """

@@ -72,13 +72,13 @@ class RigDynamics:
 
 @dataclass(frozen=True)
 class RigTruth:
-    """True states of the rig over a stretch of time, one entry for each grid step.
+    """True states of the rig over a stretch of time, one entry for each step of `GRID`.
 
     Attributes:
         time: Time since the rig was switched on, shape (n,) [s].
         omega_leg: True speed of the leg disc, shape (n,) [rad/s].
         omega_ground: True speed of the ground disc, shape (n,) [rad/s].
-        slip: True material slip ratio, 0 while the leg disc stands, shape (n,) [-].
+        slip: True material slip ratio, from -50 to 50; 0 while the leg disc stands, shape (n,) [-].
         load: True normal force, shape (n,) [N].
         normal: Reading of the normal channel, shape (n,) [N].
         traction: Reading of the traction channel, shape (n,) [N].
@@ -94,7 +94,7 @@ class RigTruth:
 
 
 class SimulatedRig:
-    """Simulated discs, contact and load cell, which devices read through `advance` and `speeds`.
+    """Simulated discs, contact and load cell, which simulated devices advance, command and read.
 
     Args:
         law: The true slip law, in the material slip ratio.
@@ -168,7 +168,7 @@ class SimulatedRig:
                 self._history.popleft()
 
     def elapsed(self, now: float) -> float:
-        """Return the time from switching on to `now` by the caller's clock; 0 before it [s]."""
+        """Return the time from the first `advance` to `now` by the caller's clock; 0 before [s]."""
         return 0.0 if self._switched_on is None else now - self._switched_on
 
     def truth(self, since: float = 0.0) -> RigTruth:
@@ -196,11 +196,14 @@ class SimulatedRig:
     def forces(self, times: Array) -> tuple[Array, Array]:
         """Return readings of normal force and traction, each of shape (n,) [N].
 
-        They are the channels' values one `force_delay` earlier; a time before the history gives its
-        first value.
+        They are the channels' values one `force_delay` earlier; a time before or after the history
+        gives its first or last value.
 
         Args:
-            times: Times since switching on, increasing, shape (n,) [s].
+            times: Times since switching on, increasing, at least one, shape (n,) [s].
+
+        Raises:
+            ProtocolError: The rig has not run yet.
         """
         late = times - self._dynamics.force_delay
         truth = self.truth(float(late[0]) - GRID)
@@ -209,7 +212,10 @@ class SimulatedRig:
         return truth.normal[at], truth.traction[at]
 
     def speeds(self) -> dict[str, tuple[float, float]]:
-        """Return (angle [rad], noisy speed [rad/s]) of each disc now, by `leg` and `ground`."""
+        """Return (angle [rad], noisy speed [rad/s]) of each disc, by `leg` and `ground`.
+
+        They are those of the last step that `advance` has simulated.
+        """
         noise = self._imperfections.speed_noise
         return {
             disc: (self._angle[disc], omega + noise * self._rng.standard_normal())
@@ -219,8 +225,13 @@ class SimulatedRig:
     def measured_speeds(self, times: Array) -> tuple[Array, Array]:
         """Return leg and ground speed, with sensor noise, each of shape (n,) [rad/s].
 
+        A time before or after the history has the speed of its first or last step.
+
         Args:
-            times: Times since switching on, increasing, shape (n,) [s].
+            times: Times since switching on, increasing, at least one, shape (n,) [s].
+
+        Raises:
+            ProtocolError: The rig has not run yet.
         """
         truth = self.truth(float(times[0]) - GRID)
         at = np.clip(np.searchsorted(truth.time, times + GRID / 2) - 1, 0, None)
@@ -254,8 +265,8 @@ class SimulatedRig:
     def _follow_plan(self, time: float) -> None:
         """Set load and set-points of the rig's own sweep at a time since switching on [s].
 
-        Slip is interpolated linearly through the plan's slip ratios, one `duration` apart, at one
-        load after another, and again from the first.
+        Slip is interpolated linearly through the plan's slip ratios, one `duration` apart, the last
+        held for one, at one load after another, and again from the first.
         """
         loads, slips, duration = self._plan.loads, self._plan.slips, self._plan.duration
         sweep, place = divmod(time / duration, len(slips))
@@ -305,6 +316,8 @@ class SimulatedRig:
 
 def _continue_ar1(rho: float, last: float, rng: np.random.Generator, n: int) -> tuple[Array, float]:
     """Continue an AR(1) path of unit marginal variance by n steps from its last value.
+
+    `rho` is its correlation from step to step.
 
     Returns:
         The new values, shape (n,), and the last of them.

@@ -20,8 +20,8 @@ class SimulatedBoard:
     Args:
         rig: Simulated discs and contact that the board turns and measures.
         profile: Counts, signs and rate of the board.
-        watchdog: Time without a speed command after which the board stops both discs; starts with
-            the first command [s].
+        watchdog: Time without a speed command after which the board stops both discs, and ignores
+            speed commands until a stop command; starts with the first command [s].
         faults: Transmission errors of the line.
         rng: Random generator of the transmission errors.
     """

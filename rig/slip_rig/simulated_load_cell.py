@@ -33,7 +33,7 @@ class SimulatedLoadCell:
         sent: Number of records sent so far, including those that the faults drop.
         status: Status word of all later records.
         lateral_force: Force on the third axis, which the rig does not load [N].
-        torque: Torque about each of the three axes [N m].
+        torque: Torque about each of the three axes; 0 counts where the profile has no scale [N m].
     """
 
     def __init__(

@@ -147,8 +147,9 @@ def simulate_sweep(
         F_t = (1 + g_t)\,f(\kappa, F_n) + b_{run} + e, \qquad
         F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
 
-    with f the law at the true slip and load, b_run ~ N(0, tau²), and e an AR(1) process of
-    marginal standard deviation s0 + s1·|(1 + g_t)·f|, stationary and independent in each run.
+    with F_t the measured traction, f the law at the true slip kappa and load F_n, b_run ~
+    N(0, tau²), and e an AR(1) process of marginal standard deviation s0 + s1·|(1 + g_t)·f|,
+    stationary and independent in each run; g_t, g_n, b_n, c, tau, s0, s1 as in `RigImperfections`.
 
     Args:
         law: The true slip law, in the material slip ratio.

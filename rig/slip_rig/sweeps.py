@@ -64,8 +64,9 @@ def _bin_edges(time: Array) -> NDArray[np.intp]:
 def _jumping(slip: Array) -> NDArray[np.bool_]:
     """Return whether slip jumps to the next sweep in each bin, shape (bins,).
 
-    A jump is a stretch with |d| > `SETTLED` that exceeds `JUMP` somewhere. `slip` is the mean slip
-    ratio of each bin, shape (bins,); there are no jumps in less than two `WINDOW`.
+    A jump is a stretch with |d| > `SETTLED`, and |d| > `JUMP` somewhere, where d is the mean slip
+    of the next `WINDOW` less that of the last. `slip` is the mean slip ratio of each bin, shape
+    (bins,); there are no jumps in less than two `WINDOW`.
     """
     w = round(WINDOW / BIN)
     jumping = np.zeros(len(slip), dtype=bool)

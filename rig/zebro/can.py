@@ -50,7 +50,10 @@ class CanLegs(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; error and truncated frames of the bus count as damaged."""
+        """Counters of the stream so far; error and truncated frames of the bus count as damaged.
+
+        Clock and position frames of a wrong length, and impossible counts, are refused.
+        """
         return Counters(
             received=self._received,
             lost=self._tracker.lost,

@@ -62,9 +62,10 @@ def check_legs(
         The robot's profile with `legs` and `sign` as observed; each channel keeps its zero.
 
     Raises:
-        RigTimeout: The robot sends nothing.
+        RigTimeout: The robot sends nothing, or its link takes no bytes.
         DeviceFault: A channel did not follow its command, another channel moved, or the same leg
             was observed for two channels.
+        ProtocolError: The robot takes no commands.
     """
     seen: list[MovedLeg] = []
     for channel in range(len(robot.profile.legs)):
@@ -85,7 +86,7 @@ def check_legs(
 
 
 def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOCK) -> None:
-    """Increase one channel's count by `STEP` and hold all others; check that only it moved.
+    """Move one channel up by `STEP` (at least 1 count), hold the others, and check each motion.
 
     Args:
         robot: The robot, open.
@@ -93,8 +94,10 @@ def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOC
         clock: Host time.
 
     Raises:
-        RigTimeout: The robot sends nothing.
-        DeviceFault: A channel's motion is more than a quarter of the step from the commanded one.
+        RigTimeout: The robot sends nothing, or its link takes no bytes.
+        DeviceFault: A channel's motion is more than a quarter of the step, and more than 1 count,
+            from the commanded one.
+        ProtocolError: The robot takes no commands.
     """
     around = robot.profile.counts_per_revolution
     before = latest_counts(robot, clock=clock)

@@ -33,7 +33,8 @@ class LegCommands(Protocol):
 
         Raises:
             LimitExceeded: The duration is negative or above `LONGEST_MOTION`.
-            ProtocolError: This robot's link takes no commands.
+            ProtocolError: This robot takes no commands.
+            RigTimeout: The link is connected but does not take the command.
         """
         ...
 
@@ -77,6 +78,9 @@ def follow(
 
     Returns:
         Whether the link took the command.
+
+    Raises:
+        LimitExceeded, ProtocolError: As `LegCommands.set_points`.
     """
     theta = reference.angles(now - start + horizon)[0]
     chosen = [theta[leg - 1] for leg in sorted(legs.profile.legs)]

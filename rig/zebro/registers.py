@@ -28,7 +28,7 @@ QUIET_AFTER_FAILURE: Final = 0.1
 
 
 class _RegisterStream(LinkedStream[ByteLink]):
-    """Base of the streams of both layouts, with link, profile and counters."""
+    """Base of the streams of the layouts `dump` and `poll`, with link, profile and counters."""
 
     def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
         super().__init__(link, name="legs", clock=clock)
@@ -58,7 +58,10 @@ class DumpLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; there are no numbers, so that losses are not counted."""
+        """Counters of the stream so far; there are no numbers, so that losses are not counted.
+
+        Dumps with impossible counts are refused.
+        """
         return Counters(
             received=self._received,
             damaged=self._framer.damaged,
@@ -125,7 +128,11 @@ class PolledLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; an incomplete answer counts as damaged."""
+        """Counters of the stream so far; losses are not counted.
+
+        A request without a complete answer counts as damaged, also where the link is disconnected;
+        impossible counts are refused.
+        """
         return Counters(
             received=self._received,
             damaged=self._damaged,
@@ -137,8 +144,8 @@ class PolledLegs(_RegisterStream):
     def read(self, timeout: float) -> list[Sample]:
         """Wait until the next reading is due, request it, and return its sample.
 
-        There is none where the reading is due later than `timeout` [s], or the answer is incomplete
-        or impossible. Waiting for the answer adds up to `ANSWER_TIMEOUT`.
+        There is none where the reading is due later than `timeout` [s], or the answer is missing,
+        incomplete or impossible. Waiting for the answer adds up to `ANSWER_TIMEOUT`.
         """
         now = self._clock.now()
         wait = self._next_at - now

@@ -123,6 +123,8 @@ class SimulatedLegs:
     def angles(self, time: float) -> Array:
         """Compute the true leg angles of the gait, or of the last command, shape (6,) [rad].
 
+        The gait is late by the pauses so far.
+
         Args:
             time: Time since the robot was switched on [s].
         """
@@ -133,7 +135,9 @@ class SimulatedLegs:
         return self._reference.angles(max(time - self._behind, 0.0))[0]
 
     def command(self, counts: tuple[int, ...], duration: float, now: float) -> None:
-        """Turn every leg to a count the short way round, and hold it there.
+        """Turn every leg to a count the short way round, at constant speed, and hold it there.
+
+        Legs without a channel stay where they are.
 
         Args:
             counts: Target count of each channel, in the order of the wire.

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.errors import ProtocolError
+from rig.errors import ProtocolError, RigTimeout
 from rig.experiment.acquire import PERIOD
 from rig.experiment.bench import Bench
 from rig.experiment.load import LoadSetter
@@ -19,6 +19,8 @@ from rig.slip_rig.decode import BATCHES, standard_error
 
 REST_TIMEOUT: Final = 5.0
 """Timeout for the verification that both discs stand [s]."""
+SILENCE: Final = 2.0
+"""Longest wait for a normal force while the operator hangs a weight [s]."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ def weigh(
 
     Raises:
         NotAtRest: A disc turns, or its speed is unknown.
-        RigError: A device failed, or `load` did.
+        RigError: A device failed, or `load` did; a load cell that is silent for `SILENCE` does.
         ProtocolError: Fewer than 2 `BATCHES` forces arrived in `duration`.
     """
 
@@ -97,7 +99,7 @@ def weigh(
     readings, errors = [], []
     for force in (0.0, *forces):
         prove_rest(poll, REST_SPEED, longest=REST_TIMEOUT, clock=clock)
-        _set_load(poll, load, force, prompt)
+        _set_load(poll, load, force, prompt, clock)
         mean, error = _read(poll, duration, clock)
         readings.append(mean)
         errors.append(error)
@@ -139,16 +141,28 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
 
 
 def _set_load(
-    poll: Callable[[], Batch], load: LoadSetter, force: float, prompt: Callable[[str, float], None]
+    poll: Callable[[], Batch],
+    load: LoadSetter,
+    force: float,
+    prompt: Callable[[str, float], None],
+    clock: Clock,
 ) -> None:
-    """Request a load [N], then poll and prompt until the setter says that it is set."""
+    """Request a load [N], then poll and prompt until the setter says that it is set.
+
+    Raises:
+        RigTimeout: No normal force has been read for `SILENCE`.
+    """
     text = load.request(force)
-    waiting = True
+    waiting, heard = True, clock.now()
     while waiting:
         normal = poll().normal
         if len(normal):
+            heard = clock.now()
             prompt(text, float(normal.mean()))
             waiting = not load.follow(float(normal.mean()))
+        elif clock.now() - heard > SILENCE:
+            advice = "check power and cable of the load cell or board"
+            raise RigTimeout("no normal force has been read", waited=SILENCE, advice=advice)
 
 
 def _read(poll: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:

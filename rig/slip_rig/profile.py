@@ -208,7 +208,7 @@ def load_rig_profile(name: str) -> RigProfile:
     table = open_profile(name, device="slip-rig")
     discs, limits = table.table("discs"), table.table("limits")
     drives, load_cell, board = (table.table(key) for key in ("drives", "load_cell", "board"))
-    if board.empty == (drives.empty or load_cell.empty):
+    if not drives.empty == load_cell.empty != board.empty:
         raise table.fault("expected either [drives] and [load_cell], or [board], not both")
     profile = RigProfile(
         name=Path(name).stem,

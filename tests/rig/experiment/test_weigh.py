@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.errors import ProtocolError, RigError
+from rig.errors import ProtocolError, RigError, RigTimeout
 from rig.experiment.weigh import Weighing, check_gain, weigh
 
 FORCES = (0.0, 2.0, 5.0, 10.0)
@@ -50,8 +52,6 @@ def test_no_weight_at_all_is_refused():
 
 
 def test_a_gain_error_of_the_twin_is_weighed(lab):
-    from dataclasses import replace
-
     from rig.experiment.simulated_load import SimulatedOperator
 
     twin = lab["twin"]()
@@ -79,3 +79,22 @@ def test_no_weight_is_asked_for_while_a_disc_turns(lab):
             twin.bench, (2.0,), load=Bystander(), prompt=lambda text, normal: None,
             clock=twin.clock, period=0.01,
         )  # fmt: skip
+
+
+def test_a_load_cell_that_falls_silent_ends_the_wait_for_the_operator(lab, monkeypatch):
+    class Nobody:
+        def request(self, target):
+            return "hang"
+
+        def follow(self, normal):
+            return False
+
+    twin = lab["twin"]()
+    read = twin.bench.read
+
+    def unplug(*_):
+        monkeypatch.setattr(twin.bench, "read", lambda: replace(read(), normal=np.array([])))
+
+    twin.rig.command("leg", 0.0)
+    with twin.bench, pytest.raises(RigTimeout, match=r"no normal force .* within 2 s; .*cable"):
+        weigh(twin.bench, (2.0,), load=Nobody(), prompt=unplug, clock=twin.clock, period=0.01)

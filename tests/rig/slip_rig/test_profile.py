@@ -12,6 +12,7 @@ from rig.slip_rig.profile import load_rig_profile
     ("old", "new", "said"),
     [
         ("[board]", "[load_cell]", r"either \[drives\] and \[load_cell\], or \[board\]"),
+        ("[board]", "[drives]\nrate = 1\n[board]", r"or \[board\], not both"),
         ("radius_leg = 0.035", "radius_leg = 0", "radius_leg: found 0; expected a number above 0"),
         ("normal_sign = 1", "normal_sign = 0", "1 or -1"),
         ("rate = 1000.0", "rates = 1000.0", "rate: is missing"),

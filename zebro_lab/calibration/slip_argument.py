@@ -49,13 +49,13 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
     """Parse the value of `--slip`, and read the slip law if it is in a file.
 
     Args:
-        text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V [m/s] over which
-            friction sets in, or `thesis`.
+        text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V over which friction
+            sets in, 0.001 by default [m/s], or `thesis`.
         with_walks: Whether to read the posterior of `walks/` too.
 
     Raises:
-        NotFound: `text` is neither a file, a folder nor a law.
-        SettingsError: Numbers of `coulomb` are missing, too many, unreadable or not positive.
+        NotFound: `text` is no file, folder or law, or `draws.npz` of `walks/` is missing.
+        SettingsError: Numbers of `coulomb` are missing, too many, not positive, not finite.
         DataError: The calibration, or its `walks/` if wanted, cannot be read.
 
     >>> parse_slip("coulomb:0.38").law

@@ -47,12 +47,14 @@ class WalkResult:
 def read_legs(path: PathLike, *, columns: PathLike | None = None) -> LegLog:
     """Read leg angles over time from a table, a recorded run or a walk folder.
 
+    Leg signs of a `robot.toml` are not applied.
+
     Args:
         path: Table, run folder or walk folder to read.
-        columns: A `columns.toml` to use instead of the one beside the table.
+        columns: A `columns.toml` to use instead of the one beside the table; ignored for a run.
 
     Raises:
-        ZebroLabError: A file is missing or cannot be used; names file, row and column.
+        ZebroLabError: A file is missing or cannot be used; names file, row and column if known.
     """
     return read_leg_log(Path(path), columns=optional(columns))
 

@@ -53,7 +53,7 @@ class PlacedPhoto:
             height: Height of the rectangle above the floor [m].
 
         Returns:
-            BGR picture, as from `rectify_floor`.
+            BGR picture, x to the right and y up, as from `rectify_floor`.
         """
         return rectify_floor(
             self.pixels, self.camera, self.pose, low=low, high=high,
@@ -66,7 +66,7 @@ class TrackedPhotos:
     """Photographs of a track, with camera, floor and annotations.
 
     Attributes:
-        t: Time of each pose of the track, shape (n,) [s].
+        t: Time of each pose in the track's time base, shape (n,) [s].
         names: Name of the photograph or exposure of each pose, n names.
         files: File of each photograph, by name.
         camera: The lens, at the size it was calibrated with.
@@ -87,7 +87,8 @@ class TrackedPhotos:
         """Read a photograph and compute the camera's pose from its floor marks and clicks.
 
         Raises:
-            TrackingError: The photograph is unreadable or does not show enough marks of the floor.
+            TrackingError: The photograph is unreadable or does not show enough marks of the floor,
+                or the map does not fit them.
         """
         file = self.files[name]
         size = upright_size(file) or self.camera.size
@@ -108,7 +109,8 @@ def photos_of_track(track: Path) -> TrackedPhotos:
 
     Raises:
         NotFound: The folder is not a track folder, or a photograph or `camera.toml` has moved.
-        DataError: The track is of a video, whose frames are not kept, or a photograph has changed.
+        DataError: The track is of a video, whose frames are not kept, or a file has changed.
+        SettingsError: `floor.toml` or `annotations.toml` of the folder is invalid.
     """
     folder = track if track.is_dir() else track.parent
     manifest = read_track_manifest(folder)

@@ -47,7 +47,10 @@ class PredictedWalk:
         return self.prediction.source, self.track.source
 
     def files_of(self, judged: JudgedRun) -> tuple[Path, ...]:
-        """Return the files of prediction and track, and of the IMU if `judged` has tilt errors."""
+        """Return the files of prediction and track, and of the IMU if `judged` has tilt errors.
+
+        Manifests and photographs are not among them.
+        """
         tilt = () if self.tilt is None or judged.tilt is None else self.tilt.files
         return (*self.prediction.files, self.track.file, *tilt)
 
@@ -73,7 +76,7 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
 
 
 def read_predicted_walks(pairs: Sequence[tuple[Path, Path]]) -> list[PredictedWalk]:
-    """Read predictions and tracks of walks; pairs with equal content are read once.
+    """Read predictions and tracks of walks; of pairs with equal content the first alone.
 
     Args:
         pairs: Paths of prediction and track of each walk.

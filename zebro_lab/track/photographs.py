@@ -102,15 +102,13 @@ class TrackedPhotos:
 
 
 def photos_of_track(track: Path) -> TrackedPhotos:
-    """Find the photographs that a track folder was made from.
-
-    Args:
-        track: Track folder, or its track.csv.
+    """Find the photographs that a track folder, named itself or by its track.csv, was made from.
 
     Raises:
         NotFound: The folder is not a track folder, or a photograph or `camera.toml` has moved.
         DataError: The track is of a video, whose frames are not kept, or a file has changed.
         SettingsError: `floor.toml` or `annotations.toml` of the folder is invalid.
+        KeyError: `track.csv` does not name photographs, as that of an imported track.
     """
     folder = track if track.is_dir() else track.parent
     manifest = read_track_manifest(folder)

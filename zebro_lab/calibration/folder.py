@@ -70,7 +70,7 @@ def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[st
     """Write `slip.toml`, `summary.csv` and `posterior.nc` of a fit into a folder.
 
     Args:
-        folder: Existing folder to write into.
+        folder: Existing folder to write into; files of these names are overwritten.
         calibration: The finished fit.
         inputs: SHA-256 of each file that was read, by path.
     """

@@ -104,7 +104,10 @@ def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[D
 
 
 def _labels(sources: Sequence[DataSource]) -> list[str]:
-    """Return a label for each source: file stems if distinct, else with folder, else paths."""
+    """Return a label for each source: file stems if distinct, else with their folder, else paths.
+
+    The folder is relative to the one named on the command line; all labels are of one form.
+    """
     folders = [source.path.relative_to(source.root).parent for source in sources]
     stems = [table_stem(source.path) for source in sources]
     schemes = (
@@ -124,7 +127,7 @@ def _exclusion(source: DataSource) -> str | None:
 
 
 def _bytes_of(source: DataSource) -> str:
-    """Return the hash of a table or of a run's log; the path as text if that file is missing."""
+    """Return the hash of a table's or a run's log's content; the path if that file is missing."""
     file = source.path / LOG_FILE if source.is_run_folder else source.path
     return content_hash(file) if file.is_file() else str(source.path)
 

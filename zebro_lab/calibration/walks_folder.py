@@ -69,7 +69,7 @@ class WalksToWrite:
         logs: Leg log of each walk, in the order of `posterior.walks`.
         inputs: Every file read, the `slip.toml` first.
         settings: Settings of the fit, JSON-serialisable.
-        source: Where the data of the walks come from.
+        source: Sources of slip law and walks, joined by commas.
         notes: Notes, one line each.
     """
 

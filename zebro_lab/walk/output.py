@@ -42,7 +42,8 @@ def write_walk(
 
     Raises:
         AlreadyExists, NotWritten: As in `walk_folder`.
-        WalkStopped: A stop was requested before or while pictures are drawn; nothing was written.
+        WalkStopped: A stop was requested before pictures are drawn, or during the animation;
+            nothing was written.
     """
     described, slip = walked.described, walked.slip
     read = [*files, *((described.file,) if described.file else ()), *(slip.files if slip else ())]

@@ -33,7 +33,8 @@ class Walked:
     Attributes:
         path: Poses, leg angles, slip and forces over time.
         reference: Leg angles that the path was computed from.
-        described: Parameters of the robot, as requested.
+        described: Parameters of the robot, with the requested arc; for the exact angles of a walk
+            folder without leg signs and offsets.
         slip: Slip law of the legs; None for a model without slip.
         model: Name of the model.
         dt: Time step of the computation [s].

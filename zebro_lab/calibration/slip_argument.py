@@ -26,7 +26,8 @@ class NamedSlip(Slip):
 
     Attributes:
         text: The value of `--slip`, as given.
-        files: Files that were read, the `slip.toml` first; empty for a law without a file.
+        files: Files that were read, the `slip.toml` first, then those of `walks/`; empty for a law
+            without a file. `posterior.nc`, read later for draws, is not among them.
         notes: Notes, one line each: an untrustworthy fit, a slip definition to convert.
         walks: Posterior of legs and floor after tracked walks; None if no walks were fitted, or
             they were not read.

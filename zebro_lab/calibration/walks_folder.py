@@ -108,10 +108,11 @@ def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path
         fitted: The finished fit of the walks.
         draw: Draws the pictures into the folder that it is given.
 
+    Returns:
+        The folder written, `walks/` of the calibration folder.
+
     Raises:
         AlreadyExists, NotWritten: As in `result_folder`.
-
-    Returns: The folder written.
     """
     folder = calibration / FOLDER
     inputs = file_hashes(dict.fromkeys(fitted.inputs))

@@ -64,7 +64,7 @@ class MappedColumn:
     """The column of a file that a canonical column is read from.
 
     Attributes:
-        name: Header of the column in the file.
+        name: Header of the column in the file, which may lack it.
         unit: Unit of the column in the file; "" for text.
         factor: Multiplies the file's numbers to give SI with the canonical sign.
         definition: Slip definition, for `slip_ratio` only; None if not stated.

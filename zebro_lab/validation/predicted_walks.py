@@ -82,7 +82,7 @@ def read_predicted_walks(pairs: Sequence[tuple[Path, Path]]) -> list[PredictedWa
         pairs: Paths of prediction and track of each walk.
 
     Raises:
-        ZebroLabError: A file is missing or damaged; of photographs that is only a note.
+        ZebroLabError: A file is missing or damaged; a missing or changed photograph is only a note.
     """
     pairs, repeated = first_of_each(pairs, key=_content)
     duplicates = duplicates_note("walks", [(one[0], other[0]) for one, other in repeated])

@@ -21,8 +21,8 @@ class InformedLegs:
     """Posterior of legs and floor, as it applies to one walk.
 
     Attributes:
-        posterior: Posterior of leg offsets and floor; for another robot's legs that of the floor
-            alone, with legs drawn from the prior.
+        posterior: Posterior of leg offsets and floor; for legs other than the fitted ones that of
+            the floor alone, with legs drawn from the prior.
         index: Index of this walk among the fitted walks; None for a new walk.
         folder: The folder `walks/` that the posterior was read from.
         notes: Notes, one line each.

@@ -119,7 +119,10 @@ def _labels(sources: Sequence[DataSource]) -> list[str]:
 
 
 def _exclusion(source: DataSource) -> str | None:
-    """Return the reason why a run folder is excluded; None for a table or a run that counts."""
+    """Return the reason why a run folder is excluded; None for a table or a run that counts.
+
+    Raises `NotFound` or `DataError` if the run's manifest cannot be read.
+    """
     if not source.is_run_folder:
         return None
     excluded = read_manifest(source.path).excluded

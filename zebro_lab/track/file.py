@@ -91,7 +91,10 @@ def track_of_table(table: RawTable) -> TrackFile:
 
 
 def _tracked_source(file: Path) -> str | None:
-    """Return the source in the manifest beside a `track.csv`; None for another file or without."""
+    """Return the source in the manifest beside a `track.csv`, "unknown" if it states none.
+
+    None for a file of another name, or without a manifest beside it.
+    """
     if file.name != TRACK_CSV or not (file.parent / MANIFEST).is_file():
         return None
     return str(read_track_manifest(file.parent).get("source", "unknown"))

@@ -41,8 +41,8 @@ def compare_runs(
         rng: Random number generator.
 
     Raises:
-        ZebroLabError: A file cannot be read, or the runs have neither tracks with headings nor
-            draws in common.
+        ZebroLabError: A run has neither track nor draws, a file cannot be read, or the runs have
+            neither tracks with headings nor draws in common.
     """
     runs = (_Run(first), _Run(second))
     quantities = [

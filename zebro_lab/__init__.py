@@ -44,7 +44,13 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name of `__all__` when it is first used, so that commands start without it."""
+    """Return a name of `__all__`, imported only when it is used, so that commands start fast.
+
+    Raises:
+        AttributeError: The name is not in `__all__`.
+        ImportError: zebro-lab is not installed, for its version; for the other names a package of
+            zebro-lab is missing or shadowed by another file.
+    """
     if name == "__version__":
         from importlib.metadata import version
 

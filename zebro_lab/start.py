@@ -41,7 +41,7 @@ def zebro_lab() -> None:
 
 
 def calibrate_slip() -> None:
-    """Check the packages, then run the command line `calibrate-slip`; exit 1 if it fails."""
+    """Check the packages, then run the command line `calibrate-slip`; exit 1 if the check fails."""
     _check_or_exit()
     from zebro_lab.main import calibrate_slip
 

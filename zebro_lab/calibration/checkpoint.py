@@ -61,7 +61,7 @@ def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
         fingerprint: Hash of the present data and settings, which must equal the stored one.
 
     Raises:
-        DataError: The checkpoint is missing, damaged, or belongs to other data or settings.
+        DataError: The checkpoint is missing, damaged, too large, or of other data or settings.
     """
     path = folder / FILE
     if not path.is_file():

@@ -10,10 +10,11 @@ INTERRUPTED = 130
 
 
 def fit_and_report(request: CalibrationRequest) -> bool:
-    """Fit a slip law, write the calibration folder, print results; return whether it converged.
+    """Fit a slip law, write its folder, print the results; return whether the fit converged.
 
     Raises:
-        Exit: The fit was stopped (exit code 130).
+        Exit: The fit was stopped (exit code 130); a line on stderr says so.
+        ZebroLabError, ModelError: As in `zebro_lab.calibration.stage.calibrate`.
     """
     from zebro_lab.calibration.screen import print_calibration
     from zebro_lab.calibration.stage import Stopped, calibrate

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Read and write a calibration folder: `slip.toml`, tables, draws, manifest.
+"""Read and write `slip.toml` of a calibration folder; write `summary.csv` and `posterior.nc`.
 
-Only this module depends on the format of these files.
+Only this module depends on the format of the first two; the draws are read in `slip_draws`.
 """
 
 import csv
@@ -52,10 +52,12 @@ class SlipFile:
     """Content of a `slip.toml`.
 
     Attributes:
-        curve: Slip law with posterior means and covariance, and the tested loads and slip ratios.
+        curve: Slip law with posterior means and covariance, and ranges of the tested loads and slip
+            ratios.
         file: The `slip.toml` itself, also if its folder was named.
         source: Where the data come from; "unknown" if the file does not state it.
-        doubt: Headline of the verdict if the fit cannot be trusted; None if it can.
+        doubt: Headline of the verdict if the fit cannot be trusted; None if it can, or if the file
+            does not say.
     """
 
     curve: SlipCurve
@@ -68,7 +70,7 @@ def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[st
     """Write `slip.toml`, `summary.csv` and `posterior.nc` of a fit into a folder.
 
     Args:
-        folder: Existing folder to write into.
+        folder: Existing folder to write into; files of these names are overwritten.
         calibration: The finished fit.
         inputs: SHA-256 of each file that was read, by path.
     """
@@ -84,7 +86,8 @@ def read_slip(path: Path) -> SlipCurve:
         path: A `slip.toml`, or the folder that holds it.
 
     Raises:
-        DataError: The file is missing, damaged, or of another schema.
+        DataError: The file is missing, damaged, of another schema, or has an unknown law or
+            invalid values.
     """
     return read_slip_file(path).curve
 
@@ -208,7 +211,10 @@ def _tested_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def summary_csv(calibration: "Calibration") -> str:
-    """Format the parameters as CSV: a header `SUMMARY_COLUMNS`, then one line per parameter."""
+    """Format the parameters as CSV: a header `SUMMARY_COLUMNS`, then one line per parameter.
+
+    A fixed parameter has the prior "fixed" and empty diagnostics.
+    """
     convergence = calibration.convergence
     free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
     text = io.StringIO()
@@ -231,7 +237,9 @@ def summary_csv(calibration: "Calibration") -> str:
 def inference_data(calibration: "Calibration") -> "az.InferenceData":
     """Convert a fit to ArviZ InferenceData, with one chain for each ensemble of walkers.
 
-    Groups: draws of the free parameters, log density, measured traction and the other block means.
+    Groups: `posterior`, draws of the free parameters; `sample_stats`, log density `lp`;
+    `observed_data`, traction by block; `constant_data`, slip ratio, load, run index and number of
+    samples by block. Attributes: source, slip definition, law, headline of the verdict.
     """
     import arviz as az
 

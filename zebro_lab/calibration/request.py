@@ -10,7 +10,7 @@ from typer import Argument, Option
 
 @dataclass(frozen=True)
 class CalibrationRequest:
-    """Options of `calibrate-slip`."""
+    """Options of `calibrate-slip` for the fit of a slip law to rig data."""
 
     data: Annotated[
         tuple[Path, ...], Argument(help="Run folders, or files or folders of CSV or Parquet.")
@@ -71,7 +71,11 @@ class CalibrationRequest:
         return (*self.data, *((self.columns,) if self.columns is not None else ()))
 
     def decisive(self) -> dict[str, object]:
-        """Return the options that affect the results, JSON-serialisable; `max_steps` is not one."""
+        """Return the options that a resumed fit must share with the stopped one, JSON-serialisable.
+
+        Left out are data and column map, whose content is hashed, and `out`, `max_steps`, `threads`
+        and `resume`.
+        """
         return {
             "slip_definition": self.slip_definition,
             "law": self.law,

@@ -31,13 +31,14 @@ class RigData:
     """Samples of a rig experiment with their provenance.
 
     Attributes:
-        samples: Samples of all runs, joined in the order of the paths.
-        files: Every file read, each once: for each table or run folder its files, then its column
-            map.
-        source: "real", "sim:what", "replay:what"; "unknown" if not stated; "mixed:a,b" for
-            several.
-        notes: Notes, one line each: how slip was obtained, rows dropped and why, how runs were
-            separated, units converted.
+        samples: Samples of the runs, joined in the order of the paths, without excluded runs and
+            copies.
+        files: Files of these samples, each once: for each table or run folder its files, then its
+            column map.
+        source: Source as stated, such as "real" or "sim:what"; "unknown" if not stated;
+            "mixed:a,b" for several.
+        notes: Notes, one line each: how slip was obtained, how runs were separated, rows dropped
+            and why, times not used, how files were read, units converted, runs left out, copies.
         load_cell: Standard deviations from `[load_cell]` of `columns.toml` by name, SI; only those
             given.
         repeated: The notes on duplicate data, which `notes` has too.
@@ -62,8 +63,8 @@ def read_rig_data(
         slip_definition: Definition to convert all slip ratios to; None keeps that of the data.
 
     Raises:
-        ZebroLabError: A path, a column map or the data is invalid, slip definitions differ, every
-            run is left out, or slip ratios do not vary; the message names file, column and row.
+        ZebroLabError: A path, column map or the data is invalid; slip definitions or load cells
+            differ; every run is left out; samples are too few; slip varies no more than its noise.
     """
     named = find_sources(paths)
     excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
@@ -103,7 +104,10 @@ def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[D
 
 
 def _labels(sources: Sequence[DataSource]) -> list[str]:
-    """Return a label for each source: file stems if distinct, else with folder, else paths."""
+    """Return a label for each source: file stems if distinct, else with their folder, else paths.
+
+    The folder is relative to the one named on the command line; all labels are of one form.
+    """
     folders = [source.path.relative_to(source.root).parent for source in sources]
     stems = [table_stem(source.path) for source in sources]
     schemes = (
@@ -115,7 +119,10 @@ def _labels(sources: Sequence[DataSource]) -> list[str]:
 
 
 def _exclusion(source: DataSource) -> str | None:
-    """Return the reason why a run folder is excluded; None for a table or a run that counts."""
+    """Return the reason why a run folder is excluded; None for a table or a run that counts.
+
+    Raises `NotFound` or `DataError` if the run's manifest cannot be read.
+    """
     if not source.is_run_folder:
         return None
     excluded = read_manifest(source.path).excluded
@@ -123,7 +130,7 @@ def _exclusion(source: DataSource) -> str | None:
 
 
 def _bytes_of(source: DataSource) -> str:
-    """Return the hash of a table or of a run's log; the path as text if that file is missing."""
+    """Return the hash of a table's or a run's log's content; the path if that file is missing."""
     file = source.path / LOG_FILE if source.is_run_folder else source.path
     return content_hash(file) if file.is_file() else str(source.path)
 
@@ -133,9 +140,9 @@ def _known(
     maps: Mapping[DataSource, Columns],
     labels: Mapping[DataSource, str],
 ) -> dict[str, str]:
-    """Return labels of excluded runs by key (hash of the forces), by which copies are recognised.
+    """Return "LABEL, which is left out" for each excluded run, by its key, which a copy shares.
 
-    Excluded runs that cannot be read are omitted.
+    The key is a hash of the forces. Excluded runs that cannot be read are omitted.
     """
     known: dict[str, str] = {}
     for source in excluded:
@@ -150,9 +157,10 @@ def _known(
 def _without_duplicates(
     parts: Sequence[RigPart], known: Mapping[str, str]
 ) -> tuple[list[RigPart], list[tuple[str, str]]]:
-    """Drop runs whose key is that of an earlier run or of a `known` one.
+    """Drop runs whose key is that of a run in an earlier part or of a `known` one.
 
-    Returns the parts that have runs left, and the names of each copy and its original.
+    Returns the parts that have runs left, and pairs: name of a copy, name of its original. Runs
+    with equal keys within one part are kept.
     """
     seen, repeated, kept = dict(known), [], []
     for part in parts:

@@ -30,14 +30,15 @@ class RigPart:
         path: The table or run folder.
         columns: Column map that was applied to it.
         sources: Sources that the column map and the table or run state; empty if neither does.
-        rows_read: Number of rows before `[rows] keep` is applied.
+        rows_read: Number of rows before `[rows] keep` is applied; rows outside the sweeps of a
+            recording, and of runs dropped by `with_runs`, do not count.
         slip: Slip ratios, shape (n,) [-], with their definition.
         normal_force: Normal force, shape (n,) [N].
         traction_force: Traction force, shape (n,) [N].
         runs: Run of each sample, and the names of the runs.
         time: Time, shape (n,) [s]; None if the table has none or every row is a trial.
         notes: Notes on reading and unit conversion, one line each.
-        files: Every file read, the column map last.
+        files: Every file read, the column map last, if there is one.
     """
 
     path: Path
@@ -54,7 +55,7 @@ class RigPart:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Key of each run, a hash of its forces, by which copies are recognised."""
+        """Key of each run, equal for copies: a hash of its forces, see `run_keys`."""
         forces = (self.normal_force, self.traction_force)
         return run_keys(forces, self.runs.index, len(self.runs.names))
 
@@ -119,8 +120,9 @@ def read_part(
 def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
     """Read a run folder as a table; return it with its column map and the files read.
 
-    The table has canonical columns in SI and is one run, or one run per sweep if raw samples of
-    several sweeps were recorded. Of a `columns.toml` only row conditions and load cell apply.
+    The table has canonical columns in SI. It is one run, or one run per sweep if raw samples of
+    several sweeps were recorded; raw samples outside sweeps are dropped. Of a `columns.toml` only
+    row conditions and load cell apply.
     """
     import pandas as pd
 

@@ -21,7 +21,7 @@ def print_calibration(console: Console, calibration: Calibration, data: RigData,
         console: Console to print to.
         calibration: The finished fit.
         data: Rig data that were fitted.
-        out: The calibration folder, whose files are listed.
+        out: The calibration folder, whose whole content is listed.
     """
     _print_data(console, calibration, data)
     console.print(_parameter_table(calibration))

@@ -26,7 +26,8 @@ class NamedSlip(Slip):
 
     Attributes:
         text: The value of `--slip`, as given.
-        files: Files that were read, the `slip.toml` first; empty for a law without a file.
+        files: Files that were read, the `slip.toml` first, then those of `walks/`; empty for a law
+            without a file. `posterior.nc`, read later for draws, is not among them.
         notes: Notes, one line each: an untrustworthy fit, a slip definition to convert.
         walks: Posterior of legs and floor after tracked walks; None if no walks were fitted, or
             they were not read.
@@ -49,13 +50,13 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
     """Parse the value of `--slip`, and read the slip law if it is in a file.
 
     Args:
-        text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V [m/s] over which
-            friction sets in, or `thesis`.
+        text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V over which friction
+            sets in, 0.001 by default [m/s], or `thesis`.
         with_walks: Whether to read the posterior of `walks/` too.
 
     Raises:
-        NotFound: `text` is neither a file, a folder nor a law.
-        SettingsError: Numbers of `coulomb` are missing, too many, unreadable or not positive.
+        NotFound: `text` is no file, folder or law, or `draws.npz` of `walks/` is missing.
+        SettingsError: Numbers of `coulomb` are missing, too many, not positive, not finite.
         DataError: The calibration, or its `walks/` if wanted, cannot be read.
 
     >>> parse_slip("coulomb:0.38").law

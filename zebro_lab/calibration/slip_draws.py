@@ -23,7 +23,8 @@ def slip_tables(
 ) -> list[TractionTable]:
     """Compute interpolation tables of traction, one for each draw of a slip law.
 
-    Draws that are invalid at the robot's loads are skipped; if all are, the law itself is used.
+    Draws that are invalid at the robot's loads are skipped; if all are, the only table is that of
+    the posterior mean. A law with zero covariance has one draw, its values.
 
     Args:
         slip: Slip law named by `--slip`.
@@ -34,6 +35,7 @@ def slip_tables(
 
     Raises:
         DataError: The posterior beside the slip.toml is damaged or of another law.
+        DomainError: All draws and the mean are invalid at the robot's loads, or `toe` is unknown.
     """
     law = slip.law
     if isinstance(law, VelocityCoulomb):
@@ -74,7 +76,11 @@ def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Gener
 
 
 def _posterior(file: Path, curve: SlipCurve) -> Array:
-    """Read the posterior draws of a law, shape (m, k); a fixed parameter has the curve's value."""
+    """Read the posterior draws of a law, shape (m, k).
+
+    A parameter without draws, a fixed one, has the curve's value; without draws of any, the file is
+    of another law and `DataError` is raised.
+    """
     names = [parameter.name for parameter in curve.law.parameters]
     columns, others = read_draws_of(file, "posterior", names, advice=_ADVICE)
     drawn = list(columns)

@@ -51,7 +51,7 @@ class Stopped(ZebroLabError):
 
 
 def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibration, RigData]:
-    """Fit a slip law to rig data and write the calibration folder.
+    """Fit a slip law to rig data; write the calibration folder, with a checkpoint if not converged.
 
     Args:
         request: Options: data, settings and output folder.
@@ -61,8 +61,8 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
         The finished fit and the rig data that were fitted.
 
     Raises:
-        ZebroLabError: Data, options or output folder are invalid; nothing was written.
-        ModelError: The fit failed; nothing was written.
+        ZebroLabError: Data, options, checkpoint or output folder are invalid.
+        ModelError: The law is unknown or the fit failed; a checkpoint may have been written.
         Stopped: The watcher requested a stop; a checkpoint was written if sampling had begun.
     """
     require_replaceable(request.out, CALIBRATION, inputs=request.inputs)
@@ -104,7 +104,7 @@ class _Checkpoint:
         self._folder, self._mark, self._saved = folder, mark, time.monotonic()
 
     def keep(self, chains: Chains) -> None:
-        """Write the chains if the last write, or the start, is `CHECKPOINT_SECONDS` ago."""
+        """Write the chains if the last write, or the start, is over `CHECKPOINT_SECONDS` ago."""
         if time.monotonic() - self._saved > CHECKPOINT_SECONDS:
             self.save(chains)
 
@@ -127,7 +127,10 @@ def _sampler(request: CalibrationRequest) -> SamplerSettings:
 
 
 def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
-    """Return the laws to compare, by reported name, simplest first; two for `--curvature auto`."""
+    """Return the laws to compare, by reported name, simplest first.
+
+    They are two for the Magic Formula with `--curvature auto` and data at several loads, else one.
+    """
     if request.law != MagicFormula.name:
         if request.curvature != "auto" or request.load_sensitivity:
             raise SettingsError(

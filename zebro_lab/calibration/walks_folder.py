@@ -69,7 +69,7 @@ class WalksToWrite:
         logs: Leg log of each walk, in the order of `posterior.walks`.
         inputs: Every file read, the `slip.toml` first.
         settings: Settings of the fit, JSON-serialisable.
-        source: Where the data of the walks come from.
+        source: Sources of slip law and walks, joined by commas.
         notes: Notes, one line each.
     """
 
@@ -101,15 +101,18 @@ def describe_legs(described: RobotFile) -> dict[str, Any]:
 
 
 def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path], object]) -> Path:
-    """Write `walks/` into a calibration folder, atomically.
+    """Write `walks/` into a calibration folder, atomically: posterior, draws, metrics, pictures.
 
     Args:
         calibration: The calibration folder.
         fitted: The finished fit of the walks.
-        draw: Function that draws the pictures into the folder that it is given.
+        draw: Draws the pictures into the folder that it is given.
 
     Returns:
         The folder written, `walks/` of the calibration folder.
+
+    Raises:
+        AlreadyExists, NotWritten: As in `result_folder`.
     """
     folder = calibration / FOLDER
     inputs = file_hashes(dict.fromkeys(fitted.inputs))
@@ -134,7 +137,9 @@ def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path
 
 
 def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
-    """Read the posterior of legs and floor from `walks/` beside a slip.toml; None if not fitted.
+    """Read the posterior of legs and floor from `walks/` beside a slip.toml.
+
+    None is returned if no walks were fitted: `walks/` lacks `walks.toml` or its manifest.
 
     Args:
         slip_toml: The `slip.toml` of the calibration.

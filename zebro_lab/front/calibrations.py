@@ -43,7 +43,10 @@ class CalibrationResult:
 
     @property
     def summary(self) -> "pd.DataFrame":
-        """Posterior, prior and diagnostics, SI; a row per parameter, columns of `summary.csv`."""
+        """Posterior, prior and diagnostics as in `summary.csv`, SI; its index is the parameter.
+
+        A fixed parameter has the prior "fixed" and NaN for the diagnostics.
+        """
         import pandas as pd
 
         table = calibration_folder.summary_csv(self.calibration)
@@ -51,7 +54,7 @@ class CalibrationResult:
 
     @property
     def posterior(self) -> "az.InferenceData":
-        """Posterior draws and observed block means; a chain is an ensemble of walkers."""
+        """Posterior draws, log density and block means; a chain is an ensemble of walkers."""
         return calibration_folder.inference_data(self.calibration)
 
 
@@ -59,6 +62,8 @@ def read_rig_data(
     *data: PathLike, columns: PathLike | None = None, slip_definition: str | None = None
 ) -> RigData:
     """Read rig experiments from tables, run folders or folders of either.
+
+    Excluded runs, and copies of other data, are left out.
 
     Args:
         data: Files and folders of rig data.
@@ -69,7 +74,8 @@ def read_rig_data(
         Samples in SI with their source, the files read, and notes.
 
     Raises:
-        ZebroLabError: A file is missing or cannot be used; names file, row and column.
+        ZebroLabError: A file is missing or cannot be used, slip definitions or load cells differ,
+            or the samples are too few or of one slip ratio; names file, row and column if known.
     """
     return read_rig_files(
         [Path(each) for each in data], columns=optional(columns), slip_definition=slip_definition
@@ -101,9 +107,9 @@ def calibrate(
         watcher: Receives progress and may request a stop; None for neither.
 
     Raises:
-        ZebroLabError: The data cannot be used, the folder cannot be replaced, or a stop was
-            requested.
-        ModelError: The fit failed.
+        ZebroLabError: The data cannot be used, the folder cannot be replaced or written, or a stop
+            was requested.
+        ModelError: The law is unknown or the fit failed.
     """
     with kept_or_temporary(out) as folder:
         request = CalibrationRequest(
@@ -127,6 +133,7 @@ def read_slip_curve(path: PathLike) -> SlipCurve:
         path: A `slip.toml`, or the folder that holds it.
 
     Raises:
-        DataError: The file is missing, damaged, or of another schema.
+        DataError: The file is missing, damaged, of another schema, or has an unknown law or
+            invalid values.
     """
     return calibration_folder.read_slip(Path(path))

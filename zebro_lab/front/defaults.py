@@ -34,7 +34,7 @@ def optional(path: PathLike | None) -> Path | None:
 
 @contextmanager
 def kept_or_temporary(out: PathLike | None) -> Iterator[Path]:
-    """Yield `out` as a path; if it is None, a path in a temporary folder, removed at the end."""
+    """Yield `out` as a path; if None, a path to create in a temporary folder, then removed."""
     if out is not None:
         yield Path(out)
         return

@@ -33,7 +33,9 @@ class Run:
     manifest: RunManifest
 
     def legs(self) -> LegLog:
-        """Read the leg angles over time.
+        """Read the leg angles over time, decoded from the counts of a recorded run.
+
+        Leg signs of a `robot.toml` are not applied.
 
         Raises:
             ZebroLabError: The run has no leg angles, or they cannot be read.
@@ -44,7 +46,8 @@ class Run:
         """Read the samples of a slip-rig run.
 
         Raises:
-            ZebroLabError: The run is of another kind, or cannot be read.
+            ZebroLabError: The run is of another kind, excluded, cannot be read, or its samples are
+                too few or of one slip ratio.
         """
         return read_rig_data([self.folder])
 
@@ -76,7 +79,7 @@ def open_devices(
     """Open devices, real or simulated; leaving the context de-energises what they drive.
 
     Args:
-        zebro: Robot as "PROFILE@PORT", "PROFILE@sim" or "sim"; None for no robot.
+        zebro: Robot as "PROFILE@PORT", "PROFILE@sim", "sim" or "replay:RUN"; None for no robot.
         imus: Inertial measurement units, each in the same form.
         rig: Slip rig in the same form; None for no rig.
         seed: Seed of the random numbers of simulated devices.
@@ -86,7 +89,8 @@ def open_devices(
 
     Raises:
         SettingsError: No device is named.
-        RigError: An address, a profile or a port is invalid, or cannot be opened.
+        RigError: An address or a profile is invalid, or a port cannot be opened.
+        ZebroLabError: A run to replay cannot be read.
     """
     request = DevicesRequest(zebro=zebro, imus=tuple(imus), rig=rig, seed=seed)
     with open_devices_of(request) as devices:
@@ -101,15 +105,15 @@ def write_report(
     Args:
         data: A run folder, or a folder of them.
         out: HTML file to write.
-        calibration: The calibration folder; None for `calibration` beside the data.
+        calibration: Calibration folder, which need not exist; None for `calibration` beside `data`.
         title: Title of the page; None for "Report on" and the name of the folder `data`.
 
     Returns:
         The file written.
 
     Raises:
-        ZebroLabError: There is nothing to report on, a manifest is damaged, or `out` was not
-            written by this function or command.
+        ZebroLabError: There is nothing to report on, a file of a result is missing or damaged, or
+            `out` exists and is no report, or its folder does not exist.
     """
     folder = Path(data).absolute().parent / "calibration" if calibration is None else calibration
     report(ReportRequest(Path(data), Path(folder), Path(out), title), made=datetime.now(UTC))

@@ -21,7 +21,8 @@ def read_track(path: PathLike) -> TrackFile:
         path: A table of poses, or the folder of a `track.csv`.
 
     Raises:
-        ZebroLabError: A file is missing or cannot be used; names file, row and column.
+        ZebroLabError: A file is missing or cannot be used, or has fewer than three poses; names
+            file, row and column if known.
     """
     return read_track_file(Path(path))
 
@@ -46,15 +47,16 @@ def track_photos(
         out: Track folder to write.
         camera: The `camera.toml`.
         floor: The `floor.toml`.
-        robot: The `robot.toml`; None for the thesis's robot.
-        times: CSV with columns `photo`, `t_s` and optionally `t_sigma` [s]; None for the times in
-            the photographs.
-        start: Moment from which time is counted, with its time zone; None for the first
-            photograph.
-        annotations: File of annotations that a person made in the photographs.
+        robot: The `robot.toml`, with the marker's place and its height while the robot stands;
+            None, the thesis's robot, raises, as it has neither.
+        times: CSV with columns `photo`, `t_s` and optionally `t_sigma` [s]; None for EXIF times or
+            the time stamps of a video, not for a composite picture.
+        start: Moment from which time is counted: what the camera's clock shows, with time zone UTC;
+            None for the first photograph.
+        annotations: File of annotations that a person made in the photographs; None for none.
         without_marker: Whether to track the robot by a template, annotated in one photograph.
         merged: How the exposures of a composite picture were merged: "pasted", "darkest" or
-            "mean".
+            "mean"; None for other photographs.
 
     Raises:
         ZebroLabError: A file or an option cannot be used.
@@ -85,7 +87,8 @@ def validate_walks(
         seed: Seed of all random numbers.
 
     Raises:
-        ZebroLabError: A file is missing or invalid, or prediction and track do not overlap in time.
+        ZebroLabError: A file is missing or invalid, `out` cannot be replaced, the clock offset is
+            not determined, or prediction and track do not overlap in time.
         ModelError: Errors of a path cannot be computed.
     """
     pairs = tuple(

@@ -47,12 +47,14 @@ class WalkResult:
 def read_legs(path: PathLike, *, columns: PathLike | None = None) -> LegLog:
     """Read leg angles over time from a table, a recorded run or a walk folder.
 
+    Leg signs of a `robot.toml` are not applied.
+
     Args:
         path: Table, run folder or walk folder to read.
-        columns: A `columns.toml` to use instead of the one beside the table.
+        columns: A `columns.toml` to use instead of the one beside the table; ignored for a run.
 
     Raises:
-        ZebroLabError: A file is missing or cannot be used; names file, row and column.
+        ZebroLabError: A file is missing or cannot be used; names file, row and column if known.
     """
     return read_leg_log(Path(path), columns=optional(columns))
 
@@ -73,15 +75,18 @@ def walk_gait(
     """Simulate a gait and compute the robot's path, as `zebro-lab walk` does.
 
     Args:
-        gait: Name of the gait.
+        gait: "tripod", "suriana", "maxplus", "tetrapod" or "buehler".
         slip: A calibration folder or `slip.toml`, "coulomb:MU[:V]" or "thesis"; None for a model
             without slip.
         duration: Duration of the walk [s].
-        model: "dynamics", "thesis", "no-slip" or "no-slip-simple".
-        steering: Ratio of the outer to the inner legs' stance angle; 1 walks straight [-].
-        direction: Side to turn to, "left" or "right"; None for left.
+        model: "dynamics", "thesis", or without slip "no-slip" or "no-slip-simple".
+        steering: Ratio of the outer to the inner legs' stance angle, of the tripod alone; None for
+            1, straight [-].
+        direction: Side to turn to, "left" or "right", of tripod, suriana and maxplus; None for
+            left.
         robot: A `robot.toml`; None for the thesis's robot.
-        draws: Number of draws for a band, at least two; 0 for the single path only.
+        draws: Number of draws for a band, at least two, with the model "dynamics"; 0 for the single
+            path only.
         seed: Seed of the band's draws.
         out: Walk folder to write; None to keep no files.
 
@@ -110,15 +115,15 @@ def predict_walk(
     seed: int = 1,
     out: PathLike | None = None,
 ) -> WalkResult:
-    """Predict the path from measured leg angles, as `zebro-lab predict` does.
+    """Predict the path from measured leg angles, in their time base, as `zebro-lab predict` does.
 
     Args:
         legs: A table of leg angles, a recorded run, or a walk folder.
         slip: As in `walk_gait`.
         model: As in `walk_gait`.
         robot: A `robot.toml`; None for that of the run, else the thesis's robot.
-        columns: A `columns.toml` to use instead of the one beside the table.
-        draws: Number of draws for a band, at least two; 0 for the single path only.
+        columns: A `columns.toml` to use instead of the one beside the table; ignored for a run.
+        draws: As in `walk_gait`.
         seed: Seed of the band's draws.
         out: Walk folder to write; None to keep no files.
 

@@ -42,12 +42,12 @@ def animate(
         robot: The robot, for the size of body and legs.
         folder: Folder to write `animation.mp4` (with ffmpeg on the search path) or
             `animation.gif` into.
-        title: Title of the animation; name the model.
+        title: Title of the animation, which names the model; "(simulated)" is appended.
         progress: Called with the fraction drawn, 0 to 1 [-].
 
     Returns:
-        The file written. In contact a leg is orange, in the air grey. A walk too long for 400
-        frames is shown faster, with the factor written in the picture.
+        The file written. In contact a leg is orange, in the air grey. A walk longer than 20 s, 400
+        frames, is shown faster, with the factor written in the picture.
     """
     frames, speed_up = frame_times(path.t)
     index = np.searchsorted(path.t, frames).clip(0, len(path.t) - 1)
@@ -64,7 +64,7 @@ def animate(
 
 
 def frame_times(t: Array) -> tuple[Array, float]:
-    """Compute the times of the frames, 20 per second of the animation and at most 400.
+    """Compute the times of the frames, 20 per second of the animation, 1 to 400 in number.
 
     Args:
         t: Times of the walk, shape (n,) [s].
@@ -121,7 +121,10 @@ class _Scene:
         self._clock = figure.text(0.03, 0.04, "")
 
     def show(self, sample: int) -> None:
-        """Update body, legs, trace, ground and clock to the path's sample of this index."""
+        """Update body, head, legs, trace, ground and clock to the path's sample of this index.
+
+        The trace is the path up to this sample, as far as it lies within the view.
+        """
         path = self._path
         position, orientation = path.position[sample], path.orientation[sample]
         corners = to_world(body_corners(self._robot), position, orientation)

@@ -72,8 +72,8 @@ def _autocorrelation(
     The mean of the residuals is known to be zero, so it is not subtracted.
 
     Returns:
-        Lags up to 20 that occur within runs [blocks], autocorrelation at each lag [-], and number
-        of pairs at each lag.
+        Lags up to 20 that occur within runs [blocks], autocorrelation at each lag, the mean product
+        over the mean square [-], and number of pairs; three empty arrays if no run has two blocks.
     """
     rows = []
     for lag in range(1, min(_MAX_LAG, len(whitened) - 1) + 1):

@@ -13,14 +13,15 @@ _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 @styled
 def path_band(paths: Poses, *, title: str) -> Figure:
-    """Draw the draws of a predicted path from above, and quantiles of x, y and yaw over time.
+    """Draw a predicted path's band from above, and quantiles of x, y and yaw over time.
 
     Args:
         paths: Draws of the predicted path.
-        title: Title of the figure.
+        title: Title of the figure; "(simulated)" is appended.
 
     Returns:
-        The figure; bands hold 50 and 90 % of the draws at each time.
+        The figure: the first 60 draws and the median of all from above; over time the median and
+        the central 50 and 90 % of the draws.
     """
     names = ("x [m]", "y [m]", "yaw [deg]")
     figure, above, panels = map_and_panels(title, simulated=True, height=5.6, names=names)

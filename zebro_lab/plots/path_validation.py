@@ -25,14 +25,19 @@ def path_validation(
     """Draw paths and track from above, and errors ahead, to the left and of yaw over time.
 
     Args:
-        paths: Prediction and baselines by name, in the track's frame; one of length 0 is not drawn.
+        paths: Prediction and baselines by name, in the track's frame and covering its times; at
+            most eight are drawn, none of length 0.
         track: Tracked poses.
-        band: Draws of the prediction, in the same frame; None without draws.
+        band: Draws of the prediction, of which 60 are drawn, in the same frame; None without draws.
         title: Name of the walk.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure; errors are predicted minus tracked [mm, mm, deg].
+        The figure; errors are predicted minus tracked, ahead and to the left of the track's
+        direction of travel [mm, mm, deg].
+
+    Raises:
+        DomainError: A tracked time lies outside the times of a path.
     """
     figure, above, panels = map_and_panels(
         f"Prediction and track: {title}", simulated=simulated, height=5.8, names=_PANELS

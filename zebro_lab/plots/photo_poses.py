@@ -51,14 +51,14 @@ def photos_beside_poses(
     """Draw photographs in a row, and below each the robot as predicted, at the same scale.
 
     Args:
-        shots: Photographs and predicted poses.
+        shots: Photographs and predicted poses, one or more.
         robot: The robot, for the size of body and legs.
         title: Name of the walk.
         simulated_photos: Whether the photographs are simulated too; predictions always are.
 
     Returns:
-        The figure: photographs above; predicted robots below, with the tracked outline and the
-        deviation of predicted from tracked pose [mm, deg].
+        The figure: photographs above; predicted robots below, with the tracked outline, the
+        distance from it [mm], and yaw predicted minus tracked [deg].
     """
     figure = new_figure(
         f"Photographs and predicted poses: {title}", False,
@@ -109,7 +109,7 @@ def band_over_floor(
     title: str,
     simulated_photos: bool,
 ) -> Figure:
-    """Draw the predicted path with its draws, and the track, over a photograph from above.
+    """Draw the predicted path with 60 of its draws, and the track, over a photograph from above.
 
     Args:
         floor: The floor from straight above, BGR, shape (height, width, 3).

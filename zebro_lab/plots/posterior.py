@@ -27,8 +27,8 @@ def corner(draws: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure: densities on the diagonal, titled with median and central 90 %; regions of
-        highest density with 50 % and 90 % of the draws below it.
+        The figure: densities on the diagonal, titled with median and central 90 %; below it the
+        regions of highest density that hold 50 % and 90 % of the draws, over a thinned sample.
     """
     k = draws.shape[1]
     side = max(7.0, 1.75 * k)
@@ -62,7 +62,7 @@ def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
 
     Returns:
         The figure: a row for each parameter, densities left, traces right. Ensembles that agree
-        lie on one another. Long chains are thinned to about 2,000 points a line.
+        lie on one another. Traces of 4,000 draws or more are thinned to 2,000 to 3,000 points.
     """
     n_ensembles, n_draws, k = chains.shape
     figure = new_figure("Traces by ensemble", simulated, width=7.5, height=1.2 + 1.35 * k)
@@ -105,7 +105,7 @@ def _density(values: Array, edges: Array) -> Array:
 
 
 def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
-    """Compute Scott's kernel width [bins]: sd n^-power; `power` is 1 / (4 + dimensions)."""
+    """Compute Scott's kernel width [bins]: sd n^-power of n values; `power` is 1 / (4 + dims)."""
     return float(np.std(values)) * len(values) ** -power / float(edges[1] - edges[0])
 
 

@@ -162,7 +162,7 @@ def point_alpha(count: int) -> float:
 
 
 def plain(value: float) -> str:
-    """Format a number with three significant digits, without exponent below a million.
+    """Format a number with at most three significant digits; no exponent from 0.0001 to 999000.
 
     >>> plain(1148.3), plain(0.01442)
     ('1150', '0.0144')
@@ -174,11 +174,11 @@ def slip_grid(slip: Array, count: int) -> Array:
     """Compute a grid of slip ratios over the tested range, denser around zero.
 
     Slip curves have narrow peaks near zero slip, where the grid gets additional points: within 15 %
-    of the largest tested slip.
+    of the largest absolute tested slip.
 
     Args:
         slip: Tested slip ratios, any shape [-].
-        count: Number of points over the full range; as many are added around zero.
+        count: Number of points over the full range; up to as many are added around zero.
 
     Returns:
         Increasing slip ratios, shape (m,), m up to twice `count` [-].

@@ -45,8 +45,9 @@ def slip_curves(
 
     Each block is drawn at the nearest load level; blocks whose load differs by more than 10 % are
     hollow, since the curve is for another load. The bands are those of the curve (parameters only),
-    without noise and run offsets. If a peak is in the first 15 % of the tested slip, a second panel
-    shows that part.
+    without noise and run offsets, over the slip tested at this load, or at all loads for a level
+    without blocks. If a peak is in the first 15 % of the tested slip, each load has a second panel
+    for that part.
 
     Args:
         blocks: Block means of slip ratio and forces.
@@ -80,7 +81,7 @@ def slip_curves(
 
 @dataclass(frozen=True)
 class _LoadCurve:
-    """Posterior slip curve at one load [N], and which blocks (`rows`) are nearest to this load."""
+    """Posterior slip curve at one load [N] over `slip` [-]; `rows`: blocks nearest to this load."""
 
     load: float
     rows: NDArray[np.bool_]
@@ -88,7 +89,7 @@ class _LoadCurve:
     bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
 
     def peaks(self) -> list[int]:
-        """Return indices of maximum and minimum of the median curve, if not at its ends."""
+        """Return indices of maximum and minimum of the median curve; each only if not at an end."""
         median = self.bands[2]
         tops = (int(np.argmax(median)), int(np.argmin(median)))
         return [top for top in tops if 0 < top < len(median) - 1]

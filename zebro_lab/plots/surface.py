@@ -32,8 +32,9 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure. The surface covers the tested slip and load; a single load gets a margin of a
-        fifth either side, to have a surface at all. Points behind it show through.
+        The figure. The surface covers the tested slip and load; loads within a tenth of the largest
+        get a margin of a fifth either side, to have a surface at all. Points behind it show
+        through.
     """
     load_low, load_high = float(blocks.normal_force.min()), float(blocks.normal_force.max())
     if load_high - load_low < 0.1 * load_high:

@@ -12,10 +12,10 @@ _SHOWN = 6.0  # s: longer, and the strides run into each other
 
 @styled
 def tilt(t: Array, predicted: Array, measured: Array, *, title: str, simulated: bool) -> Figure:
-    """Draw predicted and measured roll and pitch over the middle 6 s of the walk.
+    """Draw predicted and measured roll and pitch [deg] over the middle 6 s of the walk, or all.
 
     Args:
-        t: Times, shape (n,) [s].
+        t: Times, increasing, shape (n,) [s].
         predicted: Predicted roll and pitch, shape (n, 2) [rad].
         measured: Measured roll and pitch, shape (n, 2) [rad].
         title: Name of the walk.

@@ -25,7 +25,7 @@ class SeenMarks:
     Attributes:
         outlines_px: Corners u, v of each outline, shape (m, 2) [px]; the last is joined to the
             first when drawn.
-        labels: Label of each outline; empty for none.
+        labels: Label of each outline, as many as outlines; "" writes none.
         colour: Colour of outlines and labels, as matplotlib takes it.
     """
 
@@ -46,9 +46,9 @@ def over_photo(
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
         path_px: Tracked origin of the body over time, shape (n, 2) [px]; NaN interrupts the line.
-        headings_px: Point ahead of the body at each origin, the tip of an arrow, shape (n, 2) [px];
-            without it no path is drawn.
-        marks: Groups of outlines.
+        headings_px: Point ahead of the body at each origin, the tip of an arrow, shape (n, 2) [px].
+            The path is drawn only if both are given.
+        marks: Groups of outlines; the first corner of each gets a dot.
 
     Returns:
         The figure.
@@ -101,7 +101,7 @@ def over_floor(
         extent: Lowest x, highest x, lowest y, highest y of the picture on the floor [m].
         poses: x, y [m] and yaw [rad], shape (n, 3); NaN interrupts the path.
         ellipses: Outline x, y of the confidence region around each pose, shape (m, 2) [m].
-        labels: Label of each pose; empty for none. Every n-th is written, so that none overlap.
+        labels: Label of each pose, "" for none; every n-th is written, so that none overlap.
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
@@ -162,7 +162,7 @@ def residual_page(
         sd: Standard deviation of each observation of x, y [m] and yaw [rad], shape (n, 3).
         score: Similarity score of each detection, shape (n,) [-].
         height: Height of the body's origin above the floor, shape (n,) [m].
-        source: How each pose was found, n of them: "marker", "body" or "hand".
+        source: How each pose was found, n of them: "marker", "body" or "hand"; others are crosses.
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 

@@ -25,12 +25,12 @@ def slip_ratios(path: WalkPath, *, title: str) -> Figure:
 
     Args:
         path: Part of a walk to draw.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure: a panel for each leg, arranged as on the robot; contact is shaded. A leg on its
-        toe does not roll and may have no ratio. Limits leave out the largest few percent: a leg
-        that is dragged while it hardly turns has very large ones.
+        The figure: a panel for each leg, arranged as on the robot; contact is shaded. A leg in the
+        air, or on its toe, which does not roll, may have no ratio. The limits leave out 3 % of the
+        ratios in contact at either end: a leg dragged while it hardly turns has very large ones.
     """
     limits = _limits(path.slip_ratio[path.contact], least=0.02, cut=0.03)
     lines = {"slip ratio": path.slip_ratio}
@@ -45,10 +45,11 @@ def normal_forces(path: WalkPath, *, title: str) -> Figure:
 
     Args:
         path: Part of a walk to draw.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure: a panel for each leg, arranged as on the robot; contact is shaded.
+        The figure: a panel for each leg, arranged as on the robot; contact is shaded. The largest
+        1 % may lie beyond the limits.
     """
     limits = 0.0, _limits(path.normal_force[path.contact], least=1.0)[1]
     lines = {"normal force": path.normal_force}
@@ -61,11 +62,11 @@ def traction_forces(path: WalkPath, *, title: str) -> Figure:
 
     Args:
         path: Part of a walk to draw.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
         The figure: a panel for each leg, arranged as on the robot, with the components forward and
-        to the left of the heading; contact is shaded.
+        to the left of the heading; contact is shaded. 1 % at either end may exceed the limits.
     """
     return _draw_traction(path.t, path.traction_force, path.contact, title)
 
@@ -79,10 +80,11 @@ def paired_traction(path: WalkPath, *, title: str) -> Figure:
 
     Args:
         path: Part of a walk to draw.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure, as `traction_forces` draws it.
+        The figure, as `traction_forces` draws it; time and contact are those of a pair's first
+        step.
     """
     net = paired_sum(path.traction_force)
     first = slice(1, 2 * len(net), 2)
@@ -95,7 +97,7 @@ def gantt(path: WalkPath, *, title: str) -> Figure:
 
     Args:
         path: Part of a walk to draw.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
         The figure: a row for each leg, leg 1 on top; bars are contact, left legs darker.
@@ -149,7 +151,10 @@ def _leg_panels(
     t: Array, contact: NDArray[np.bool_], lines: Mapping[str, Array],
     limits: tuple[float, float], *, label: str, title: str,
 ) -> Figure:  # fmt: skip
-    """Draw `lines`, arrays (n, 6) by label, over time; a panel per leg, arranged as from above."""
+    """Draw one or two `lines`, arrays (n, 6) by label, over time, in a panel per leg from above.
+
+    Contact is shaded; `limits` are those of the vertical axes, `label` is theirs.
+    """
     figure = new_figure(title, True, width=8.0, height=6.2)
     for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
@@ -174,7 +179,8 @@ def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
 def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
     """Compute axis limits that hold zero and all finite values but a share `cut` at either end.
 
-    Impacts of a few samples would flatten all else. A margin is a tenth of the range or of `least`.
+    Impacts of a few samples would flatten all else. The margin is a tenth of the range, at least of
+    `least`; without finite values the limits are this margin around zero.
     """
     finite = values[np.isfinite(values)]
     low, high = np.quantile(finite, (cut, 1 - cut)) if len(finite) else (0.0, 0.0)

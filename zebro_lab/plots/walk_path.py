@@ -27,11 +27,11 @@ def path_with_snapshots(path: WalkPath, robot: Robot, *, title: str) -> Figure:
     Args:
         path: The walk.
         robot: The robot, for the size of its body.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure, x to the right and y up, both to one scale. Dots along the path are a second
-        apart, in walks of 2 s to a minute.
+        The figure, x to the right and y up, both to one scale; the six times are evenly spaced from
+        start to end. Dots along the path are at whole seconds, in walks of 2 s to a minute.
     """
     t = path.t
     shots = np.abs(t[:, None] - np.linspace(t[0], t[-1], _SNAPSHOTS)).argmin(axis=0)
@@ -65,11 +65,12 @@ def motion(path: WalkPath, *, title: str) -> Figure:
 
     Args:
         path: The walk.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure: a column for each of x, y, z in the inertial frame. The tips of impacts are
-        cut off where they would flatten all else.
+        The figure: a column for each of x, y, z in the inertial frame. Velocity and acceleration
+        are differences of the positions; where the tips of impacts would flatten all else, they are
+        cut off there.
     """
     names = ("x", "y", "z")
     units = ("position [m]", "velocity [m/s]", "acceleration [m/s²]")
@@ -82,11 +83,11 @@ def orientation(path: WalkPath, *, title: str) -> Figure:
 
     Args:
         path: The walk.
-        title: Title of the figure; name the model.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure: a column for each angle. The tips of impacts are cut off where they would
-        flatten all else.
+        The figure: a column for each angle, in degrees. Rates and accelerations are differences of
+        the angles; where the tips of impacts would flatten all else, they are cut off there.
     """
     names = ("roll (left side up)", "pitch (nose down)", "yaw (to the left)")
     units = ("angle [deg]", "rate [deg/s]", "acceleration [deg/s²]")
@@ -97,7 +98,10 @@ def orientation(path: WalkPath, *, title: str) -> Figure:
 def _over_time(
     t: Array, values: Array, names: Sequence[str], units: Sequence[str], title: str
 ) -> Figure:
-    """Draw three quantities (n, 3) over time, below them first and second derivatives."""
+    """Draw the columns of `values`, shape (n, 3), over time, below them their two derivatives.
+
+    `units` are the labels of the rows: values, first and second derivative.
+    """
     figure = new_figure(title, True, width=8.5, height=6.0)
     panels = figure.subplots(3, 3, sharex=True)
     rows = [values]
@@ -140,7 +144,10 @@ def _extent(path: WalkPath, bodies: Sequence[Array], robot: Robot) -> tuple[Arra
 
 
 def _sides(extent: Array) -> tuple[float, float]:
-    """Compute width and height [inch] of a figure with axes of the shape of `extent` [m]."""
+    """Compute width and height [inch] of a figure with axes about of the shape of `extent` [m].
+
+    The axes are 2 to 7.5 inches each way, the figure at least 7.0 by 3.4 inches.
+    """
     scale = (_LONGEST_SIDE - 1.0) / float(max(extent[0], extent[1]))
     width, height = (float(np.clip(scale * side, 2.0, 7.5)) for side in extent)
     return max(width + 1.0, _NARROWEST), max(height + 1.3, _LOWEST)

@@ -14,26 +14,29 @@ FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (
 
 
 def to_world(points: Array, position: Array, orientation: Array) -> Array:
-    """Transform points from the body frame to the inertial frame, shape (..., 3) [m].
+    """Transform points from the body frame to the inertial or floor frame, shape (..., 3) [m].
 
     Args:
         points: Points in the body frame, shape (..., 3) [m].
-        position: Body's centre in the inertial frame, shape (3,) [m].
-        orientation: Roll, pitch and yaw of the body, shape (3,) [rad].
+        position: Body's centre in the target frame, shape (3,) [m].
+        orientation: Roll, pitch and yaw of the body in that frame, shape (3,) [rad].
     """
     return points @ attitude(*orientation).T + position
 
 
 def body_corners(robot: Robot) -> Array:
-    """Compute the corners of the body in the body frame; z varies fastest, shape (8, 3) [m]."""
+    """Compute the corners of the body in the body frame, shape (8, 3) [m].
+
+    From low to high, x varies slowest and z fastest: rear right bottom comes first.
+    """
     return _CORNERS * np.asarray(robot.body_size)
 
 
 def leg_arcs(robot: Robot, theta: Array) -> Array:
     r"""Compute 25 points along each leg, hip to toe, in the body frame, shape (6, 25, 3) [m].
 
-    The arc's centre lies a radius from the hip in the direction theta; from the hip the arc goes
-    over the rear to the toe.
+    The arc's centre lies a radius r from the hip h in the direction theta; from the hip the arc of
+    angle A goes over the rear to the toe.
 
     .. math::
         p(s) = h + r \begin{pmatrix} \cos\theta \\ 0 \\ -\sin\theta \end{pmatrix}
@@ -58,7 +61,8 @@ def leg_arcs(robot: Robot, theta: Array) -> Array:
 def outline(robot: Robot) -> Array:
     """Compute the closed outline of the body from above, with a tip at the head.
 
-    Returns points in the body frame with z = 0, the last equal to the first, shape (6, 3) [m].
+    Returns points in the body frame with z = 0, from rear left by rear right to the head and back,
+    the last equal to the first, shape (6, 3) [m].
     """
     length, width, _ = robot.body_size
     tip = 0.15 * length

@@ -65,7 +65,8 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
         Self-contained HTML, with pictures and style embedded.
 
     Raises:
-        DataError: A manifest or slip.toml lacks a value that is shown, or a picture is invalid.
+        DataError: A manifest or slip.toml lacks a value that is shown, or a picture is no PNG or
+            too large.
     """
     style = (files("zebro_lab.report") / PAGES / STYLE).read_text(encoding="utf-8")
     template = _template()
@@ -126,7 +127,7 @@ def _pictures(part: Part) -> list[Picture]:
 
 
 def _judged(sources: Sources) -> Iterator[tuple[ReportedRun, Part, str]]:
-    """Yield run, validation part, and name in this validation of every validated walk."""
+    """Yield run, its own validation, and the walk's name in this, of every walk validated there."""
     for run in sources.runs:
         part = run.parts.get("validation")
         if part is not None and not part.missing:

@@ -36,7 +36,7 @@ CAPTIONS: Mapping[str, str] = {
     ".imu": "Roll and pitch, predicted and measured by the IMU",
     ".errors": "Predicted paths and the track, and errors over time",
 }
-"""Captions by file name without suffix; with a leading dot by the end of the name (validation)."""
+"""Captions by file name without suffix; with a leading dot by the end of that name (validation)."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not a PNG, or larger than `MOST_PICTURE`.
+        DataError: The file is not a PNG, cannot be read, or is larger than `MOST_PICTURE`.
     """
     data = read_bytes(file, most=MOST_PICTURE)
     if not data.startswith(_PNG):
@@ -96,6 +96,8 @@ def lies_in(folder: Path, name: str) -> bool:
 def place_of(name: str) -> tuple[int, str]:
     """Return the sort key of a picture's file name: index in `CAPTIONS` (else last), then name.
 
+    A key with a leading dot fits if it is in the name, another if it is the name without `.png`.
+
     >>> sorted(["corner.png", "curves.png", "b.imu.png", "b.png"], key=place_of)
     ['curves.png', 'corner.png', 'b.imu.png', 'b.png']
     """
@@ -108,7 +110,8 @@ def place_of(name: str) -> tuple[int, str]:
 def caption_of(stem: str, *, stage: str) -> str:
     """Return the caption of a picture, from its file name and the stage that drew it.
 
-    Without an entry in `CAPTIONS` it is that of errors in a validation, else the name with spaces.
+    In a validation it is that of the key with a leading dot that ends the name, by default
+    `.errors`; else that of the name in `CAPTIONS`, by default the name with spaces.
 
     Args:
         stem: File name of the picture without suffix.

@@ -44,7 +44,7 @@ class Part:
         name: Name of the result: calibration, walks, track, prediction or validation.
         folder: Folder of the result, which may not exist.
         documents: Content of the manifest and other files read, by file name; empty if missing.
-        pictures: PNG files of the folder that its manifest lists, in the order shown.
+        pictures: Existing PNG files of the folder that its manifest lists, in the order shown.
         maker: Command that writes the result.
         not_shown: Pictures that the manifest lists with a path outside the folder.
     """
@@ -99,7 +99,7 @@ class Sources:
 
     Attributes:
         data: The folder to report on, as named.
-        runs: Runs found in the folder, or the folder itself.
+        runs: The folder itself if it is a run or has no run in it, else the runs found in it.
         calibration: The calibration, present or missing.
         together: A validation of several runs together, present or missing; None for a report of
             one run.
@@ -121,7 +121,7 @@ class Sources:
 
     @property
     def simulated(self) -> Sequence[str]:
-        """Sources of parts and runs that contain `sim:`, sorted, each once."""
+        """Sources of present parts and of runs that contain `sim:`, sorted, each once."""
         named = [part.source for part in self.parts if not part.missing]
         named += [str(run.recorded.get("source", "")) for run in self.runs]
         return sorted({each.strip() for one in named for each in one.split(",") if "sim:" in each})
@@ -137,7 +137,8 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
 
     Raises:
         NotFound: There is no such folder, or no run and no result in it.
-        DataError: A manifest is damaged or of another command, or a file beside it is missing.
+        DataError: A manifest is damaged or of another command, or a file of `BESIDE` is missing or
+            damaged.
     """
     for name in WALK_PARTS:
         settle(data / name)
@@ -192,7 +193,10 @@ def _part(name: str, folder: Path, data: Path) -> Part:
 
 
 def _rows(file: Path) -> dict[str, dict[str, Any]]:
-    """Read a CSV as dicts by header, by the cell in the first column; numeric cells as floats."""
+    """Read a CSV as dicts by header, by the cell in the first column; numeric cells as floats.
+
+    Rows with more cells than headers are left out.
+    """
     text = read_text(file, most=_MOST_TABLE)
     with parsing(file, "cannot be read as CSV", advice="run the command that wrote it again"):
         rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]

@@ -23,8 +23,9 @@ def report(request: ReportRequest, *, made: datetime) -> Sources:
         The results shown on the page.
 
     Raises:
-        ZebroLabError: There is nothing to report on, a manifest is damaged, or `out` is a folder or
-            a file that is not a report.
+        ZebroLabError: There is nothing to report on; a file of a result is missing or damaged; or
+            `out` is a folder, a file that is no report or part of a result, or in no folder.
+        OSError: The page cannot be written.
     """
     out = require_own(request.out, REPORT, inputs=(request.data, request.calibration))
     sources = find_sources(request.data, calibration=request.calibration)

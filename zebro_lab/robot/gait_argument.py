@@ -33,7 +33,7 @@ class NamedGait:
     Attributes:
         reference: Leg angles over time.
         what: Name of the gait with its main parameters, for titles.
-        direction: Side that the gait turns to; "left" for a gait that does not turn.
+        direction: Side that the gait turns to, if it turns: the one requested, "left" by default.
     """
 
     reference: CyclicReference
@@ -57,7 +57,8 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
         leg_arc: Angle of the legs' arc [rad].
 
     Raises:
-        SettingsError: The gait is unknown or lacks a given option, or an angle cannot be parsed.
+        SettingsError: The gait is unknown or lacks a given option, or an angle cannot be parsed or
+            is two where the gait has one for all legs.
         DomainError: The gait is impossible with these parameters.
 
     >>> gait = make_gait(GaitRequest(steering=1.1, touchdown_deg="50"), leg_arc=np.pi)
@@ -171,7 +172,7 @@ def _or(value: float | None, default: float) -> float:
 
 
 def _stance(request: GaitRequest, touchdown: float, liftoff: float) -> tuple[float, float]:
-    """Parse touchdown and lift-off angle of all legs [rad]; the defaults are in degrees."""
+    """Parse touchdown and lift-off angle, one each for all legs [rad]; defaults are in degrees."""
     return (
         _angle(request.touchdown_deg, "touchdown_deg", touchdown),
         _angle(request.liftoff_deg, "liftoff_deg", liftoff),
@@ -179,7 +180,10 @@ def _stance(request: GaitRequest, touchdown: float, liftoff: float) -> tuple[flo
 
 
 def _angle(text: str | None, option: str, default: float) -> float:
-    """Parse an angle in degrees, the same for all legs, to radians; `default` is in degrees."""
+    """Parse an angle in degrees, the same for all legs, to radians; `default` is in degrees.
+
+    Raises `SettingsError` if it is no number, or two different ones.
+    """
     first, second = _angles(text, option, default=default)
     if first is None:
         raise _no_angle(option, text)

@@ -36,7 +36,10 @@ class GaitPlayer:
         self._interval = max(HORIZON / 2, 1 / profile.rate)
 
     def __call__(self, now: float) -> None:
-        """Send the next set-points if they are due at host time `now` [s]."""
+        """Send the next set-points if they are due at host time `now` [s], none otherwise.
+
+        The first call sends the gait's first angles, to be reached after `LEAD_IN`.
+        """
         if self._start is None:
             self._start = self._due = now + LEAD_IN
             follow(self._legs, self._gait, start=self._start, now=now, horizon=LEAD_IN)

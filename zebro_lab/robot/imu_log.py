@@ -38,7 +38,7 @@ class ImuLog:
         values: Columns quaternion w, x, y, z [-], angular rate x, y, z [rad/s], specific force x,
             y, z [m/s2], shape (n, 10); NaN for a rate or force that the table lacks.
         source: Source stated by the column map or the table; None if not stated.
-        files: Table and column map that were read.
+        files: Files that were read: the table and, if there is one, the column map.
         notes: Notes, one line each.
     """
 
@@ -53,7 +53,8 @@ def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
     """Convert an IMU table to quaternions, rates and forces; orientation may be roll and pitch.
 
     Args:
-        table: Table with quaternions, or roll and pitch with yaw (0 if missing).
+        table: Table with quaternions, or roll and pitch with yaw (0 if missing, with a note); rates
+            and forces are optional, NaN if missing.
         mapping: Column map with the canonical names of `IMU_UNITS`.
 
     Raises:

@@ -26,8 +26,8 @@ class LegLog:
 
     Attributes:
         reference: Angles of the six legs over time [rad], unwrapped, with the canonical sign.
-        source: "real", "sim:what", "replay:what"; "unknown" if not stated.
-        files: Every file read, the column map last.
+        source: Source as stated, such as "real" or "sim:what"; "unknown" if not stated.
+        files: Every file read, the column map last, if there is one.
         notes: Notes, one line each.
     """
 
@@ -53,8 +53,9 @@ def legs_of_table(
         leg_sign: Factor 1 or -1 for the angle of each leg, shape (6,).
 
     Raises:
-        DataError: A value is missing, there is one row, time does not increase or has a gap over 5
-            median intervals, or a leg turns by more than 2.5 rad between samples; names the cell.
+        DataError: A column or value is missing, there are fewer than two rows, time does not
+            increase or has a gap over 5 median intervals, or a leg turns by more than 2.5 rad
+            between samples; names the cell.
     """
     t, *angles = (_numbers(table, name, mapping) for name in LEG_UNITS)
     time_column = mapping.mapped["t"].name

@@ -57,9 +57,12 @@ class RobotFile:
 def read_robot_file(file: Path) -> RobotFile:
     """Read and check a `robot.toml`; missing values are those of the thesis's robot.
 
+    A marker needs its position; its other values are by default those of the printed kit.
+
     Raises:
         NotFound: There is no such file.
-        SettingsError: The file is not TOML, or has an unknown key, an invalid value or unit.
+        SettingsError: The file is not TOML, has an unknown key, an invalid value or unit, or a
+            marker without position, or no robot can have these values.
     """
     advice = f"zebro-lab walk --write-robot {file} creates a {ROBOT_FILE} to edit"
     top = read_settings(file, advice=advice)
@@ -145,7 +148,10 @@ def _marker_section(marker: Marker | None) -> str:
 
 
 def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
-    """Construct the robot from the given keys; for missing keys it is the thesis's robot."""
+    """Construct the robot from the given keys; missing keys are those of the thesis's robot.
+
+    Raises `SettingsError` for values that no robot can have.
+    """
     given: dict[str, Any] = {}
     if "mass" in top:
         given["mass"] = top.quantity("mass", "kg")

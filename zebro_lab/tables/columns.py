@@ -64,7 +64,7 @@ class MappedColumn:
     """The column of a file that a canonical column is read from.
 
     Attributes:
-        name: Header of the column in the file.
+        name: Header of the column in the file, which may lack it.
         unit: Unit of the column in the file; "" for text.
         factor: Multiplies the file's numbers to give SI with the canonical sign.
         definition: Slip definition, for `slip_ratio` only; None if not stated.
@@ -104,7 +104,8 @@ class Columns:
         constants: Given radii of the discs, `radius_leg` and `radius_ground` [m], by name.
         runs: Rule that separates rows into runs.
         keep: Conditions that every kept row must meet, all of them.
-        load_cell: Given standard deviations from the load cell's certificate by name, SI.
+        load_cell: Given standard deviations from the load cell's certificate by name, SI:
+            `zero_stability`, `gain_sd`, `bias_sd`, `crosstalk_sd`.
     """
 
     file: Path | None = None
@@ -121,7 +122,8 @@ def read_columns(file: Path) -> Columns:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: The file is not TOML, or has an unknown key, unit or value.
+        SettingsError: The file cannot be read as TOML, has an unknown key, unit or value, or more
+            than one run rule.
     """
     return parse_columns(read_settings(file, advice=f"expected a {COLUMNS_FILE}"))
 
@@ -154,7 +156,9 @@ def parse_columns(table: SettingsTable) -> Columns:
 
 
 def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) -> MappedColumn:
-    """Parse header, unit and sign of one mapped column.
+    """Parse header, unit and sign of one mapped column, and the definition of a slip ratio.
+
+    By default the header is the canonical name, the unit SI, the sign 1.
 
     Args:
         columns: Section with an entry for the column: a table, or only the header as a string.

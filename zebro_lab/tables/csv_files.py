@@ -41,12 +41,14 @@ class _CsvLayout:
 def read_csv_file(path: Path) -> RawTable:
     """Read a CSV file, also gzipped: UTF-8, separated by commas, semicolons or tabs.
 
-    Empty and comment lines (#) before the header are skipped; repeated headers are numbered.
+    Empty lines, and comment lines (#) before the header, are skipped; repeated headers are numbered
+    and listed in `repeated`. Missing cells at a row's end are empty. Decimal commas are possible
+    unless commas separate cells.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not UTF-8 text, has no header or rows, rows do not fit the header,
-            the separator is ambiguous, or a size limit is exceeded.
+        DataError: The file is not UTF-8 text or no whole gzip file, has no header or rows, a row
+            has more cells than the header, the separator is ambiguous, or a size limit is exceeded.
     """
     import pandas as pd
 
@@ -149,7 +151,7 @@ def _count_comments(lines: list[tuple[int, str]]) -> int:
 
 
 def _separator(path: Path, lines: list[tuple[int, str]]) -> str:
-    """Detect the one separator that gives all rows equally many cells, else most in the header."""
+    """Detect the separator that gives 50 rows equally many cells, else most in row 1; or raise."""
     texts = [text for _, text in lines[:_HEAD_LINES]]
     counts = {s: [len(cells) for cells in csv.reader(texts, delimiter=s)] for s in _SEPARATORS}
     regular = [s for s, cells in counts.items() if cells[0] > 1 and len(set(cells)) == 1]

@@ -29,7 +29,7 @@ class MappedColumns:
     where: str = ""
 
     def has(self, table: RawTable, name: str) -> bool:
-        """Return whether a table has a column, under the header it is mapped to.
+        """Return whether a table has a column, once or repeatedly, by the header it is mapped to.
 
         Args:
             table: Table to look in.
@@ -58,7 +58,8 @@ class MappedColumns:
             advice: What to do about a cell without a number, for the error message.
 
         Raises:
-            DataError: The column is missing, or a cell has no finite number; names the cell.
+            DataError: The column is missing, ambiguous or of dates, or a cell has no finite number;
+                names the cell.
         """
         mapped = self.mapped[name]
         if not self.has(table, name):

@@ -22,6 +22,9 @@ _MOST_THRIFT = 1 << 26  # memory that a footer may ask for [bytes or entries]
 def read_parquet_file(path: Path) -> RawTable:
     """Read a Parquet file; its source is the metadata key `source`, if there is one.
 
+    Columns with cells of another kind than numbers, dates or strings are read as empty and listed
+    in `unreadable`.
+
     Raises:
         NotFound: There is no such file.
         DataError: The file is not complete Parquet, or exceeds the limits of size or cells.

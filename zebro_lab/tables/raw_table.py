@@ -27,8 +27,8 @@ class RawTable:
 
     Attributes:
         path: The file, or the run folder.
-        columns: Columns by header, numbers or strings, each of shape (n,).
-        repeated: Headers that more than one column has, which are therefore ambiguous.
+        columns: Columns by header, numbers, strings or dates, each of shape (n,).
+        repeated: Headers that more than one column has in the file, which are therefore ambiguous.
         source: Source stated in the file; None if not stated.
         decimal_comma: Whether numbers may be written with a decimal comma, e.g. 0,5.
         notes: Notes on how the file was read, one line each.
@@ -63,10 +63,10 @@ class RawTable:
         return DataError(problem, file=self.path, column=column, row=row, line=line, **found)
 
     def column(self, name: str) -> "pd.Series":
-        """Return the column of a header as read, numbers or strings.
+        """Return the column of a header as read: numbers, strings or dates.
 
         Raises:
-            DataError: No or several columns have this header, or cells are of another type.
+            DataError: No or several columns have this header, or its cells could not be read.
         """
         if name in self.repeated:
             raise self.fault("several columns have this header; give each another header", name)
@@ -80,8 +80,10 @@ class RawTable:
     def numbers(self, name: str) -> NDArray[np.float64]:
         """Return a column as numbers in the file's unit, NaN for empty cells, shape (n,).
 
+        A decimal comma is understood if the table may have them and no cell has a point.
+
         Raises:
-            DataError: The column is missing or has dates, or a cell is not a number.
+            DataError: The column is missing, ambiguous or of dates, or a cell is not a number.
         """
         import pandas as pd
 
@@ -110,8 +112,8 @@ class RawTable:
             may_be_empty: Whether empty cells are allowed; they become NaN.
 
         Raises:
-            DataError: The column is missing, or a cell is infinite, not a number, or empty unless
-                that is allowed.
+            DataError: The column is missing, ambiguous or of dates, or a cell is infinite, not a
+                number, or empty unless that is allowed.
         """
         values = self.numbers(name)
         bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
@@ -129,7 +131,7 @@ class RawTable:
             t: Times by row, shape (n,) [s].
 
         Raises:
-            DataError: A time is not later than the one before.
+            DataError: A time is not later than the one before, or NaN.
         """
         later = np.diff(t) > 0
         if later.all():

@@ -29,7 +29,10 @@ class RigTable:
     rows: NDArray[np.intp]
 
     def source_of(self, name: str) -> MappedColumn | None:
-        """Return the mapping of a canonical column; None if neither mapped nor a header."""
+        """Return the mapping of a canonical column, in SI if it is not mapped but a header.
+
+        None if it is neither. The table may lack the header that a column is mapped to.
+        """
         if name in self.columns.columns:
             return self.columns.columns[name]
         if name in self.raw.columns or name in self.raw.repeated:
@@ -55,7 +58,8 @@ class RigTable:
         """Return the kept rows of a canonical column in SI, with canonical sign, shape (n,).
 
         Raises:
-            DataError: The column is missing, or a cell is not a finite number.
+            DataError: The column is missing or ambiguous, a cell of any row is not a number, or one
+                of a kept row is empty or infinite.
         """
         source = self.required(name)
         values = self.raw.numbers(source.name)[self.rows]
@@ -63,14 +67,18 @@ class RigTable:
         return values * source.factor
 
     def texts(self, name: str) -> NDArray[np.object_]:
-        """Return the kept rows of a canonical column as in the file, not converted, shape (n,)."""
+        """Return the kept rows of a canonical column as in the file, not converted, shape (n,).
+
+        Raises:
+            DataError: The column is missing or ambiguous.
+        """
         return self.raw.column(self.required(name).name).to_numpy(dtype=object)[self.rows]
 
     def constant_or_column(self, name: str) -> float | Array:
         """Return a radius [m]: one number from `[constants]`, or a column of shape (n,).
 
         Raises:
-            DataError: The radius is missing, given as both, or not positive.
+            DataError: The radius is missing, given as both, or not a positive finite number.
         """
         constant, source = self.columns.constants.get(name), self.source_of(name)
         if constant is not None and source is not None:
@@ -149,7 +157,8 @@ def kept_rows(raw: RawTable, columns: Columns) -> NDArray[np.intp]:
         Row indices, counted from 0, increasing.
 
     Raises:
-        DataError: A condition names a missing or non-numeric column, or no row is left.
+        DataError: A condition names a missing, ambiguous or non-numeric column, or no row is left,
+            also of a table without rows.
     """
     keep = np.ones(len(raw), dtype=bool)
     for condition in columns.keep:
@@ -167,8 +176,8 @@ def normal_force(table: RigTable) -> Array:
     """Return the normal force, positive everywhere, shape (n,) [N].
 
     Raises:
-        DataError: The column is missing, or a row's normal force is not positive; the message
-            proposes the other sign if more than 90 % are negative.
+        DataError: The column is missing, or a row's normal force is not finite or not positive; the
+            message proposes the other sign if more than 90 % are negative.
     """
     force = table.si("normal_force")
     mostly_negative = np.mean(force < 0) > 0.9

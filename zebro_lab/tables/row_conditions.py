@@ -40,7 +40,7 @@ class RowCondition:
     number: float
 
     def __str__(self) -> str:
-        """Format the condition as it is written in a settings file."""
+        """Format the condition as `name operator number`, without backticks, with six digits."""
         return f"{self.column} {self.operator} {self.number:g}"
 
     def holds(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -38,7 +38,7 @@ def separate_runs(table: RigTable, label: str) -> Runs:
         label: Name of the table; prefix of every run's name.
 
     Raises:
-        DataError: A column of the rule `by`, or the time column for the rule `gap`, is missing.
+        DataError: A column to separate by, or the time for `gap`, is missing or cannot be read.
     """
     rule, mapped_run = table.columns.runs, table.source_of("run")
     if rule.each_row:
@@ -66,7 +66,8 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
         Times, shape (n,) [s]; None if the table has no time column or every row is a trial.
 
     Raises:
-        DataError: Time repeats or decreases within a run, or is not a finite number.
+        DataError: Time repeats or decreases within a run, is not a finite number, or is mapped to
+            a header that the table lacks.
     """
     if table.columns.runs.each_row or table.source_of("t") is None:
         return None

@@ -40,8 +40,10 @@ def slip(table: RigTable) -> SlipColumn:
     `material` slip ratio is computed from disc speeds and radii if the table has the speeds.
 
     Raises:
-        DataError: The table has neither, the definition of a given slip ratio is not stated, a
-            value is out of range or not finite, a radius is missing, or the leg disc stands still.
+        DataError: The table has neither or one speed alone; the definition of a given slip ratio is
+            not stated or stated differently; a value is over 0.1 out of range or not finite; a
+            radius is missing, given twice or not positive; or the leg disc stands still.
+        SettingsError: The column `slip_definition` has an unknown name.
     """
     given = table.source_of("slip_ratio")
     speeds = all(table.source_of(name) for name in _SPEEDS)

@@ -29,7 +29,7 @@ def read_table_file(path: Path) -> RawTable:
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file has another suffix, no rows, is damaged, or not a table.
+        DataError: The file has another suffix, no rows, is damaged, too large, or not a table.
     """
     if not path.exists():
         raise NotFound(f"{path}: no such file")

@@ -10,10 +10,10 @@ import typer
 
 
 def run(app: typer.Typer) -> None:
-    """Run a Typer app; known errors become one line on stderr and exit code 1.
+    """Run a Typer app, which ends with `SystemExit`; known errors are one line and exit code 1.
 
-    Known errors are those of the project, and operating system errors that name a file. Other
-    exceptions pass unchanged, with a traceback.
+    Known errors are those of the project, and operating system errors that name a file; the line is
+    on stderr. Other exceptions pass unchanged, with a traceback.
     """
     # ArviZ warns developers about its next version once a day; this does not concern users.
     warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)

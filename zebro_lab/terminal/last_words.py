@@ -19,8 +19,8 @@ def say_in_time(text: str, *, err: bool = False) -> bool:
         err: Whether to print to stderr.
 
     Returns:
-        Whether the line was written within `PATIENCE`, True also if the stream is None. If not, a
-        thread may still be blocked in the write: end the process with `leave_at_once`.
+        Whether the line was written within `PATIENCE`, True also if the stream is None. If not, the
+        stream is closed, or a thread is still blocked in the write: end with `leave_at_once`.
     """
 
     def write() -> None:
@@ -36,7 +36,8 @@ def say_in_time(text: str, *, err: bool = False) -> bool:
 def in_time(act: Callable[[], object]) -> bool:
     """Call a function in a thread; return whether it ended within `PATIENCE` [s] without error.
 
-    `OSError` and `ValueError` of the function are suppressed; it may still run after a timeout.
+    `OSError` and `ValueError` of the function are suppressed; it may still run after a timeout. If
+    no thread can be started, it is called without a timeout.
     """
     done: list[bool] = []
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def say(line: str, *, err: bool = False) -> None:
-    """Write one line to the terminal; newlines and control characters in it are escaped.
+    """Write one line to the terminal; newlines, control and invisible characters are escaped.
 
     Args:
         line: Text to write, without the newline.

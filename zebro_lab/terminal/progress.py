@@ -36,7 +36,7 @@ class ProgressBar:
             self._progress.update(self._task, completed=fraction)
 
     def stop_requested(self) -> bool:
-        """Return whether a stop signal was received."""
+        """Return whether a stop was requested, by a signal or a call of `request_stop`."""
         return self._stop
 
     def request_stop(self, _signal: int, _frame: FrameType | None) -> None:
@@ -59,6 +59,8 @@ class ProgressBar:
 @contextmanager
 def progress_bar(console: Console | None = None) -> Iterator[ProgressBar]:
     """Show a progress bar, and turn SIGINT and SIGTERM into a stop request, during the body.
+
+    A second signal raises `KeyboardInterrupt`. Only the main thread can call this function.
 
     Args:
         console: Console to draw on, standard error by default; nothing is drawn unless it is a

@@ -54,7 +54,10 @@ def annotate(
 
 
 def _annotate(request: AnnotateRequest) -> None:
-    """Add the request's annotations to its file and print how many the file then holds."""
+    """Add the request's annotations to its file and print how many the file then holds.
+
+    Raises `BadParameter` if the request has none.
+    """
     from zebro_lab.track import annotate_stage
 
     if request.is_empty:

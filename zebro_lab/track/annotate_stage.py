@@ -36,14 +36,14 @@ def annotate(request: AnnotateRequest) -> Annotations:
 
     Args:
         request: New annotations. Corrections of one request are applied in the sequence moves,
-            flips, deletions, order, after all earlier corrections.
+            flips, deletions, order, after all earlier corrections; those of its file `added` last.
 
     Returns:
         All annotations, old and new.
 
     Raises:
-        ZebroLabError: A photograph does not exist, or an annotation is invalid.
-        TrackingError: The folder holds no photographs.
+        ZebroLabError: A photograph or a file is missing or invalid, or `added` is to be written.
+        TrackingError: There is no photograph, or a size of the robot's top is impossible.
     """
     if request.added is not None and request.out.exists() and request.out.samefile(request.added):
         raise AlreadyExists(f"{request.out} is the file given as --from; choose another with --out")
@@ -85,7 +85,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
 
     Raises:
         ZebroLabError: The photograph does not exist, `around` is not a pixel, or `file` is not a
-            grid to replace or lies among the photographs.
+            grid to replace, lies among the photographs or in no folder.
         PhotoError: The photograph cannot be read.
     """
     from zebro_lab.plots import save

@@ -32,7 +32,7 @@ class CountedTimes:
 def counted_from(
     times: PhotoTimes, *, start: datetime | None, manifest: RunManifest | None, request: TimeRequest
 ) -> CountedTimes:
-    """Subtract the time origin from clock times; leave times of an interval or table as they are.
+    """Subtract the time origin from a clock's times; leave those of an interval, table or video.
 
     The origin is `start`; else the run's start if the camera's clock is tied to the computer's by
     `request.clock`; else the first photograph, with a note where there is a run.
@@ -71,7 +71,7 @@ def counted_later(*, manifest: RunManifest | None, request: TimeRequest) -> Coun
         request: How the exposures get their times.
 
     Returns:
-        No times; a description, and a note where an interval does not tie the times to the run.
+        No times; a description, and a note if there is a run and no table ties the times to it.
     """
     notes = ()
     if manifest is not None and request.table is None:

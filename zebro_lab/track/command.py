@@ -73,7 +73,10 @@ def _track(request: TrackRequest) -> None:
 
 
 def track_lines(result: "TrackResult") -> list[str]:
-    """Format a track as lines: length, times, accuracy, left-out photographs, written files."""
+    """Format a track as lines: length, times, accuracy, floor, left-out photographs, notes, files.
+
+    Of the left-out photographs the first ten are listed; notes are shown as warnings.
+    """
     import numpy as np
 
     from zebro_lab.track.folder import written

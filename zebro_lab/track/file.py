@@ -28,7 +28,7 @@ class TrackFile:
 
     Attributes:
         poses: Poses with their covariance, None if unknown; yaw NaN where the table has none.
-        source: Source of the poses: "real", "sim:what", "unknown".
+        source: Source of the poses as stated, such as "real" or "sim:what"; else "unknown".
         file: The table file.
         notes: Notes on missing yaw or covariance and from reading, one line each.
     """
@@ -50,12 +50,14 @@ def read_track(path: Path) -> TrackFile:
 
     Args:
         path: A table with `t_s,x_m,y_m`, or `t,x,y`, perhaps `yaw_rad` (or `yaw`) and the upper
-            triangle of a covariance, `cov_xx` to `cov_yawyaw`; or the folder of a `track.csv`.
+            triangle of a covariance, all of `cov_xx` to `cov_yawyaw`; or the folder of a
+            `track.csv`.
 
     Raises:
         NotFound: The table file does not exist.
-        DataError: A column is missing, a cell holds no number, time does not increase, a
-            covariance has a negative eigenvalue, or there are fewer than `FEWEST` poses.
+        DataError: The table or the manifest beside it is damaged, a column is missing, a cell holds
+            no finite number, time does not increase, a covariance has a negative eigenvalue, or
+            there are fewer than `FEWEST` poses.
     """
     settle(path)
     file = path / TRACK_CSV if path.is_dir() else path
@@ -89,7 +91,10 @@ def track_of_table(table: RawTable) -> TrackFile:
 
 
 def _tracked_source(file: Path) -> str | None:
-    """Return the source in the manifest beside a `track.csv`; None for another file or without."""
+    """Return the source in the manifest beside a `track.csv`, "unknown" if it states none.
+
+    None for a file of another name, or without a manifest beside it.
+    """
     if file.name != TRACK_CSV or not (file.parent / MANIFEST).is_file():
         return None
     return str(read_track_manifest(file.parent).get("source", "unknown"))
@@ -100,7 +105,8 @@ def read_poses(file: Path) -> Poses:
 
     Raises:
         NotFound: The file does not exist.
-        DataError: A column is missing, a cell holds no number, or time does not increase.
+        DataError: The table is damaged or has no rows, a column is missing, a cell holds no finite
+            number, or time does not increase.
     """
     return _poses(read_table_file(file), file)
 

@@ -51,7 +51,7 @@ def read_floor_file(file: Path) -> FloorMap:
 
 
 def _common(table: SettingsTable) -> dict[str, float]:
-    """Read the defaults for marks that do not set a value: side [m] and standard deviations."""
+    """Read the defaults of marks: standard deviations and, if given, the side of markers [m]."""
     stated = {
         key: table.quantity(key, unit, above=0.0) for key, unit in _COMMON.items() if key in table
     }

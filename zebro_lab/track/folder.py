@@ -43,7 +43,7 @@ def track_folder(
 
     Args:
         out: Folder to create, or to replace if it is a track folder.
-        columns: Known columns of `track.csv`, by names of `tracking.path.TRACK_COLUMNS`.
+        columns: Known columns of `track.csv`, by names of `tracking.path.TRACK_COLUMNS`, in order.
         tum: Lines of `track.tum`.
         source: Source of the track: "real", "sim:what" or "unknown".
         settings: Options of the command, as JSON can hold them.
@@ -54,7 +54,9 @@ def track_folder(
         Path of the draft folder.
 
     Raises:
-        AlreadyExists: `out` is a file, or the result of another command.
+        AlreadyExists: `out` is a file or the result of another command, a file of the old result
+            was changed, or a user's file has a name to be written; others are kept.
+        NotWritten: The folder cannot be created or moved.
     """
     import pandas as pd
 
@@ -71,7 +73,7 @@ def read_track_manifest(folder: Path) -> Mapping[str, Any]:
 
     Raises:
         NotFound: The folder has no manifest.
-        DataError: The manifest is damaged, of a later schema, or of another command.
+        DataError: The manifest is damaged, of another schema, or of another command.
     """
     settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="track", kinds=(KIND,), schema=SCHEMA)

@@ -37,7 +37,7 @@ class ForeignTrack:
         track: Poses and their covariance.
         more: Known further columns of `track.csv`, `t_sigma` [s] and `z_m` [m], shape (n,) each.
         with_covariance: Whether the covariance is known.
-        files: Every file read: the table and its `columns.toml`.
+        files: Every file read: the table and, if there is one, its `columns.toml`.
     """
 
     track: TrackFile
@@ -80,8 +80,9 @@ def track_of_foreign_table(table: RawTable, mapping: MappedColumns, *, zero: flo
         zero: Time of the table at which the run began [s]; subtracted from all times.
 
     Raises:
-        DataError: Time, x or y is missing, a cell holds no finite number, time does not increase,
-            or there are too few poses; names the cell.
+        DataError: Time, x or y is missing, a cell holds no finite number, time does not increase, a
+            covariance has a negative eigenvalue, or there are fewer than three poses; names the
+            cell.
     """
     import pandas as pd
 
@@ -103,12 +104,14 @@ def track_of_foreign_table(table: RawTable, mapping: MappedColumns, *, zero: flo
 
 
 def read_tum(path: Path) -> RawTable:
-    """Read a TUM trajectory, `t x y z qx qy qz qw`, as the columns of `track.csv`.
+    """Read a TUM trajectory, `t x y z qx qy qz qw`, as columns t_s, x_m, y_m, yaw_rad and z_m.
+
+    Yaw is unwrapped, roll and pitch are dropped. Empty lines and those with `#` are skipped.
 
     Raises:
         NotFound: The file does not exist.
-        DataError: The file is empty, a line has not eight finite numbers, or a quaternion's length
-            differs from 1 by more than 0.05; names the row.
+        DataError: The file is no text or empty, a line has not eight finite numbers, or a
+            quaternion's length differs from 1 by more than 0.05; names the row.
     """
     import pandas as pd
 

@@ -81,7 +81,11 @@ class TrackInputs:
             )
 
     def counted_times(self, sequence: PhotoSequence) -> CountedTimes:
-        """Count the photographs' times from the track's origin; none yet for a composite's."""
+        """Count the photographs' times from the track's origin; none yet for a composite's.
+
+        Raises:
+            SettingsError, TimesError: As in `counted_from`.
+        """
         times, request = sequence.times, self.request.times
         if times is None:
             return counted_later(manifest=self.manifest, request=request)
@@ -97,7 +101,8 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
         request: Options of `zebro-lab track`.
 
     Raises:
-        ZebroLabError: A file is missing or invalid.
+        ZebroLabError: A file is missing or invalid, the body's height is not known, or the robot
+            has no marker although it is to be tracked by one.
         TrackingError: The robot's marker is also one of the floor's.
     """
     manifest = None if request.run is None else read_manifest(request.run)

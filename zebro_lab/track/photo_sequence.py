@@ -43,7 +43,8 @@ class PhotoSequence:
         times: Times of the photographs, shape (n,) [s]; None for a composite picture.
         source: "sim:photographs" if a file's EXIF data say that it is simulated, else None.
         origin: Folder, video or picture, as given.
-        left_out: Reason by name of each photograph of the folder that is not used.
+        left_out: Reason by name of each photograph of the folder that is not used for lack of a
+            time.
     """
 
     photos: tuple[Photo, ...]
@@ -81,7 +82,7 @@ def open_photos(
 
     Raises:
         NotFound: `origin` does not exist.
-        SettingsError: A video is given together with times.
+        SettingsError: A video is given together with an interval, a table of times or a clock.
         DataError: The folder holds only the photograph of the clock, or frames of a video cannot be
             written to the temporary folder.
         TrackingError: The folder has no photograph, times are missing, or a file is unreadable.
@@ -197,7 +198,10 @@ def _without_time(readable: Sequence[Path]) -> Mapping[str, str]:
 
 
 def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
-    """Read EXIF times of the readable files; give any other path the time of the one before it."""
+    """Read EXIF times of the readable files; give any other path the time of the one before it.
+
+    Paths before the first readable one have its time; all are 0 if none is readable.
+    """
     if not readable:
         return PhotoTimes(np.zeros(len(paths)), np.zeros(len(paths)), "none: nothing can be read")
     times = times_from_exif(readable)

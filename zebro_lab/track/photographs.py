@@ -53,7 +53,7 @@ class PlacedPhoto:
             height: Height of the rectangle above the floor [m].
 
         Returns:
-            BGR picture, as from `rectify_floor`.
+            BGR picture, x to the right and y up, as from `rectify_floor`.
         """
         return rectify_floor(
             self.pixels, self.camera, self.pose, low=low, high=high,
@@ -66,7 +66,7 @@ class TrackedPhotos:
     """Photographs of a track, with camera, floor and annotations.
 
     Attributes:
-        t: Time of each pose of the track, shape (n,) [s].
+        t: Time of each pose in the track's time base, shape (n,) [s].
         names: Name of the photograph or exposure of each pose, n names.
         files: File of each photograph, by name.
         camera: The lens, at the size it was calibrated with.
@@ -87,7 +87,8 @@ class TrackedPhotos:
         """Read a photograph and compute the camera's pose from its floor marks and clicks.
 
         Raises:
-            TrackingError: The photograph is unreadable or does not show enough marks of the floor.
+            TrackingError: The photograph is unreadable or does not show enough marks of the floor,
+                or the map does not fit them.
         """
         file = self.files[name]
         size = upright_size(file) or self.camera.size
@@ -101,19 +102,19 @@ class TrackedPhotos:
 
 
 def photos_of_track(track: Path) -> TrackedPhotos:
-    """Find the photographs that a track folder was made from.
-
-    Args:
-        track: Track folder, or its track.csv.
+    """Find the photographs that a track folder, named itself or by its track.csv, was made from.
 
     Raises:
         NotFound: The folder is not a track folder, or a photograph or `camera.toml` has moved.
-        DataError: The track is of a video, whose frames are not kept, or a photograph or
-            `camera.toml` has changed.
+        DataError: The track is of a video, whose frames are not kept, `track.csv` does not name
+            photographs, or a photograph or `camera.toml` has changed.
+        SettingsError: `floor.toml` or `annotations.toml` of the folder is invalid.
     """
     folder = track if track.is_dir() else track.parent
     manifest = read_track_manifest(folder)
     table = read_table_file(folder / TRACK_CSV)
+    if "photo" not in table.columns:
+        raise DataError("does not name photographs, as a track that was imported", file=folder / TRACK_CSV)
     names = tuple(str(name) for name in table.columns["photo"])
     inputs = {Path(path): str(digest) for path, digest in manifest["inputs"].items()}
     annotated = folder / ANNOTATIONS_FILE

@@ -29,7 +29,8 @@ def preview(request: TrackRequest, file: Path) -> Preview:
 
     Raises:
         ZebroLabError: A file or an option is invalid.
-        TrackingError: The photograph is unreadable, or the floor's map does not fit its marks.
+        TrackingError: There is no photograph, the first is unreadable or shows no floor mark, or
+            the floor's map does not fit its marks.
     """
     target = require_own(file, PREVIEW, inputs=request.inputs)
     inputs = read_inputs(request)

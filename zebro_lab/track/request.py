@@ -158,12 +158,20 @@ class TrackRequest:
 
     @property
     def standing_height(self) -> float | None:
-        """Height of the body's centre while the robot stands [m]; None: from the marker's."""
+        """Height of the body's centre while the robot stands [m]; None: from the marker's.
+
+        Raises:
+            UnitError: The given height is not a length.
+        """
         return None if self.body_height is None else quantity_to_si(self.body_height, "m")
 
     @property
     def walking_height_sd(self) -> float:
-        """Standard deviation of the height of the body's centre over a walk [m]."""
+        """Standard deviation of the height of the body's centre over a walk [m].
+
+        Raises:
+            UnitError: It is not a length.
+        """
         return quantity_to_si(self.height_sd, "m")
 
     @property

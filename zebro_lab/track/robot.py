@@ -32,7 +32,8 @@ def tracked_robot(
         prior: Prior on height and tilt of the body.
 
     Raises:
-        SettingsError: The marker's place is missing or not level, or the marker is invalid.
+        SettingsError: The marker's place is missing or not level, or the marker is invalid: of
+            another form, not in its dictionary, or of an impossible size.
         UnitError: The side in `marker` is not a length.
     """
     place = described.marker

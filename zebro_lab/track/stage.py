@@ -55,7 +55,7 @@ def track(request: TrackRequest, watcher: Progress) -> TrackResult:
         watcher: Progress display, which may also request a stop.
 
     Raises:
-        ZebroLabError: A file or an option is invalid.
+        ZebroLabError: A file or an option is invalid, or the folder cannot be replaced or written.
         TrackingError: The photographs do not give a track.
         TrackStopped: A stop was requested.
     """

@@ -45,7 +45,8 @@ class Summary:
 def metrics(judged: Judged) -> dict[str, float]:
     """Return errors and scores of a prediction or baseline, by column of `metrics.csv`.
 
-    Each value is in the unit that ends the column's name.
+    Each value is in the unit that ends the column's name; NaN where it is not known. Columns of the
+    band are there only if it has a width.
     """
     errors, scores = judged.errors, judged.scores
     row = {
@@ -81,7 +82,7 @@ def metrics(judged: Judged) -> dict[str, float]:
 
 
 def _band_metrics(judged: Judged) -> dict[str, float]:
-    """Return a band's coverage, width and consistency by column; empty for a single path."""
+    """Return a band's coverage, width and consistency by column; empty without a band's width."""
     scores, row = judged.scores, {}
     if not np.any(scores.width > 0):
         return row
@@ -110,7 +111,7 @@ def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
 def summarise_runs(runs: Sequence[JudgedRun], *, rng: np.random.Generator) -> list[Summary]:
     """Compute the mean of each metric in `MEANS` over runs, by model, with bootstrap intervals.
 
-    Whole runs are resampled. A metric with too few finite values gets no summary.
+    Whole runs are resampled. A metric that is finite for fewer than two runs gets no summary.
 
     Args:
         runs: Errors of runs with the same models; the models are those of the first.
@@ -149,7 +150,7 @@ def write_validation(
         source: Where prediction and track come from.
 
     Raises:
-        AlreadyExists: `out` is a file, or holds the result of another command.
+        AlreadyExists, NotWritten: As in `result_folder`.
     """
     runs = [each.run for each in shown]
     notes = [f"{run.name}: {note}" for run in runs for note in run.notes]

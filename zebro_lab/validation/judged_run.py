@@ -19,7 +19,7 @@ class JudgedRun(Judgement):
     Attributes:
         name: Name of the walk.
         notes: Notes, one line each.
-        tilt: Errors of roll and pitch against the IMU; None for a run without an IMU.
+        tilt: Errors of roll and pitch against the IMU; None if not compared, as without an IMU.
     """
 
     name: str
@@ -35,7 +35,7 @@ def judge_run(
     anchor: bool,
     rng: np.random.Generator,
 ) -> JudgedRun:
-    """Compute the errors of a prediction and its baselines against a track.
+    """Compute the errors of a prediction and its baselines against a track; without roll and pitch.
 
     Args:
         name: Name of the walk.
@@ -46,7 +46,7 @@ def judge_run(
 
     Raises:
         DataError: Fewer than two tracked poses to score lie within the time of the prediction.
-        SettingsError: Anchoring is requested with a track without headings.
+        SettingsError: Anchoring is requested, and the first pose within that time has no heading.
     """
     inside = shared_time(track.poses, predicted.prediction.path, file=track.file)
     if inside.sum() - anchor < 2:

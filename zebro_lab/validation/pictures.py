@@ -44,6 +44,8 @@ class ShownRun:
 def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[str, ...]:
     """Draw `RUN.png`, and `RUN.imu.png`, `RUN.photos.png` and `RUN.floor.png` if there are data.
 
+    The latter two need photographs and a prediction from a walk folder.
+
     Args:
         folder: Folder to write the PNG files into.
         shown: Errors, prediction and photographs of the walk.

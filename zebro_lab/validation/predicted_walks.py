@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import PATH_CSV, TRACK, numbered
 from zebro_lab.files.replacement import settle
 from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
@@ -47,7 +47,10 @@ class PredictedWalk:
         return self.prediction.source, self.track.source
 
     def files_of(self, judged: JudgedRun) -> tuple[Path, ...]:
-        """Return the files of prediction and track, and of the IMU if `judged` has tilt errors."""
+        """Return the files of prediction and track, and of the IMU if `judged` has tilt errors.
+
+        Manifests and photographs are not among them.
+        """
         tilt = () if self.tilt is None or judged.tilt is None else self.tilt.files
         return (*self.prediction.files, self.track.file, *tilt)
 
@@ -73,13 +76,13 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
 
 
 def read_predicted_walks(pairs: Sequence[tuple[Path, Path]]) -> list[PredictedWalk]:
-    """Read predictions and tracks of walks; pairs with equal content are read once.
+    """Read predictions and tracks of walks; of pairs with equal content the first alone.
 
     Args:
         pairs: Paths of prediction and track of each walk.
 
     Raises:
-        ZebroLabError: A file is missing or damaged; of photographs that is only a note.
+        ZebroLabError: A file is missing or damaged; a missing or changed photograph is only a note.
     """
     pairs, repeated = first_of_each(pairs, key=_content)
     duplicates = duplicates_note("walks", [(one[0], other[0]) for one, other in repeated])
@@ -97,7 +100,7 @@ def _read(name: str, predicted: Path, tracked: Path, duplicates: tuple[str, ...]
     photos, not_shown = None, ()
     try:
         photos = photos_of_track(tracked)
-    except (NotFound, DataError) as error:
+    except (NotFound, DataError, SettingsError) as error:
         not_shown = (f"photographs are not shown: {error}",)
     return PredictedWalk(name, prediction, track, tilt, photos, duplicates, not_shown)
 

@@ -23,7 +23,7 @@ _STATISTICS = {
 
 
 def print_validated(console: Console, validated: Validated, out: Path) -> None:
-    """Print a table for each walk, the means over walks, and the output folder.
+    """Print errors, coverage, tilt and notes of each walk, means over walks, and output folder.
 
     Args:
         console: Console to print to.

@@ -45,8 +45,10 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         Errors of each run, means over runs, and the source of the data.
 
     Raises:
-        ZebroLabError: A file is missing, or prediction and track do not overlap in time.
+        ZebroLabError: Nothing is named, a file is missing or damaged, the folder cannot be
+            replaced, the clock's offset is not determined, or a pair does not overlap in time.
         ModelError: The errors of a path cannot be computed.
+        ValueError: There are not as many tracks as predictions.
     """
     given = zip(request.predicted, request.track, strict=True)
     asked = (*map(pairs_of_run, request.runs), *given)

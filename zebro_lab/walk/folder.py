@@ -49,7 +49,7 @@ class _Block:
     Attributes:
         columns: Names of the columns.
         values: Function that returns the attribute of a path, shape (n, len(columns)), SI.
-        may_be_empty: Whether cells may be empty, if the model does not compute the attribute.
+        may_be_empty: Whether cells may be empty when read: the model did not compute the attribute.
         form: printf-style format of a number.
     """
 
@@ -114,14 +114,14 @@ def walk_folder(
         kind: Command that writes the folder, one of `KINDS`.
         source: "sim:" and the name of the model.
         settings: Settings of the walk, JSON-serialisable.
-        inputs: SHA-256 of each file that was read.
+        inputs: SHA-256 of each file that was read, by path.
 
     Yields:
-        The draft folder, with `path.csv`, to add pictures and the band to.
+        The draft folder, with `path.csv`, to add pictures and the files `BAND` to.
 
     Raises:
-        AlreadyExists: `out` is a file, the result of another command, or has files of the user or
-            changed files of a name to be written.
+        AlreadyExists: `out` is a file or the result of another command, a file of the old result
+            was changed, or a user's file has a name to be written; others are kept.
         NotWritten: The folder cannot be created or moved.
     """
     content = {"source": source, "settings": settings, "inputs": inputs}
@@ -138,8 +138,8 @@ def read_walk(path: Path) -> WalkPath:
 
     Raises:
         NotFound: There is no such file.
-        DataError: A column is missing, a cell does not hold a number, or time does not increase;
-            the message names file, row and column.
+        DataError: The file is damaged or has no rows, a column is missing, a cell does not hold a
+            finite number, or time does not increase; the message names file, row and column.
     """
     settle(path)
     file = path / PATH_CSV if path.is_dir() else path

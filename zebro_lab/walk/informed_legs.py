@@ -21,8 +21,8 @@ class InformedLegs:
     """Posterior of legs and floor, as it applies to one walk.
 
     Attributes:
-        posterior: Posterior of leg offsets and floor; for another robot's legs that of the floor
-            alone, with legs drawn from the prior.
+        posterior: Posterior of leg offsets and floor; for legs other than the fitted ones that of
+            the floor alone, with legs drawn from the prior.
         index: Index of this walk among the fitted walks; None for a new walk.
         folder: The folder `walks/` that the posterior was read from.
         notes: Notes, one line each.
@@ -48,7 +48,10 @@ class InformedLegs:
         return self.posterior.draw(n, rng=rng, walk=self.index)
 
     def settings(self) -> dict[str, object]:
-        """Return folder, fitted walks and the most probable leg state, JSON-serialisable, SI."""
+        """Return folder, fitted walks, this walk and `middle`'s values, JSON-serialisable, SI.
+
+        `this_walk` is the name of the fitted walk that this is; None for a new one.
+        """
         legs = self.middle
         return {
             "folder": str(self.folder),
@@ -76,7 +79,8 @@ def informed_legs(
     Args:
         walks: The stored posterior of legs and floor.
         described: Parameters of the robot that walks.
-        logs: Files of the walk's leg log, by whose hash a fitted walk is recognised.
+        logs: Files of the walk's leg log, by whose hash a fitted walk is recognised; missing ones
+            are skipped.
         same_legs: Whether the legs are those that were fitted, else only the floor applies; None
             to compare the parameters of the two robots.
     """

@@ -41,8 +41,9 @@ def write_walk(
         files: Files read other than those of robot and slip.
 
     Raises:
-        AlreadyExists: The folder is a file, or holds the result of another command.
-        WalkStopped: The watcher requested a stop; nothing was written.
+        AlreadyExists, NotWritten: As in `walk_folder`.
+        WalkStopped: A stop was requested before pictures are drawn, or during the animation;
+            nothing was written.
     """
     described, slip = walked.described, walked.slip
     read = [*files, *((described.file,) if described.file else ()), *(slip.files if slip else ())]

@@ -55,11 +55,13 @@ def predict_band(
         watcher: Receives progress.
 
     Returns:
-        `request.draws` paths from time zero on, sampled every 0.1 s.
+        `request.draws` paths from time zero to `duration`, sampled about every 0.1 s.
 
     Raises:
         SettingsError: The model is not "dynamics", or a standard deviation of leg offsets is given
             although fitted walks determine them.
+        DataError: The posterior draws of the slip law cannot be read.
+        ModelError: A walk diverged, or no slip law is valid at the robot's loads.
     """
     if walked.model != INFORMED_MODEL or walked.slip is None:
         raise SettingsError(
@@ -153,7 +155,8 @@ def read_draws(folder: Path) -> Poses:
 
     Raises:
         NotFound: The folder has no `draws.npz`.
-        DataError: The file is damaged, shapes do not match, or times do not increase.
+        DataError: The file is damaged or too large, there are no poses, shapes do not match, or
+            times do not increase.
     """
     file = folder / DRAWS
     arrays = read_arrays(file, ("t", "poses"), advice="run predict with --draws 500 to create it")

@@ -50,7 +50,7 @@ def draw_walk(
 
 
 def last_cycles(path: WalkPath, period: float | None) -> WalkPath:
-    """Return the last two cycles of a walk, or the last 4 s if the period is unknown.
+    """Return the last two cycles of a walk, or 4 s if the period is unknown; two samples at least.
 
     Args:
         path: The walk.

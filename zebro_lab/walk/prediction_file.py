@@ -35,8 +35,9 @@ class PredictionFile:
 
     Attributes:
         prediction: The predicted path with its draws and baselines.
-        source: Where the path comes from, as in its manifest; "unknown" if not stated.
-        files: Files that were read.
+        source: Where the path comes from, as in its manifest; "unknown" if not stated or for a
+            table of poses.
+        files: The table; or `path.csv` and, if there are draws, `draws.npz`, without the manifest.
         notes: Notes, one line each.
         walk: The single path with roll, pitch, legs and robot; None for a table of poses.
     """
@@ -49,10 +50,10 @@ class PredictionFile:
 
 
 def read_prediction(path: Path) -> PredictionFile:
-    """Read a walk folder (or its path.csv) with draws, and compute baselines; or read poses alone.
+    """Read a walk folder (or its path.csv) with draws, and compute baselines; or a table of poses.
 
     Raises:
-        ZebroLabError: The file is missing, or is not a path.
+        ZebroLabError: A file is missing or damaged, or is not a path.
     """
     settle(path)
     file = path / PATH_CSV if path.is_dir() else path
@@ -76,7 +77,11 @@ def read_prediction(path: Path) -> PredictionFile:
 
 
 def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
-    """Construct the robot in a walk's manifest, with leg offsets 0: a walk's angles are exact."""
+    """Construct the robot in a walk's manifest, with leg offsets 0: a walk's angles are exact.
+
+    Raises:
+        KeyError: The manifest has no robot or not all of its parameters.
+    """
     described = manifest["settings"]["robot"]
     return Robot(
         hips=np.array(described["hips"]),

@@ -40,7 +40,7 @@ class BandRequest:
     threads: Annotated[int, Option(min=1, help="Draws computed in parallel.")] = 2
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for a single draw or a negative standard deviation."""
+        """Raise `SettingsError` for one or negative draws, or a negative sd for some draws."""
         if self.draws < 2 and self.draws != 0:
             raise SettingsError(
                 f"is {self.draws}; a band needs 2 or more, such as 200", key="--draws"
@@ -88,7 +88,7 @@ class ModelRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Paths given as `--slip` (if not `thesis`) and `--robot`, as written."""
+        """Given `--slip` (not `thesis`, but also `coulomb:…`) and `--robot` as paths."""
         slip = () if self.slip in (None, "thesis") else (Path(self.slip),)
         return (*slip, *((self.robot,) if self.robot is not None else ()))
 

@@ -33,7 +33,7 @@ def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
         folder: Walk folder that the stage writes.
 
     Raises:
-        Exit: The walk was stopped (exit code 130).
+        Exit: The walk was stopped (exit code 130); other errors of the stage pass.
     """
     try:
         with progress_bar() as watcher:
@@ -45,12 +45,12 @@ def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:
-    """Print gait table, summary, slip and notes of a finished walk, and the files written.
+    """Print title, gait table, summary, slip and notes of a finished walk, and the files written.
 
     Args:
         console: Console to print to.
-        walked: The finished walk.
-        out: The walk folder, whose files are listed.
+        walked: The finished walk; the table is printed only for a cyclic gait.
+        out: The walk folder, of which the files that the commands write are listed.
     """
     console.print(plain(f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"))
     if isinstance(walked.reference, CyclicReference):
@@ -83,7 +83,9 @@ def summary_lines(summary: WalkSummary) -> list[str]:
 
 
 def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
-    """Format the mean slip speed, and a warning if over 1 % of contacts are below tested loads.
+    """Format the mean slip speed, if known, and a warning if over 1 % of contacts are untested.
+
+    Untested are contacts with a load below the least tested one.
 
     Args:
         walked: The walk with its slip law; a law without tested loads is noted as assumed.

@@ -23,7 +23,7 @@ class WalkSummary:
             is none, and they are means over the whole walk.
         speed: Mean speed along the circle through the poses between strides [m/s].
         yaw_rate: Mean yaw rate, positive to the left [rad/s].
-        radius: Mean radius of the circle [m], positive to the left; infinite for a straight walk.
+        radius: Mean radius of the circle [m], positive to the left; infinite without any turn.
         largest_roll: Largest absolute roll [rad].
         largest_pitch: Largest absolute pitch [rad].
         mean_slip: Mean slip speed of legs in contact [m/s]; NaN without slip or contacts.
@@ -42,7 +42,7 @@ class WalkSummary:
 
     @property
     def straight(self) -> bool:
-        """Whether the absolute radius is at least 20 m."""
+        """Whether the absolute radius is at least 20 m, or NaN."""
         return not abs(self.radius) < 1 / _STRAIGHT
 
 
@@ -53,7 +53,9 @@ def summarise(path: WalkPath) -> WalkSummary:
     within them. For a constant gait these poses lie on a circle,
 
     .. math::
-        R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}, \qquad v = R\, \Delta\psi / T .
+        R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}, \qquad v = R\, \Delta\psi / T ,
+
+    with chord, change of yaw and duration of a stride, each the mean over the strides.
 
     Args:
         path: The walk.

@@ -33,7 +33,8 @@ class Walked:
     Attributes:
         path: Poses, leg angles, slip and forces over time.
         reference: Leg angles that the path was computed from.
-        described: Parameters of the robot, as requested.
+        described: Parameters of the robot, with the requested arc; for the exact angles of a walk
+            folder without leg signs and offsets.
         slip: Slip law of the legs; None for a model without slip.
         model: Name of the model.
         dt: Time step of the computation [s].
@@ -55,7 +56,7 @@ class Walked:
     band: Poses | None = None
 
     def delayed(self, delay: float) -> "Walked":
-        """Return a copy with `delay` [s] added to the times of path and band."""
+        """Return a copy with `delay` [s] added to times of path and band, not of `reference`."""
         path = replace(self.path, t=self.path.t + delay)
         return replace(self, path=path, band=self.band and self.band.delayed(delay))
 
@@ -104,7 +105,9 @@ def walk_with(
         notes: Notes to begin with, one line each.
 
     Raises:
-        SettingsError: The model needs a slip law and has none, or an option has an invalid value.
+        SettingsError: The model needs a slip law and has none or one of another slip definition,
+            there are too many time steps, or an option has an invalid value.
+        NotFound, DataError: The slip law cannot be read.
         ModelError: The walk cannot be computed.
     """
     model = MODELS[request.model]
@@ -139,7 +142,10 @@ def _slip_for(model: WalkModel, text: str | None) -> tuple[NamedSlip | None, tup
 def _time_step(
     request: ModelRequest, model: WalkModel, duration: float, informed: InformedLegs | None
 ) -> float:
-    """Return `--dt` if given, else the model's time step [s]; at most `FINE.dt` for fitted legs."""
+    """Return `--dt` if given, else the model's time step, for fitted legs at most `FINE.dt` [s].
+
+    Raises `SettingsError` as `_require_steps` does.
+    """
     dt = model.dt if request.dt is None else request.dt
     if informed is not None and request.dt is None:
         dt = min(dt, FINE.dt)

@@ -56,7 +56,9 @@ def checked_clock(slip: Slip) -> Clock:
 def estimated_clock_of(slip: Slip) -> Clock:
     """Return a clock function that estimates a track's clock offset and adds it to its times.
 
-    The offset is estimated from the track and a path predicted from the leg angles.
+    The offset is estimated from the track and a path predicted from the leg angles; its variance is
+    added to the track's covariance. The function raises `DataError` if the motion does not
+    determine the offset.
 
     Args:
         slip: Slip law with which the path is predicted.

@@ -49,7 +49,8 @@ def fit_walks_on_file(
         progress: Called with the fraction done, 0 to 1 [-].
 
     Raises:
-        ModelError: `walks` is empty, or a walk diverged.
+        ModelError: `walks` is empty, a walk diverged, or the slip law is invalid at the robot's
+            loads.
     """
     if not walks:
         raise InsufficientData("no walk was given; expected one or more with a track")
@@ -88,6 +89,7 @@ def judge_left_out(
         Errors of each walk, anchored at the first tracked pose; empty for a single walk.
 
     Raises:
+        ZebroLabError: Draws of the slip law cannot be read, or a track cannot be scored.
         ModelError: A walk diverged.
     """
     judged = []
@@ -121,6 +123,9 @@ def predict_from(
         rng: Random number generator.
         index: Index of the walk in the posterior if it was fitted, else None.
         threads: Number of draws computed in parallel.
+
+    Returns:
+        The prediction, from time zero on; its band has 300 draws.
     """
     t = np.linspace(0.0, walk.duration, max(round(walk.duration / SAMPLING), 2) + 1)
     robot, angles = walk.robot.robot, middle(walk.legs)

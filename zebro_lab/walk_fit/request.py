@@ -10,7 +10,7 @@ from typer import Option
 
 @dataclass(frozen=True)
 class WalksRequest:
-    """Options of `calibrate-slip --walks`, beside those of the calibration."""
+    """Options of `calibrate-slip` for a fit of tracked walks, beside those of the calibration."""
 
     walks: Annotated[
         tuple[Path, ...],

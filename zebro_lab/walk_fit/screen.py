@@ -18,7 +18,7 @@ _LIKELY = 0.01  # probability from which on a case is printed
 
 
 def print_walks(console: Console, done: WalksCalibrated) -> None:
-    """Print notes, parameters, wrongly mounted legs, quality and left-out walks of a fit.
+    """Print notes, parameters, wrongly mounted legs, quality, left-out walks and folder of a fit.
 
     Args:
         console: Console to print to.

@@ -57,8 +57,9 @@ def calibrate_walks(
         watcher: Receives progress.
 
     Raises:
-        ZebroLabError: A walk or the calibration is missing or cannot be used; nothing was written.
-        ModelError: A walk diverged; nothing was written.
+        ZebroLabError: No walk is named; a walk or the calibration is missing or cannot be used; or
+            `walks/` cannot be replaced. Nothing was written.
+        ModelError: A walk diverged, or the slip law is invalid at its loads; nothing was written.
     """
     slip_toml = _slip_of(request, calibration.out)
     require_replaceable(calibration.out / FOLDER, WALKS, inputs=request.walks)

@@ -42,7 +42,8 @@ class WalkOnFile:
         source: Source of leg log and track; both, joined by a comma, if they differ.
         files: Every file read, those of the leg log first.
         notes: Notes, one line each.
-        tilt: Roll and pitch from the run's IMU, in the same time base; None without an IMU.
+        tilt: Roll and pitch from the run's IMU, in the same time base; None without an IMU or with
+            too few data.
     """
 
     name: str
@@ -73,7 +74,7 @@ def read_walks(
     """Read tracked walks of one robot, copies only once; equal folder names get a number.
 
     Args:
-        folders: Folder of each walk, as for `read_walk_on_file`.
+        folders: Folder of each walk, one or more, as for `read_walk_on_file`.
         robot: A `robot.toml` to use instead of those in the folders.
         clock: Shifts each track to the clock of its leg log; None to keep the track's times.
 
@@ -113,7 +114,8 @@ def read_walk_on_file(
         clock: Shifts the track to the leg log's clock; None to keep the track's times.
 
     Raises:
-        NotFound: There is no leg log or no track.
+        NotFound: There is no leg log, no track, or no file `robot`.
+        SettingsError: The `robot.toml` or a `columns.toml` is invalid.
         DataError: A file cannot be read, the track has no headings or covariance, too few of its
             poses lie within the log's time range, or `clock` rejects it.
     """
@@ -149,7 +151,7 @@ def _tilt(
 ) -> tuple[MeasuredTilt | None, tuple[Path, ...], tuple[str, ...]]:
     """Read roll and pitch of a run's IMU from `start` to `end` [s], with time zero at `start`.
 
-    Returns None without an IMU or with too few data; and the files read, and notes.
+    Returns them, None without an IMU or with less than 1 s of data; the files they are from; notes.
     """
     measured = read_recorded_tilt(folder) if is_recorded(folder) else None
     if measured is None:

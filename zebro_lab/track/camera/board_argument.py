@@ -20,7 +20,8 @@ def parse_board(text: str) -> Board:
     A ChArUco board is `charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY`.
 
     Raises:
-        SettingsError: The description is invalid.
+        SettingsError: The form, a number, a length (above 0, below 1 m) or the dictionary is
+            invalid, or markers are not smaller than squares.
         UnitError: A length has no valid number or unit.
 
     >>> parse_board("checkerboard:9x6:25mm")

@@ -55,7 +55,7 @@ def calibrate(request: CameraRequest) -> None:
 
 
 def calibration_lines(result: "CameraResult") -> list[str]:
-    """Format a calibration as lines: left-out files, lens ± sd, misfit, coverage, warnings."""
+    """Format a calibration: left-out files, lens ± sd, misfit, coverage, warnings, written file."""
     fit = result.fit
     matrix, sd = fit.camera.matrix, fit.sd
     width, height = fit.camera.size

@@ -155,6 +155,8 @@ def _runs(black: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def board_rectangles(board: CharucoBoard, *, left: float, bottom: float) -> tuple[Rectangle, ...]:
     """Compute a ChArUco board's rectangles: black where row plus column is even, else a marker.
 
+    Rows are counted from the top, from 0; markers are numbered from 0 along the rows.
+
     Args:
         board: The board; OpenCV's pattern since 4.6.
         left: Left edge of the board [mm].

@@ -49,8 +49,9 @@ def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult
         progress: Progress display, which may also request a stop.
 
     Raises:
-        ZebroLabError: An option is invalid.
-        TrackingError: The photographs do not determine the lens.
+        ZebroLabError: An option is invalid, or `out` is a file that this command did not write.
+        TrackingError: There is no photograph, none can be read or shows the board, or they do not
+            determine the lens.
         TrackStopped: A stop was requested.
     """
     target = require_own(request.out, LENS, inputs=(request.photos,))
@@ -104,7 +105,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
         The files `kit.pdf` and `floor.toml`.
 
     Raises:
-        AlreadyExists: The folder has a `floor.toml`, or a `kit.pdf` with other content.
+        AlreadyExists: `out` is a file, or has a `floor.toml` or a `kit.pdf` with other content.
         SettingsError: The paper is unknown.
     """
     from zebro_lab.track.camera.pictures import save_pages  # matplotlib takes most of a second

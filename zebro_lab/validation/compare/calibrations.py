@@ -31,8 +31,8 @@ def compare_calibrations(
         rng: Random number generator.
 
     Raises:
-        ZebroLabError: A calibration cannot be read, slip definitions differ, or the tested loads
-            do not overlap.
+        ZebroLabError: A calibration cannot be read or is assumed friction, slip definitions differ,
+            or the tested loads do not overlap.
     """
     slips = (parse_slip(str(first)), parse_slip(str(second)))
     curves = tuple(_curve_of(slip) for slip in slips)
@@ -79,7 +79,10 @@ def _require_one_definition(curves: tuple[SlipCurve, ...], second: Path) -> None
 
 
 def _common_loads(curves: tuple[SlipCurve, ...], second: Path) -> Array:
-    """Return lowest, middle and highest load [N] of the range that both were tested in."""
+    """Return lowest, middle and highest load [N] of the range that both were tested in.
+
+    It is one load if the range has no width; `DataError` is raised without a common range.
+    """
     low = max(curve.load_range[0] for curve in curves)
     high = min(curve.load_range[1] for curve in curves)
     if low > high:

@@ -26,7 +26,7 @@ _SHOWN_DRAWS = 40
 
 @styled
 def overlay(compared: Comparison, differences: Sequence[Difference], *, simulated: bool) -> Figure:
-    """Draw both curves or paths overlaid, and below the differences relative to their intervals.
+    """Draw both curves or paths overlaid; below, differences over half their 90 % intervals.
 
     Args:
         compared: The comparison.

@@ -41,8 +41,8 @@ def compare_runs(
         rng: Random number generator.
 
     Raises:
-        ZebroLabError: A file cannot be read, or the runs have neither tracks with headings nor
-            draws in common.
+        ZebroLabError: A run has neither track nor draws, a file cannot be read, or the runs have
+            neither tracks with headings nor draws in common.
     """
     runs = (_Run(first), _Run(second))
     quantities = [
@@ -106,7 +106,8 @@ class _Run:
     def predicted(self) -> Array | None:
         """Compute speed, yaw rate and curvature of each drawn path, shape (n, 3), see `_summaries`.
 
-        Poses are interpolated at the track's times, else every second; None without draws.
+        Poses are interpolated at the track's times within the prediction; every second if these are
+        fewer than two or there is no track. None without draws.
         """
         if self.band is None:
             return None
@@ -119,13 +120,15 @@ class _Run:
 
     @property
     def paths(self) -> RunPaths:
-        """Track, moved to start at the origin along x, and drawn paths, unchanged."""
+        """Track, moved to start at the origin along x, unturned without headings; drawn paths."""
         track = None if self.track is None else _from_origin(self.track.poses)
         return RunPaths(track, self.band)
 
 
 def _summaries(t: Array, states: Array) -> Array:
     """Compute mean speed [m/s], yaw rate [rad/s] and curvature [1/m] of paths, shape (n, 3).
+
+    Speed is length over time, curvature yaw rate over speed, 0 for a path of length 0.
 
     Args:
         t: Times, shape (k,) [s].

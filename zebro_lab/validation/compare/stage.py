@@ -42,6 +42,7 @@ def compare(request: CompareRequest) -> Compared:
     Raises:
         ZebroLabError: The two are of different kinds, the same, cannot be read, have no quantity
             in common, or the folder cannot be replaced.
+        ModelError: A draw is not a finite number.
     """
     require_replaceable(request.out, COMPARISON, inputs=(request.first, request.second))
     rng = np.random.default_rng(request.seed)

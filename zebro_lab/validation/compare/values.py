@@ -18,7 +18,7 @@ class Quantity:
     Attributes:
         name: Name of the quantity.
         unit: Unit of the draws, as shown; empty for a pure number.
-        draws: Draws for the first and for the second, each of shape (n,).
+        draws: Draws for the first, shape (n,), and for the second, shape (m,).
     """
 
     name: str
@@ -31,7 +31,11 @@ class Quantity:
         return float(median), float(low), float(high)
 
     def difference(self, rng: np.random.Generator) -> Difference:
-        """Compute median, 90 % interval and sign probability of the second minus the first."""
+        """Compute median, 90 % interval and sign probability of the second minus the first.
+
+        Raises:
+            InsufficientData: A draw is not finite.
+        """
         return difference(*self.draws, rng=rng)
 
 
@@ -52,11 +56,11 @@ class Curve:
 
 @dataclass(frozen=True)
 class RunPaths:
-    """Track and prediction of one run for the picture, started at the origin along x.
+    """Track and prediction of one run for the picture.
 
     Attributes:
-        track: Tracked poses of the run; None without a track.
-        band: Predicted paths of the run; None without draws.
+        track: Tracked poses, moved to start at the origin along x; None without a track.
+        band: Predicted paths in the inertial frame, where a walk starts so; None without draws.
     """
 
     track: Poses | None
@@ -75,7 +79,7 @@ class Comparison:
         paths: Paths of the first and of the second run; empty for calibrations.
         definition: Slip definition of the curves; empty for runs.
         source: Sources of both, joined by commas.
-        files: Files that were read.
+        files: Files that were read, without `posterior.nc` and manifests.
         notes: Notes, one line each.
     """
 

@@ -112,14 +112,17 @@ class DarkestReading(DarkestModel):
         return self.polished(max(sets, key=self.worth))
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align the part where each exposure is the darkest, twice; drop those that fail."""
+        """Align the part where each exposure is the darkest, twice; drop those that fail.
+
+        The known one is dropped, too, if it fails.
+        """
         found = self.aligned_among(poses)
         return self.aligned_among(np.array([each.planar for each in found]))
 
     def aligned_among(self, poses: Array) -> tuple[Exposure, ...]:
         """Align the part where each exposure is the darkest, given all poses (n, 3).
 
-        Exposures that do not align are left out.
+        The first pose is that of the known exposure. Exposures that do not align are left out.
         """
         known, found = self.known, []
         template = known.body_template(known.pixels)
@@ -147,7 +150,10 @@ class DarkestReading(DarkestModel):
         return self.best_of(tried, look, self.cover(anchor[None], look), most=_FIRST_STEPS)
 
     def followed(self, poses: list[Array]) -> list[Array]:
-        """Extend poses, at least two in order, by their last step until no exposure is found."""
+        """Extend poses, at least two in order, by their last step until no exposure is found.
+
+        The list is extended in place, to at most `MOST_EXPOSURES`, and returned.
+        """
         while len(poses) < MOST_EXPOSURES:
             known = np.array(poses)
             look = self.look(known)
@@ -187,6 +193,8 @@ class DarkestReading(DarkestModel):
 
     def longest(self, anchor: Array, chain: Chain) -> Chain:
         """Fit a chain and lengthen it at either end while `worth` rises.
+
+        It is lengthened only below `MOST_EXPOSURES` exposures besides the known one.
 
         Args:
             anchor: Pose of the known exposure, shape (3,) [m, m, rad].

@@ -40,7 +40,8 @@ class Detection:
     Attributes:
         photo: Name of the photograph.
         floor: Corners of the floor's markers in the photograph, without markers detected twice.
-        robot: The robot's marker in the photograph, or None where it is not detected.
+        robot: The robot's marker in the photograph; None where it is not detected, or none is
+            wanted.
     """
 
     photo: str
@@ -108,6 +109,7 @@ def _near(
     """Detect markers in windows around their places in a neighbouring photograph.
 
     A floor marker may have moved by 0.4 of its size, the robot's by `reach`; both by 8 px more.
+    Markers that `hint` does not show are not searched.
     """
     size = (pixels.shape[1], pixels.shape[0])
     places = [(floor.dictionary, key, corners, 0.4) for key, corners in hint.floor.pixels.items()]

@@ -70,7 +70,7 @@ class CorrectionError(TrackingError, ValueError):
 
 
 class CompositeError(TrackingError, ValueError):
-    """The exposures of a composite photograph cannot be found or separated."""
+    """The exposures of a composite photograph cannot be found, or the robot's size is not known."""
 
 
 class PathError(TrackingError, ValueError):

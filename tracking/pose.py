@@ -36,7 +36,7 @@ class RobotMarker:
 
     Attributes:
         marker_id: Number of the marker in its dictionary.
-        side: Side of the black square, above 0 [m].
+        side: Side of the black square, above 0, else MarkerError is raised [m].
         dictionary: Name of the dictionary.
         position: Centre of the marker in the body frame: forward, left, up [m].
         yaw: Turn of the print's left-to-right direction from the body's x, counter-clockwise

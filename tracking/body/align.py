@@ -238,7 +238,7 @@ class _Job:
         return Alignment(pose, score, log_likelihood)
 
     def _used(self, seen: Array) -> NDArray[np.bool_]:
-        """Return True for points at pixels (n, 2) in the crop that are less than 5 % hidden."""
+        """Mask points at the photograph's pixels (n, 2): True in the crop and under 5 % hidden."""
         inside = seen - self.origin
         height, width = self.picture.shape[:2]
         used = np.all((inside >= 0) & (inside <= [width - 1, height - 1]), axis=1)
@@ -247,7 +247,7 @@ class _Job:
         return used
 
     def _slopes_at(self, seen: Array) -> Array:
-        """Interpolate the gradients by column and row at pixels (n, 2), shape (n, 3 colours, 2)."""
+        """Interpolate derivatives by column, row at the photograph's pixels, (n, 3 colours, 2)."""
         along = sample(self.slopes, seen - self.origin)
         return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
 

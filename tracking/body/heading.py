@@ -65,7 +65,7 @@ def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool)
     """Compute the log score of two successive alignments from turn and direction of the move.
 
     A turn lowers it by up to 10. If the robot `walks_ahead` and moved by over a quarter of its
-    `length`, a move ahead adds 6, one backward takes 6 away.
+    `length`, 6 times the cosine between move and mean heading is added.
     """
     a, b = before.pose.planar, after.pose.planar
     turn = float(np.angle(np.exp(1j * (b[2] - a[2]))))

@@ -71,8 +71,8 @@ def find_body(
 
     Returns:
         The alignment of highest score, and those of the opposite heading there, and of both across
-        it if the plate is about as wide as long, whatever their score, likeliest first; None where
-        no alignment reaches `ACCEPTED_SCORE`.
+        it if the plate is about as wide as long, where `align` gives one, likeliest first; None
+        where no alignment reaches `ACCEPTED_SCORE`.
 
     Raises:
         ValueError: When the photograph shows nothing of the top's plane (see `floor_in_view`).

@@ -54,7 +54,7 @@ class BodyRaster:
         return slice(self.margin, rows - self.margin), slice(self.margin, columns - self.margin)
 
     def thinned(self) -> "BodyRaster":
-        """Return a raster of every second point in both directions, none of them called margin."""
+        """Return a raster of every second row and column, from the second on; its `margin` is 0."""
         return BodyRaster(self.plane, self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
 
     def template(self, values: NDArray[np.float32], height: float) -> BodyTemplate:

@@ -74,7 +74,10 @@ class Chain:
 
     @classmethod
     def through(cls, poses: Sequence[Array]) -> "Chain":
-        """Build a chain of the median step between poses in order, all ahead of the first."""
+        """Build a chain of the median step between poses in order, all ahead of the first.
+
+        The turn does not change from step to step.
+        """
         steps = [step_between(a, b) for a, b in pairwise(poses)]
         return cls(np.append(np.median(steps, axis=0), 0.0), len(steps), 0)
 
@@ -137,14 +140,14 @@ class DarkestReading(DarkestModel):
     def worth(self, poses: Array) -> float:
         """Compute `value` of a set of exposures (n, 3) less `LEAST_GAIN` for each but the first.
 
-        The result is -inf where two exposures are nearer than `LEAST_STEP`.
+        The result is -inf where two exposures are nearer than `LEAST_STEP` lengths of the robot.
         """
         if not are_apart(poses, self.length):
             return -np.inf
         return self.value(poses) - LEAST_GAIN * (len(poses) - 1)
 
     def first_steps(self, anchor: Array) -> list[Array]:
-        """Find up to ten candidate poses (3,) of the exposure next to the known one at `anchor`."""
+        """Find up to ten poses (3,) of the exposure next to the known one, the likeliest first."""
         look = self.look(anchor[None])
         tried = beside(anchor, self.length, spacing=self.length / 20)
         return self.best_of(tried, look, self.cover(anchor[None], look), most=_FIRST_STEPS)

@@ -81,7 +81,7 @@ class KnownExposure:
     def body_template(self, pixels: NDArray) -> BodyTemplate:
         """Cut the template of the whole body (`body_plate`) out of the known exposure.
 
-        See `template`, also for the error.
+        Raises CompositeError, see `template`.
         """
         return self.template(pixels, self.body_plate)
 
@@ -143,8 +143,8 @@ class KnownExposure:
             outlier_sd: As for `tracking.body.align`.
 
         Returns:
-            The alignment, or None where fewer than 60 points are visible or it diverges
-            (`has_diverged`).
+            The alignment, or None where the robot leaves the picture, fewer than 60 points are
+            visible, or it diverges (`has_diverged`).
         """
         found = align(
             pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,

@@ -86,8 +86,8 @@ class Fit(NamedTuple):
     def gain(self, other: "Fit") -> float:
         """Compute the gain of `explained` over another fit, less the cost of added exposures [-].
 
-        The cost is the same for both sets: a picture of the robot solved at too few exposures is
-        fainter, so that each of them would seem to cost less.
+        Each added one costs the mean of both fits' `cost`: a picture of the robot solved at too few
+        exposures is fainter, so that each of them would seem to cost less.
         """
         more = len(self.poses) - len(other.poses)
         return self.explained - other.explained - 0.5 * (self.cost + other.cost) * more
@@ -135,7 +135,7 @@ class MeanReading(Reading):
         return float((self.detail**2).sum())
 
     def find(self) -> Array:
-        """Find the poses (n, 3), the known one first, that explain most of the picture."""
+        """Find the poses (n, 3), the known one first, that gain most (`Fit.gain`), but weak ones."""
         best = self.fitted(self.first_matches(self.known.pose.planar), rounds=2)
         for _ in range(_ROUNDS):
             tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
@@ -180,7 +180,7 @@ class MeanReading(Reading):
         return residuals
 
     def accepted(self, fit: Fit) -> Array:
-        """Return the known pose, and those of `LEAST_SCORE`, `LEAST_OF_USUAL`, `LEAST_STRENGTH`."""
+        """Return the known pose and those that reach all `LEAST_...` of score and strength."""
         usual = float(np.median(fit.scores[1:])) if len(fit.scores) > 1 else 0.0
         least = max(LEAST_SCORE, LEAST_OF_USUAL * usual)
         good = (fit.scores >= least) & (fit.strengths >= LEAST_STRENGTH)
@@ -188,7 +188,7 @@ class MeanReading(Reading):
         return fit.poses[good]
 
     def first_matches(self, anchor: Array) -> Array:
-        """Match the part of the picture at the known pose (3,); return poses (n, 3), it first."""
+        """Match the robot as seen at the known pose (3,) everywhere; return poses, it first."""
         robot = self.body.read(self.detail, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]
@@ -263,7 +263,7 @@ class MeanReading(Reading):
         return far and is_beside(pose, list(poses), self.length)
 
     def varied(self, fit: Fit) -> list[Array]:
-        """List sets of poses, apart from each other, with one or two more or fewer than a fit."""
+        """List sets of poses, all apart, that differ from a fit by one or two added or removed."""
         left = self.detail - superposed(self.body, fit.poses, fit.robot)
         left *= self.used[..., None]
         new = self.candidates(self.matches(left, fit.robot), fit.poses)

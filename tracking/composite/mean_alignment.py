@@ -63,7 +63,7 @@ def floor_pattern(
 
 
 def fine_whitening(picture: KnownExposure) -> Array:
-    """Compute the matrix W (3, 3) that whitens the floor's fine pattern to `SCALE` grey levels.
+    """Compute the matrix W (3, 3) that whitens the floor's fine pattern to deviation `SCALE`.
 
     It applies to colours as rows, (n, 3) @ W; fine is below 1/24 of the robot's length.
     Lenses and JPEG reduce fine detail of colour more than of brightness.
@@ -93,7 +93,10 @@ class MeanAlignment:
 
     @property
     def least_clear(self) -> float:
-        """Least correlation of an exposure to use its alignment, by whether there is a pattern."""
+        """Least correlation to use an alignment: `LEAST_NEW_SCORE` if there is a `pattern`.
+
+        `LEAST_CLEAR_SCORE` without.
+        """
         return LEAST_CLEAR_SCORE if self.pattern is None else LEAST_NEW_SCORE
 
     def exposures(self) -> tuple[Exposure, ...]:
@@ -114,7 +117,8 @@ class MeanAlignment:
     def with_others(self) -> list[Alignment | None]:
         """Align each exposure with the mean of the others, twice; None where it diverges.
 
-        None for all where the known one diverges or has too small a correlation (`anchored`).
+        None for all where the known one diverges or has too small a correlation (`anchored`). Of n
+        poses each moves by (n - 1) / n of its step.
         """
         poses, found = self.poses, []
         share = (len(poses) - 1) / len(poses)

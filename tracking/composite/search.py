@@ -101,7 +101,10 @@ def find_exposures(
 
 
 def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return the picture with hidden pixels filled with the median colour of the others."""
+    """Return the picture with hidden pixels filled with the median colour of the others.
+
+    Without hidden pixels it is the same array.
+    """
     if not hidden.any():
         return pixels
     painted = pixels.copy()
@@ -121,7 +124,10 @@ class _Search:
     area: tuple[Array, Array]
 
     def superposed(self) -> list[Exposure]:
-        """Find exposures by correlation with the whole marker; `visible` is 1 for all."""
+        """Find exposures by correlation with the whole marker; `visible` is 1 for all.
+
+        They have at least `BESIDE_SCORE`, are selected by `along_a_walk` and `refined`.
+        """
         top = self.template.plate
         half = 0.5 * float(np.hypot(top.length, top.width))
         plane = Plane.over(

@@ -155,7 +155,7 @@ def _solutions(
 def _polish(
     camera: Camera, start: CameraPose, points: Array, pixels: Array
 ) -> tuple[CameraPose, float]:
-    """Refine a camera pose by robust least squares; return it with covariance, and RMS misfit."""
+    """Refine a camera pose by robust least squares; return it with covariance, RMS misfit [px]."""
 
     def pose_of(x: Array) -> CameraPose:
         return CameraPose(x[:3], x[3:], start.covariance)

@@ -89,7 +89,11 @@ def _found(
     scene: Scene, seen: FloorSeen, template: BodyTemplate, photos: Sequence[Photo], *,
     workers: int, progress: Progress,
 ) -> list[BodyCandidates | None]:  # fmt: skip
-    """Find the template in each photograph, in a process pool; None where it is not found."""
+    """Find the template in each photograph, in a process pool; None where it is not found.
+
+    It is searched near its place before, then in the whole photograph. Below 6 photographs there is
+    no pool.
+    """
     workers = workers if len(photos) >= _WORTH_WORKERS else 1
     jobs = [
         _Search(scene.camera, template, scene.prior,

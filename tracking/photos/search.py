@@ -132,6 +132,6 @@ def _detected(
 
 
 def _floor_alone(name: str, pixels: NDArray[np.uint8], floor: FloorMap) -> Detection:
-    """Detect the floor's markers only; none detected is not an error."""
+    """Detect the floor's markers only, leave out those detected twice; none is not an error."""
     found = find_markers(pixels, floor.dictionary, wanted=floor.marker_ids) if floor.markers else ()
     return Detection(name, FloorView.of(name, found), None)

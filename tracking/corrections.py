@@ -118,8 +118,8 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     """Parse a correction from plain values, as a file holds them.
 
     Args:
-        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind, whose
-            types are not checked but of `photos` (default: none; TypeError when not iterable).
+        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind; types
+            are not checked. An order without `photos` names none (TypeError if not iterable).
 
     Raises:
         CorrectionError: When the kind or a key is unknown, or a required key is missing.

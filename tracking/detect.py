@@ -140,6 +140,8 @@ def observe(
 ) -> tuple[PoseObservation, ...]:  # fmt: skip
     """Compute the robot's pose in every photograph that shows its marker and the floor.
 
+    The covariance of the corners is multiplied by `fit.noise_factor`².
+
     Args:
         camera: Camera intrinsics and distortion.
         fit: The floor and the camera's poses.

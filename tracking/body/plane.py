@@ -36,6 +36,8 @@ class Plane:
     ) -> "Plane":  # fmt: skip
         """Build a raster over a level rectangle and project it into the photograph.
 
+        Its first point has the lowest x and the highest y; the sides opposite are not reached.
+
         Args:
             camera: Camera intrinsics and distortion.
             view: Pose of the camera.

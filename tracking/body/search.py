@@ -65,7 +65,8 @@ def find_body(
         view: Pose of the camera.
         template: Template of the robot.
         prior: Prior of the body's height and tilt.
-        near: x and y of the middle of the square to search [m]; None for the whole photograph.
+        near: x and y of the middle of the square to search [m]; None for the whole photograph (as
+            far as three camera heights).
         reach: Half the side of that square [m].
         visible: True at pixels that may show the robot, shape (height, width); None for all.
 

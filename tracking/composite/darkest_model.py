@@ -147,8 +147,9 @@ class DarkestModel(Reading):
             body: Points of the robot's top to compare.
 
         Returns:
-            Log odds, shape (n,) [-]; -inf where the exposure is the darkest at fewer than
-            `LEAST_CLAIM` of its points, or less than 0.6 of it is inside the picture.
+            Gain of log density, sum over its points, over the number of points where it is the
+            darkest, shape (n,) [-]; -inf where these are less than `LEAST_CLAIM` of its points, or
+            less than 0.6 of it is inside the picture.
         """
         gain, claim, inside = self.gains(poses, look, cover, body)
         enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)

@@ -135,7 +135,7 @@ class MeanReading(Reading):
         return float((self.detail**2).sum())
 
     def find(self) -> Array:
-        """Find the poses (n, 3), the known one first, that gain most (`Fit.gain`), but weak ones."""
+        """Find the poses (n, 3), known one first, that gain most (`Fit.gain`); drop weak ones."""
         best = self.fitted(self.first_matches(self.known.pose.planar), rounds=2)
         for _ in range(_ROUNDS):
             tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
@@ -219,8 +219,8 @@ class MeanReading(Reading):
         """List the poses of matches that may be further exposures.
 
         Each is a step from a known exposure with nearly the same heading, or has at least
-        `LONELY_SCORE` and is farther than a step from all. The heading of such a match may be
-        turned by a half; it is corrected by the direction from the nearest exposure.
+        `LONELY_SCORE` and is farther than a step from all. The heading of such a match may be off
+        by a half turn (a quarter, if square): the direction from the nearest exposure corrects it.
 
         Args:
             matches: Matches, best first.

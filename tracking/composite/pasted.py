@@ -152,6 +152,8 @@ class PastedReading(Reading):
     def hidden_pixels(self, pose: BodyPose) -> NDArray[np.bool_]:
         """Compute the mask (height, width) of pixels of lower exposures that one hides or may hide.
 
+        If `with_floor`, it may hide pixels of the floor's colour up to `FLOOR_LEFT` around it.
+
         Args:
             pose: Pose of the exposure on top, whose cut-out with its margin hides them.
         """
@@ -163,6 +165,8 @@ class PastedReading(Reading):
 
     def hidden_points(self, pose: Array) -> NDArray[np.bool_]:
         """Compute the mask of the plane's points of lower exposures that one hides or may hide.
+
+        If `with_floor`, it may hide points of the floor's colour up to `FLOOR_LEFT` around it.
 
         Args:
             pose: x, y [m] and yaw [rad] of the exposure on top, shape (3,).

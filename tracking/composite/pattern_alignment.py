@@ -39,7 +39,8 @@ class PatternResidual(NamedTuple):
     Attributes:
         seen: Prewhitened values of the photograph, pixels and colours raveled, shape (n,).
         expected: Prewhitened values of the template drawn at the pose, shape (n,).
-        slopes: Derivative of `expected` by m of the state and the camera's pose, shape (n, m).
+        slopes: Derivative of `expected` by m components of the robot's state and the camera's
+            pose, shape (n, m).
         noise: Standard deviation of the residual, by the median absolute deviation [-].
         weight: Huber's weights, 1 for small residuals, shape (n,) [-].
     """

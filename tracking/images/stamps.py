@@ -48,9 +48,9 @@ def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit |
         resolution: Step to which the stamps are rounded down [s].
 
     Returns:
-        The fit of least jitter, then fewest missing exposures; None below 3 stamps, a last one not
-        after the first, or where no regular interval with up to n missing exposures agrees with
-        the stamps. Exposures are missing only from an interval of two steps of the stamps on.
+        The fit of least jitter, then of fewest missing exposures; None for fewer than 3 stamps, for
+        a last one not after the first, or where no regular timer agrees with the stamps, with up to
+        n missing exposures if its interval is at least two steps of the stamps, else with none.
     """
     s = np.asarray(stamps, dtype=float)
     span = s[-1] - s[0]

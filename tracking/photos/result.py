@@ -81,8 +81,8 @@ def finish(
             interval.
 
     Returns:
-        The track, with the warnings of the floor fit and notes on gaps, outliers, a height 3
-        standard deviations from the prior's, and corrections, each where there are any.
+        The track, with the warnings of the floor fit and notes on gaps, outliers, a median height 3
+        or more standard deviations off the prior's, and corrections, each where there are any.
 
     Raises:
         TrackingError: No observation is left, two have the same time, or a correction is invalid.

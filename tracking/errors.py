@@ -41,7 +41,7 @@ class FloorError(TrackingError, ValueError):
 
 
 class MarkerError(TrackingError, ValueError):
-    """A marker or a dictionary of markers is unknown or invalid."""
+    """A marker or a dictionary of markers is unknown or invalid, or shared by robot and floor."""
 
 
 class BodyError(TrackingError, ValueError):
@@ -70,7 +70,10 @@ class CorrectionError(TrackingError, ValueError):
 
 
 class CompositeError(TrackingError, ValueError):
-    """The exposures of a composite photograph cannot be found, or the robot's size is not known."""
+    """The exposures of a composite photograph cannot be found.
+
+    Or the known one is cut, too small or too faint to find others, or the robot's size is unknown.
+    """
 
 
 class PathError(TrackingError, ValueError):

@@ -21,6 +21,8 @@ from tracking.path import PoseObservation
 class Move:
     """Set the robot's pose in a photograph, whether or not the tracker found it there.
 
+    A pose found there keeps its time, height z and covariance from the camera's pose.
+
     Attributes:
         photo: Name of the photograph.
         x: x of the body's origin on the floor [m].
@@ -66,7 +68,7 @@ class Order:
 
     Attributes:
         photos: Names of photographs in order; the earliest of their times is given to the first
-            and so on. Photographs that are not named keep their times.
+            and so on. Photographs that are not named keep their times; each is named once.
     """
 
     photos: tuple[str, ...]
@@ -92,7 +94,8 @@ def replay(
         z: Height of the body's origin in an observation that a `Move` adds [m].
 
     Returns:
-        Corrected observations; unchanged observations are the same objects.
+        Corrected observations in the given order, those added by a `Move` last; unchanged
+        observations are the same objects.
 
     Raises:
         CorrectionError: When a correction names a photograph without an observation (a `Move`:
@@ -116,7 +119,8 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     """Parse a correction from plain values, as a file holds them.
 
     Args:
-        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind.
+        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind; types
+            are not checked. An order without `photos` names none (TypeError if not iterable).
 
     Raises:
         CorrectionError: When the kind or a key is unknown, a required key is missing, or a value

@@ -39,8 +39,9 @@ class Detection:
 
     Attributes:
         photo: Name of the photograph.
-        floor: Corners of the floor's markers in the photograph.
-        robot: The robot's marker in the photograph, or None where it is not detected.
+        floor: Corners of the floor's markers in the photograph, without markers detected twice.
+        robot: The robot's marker in the photograph; None where it is not detected, or none is
+            wanted.
     """
 
     photo: str
@@ -58,7 +59,7 @@ def detect(
         photo: Name of the photograph.
         pixels: The photograph, grey or BGR.
         floor: The floor map; of its marks only markers are detected.
-        robot: The robot's marker and prior.
+        robot: The robot's marker, of a number that no floor marker has.
         hint: Detection in a photograph taken shortly before or after. Markers are first searched
             near their places there; the whole photograph only for markers not found that way.
         reach: How far the robot may have moved from `hint`, in sides of its marker [-].
@@ -69,6 +70,7 @@ def detect(
     Raises:
         PhotoError: When the robot's marker is detected more than once, or the map has markers and
             none of them is detected.
+        MarkerError: When there is no dictionary of a given name.
     """
     found = [] if hint is None else _near(pixels, floor, robot, hint, reach)
     missing = _missing(floor, robot, found)
@@ -104,7 +106,11 @@ def _missing(
 def _near(
     pixels: NDArray[np.uint8], floor: FloorMap, robot: MarkedRobot, hint: Detection, reach: float
 ) -> list[Sighting]:
-    """Detect markers in windows around their places in a neighbouring photograph."""
+    """Detect markers in windows around their places in a neighbouring photograph.
+
+    A floor marker may have moved by 0.4 of its size, the robot's by `reach`; both by 8 px more.
+    Markers that `hint` does not show are not searched.
+    """
     size = (pixels.shape[1], pixels.shape[0])
     places = [(floor.dictionary, key, corners, 0.4) for key, corners in hint.floor.pixels.items()]
     if hint.robot is not None:
@@ -134,12 +140,14 @@ def observe(
 ) -> tuple[PoseObservation, ...]:  # fmt: skip
     """Compute the robot's pose in every photograph that shows its marker and the floor.
 
+    The covariance of the corners is multiplied by `fit.noise_factor`².
+
     Args:
         camera: Camera intrinsics and distortion.
         fit: The floor and the camera's poses.
         detections: Markers detected in each photograph.
         robot: The robot's marker and prior.
-        times: By photograph, time and its standard deviation [s].
+        times: By photograph, time and its standard deviation [s]; needed for each observation.
 
     Returns:
         One observation for each photograph that shows the robot's marker and for which `fit` has

@@ -29,6 +29,7 @@ def dictionary_named(name: str) -> cv2.aruco.Dictionary:
 
     Raises:
         MarkerError: When the name is unknown, or the file is missing or holds no dictionary.
+        SystemError: When OpenCV cannot parse the file as YAML, JSON or XML.
     """
     if Path(name).suffix in {".yml", ".yaml", ".json", ".xml"}:
         return _dictionary_of_file(name)
@@ -60,7 +61,8 @@ def guess_dictionary(pixels: NDArray[np.uint8]) -> str | None:
         pixels: The picture, grey or BGR.
 
     Returns:
-        Name of the dictionary of which most markers are detected; None if fewer than two are.
+        Name of the dictionary of which most markers are detected; None if of each of the six fewer
+        than two are.
     """
     counts = {}
     for name in _USUAL:

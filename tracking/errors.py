@@ -25,7 +25,7 @@ class PhotoError(TrackingError, ValueError):
 
 
 class NoUsablePhoto(TrackingError, ValueError):
-    """No photograph can be used, or the robot is found in none of the photographs."""
+    """No photograph can be used or shows the robot, or the template's photograph cannot be used."""
 
 
 class TrackStopped(TrackingError):
@@ -33,15 +33,15 @@ class TrackStopped(TrackingError):
 
 
 class CalibrationError(TrackingError, ValueError):
-    """The calibration boards found do not determine the camera's intrinsics and distortion."""
+    """The pictures of a board cannot be read or do not determine the camera's parameters."""
 
 
 class FloorError(TrackingError, ValueError):
-    """The floor map is invalid, or the camera's pose cannot be computed from the floor's marks."""
+    """The floor map is invalid or does not fit, or too few of its marks are seen for a pose."""
 
 
 class MarkerError(TrackingError, ValueError):
-    """A marker or a dictionary of markers is unknown or invalid."""
+    """A marker or a dictionary of markers is unknown or invalid, or shared by robot and floor."""
 
 
 class BodyError(TrackingError, ValueError):
@@ -62,7 +62,7 @@ class AmbiguousHeading(BodyError):
 
 
 class TimesError(TrackingError, ValueError):
-    """Times of photographs are missing, cannot be parsed or contradict each other."""
+    """Times of photographs are missing or invalid, or lie outside the run they should belong to."""
 
 
 class CorrectionError(TrackingError, ValueError):
@@ -70,8 +70,11 @@ class CorrectionError(TrackingError, ValueError):
 
 
 class CompositeError(TrackingError, ValueError):
-    """The exposures of a composite photograph cannot be found or separated."""
+    """The exposures of a composite photograph cannot be found.
+
+    Or the known one is cut, too small or too faint to find others, or the robot's size is unknown.
+    """
 
 
 class PathError(TrackingError, ValueError):
-    """There are no poses to smooth, or their times do not increase or their shapes disagree."""
+    """There are no poses to smooth, or their times do not increase, or array shapes disagree."""

@@ -16,7 +16,8 @@ TRACK_COLUMNS = (
     "t_s", "t_sigma", "x_m", "y_m", "yaw_rad", "cov_xx", "cov_xy", "cov_xyaw", "cov_yy",
     "cov_yyaw", "cov_yawyaw", "z_m", "source", "score", "photo",
 )  # fmt: skip
-"""Columns of `track.csv`, in order; `_s` [s], `_m` [m], `_rad` [rad], `t_sigma` [s]."""
+"""Columns of `track.csv`, in order; `_s` [s], `_m` [m], `_rad` [rad], `t_sigma` [s]; `cov_` of x,
+y [m] and yaw [rad]."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +33,10 @@ class PoseObservation:
         camera_covariance: Covariance of `planar` from the error of the camera's pose, which
             photographs from one camera position share, shape (3, 3).
         z: Height of the body's origin over the floor [m].
-        score: Correlation of the photograph with the marker or template, 1 at best [-].
-        source: How the pose was found: "marker", "body" (template) or "hand" (a correction).
+        score: Correlation of the photograph with the marker or template, 1 at best and of a pose
+            that a person set [-].
+        source: How the pose was found: "marker", "body" (template) or "hand" (set by a person; a
+            pose of which only head and tail were exchanged keeps its source).
     """
 
     photo: str
@@ -106,7 +109,10 @@ class Track:
 
     @property
     def columns(self) -> dict[str, list[float] | list[str]]:
-        """The table `track.csv`: for each name in `TRACK_COLUMNS` a list of n values."""
+        """The table `track.csv`: for each name in `TRACK_COLUMNS` a list of n values.
+
+        x, y, yaw and covariance are the smoothed ones, the other columns as observed.
+        """
         x, y, yaw = self.poses.T.tolist()
         upper = [
             self.covariance[:, i, j].tolist() for i, j in zip(*np.triu_indices(3), strict=True)
@@ -140,7 +146,8 @@ def assemble_track(
 
     Args:
         observations: Poses of the robot, one for each photograph, in any order.
-        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
+            interval.
         process: Noise densities of the motion model; None to estimate them.
 
     Returns:

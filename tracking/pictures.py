@@ -25,7 +25,7 @@ def rectify_floor(
 
     Returns:
         BGR picture, shape (rows, columns, 3), highest y in the first row; black outside the
-        photograph.
+        photograph, meaningless behind the camera.
     """
     (x0, y0), (x1, y1) = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     step = 1.0 / pixels_per_metre

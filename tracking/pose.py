@@ -7,8 +7,9 @@ on height, roll and pitch therefore enters from the robot's dimensions. Minimise
 
     r' C^-1 r + ((z - z_body) / sd_z)² + (roll / sd_tilt)² + (pitch / sd_tilt)²
 
-with r the points' pixels minus their projection. x, y and yaw carry no prior; their covariance
-includes the uncertainty of height and tilt.
+with r the points' pixels minus their projection, C the covariance of the pixels, z_body and sd_z
+the prior's height and its standard deviation, sd_tilt that of roll and pitch. x, y and yaw carry no
+prior; their covariance includes the uncertainty of height and tilt.
 """
 
 from dataclasses import dataclass
@@ -35,7 +36,7 @@ class RobotMarker:
 
     Attributes:
         marker_id: Number of the marker in its dictionary.
-        side: Side of the black square, above 0 [m].
+        side: Side of the black square, above 0, else MarkerError is raised [m].
         dictionary: Name of the dictionary.
         position: Centre of the marker in the body frame: forward, left, up [m].
         yaw: Turn of the print's left-to-right direction from the body's x, counter-clockwise
@@ -82,7 +83,7 @@ class BodyPose:
     Attributes:
         state: x, y, z [m], roll, pitch, yaw [rad] of the body in the floor frame, shape (6,);
             R = Rz(yaw) Ry(pitch) Rx(roll).
-        covariance: Covariance of `state` from errors of pixels, height and tilt, which are
+        covariance: Covariance of `state` from errors of pixels, height and tilt, taken as
             independent from photograph to photograph, shape (6, 6).
         camera_covariance: Covariance of `state` from the error of the camera's pose, which the
             photographs of a stand share, shape (6, 6).
@@ -153,7 +154,10 @@ def fit_pose(
             marker. It limits how well the size in the picture determines the height [-].
 
     Returns:
-        The pose of least cost with its covariances.
+        The pose of least cost with its covariances, yaw in -pi to pi.
+
+    Raises:
+        ValueError: When a point's ray does not meet the plane of the points' expected mean height.
     """
     pixels = np.asarray(corners_px, dtype=float)
     growth = scale_sd * (pixels - pixels.mean(axis=0)).ravel()
@@ -190,7 +194,10 @@ class _PoseProblem:
     whiten: Array
 
     def start(self) -> Array:
-        """Compute a starting state (6,): x, y, yaw fitted on the plane of the points' height."""
+        """Compute a starting state (6,): the prior's height, no tilt, and x, y, yaw fitted.
+
+        They are fitted to the pixels' rays on the level plane of the points' mean height.
+        """
         height = self.prior.height + self.points_body[:, 2].mean()
         seen = to_floor(self.camera, self.view, self.corners_px, height)
         body = self.points_body[:, :2]
@@ -227,6 +234,9 @@ class _PoseProblem:
         return np.vstack((pixels, held))
 
     def by_camera(self, state: Array) -> Array:
-        """Compute the derivative of the residual by the camera's pose, shape (2n + 3, 6)."""
+        """Compute the derivative of the residual by the camera's pose, shape (2n + 3, 6).
+
+        Columns: rotation vector [1/rad], translation [1/m]; the last 3 rows (prior) are 0.
+        """
         _, _, by_pose = project_with_derivatives(self.camera, self.view, self.points_world(state))
         return np.vstack((self.whiten @ by_pose.reshape(-1, 6), np.zeros((3, 6))))

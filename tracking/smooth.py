@@ -79,14 +79,15 @@ def smooth(
     """Smooth measured poses by least squares with a constant-twist motion model.
 
     Args:
-        t: Times, increasing, shape (n,) [s].
+        t: Times, strictly increasing, shape (n,) [s].
         poses: Measured x, y [m] and yaw [rad], shape (n, 3); yaw may wrap.
         covariance: Covariance of each measured pose, independent of each other, shape (n, 3, 3).
-        time_sd: Standard deviation of each time, shape () or (n,) [s]; times the measured rate of
-            change of the pose, added to `covariance`.
+        time_sd: Standard deviation of each time, shape () or (n,) [s]; multiplied by the measured
+            rate of change of the pose and squared, it is added to `covariance`.
         gap: Interval longer than which the path is interrupted [s]; None means 3.5 times the
             median interval.
-        process: Noise densities of the motion model; None estimates them.
+        process: Noise densities of the motion model; None estimates them, or takes 1e-3 m²/s³ and
+            1e-2 rad²/s³ where no segment has three poses.
 
     Returns:
         The path, at the times `t` only.
@@ -143,7 +144,8 @@ def _segments(times: Array, gap: float | None) -> NDArray[np.int64]:
 def _likeliest(parts: list["_Chain"]) -> Process:
     """Estimate the noise densities by maximum marginal likelihood, with a wide prior.
 
-    Of each segment the first 200 poses are used. Defaults where no segment has three poses.
+    Of each segment the first 200 poses are used, segments of one or two poses are not. Without a
+    segment of three poses the densities are 1e-3 m²/s³ and 1e-2 rad²/s³.
     """
     used = [part.head(_LONGEST_SEARCH) for part in parts if len(part.times) > 2]
     if not used:
@@ -174,7 +176,10 @@ class _Solution:
 
 @dataclass(frozen=True)
 class _Chain:
-    """Times (n,) [s], measured poses (n, 3), yaw unwrapped, and covariances of one segment."""
+    """Times (n,) [s], measured poses (n, 3), yaw unwrapped, and covariances (n, 3, 3) of a segment.
+
+    The covariances include the errors of the times.
+    """
 
     times: Array
     measured: Array
@@ -182,7 +187,10 @@ class _Chain:
 
     @classmethod
     def of(cls, times: Array, measured: Array, spread: Array, stamp_sd: Array) -> "_Chain":
-        """Unwrap yaw; add (rate of the pose x standard deviation of time)² to the covariance."""
+        """Unwrap yaw; add (rate of the pose x `stamp_sd`)² to the covariance `spread`.
+
+        A segment of one pose has no rate, and keeps its covariance.
+        """
         unwrapped = measured.copy()
         unwrapped[:, 2] = np.unwrap(measured[:, 2])
         if len(times) > 1:
@@ -192,11 +200,14 @@ class _Chain:
         return cls(times, unwrapped, spread)
 
     def head(self, n: int) -> "_Chain":
-        """Return the segment's first n poses as a segment."""
+        """Return the segment's first n poses, or all if it has fewer, as a segment."""
         return _Chain(self.times[:n], self.measured[:n], self.spread[:n])
 
     def start(self) -> Array:
-        """Compute the initial state (n, 6): measured poses, twists from their differences."""
+        """Compute the initial state (n, 6): measured poses, and twists from each to the next.
+
+        The last twist repeats the one before it; that of a single pose is 0.
+        """
         state = np.concatenate((self.measured, np.zeros_like(self.measured)), axis=1)
         if len(self.times) > 1:
             dt = np.diff(self.times)[:, None]
@@ -205,7 +216,11 @@ class _Chain:
         return state
 
     def solve(self, process: Process) -> _Solution:
-        """Fit the states by Gauss-Newton (at most 8 steps), for given noise densities."""
+        """Fit the states by Gauss-Newton (at most 8 steps), for given noise densities.
+
+        Returns:
+            State, its covariance, and log marginal likelihood (Laplace) up to a constant.
+        """
         weights = np.linalg.inv(self.spread)
         links, log_links = _link_weights(np.diff(self.times), process)
         state, cost = self.start(), np.inf
@@ -221,11 +236,16 @@ class _Chain:
 
 
 _TWIST_SD = np.array([1.0, 1.0, 3.0])
-"""Prior standard deviation of the twist, far above any walking robot's [m/s, m/s, rad/s]."""
+"""Prior standard deviation of a segment's first twist, about 0, far above any walking robot's
+[m/s, m/s, rad/s]."""
 
 
 def _link_weights(dt: Array, process: Process) -> tuple[Array, float]:
-    """Return the inverse of cov e for every interval, (n-1, 6, 6), and their summed log det."""
+    """Compute the inverse of cov e (module docstring) for every interval `dt`, shape (n-1,) [s].
+
+    Returns:
+        Inverses, shape (n-1, 6, 6), and the sum of the logarithms of their determinants.
+    """
     q = np.array([process.travel, process.travel, process.turn])
     time_part = np.linalg.inv(
         np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]]).transpose(2, 0, 1)
@@ -235,7 +255,10 @@ def _link_weights(dt: Array, process: Process) -> tuple[Array, float]:
 
 
 def _log_between(a: Array, b: Array) -> Array:
-    """Compute log(A^-1 B) of planar poses, shape (n, 3): the constant twist from a to b in 1 s."""
+    """Compute log(A^-1 B) of planar poses a, b: the constant twists that lead from a to b in 1 s.
+
+    All of shape (n, 3): x, y, yaw, and forward, left, turn.
+    """
     turn = b[:, 2] - a[:, 2]
     c, s = np.cos(a[:, 2]), np.sin(a[:, 2])
     dx, dy = b[:, 0] - a[:, 0], b[:, 1] - a[:, 1]
@@ -255,7 +278,10 @@ def _link_error(a: Array, b: Array, dt: Array) -> Array:
 def _normal_blocks(
     chain: _Chain, state: Array, weights: Array, links: Array
 ) -> tuple[Array, Array, Array, float]:
-    """Assemble diagonal blocks (n, 6, 6), blocks above them (n-1, 6, 6), gradient, and cost."""
+    """Assemble diagonal blocks (n, 6, 6), blocks above them (n-1, 6, 6), gradient, and cost.
+
+    The gradient (n, 6) is the right-hand side of the step; both hold the first twist's prior.
+    """
     n = len(state)
     diagonal, gradient = np.zeros((n, 6, 6)), np.zeros((n, 6))
     missed = chain.measured - state[:, :3]
@@ -287,7 +313,10 @@ def _derivative(a: Array, b: Array, dt: Array, side: int) -> Array:
 
 
 def _solve_blocks(diagonal: Array, upper: Array, gradient: Array) -> tuple[Array, Array, float]:
-    """Solve a block-tridiagonal system; return solution, diagonal blocks of inverse, log det."""
+    """Solve a symmetric block-tridiagonal system of `diagonal` blocks and those above them.
+
+    Returns solution (n, 6), diagonal blocks of the inverse (n, 6, 6), log det of the matrix.
+    """
     n = len(diagonal)
     inverse, carried = np.empty_like(diagonal), gradient.copy()
     log_det = 0.0

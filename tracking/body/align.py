@@ -96,7 +96,8 @@ def align(
 
     Returns:
         The alignment at the last blur; None where the robot leaves the photograph, less than
-        `least_visible` or 60 points are visible, or the correlation stays below `least_hope`.
+        `least_visible` or 60 points are visible, or at any blur the correlation after five steps
+        is below `least_hope`.
     """
     state = np.array([start[0], start[1], prior.height, 0.0, 0.0, start[2]])
     solution = None
@@ -116,7 +117,14 @@ def align(
 
 @dataclass(frozen=True)
 class _Job:
-    """Inputs of an alignment at one blur, cropped to the robot's neighbourhood."""
+    """Inputs of an alignment at one blur, cropped to the robot's neighbourhood.
+
+    `origin` is column and row of the crop's first pixel, `picture` the crop, blurred, `slopes` its
+    derivatives by column (3 colours) and row, `hidden` 1 at pixels not to use, `points` (n, 3) in
+    the body frame and `colours` (n, 3) the template's, blurred alike, `correlated` the number of
+    values that count as one independent value, `floor` a covariance (6, 6) added to the pose's,
+    `raster` the template's rows and columns if it is high-pass filtered.
+    """
 
     origin: Array
     picture: NDArray[np.float32]
@@ -139,7 +147,10 @@ class _Job:
         prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
         least_visible: float, shines_through: bool, outlier_sd: float,
     ) -> "_Job | None":  # fmt: skip
-        """Crop, blur and differentiate the photograph around a pose; None if too little is left."""
+        """Crop, blur and differentiate the photograph around a pose; None if a side is under 16 px.
+
+        `state` is x, y, z, roll, pitch, yaw of the robot.
+        """
         points = template.points_body.reshape(-1, 3)
         seen, _, _ = project_with_derivatives(camera, view, _world(points, state))
         reach = 6 + 4 * blur
@@ -178,7 +189,7 @@ class _Job:
         )
 
     def solve(self, state: Array, least_hope: float) -> Alignment | None:
-        """Fit pose and template scale by Gauss-Newton with Huber's weights and the prior."""
+        """Fit pose and template scale by Gauss-Newton, with Huber's weights; None as `align`."""
         prior = self.prior
         sd = [np.inf, np.inf, prior.height_sd, prior.tilt_sd, prior.tilt_sd, np.inf, SCALE_SD]
         held = np.array(sd) ** -2.0
@@ -226,7 +237,7 @@ class _Job:
         return Alignment(pose, score, log_likelihood)
 
     def _used(self, seen: Array) -> NDArray[np.bool_]:
-        """Mask the points in the window and not hidden, from their pixels of shape (n, 2)."""
+        """Mask points at the photograph's pixels (n, 2): True in the crop and under 5 % hidden."""
         inside = seen - self.origin
         height, width = self.picture.shape[:2]
         used = np.all((inside >= 0) & (inside <= [width - 1, height - 1]), axis=1)
@@ -235,13 +246,15 @@ class _Job:
         return used
 
     def _slopes_at(self, seen: Array) -> Array:
-        """Interpolate the photograph's gradients at pixels (n, 2), shape (n, 3 colours, 2)."""
+        """Interpolate derivatives by column, row at the photograph's pixels, (n, 3 colours, 2)."""
         along = sample(self.slopes, seen - self.origin)
         return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
 
     def _look(self, state: Array) -> tuple[Array, Array, Array, Array, float] | None:
-        """Compute residual (n, 3), Jacobian (n, 3, 7), weights (n, 3), noise (3,) and score.
+        """Compare the n visible points with the photograph for a pose and template scale (7,).
 
+        Returns residual (n, 3), template minus photograph, Jacobian (n, 3, 7) of the photograph's
+        colours by the state, weights (n, 3), variance of the noise of each colour (3,), and score;
         None where fewer than 60 points or less than the least share are visible.
         """
         seen, by_point, _ = project_with_derivatives(
@@ -276,7 +289,10 @@ class _Job:
 
 
 def _without_slow(field: Array, used: NDArray[np.bool_], raster: tuple[int, int]) -> Array:
-    """High-pass filter values (n, ...) given at the used points of a raster; return the same."""
+    """Subtract from values (n, ...) at the n used points of a raster their local means.
+
+    The means are weighted by a Gaussian of standard deviation `SLOW` times the raster's rows.
+    """
     width = SLOW * raster[0]
     layers = np.zeros((*raster, 1 + field[0].size))
     layers[used.reshape(raster)] = np.column_stack(
@@ -302,7 +318,10 @@ def _least_covariance(template: BodyTemplate, density: float) -> Array:
 
 
 def _world(points: Array, state: Array) -> Array:
-    """Transform points body to world by a pose (6,), or a pose and relative scale error (7,)."""
+    """Transform points body to world by a pose (6,), or a pose and relative scale error (7,).
+
+    They are scaled about their mean.
+    """
     R, _ = rotation_with_derivatives(*state[3:6])
     growth = state[6] if len(state) > 6 else 0.0
     middle = points.mean(axis=0)
@@ -310,7 +329,10 @@ def _world(points: Array, state: Array) -> Array:
 
 
 def _relit(colours: Array, values: Array) -> Array:
-    """Return the template's colours with the gain and offset that fit the photograph's, (n, 3)."""
+    """Return the template's colours with the gain and offset that fit the photograph's, (n, 3).
+
+    Both are fitted to each channel; the gain is limited to 0 to 4.
+    """
     a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
     power, cross = (a * a).sum(axis=0), (a * b).sum(axis=0)
     gain = np.clip(cross / np.maximum(power, 1e-9), 0.0, 4.0)

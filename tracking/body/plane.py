@@ -15,6 +15,8 @@ from tracking.camera.lens import Array, Camera, CameraPose, project
 class Plane:
     """A raster on a level plane and its pixels in a photograph; row 0 at the highest y.
 
+    x, y are those of the floor frame.
+
     Attributes:
         low: Lowest x and y, shape (2,) [m].
         high: Highest x and y, shape (2,) [m].
@@ -33,6 +35,8 @@ class Plane:
         cell: float,
     ) -> "Plane":  # fmt: skip
         """Build a raster over a level rectangle and project it into the photograph.
+
+        Its first point has the lowest x and the highest y; the sides opposite are not reached.
 
         Args:
             camera: Camera intrinsics and distortion.
@@ -56,13 +60,16 @@ class Plane:
         return sample(pixels, self.seen_px)
 
     def read_smooth(self, pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
-        """Interpolate a photograph as `read` does, after a blur of 0.4 cells against aliasing."""
+        """Interpolate a photograph as `read` does, after a blur against aliasing.
+
+        Its standard deviation is 0.4 of the points' median distance along a row, 0.3 px or more.
+        """
         spacing = float(np.median(np.linalg.norm(np.diff(self.seen_px, axis=1), axis=2)))
         # The blur loses nothing of the far floor, where pixels are larger than cells.
         return self.read(np.asarray(cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))))
 
     def xy_at(self, row: float, column: float) -> Array:
-        """Compute x and y of a point of the raster, shape (2,) [m].
+        """Compute x and y on the floor of a point of the raster, shape (2,) [m].
 
         Args:
             row: Row of the point, may be fractional.
@@ -74,8 +81,8 @@ class Plane:
         """Return the raster cropped to some rows and columns.
 
         Args:
-            rows: Rows to keep, with start and stop.
-            columns: Columns to keep, with start and stop.
+            rows: Rows to keep, with start and stop, without step.
+            columns: Columns to keep, with start and stop, without step.
         """
         low = (self.low[0] + columns.start * self.cell, self.high[1] - rows.stop * self.cell)
         high = (self.low[0] + columns.stop * self.cell, self.high[1] - rows.start * self.cell)

@@ -66,13 +66,18 @@ def find_body(
         view: Pose of the camera.
         template: Template of the robot.
         prior: Prior of the body's height and tilt.
-        near: x and y of the middle of the square to search [m]; None for the whole photograph.
+        near: x and y of the middle of the square to search [m]; None for the whole photograph (as
+            far as three camera heights).
         reach: Half the side of that square [m].
         visible: True at pixels that may show the robot, shape (height, width); None for all.
 
     Returns:
-        Alignments at the place of highest score, with all headings that align there; None where
-        no alignment reaches `ACCEPTED_SCORE`.
+        The alignment of highest score, and those of the opposite heading there, and of both across
+        it if the plate is about as wide as long, where `align` gives one, likeliest first; None
+        where no alignment reaches `ACCEPTED_SCORE`.
+
+    Raises:
+        ValueError: When the photograph shows nothing of the top's plane (see `floor_in_view`).
     """
     height = prior.height + template.plate.height
     area = floor_in_view(camera, view, height, near, reach)
@@ -133,7 +138,7 @@ def floor_in_view(
 
     Returns:
         Lowest and highest x, y, each of shape (2,) [m], of the plane within three camera heights
-        of the camera.
+        of the camera; the lowest may exceed the highest if the square lies outside.
 
     Raises:
         FloorError: The camera sees no such point: it is mounted too low, or not tilted down.
@@ -176,7 +181,7 @@ def match_turned(
 
     Returns:
         x, y [m] and yaw [rad] of the robot, shape (3,) each, at matches of at least `LEAST_MATCH`
-        that differ in place or heading, best first.
+        that differ in place or heading, best first; empty if there are none.
     """
     cell = template.plate.length / _CELLS
     rear, front, right, left = template.plate.extent
@@ -208,8 +213,8 @@ def correlations(
         turns: Number of headings.
 
     Yields:
-        Heading [rad] and correlations by row and column of the rotated template's corner, shape
-        (m, n), -1 where undefined [-]; nothing where the picture is smaller than the template.
+        Heading, from 0 up [rad], and correlations by row and column of the rotated template's first
+        pixel, shape (m, n), -1 where undefined [-]; nothing where the picture is smaller than it.
     """
     for yaw in np.arange(turns) * 2 * np.pi / turns:
         turned, mask = (
@@ -228,7 +233,7 @@ def pose_of_match(template: BodyTemplate, plane: Plane, row: int, column: int, y
     Args:
         template: Template of the robot.
         plane: Raster of the rectified photograph.
-        row: Row in the correlations.
+        row: Row in the correlations (see `correlations`).
         column: Column in the correlations.
         yaw: Heading of the template [rad].
 
@@ -267,7 +272,7 @@ def turned_template(
 
     Returns:
         Colours, shape (n, n, 3), centred on the template's middle, and a mask of the same shape, 1
-        on the template, else 0.
+        on the template, else 0; n is the same for all headings.
     """
     small = _shrunk(template, cell)
     rows, columns = small.shape[:2]

@@ -20,6 +20,8 @@ MOST_POINTS = 2500
 class TopPlate:
     """The flat top of the robot, which a camera above sees without occlusion.
 
+    Raises BodyError where length or width is not above 0.
+
     Attributes:
         length: Extent along the body's x [m].
         width: Extent along the body's y [m].
@@ -94,7 +96,7 @@ def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
         corners_px: Column and row of the places, shape (..., 2) [px].
 
     Returns:
-        Values, shape (...) or (..., channels); 0 outside the picture.
+        Values, shape (...) or (..., channels); outside the picture they fall to 0 within a pixel.
     """
     shape = corners_px.shape[:-1]
     flat = corners_px.reshape(-1, 1, 2).astype(np.float32)
@@ -138,8 +140,8 @@ def make_template(
         The template, with one point for each pixel of the photograph, or fewer.
 
     Raises:
-        BodyError: When the plate is cut by the photograph's edge, is shorter than 16 points, or
-            the colours' standard deviation is below 4 grey levels.
+        BodyError: When the plate is cut by the photograph's edge or is shorter than 16 points, or
+            the standard deviation of the template's colours is below 4 grey levels.
     """
     R, _ = rotation_with_derivatives(*pose.state[3:])
     corners_px = _corners_px(camera, view, pose, plate)
@@ -172,7 +174,11 @@ def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
         points: Points along each side of the template: the marker with half its white margin.
 
     Returns:
-        The marker's picture in the body frame, grey level 20 for black and 235 for white.
+        The marker's picture in the body frame, grey level 20 for black and 235 for white, slightly
+        blurred.
+
+    Raises:
+        MarkerError: When there is no dictionary of the marker's name for it.
     """
     picture = marker_picture(marker.dictionary, marker.marker_id, 16)
     cells = picture.shape[0] // 16 - 2

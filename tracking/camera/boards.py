@@ -77,6 +77,9 @@ def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> Se
     Returns:
         The corners detected; None where a checkerboard is not detected whole, or fewer than 6
         corners of a ChArUco board are.
+
+    Raises:
+        MarkerError: When there is no dictionary of the ChArUco board's name for it.
     """
     grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
     if isinstance(board, Checkerboard):

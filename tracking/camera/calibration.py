@@ -36,7 +36,7 @@ class CameraCalibration:
             where a term was not fitted.
         rms: Root mean square distance between corners detected and predicted [px].
         view_names: Names of the pictures used.
-        view_rms: Root mean square distance in each picture, shape (views,) [px].
+        view_rms: Root mean square distance of corners in each picture, shape (views,) [px].
         coverage: Share of the cells of `seen` with at least one corner, 0 to 1 [-].
         seen: Number of corners, of all pictures, in each cell of a grid over the picture, 8
             columns and 6 rows, shape (6, 8), first row on top.
@@ -53,7 +53,10 @@ class CameraCalibration:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings, one sentence each: low coverage, few pictures, pictures of large residual."""
+        """Warnings, one sentence each.
+
+        Coverage below 0.6, fewer than 10 pictures, pictures of over 3 times the median residual.
+        """
         return tuple(_warnings(self))
 
 
@@ -72,8 +75,9 @@ def calibrate(
         Camera intrinsics and distortion, their standard deviations, residuals and coverage.
 
     Raises:
-        CalibrationError: When there are fewer than 3 views, `lens_model` is unknown, OpenCV fails,
-            or the standard deviation of the focal length is 5 % of it or more.
+        CalibrationError: When there are fewer than 3 views, `lens_model` is unknown, OpenCV fails
+            for a model tried, or the standard deviation of the focal length is 0, not finite, or
+            5 % of it or more.
     """
     if len(views) < 3:
         raise CalibrationError(

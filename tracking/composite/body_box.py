@@ -16,6 +16,8 @@ from tracking.pose import rotation_with_derivatives
 class BodyBox:
     """A box as long and wide as the robot, from its top to as far below the body's origin.
 
+    It is centred at the body's origin.
+
     Attributes:
         camera: Camera intrinsics and distortion.
         view: Pose of the camera.
@@ -40,7 +42,7 @@ class BodyBox:
 
         Args:
             state: Pose of the robot as `BodyPose.state`, shape (6,).
-            left: Margin of background added around the box, in lengths of the robot [-].
+            left: Margin of background added on all four sides, in lengths of the robot [-].
 
         Returns:
             True where the box occludes, shape (height, width).
@@ -49,17 +51,23 @@ class BodyBox:
         return _filled(self._outline(state, self._corners(left)), (height, width))
 
     def top_seen(self, state: Array) -> NDArray[np.bool_]:
-        """Compute the mask of the pixels of the box's top at a pose (6,), (height, width)."""
+        """Compute the mask of a photograph's pixels on the box's top, shape (height, width).
+
+        Args:
+            state: Pose of the robot as `BodyPose.state`, shape (6,).
+        """
         width, height = self.camera.size
         return _filled(self._outline(state, self._corners(0.0)[1::2]), (height, width))
 
     def hidden_on(self, plane: Plane, pose: Array, *, left: float) -> NDArray[np.bool_]:
         """Compute the mask of the points of the top's plane that the level box occludes.
 
+        That is from the camera's sight.
+
         Args:
             plane: Raster on the plane of the robot's top.
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
-            left: Margin of background added around the box, in lengths of the robot [-].
+            left: Margin of background added on all four sides, in lengths of the robot [-].
 
         Returns:
             True where the box occludes, shape (rows, columns).

@@ -54,7 +54,7 @@ class BodyRaster:
         return slice(self.margin, rows - self.margin), slice(self.margin, columns - self.margin)
 
     def thinned(self) -> "BodyRaster":
-        """Return a raster of every second point in both directions, without a margin."""
+        """Return a raster of every second row and column, from the second on; its `margin` is 0."""
         return BodyRaster(self.plane, self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
 
     def template(self, values: NDArray[np.float32], height: float) -> BodyTemplate:
@@ -96,12 +96,12 @@ class BodyRaster:
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
 
         Returns:
-            Values, shape (rows, columns, ...); 0 outside the plane.
+            Values, shape (rows, columns, ...) of the robot's raster; 0 outside the plane.
         """
         return sample(layer, self.on(pose[None])[0])
 
     def window(self, pose: Array) -> Window:
-        """Compute the bounding box of the robot in rows and columns of a plane's raster.
+        """Compute the bounding box of the robot's raster in rows and columns of `plane`.
 
         Args:
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).

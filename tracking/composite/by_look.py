@@ -41,12 +41,13 @@ def find_exposures_like(
         reach: Half the side of that square [m].
 
     Returns:
-        The exposures, the known one first, the others not in order of the walk. Which end is the
-        head follows from the known pose.
+        The exposures, the known one first (in a picture of darkest values only if it aligns), the
+        others not in order of the walk. Which end is the head follows from the known pose.
 
     Raises:
         CompositeError: The known exposure is cut by the picture's edge, too small or of too little
-            contrast, or no other exposure is found.
+            contrast, or fewer than two exposures are found and aligned.
+        ValueError: The picture shows nothing of the plane of the top (see `floor_in_view`).
     """
     hidden = np.zeros(pixels.shape[:2], dtype=bool) if hidden is None else hidden
     area = floor_in_view(camera, view, prior.height + plate.height, near, reach)

@@ -86,7 +86,7 @@ class FloorColours:
         return ((seen - lit) ** 2).sum(axis=-1) < _NO_FLOOR
 
     def density(self, picture: NDArray[np.float32]) -> Array:
-        """Compute the normal density of the floor at a picture's colours, per cubed grey level."""
+        """Compute the floor's normal density at colours, (rows, columns), per cubed grey level."""
         scale = np.sqrt((2 * np.pi) ** 3 * np.linalg.det(self.covariance))
         return np.exp(-0.5 * self.floor_distance(picture)) / scale
 
@@ -96,7 +96,7 @@ def colour_density(
 ) -> Array:
     """Estimate the density of colours, per cubed grey level, by a blurred histogram of samples.
 
-    A tenth of the density is uniform, so that it is never 0.
+    A tenth of the density is uniform, so that it is never 0; without samples there is only that.
 
     Args:
         samples: BGR, shape (n, 3) [grey levels].

@@ -74,7 +74,10 @@ class Chain:
 
     @classmethod
     def through(cls, poses: Sequence[Array]) -> "Chain":
-        """Build a chain of the median step between poses in order, all ahead of the first."""
+        """Build a chain of the median step between poses in order, all ahead of the first.
+
+        The turn does not change from step to step.
+        """
         steps = [step_between(a, b) for a, b in pairwise(poses)]
         return cls(np.append(np.median(steps, axis=0), 0.0), len(steps), 0)
 
@@ -112,14 +115,17 @@ class DarkestReading(DarkestModel):
         return self.polished(max(sets, key=self.worth))
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align the part where each exposure is the darkest, twice; drop those that fail."""
+        """Align the part where each exposure is the darkest, twice; drop those that fail.
+
+        The known one is dropped, too, if it fails.
+        """
         found = self.aligned_among(poses)
         return self.aligned_among(np.array([each.planar for each in found]))
 
     def aligned_among(self, poses: Array) -> tuple[Exposure, ...]:
         """Align the part where each exposure is the darkest, given all poses (n, 3).
 
-        Exposures that do not align are left out.
+        The first pose is that of the known exposure. Exposures that do not align are left out.
         """
         known, found = self.known, []
         template = known.body_template(known.pixels)
@@ -134,20 +140,23 @@ class DarkestReading(DarkestModel):
     def worth(self, poses: Array) -> float:
         """Compute `value` of a set of exposures (n, 3) less `LEAST_GAIN` for each but the first.
 
-        The result is -inf where two exposures are nearer than `LEAST_STEP`.
+        The result is -inf where two exposures are nearer than `LEAST_STEP` lengths of the robot.
         """
         if not are_apart(poses, self.length):
             return -np.inf
         return self.value(poses) - LEAST_GAIN * (len(poses) - 1)
 
     def first_steps(self, anchor: Array) -> list[Array]:
-        """Find up to ten candidate poses (3,) of the exposure next to the known one at `anchor`."""
+        """Find up to ten poses (3,) of the exposure next to the known one, the likeliest first."""
         look = self.look(anchor[None])
         tried = beside(anchor, self.length, spacing=self.length / 20)
         return self.best_of(tried, look, self.cover(anchor[None], look), most=_FIRST_STEPS)
 
     def followed(self, poses: list[Array]) -> list[Array]:
-        """Extend poses, at least two in order, by their last step until no exposure is found."""
+        """Extend poses, at least two in order, by their last step until no exposure is found.
+
+        The list is extended in place, to at most `MOST_EXPOSURES`, and returned.
+        """
         while len(poses) < MOST_EXPOSURES:
             known = np.array(poses)
             look = self.look(known)
@@ -187,6 +196,8 @@ class DarkestReading(DarkestModel):
 
     def longest(self, anchor: Array, chain: Chain) -> Chain:
         """Fit a chain and lengthen it at either end while `worth` rises.
+
+        It is lengthened only below `MOST_EXPOSURES` exposures besides the known one.
 
         Args:
             anchor: Pose of the known exposure, shape (3,) [m, m, rad].

@@ -42,7 +42,8 @@ class TopColours(NamedTuple):
 
     Attributes:
         own: Colours in the known exposure.
-        brightest: Brightest colours of all exposures; 1000 in either where unknown.
+        brightest: Brightest colours of all exposures; 1000 in either where unknown, since there
+            the floor's colour is seen.
     """
 
     own: NDArray[np.float32]
@@ -57,9 +58,11 @@ class Cover(NamedTuple):
     """Darkest colours of several exposures on the picture's raster.
 
     Attributes:
-        own: Darkest by `TopColours.own`, 1000 without exposure, shape (rows, columns, 3).
+        own: Darkest by `TopColours.own`, about 1000 where no exposure lies or its colour is
+            unknown, shape (rows, columns, 3).
         brightest: Darkest by `TopColours.brightest`, likewise.
-        log_density: Log density of the picture given the exposures, shape (rows, columns).
+        log_density: Log density of the picture given the exposures, where none lies that of bare
+            floor, shape (rows, columns).
     """
 
     own: NDArray[np.float32]
@@ -84,7 +87,7 @@ class DarkestModel(Reading):
 
     @cached_property
     def dark_things(self) -> Array:
-        """Density of each point's colour among the colours that are not the floor's."""
+        """Density of each point's colour among those that are not the floor's, (rows, columns)."""
         other = self.used & (self.floor_distance > _OUTLIER)
         return colour_density(self.picture[other], self.picture, blur=1.2)
 
@@ -128,7 +131,8 @@ class DarkestModel(Reading):
     def value(self, poses: Array) -> float:
         """Compute the log likelihood ratio of exposures (n, 3) to bare floor, per robot point.
 
-        The sum over all points used is divided by the number of points on the robot's raster.
+        The first exposure is the known one. The sum over all points used is divided by the number
+        of points on the robot's raster.
         """
         gain = self.cover(poses, self.look(poses)).log_density - self.bare
         return float(gain[self.used].sum()) / self.body.x.size
@@ -143,8 +147,9 @@ class DarkestModel(Reading):
             body: Points of the robot's top to compare.
 
         Returns:
-            Log odds, shape (n,) [-]; -inf where the exposure is the darkest at fewer than
-            `LEAST_CLAIM` of its points, or less than 0.6 of it is inside the picture.
+            Gain of log density, sum over its points, over the number of points where it is the
+            darkest, shape (n,) [-]; -inf where these are less than `LEAST_CLAIM` of its points, or
+            less than 0.6 of it is inside the picture.
         """
         gain, claim, inside = self.gains(poses, look, cover, body)
         enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)
@@ -204,8 +209,8 @@ class DarkestModel(Reading):
     def shown(self, poses: Array, k: int) -> NDArray[np.bool_]:
         """Compute the mask of points where an exposure is the darkest and has the robot's colour.
 
-        Points of the robot that others darken in the first exposure are left out: their colours
-        there are not the robot's.
+        Points of the robot that others darken in the first exposure, and points not `used`, are
+        left out: their colours there are not the robot's.
 
         Args:
             poses: All exposures, the first one known, shape (n, 3) [m, m, rad].

@@ -15,8 +15,9 @@ class Exposure:
 
     Attributes:
         alignment: Pose of the robot in the exposure, with covariances and score.
-        visible: Share of the robot's top that no other exposure hides, 0 to 1; always 1 of
-            exposures in a mean [-].
+        visible: Share of the robot's top that no other exposure hides, in a picture of darkest
+            values where it is the darkest, 0 to 1; always 1 in a mean, and of exposures found by
+            the robot's marker [-].
     """
 
     alignment: Alignment
@@ -34,7 +35,10 @@ class Exposure:
 
 
 def disturbance(alignment: Alignment) -> float:
-    """Compute the ratio of power of other things to the robot's, (1 - score²) / score² [-]."""
+    """Compute the ratio of power of other things to the robot's, (1 - score²) / score² [-].
+
+    The score must not be 0.
+    """
     return max(1 - alignment.score**2, 0.0) / alignment.score**2
 
 
@@ -44,7 +48,8 @@ def widened(alignment: Alignment, slip: float, *, lever: float) -> Alignment:
     Args:
         alignment: The alignment.
         slip: Standard deviation of the added error of x and of y [m].
-        lever: Lever arm; the added error of heading has standard deviation `slip / lever` [m].
+        lever: Lever arm [m]; the added error of heading has standard deviation `slip / lever`
+            [rad].
     """
     turn = slip / lever
     added = np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2

@@ -37,15 +37,15 @@ class FloorPattern:
     def of(
         cls, picture: NDArray[np.float32], floor: NDArray[np.bool_], *, width: float
     ) -> "FloorPattern":
-        """Fit an autoregressive model to the pixels above and to the left of each (Whittle 1954).
+        """Fit an autoregressive model: a pixel by those before it in reading order (Whittle 1954).
 
         Args:
             picture: Colours, shape (height, width, 3).
             floor: True at pixels that show only the floor, shape (height, width).
             width: Standard deviation of the blur that is subtracted before filtering [px].
 
-        Returns:
-            The filters.
+        Raises:
+            numpy.linalg.LinAlgError: Nowhere is a neighbourhood of `REACH_PX` all floor.
         """
         flat = _flat(picture, width)
         side = 2 * REACH_PX + 1
@@ -63,7 +63,7 @@ class FloorPattern:
         return _flat(picture, self.width)
 
     def prediction_error(self, picture: NDArray) -> NDArray[np.float32]:
-        """Filter one or n pictures: each pixel minus its prediction from pixels before it.
+        """Filter one or n pictures: each pixel minus its prediction from those above and left.
 
         Args:
             picture: High-pass filtered (`flat`), shape (rows, columns, 3) or (rows, columns, 3, n).

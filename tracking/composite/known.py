@@ -69,19 +69,19 @@ class KnownExposure:
 
     @property
     def body_plate(self) -> TopPlate:
-        """Plate of the body's length and width at the height of the top, without margins."""
+        """Plate of the body's size at the height of the top, about its origin, without margins."""
         return TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0)
 
     @property
     def length_px(self) -> float:
-        """Length of the robot in the known exposure [px]."""
+        """Length of the robot in the known exposure, in pixels of mean size on its top [px]."""
         pixel = pixel_on_top(self.camera, self.view, pose=self.pose, plate=self.body_plate)
         return self.size[0] / pixel
 
     def body_template(self, pixels: NDArray) -> BodyTemplate:
         """Cut the template of the whole body (`body_plate`) out of the known exposure.
 
-        See `template`, also for the error.
+        Raises CompositeError, see `template`.
         """
         return self.template(pixels, self.body_plate)
 
@@ -110,9 +110,11 @@ class KnownExposure:
     def share(self, pose: Array, visible: NDArray[np.bool_]) -> float:
         """Compute the share of the pixels of an exposure's top that are visible, 0 to 1 [-].
 
+        It is 0 where the top lies outside the picture.
+
         Args:
-            pose: x, y [m] and yaw [rad], shape (3,).
-            visible: True at pixels that no other exposure hides, shape (height, width).
+            pose: x, y [m] and yaw [rad] of the exposure, shape (3,).
+            visible: True at visible pixels, shape (height, width).
         """
         top = self.box.top_seen(self.level(pose))
         return float((top & visible).sum() / max(int(top.sum()), 1))
@@ -141,7 +143,8 @@ class KnownExposure:
             outlier_sd: As for `tracking.body.align`.
 
         Returns:
-            The alignment, or None where it fails or diverges (`has_diverged`).
+            The alignment, or None where the robot leaves the picture, fewer than 60 points are
+            visible, or it diverges (`has_diverged`).
         """
         found = align(
             pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,
@@ -166,7 +169,10 @@ class KnownExposure:
         return found.score < least or away > _DIVERGED * self.size[0] or turned > _DIVERGED_TURN
 
     def rough(self, pose: Array) -> Alignment:
-        """Build an alignment of score 0 from a pose (3,) on the raster, with the raster's error."""
+        """Build an alignment of score 0 from a pose (3,) on the raster, with the raster's error.
+
+        The robot is level at the prior's height, both with the prior's standard deviations.
+        """
         height, tilt = self.prior.height_sd, self.prior.tilt_sd
         covariance = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
         level = BodyPose(self.level(pose), covariance, np.zeros((6, 6)))
@@ -179,7 +185,8 @@ class KnownExposure:
         Args:
             alignment: The alignment, of a score above 0.
             slip: Standard deviation of x and of y where other things are as strong as the robot,
-                in lengths of the robot [-]; the variance is proportional to their power.
+                in lengths of the robot [-]; the variance is proportional to their power
+                (`disturbance`).
             lever: Lever arm that converts it to heading, in lengths of the robot [-].
         """
         length = self.size[0]
@@ -198,7 +205,7 @@ class KnownExposure:
             reach: Half the side of the region to fill, in diagonals of the body [-].
 
         Returns:
-            Values, shape (height, width, ...); 0 outside the region.
+            Values, shape (height, width, ...); 0 outside the region and outside the plane.
         """
         whole = np.zeros((*self.pixels.shape[:2], *layer.shape[2:]), np.float32)
         window, xy = self.around(pose, reach=reach)

@@ -71,7 +71,7 @@ class Fit(NamedTuple):
         robot: The robot's high-pass filtered picture on its raster, shape (rows, columns, 3).
         scores: Correlation of each exposure with `robot` after the other exposures are subtracted,
             1 for the known one, shape (n,) [-].
-        strengths: Regression coefficient of each exposure on `robot`, shape (n,) [-].
+        strengths: Regression coefficient of each exposure on `robot`, likewise, shape (n,) [-].
         explained: Share of the picture's high-pass filtered power that the exposures explain [-].
         cost: Cost of one exposure: `WORTH` times the power of `robot` over the picture's [-].
     """
@@ -86,8 +86,8 @@ class Fit(NamedTuple):
     def gain(self, other: "Fit") -> float:
         """Compute the gain of `explained` over another fit, less the cost of added exposures [-].
 
-        The cost is the same for both sets: a picture of the robot solved at too few exposures is
-        fainter, so that each of them would seem to cost less.
+        Each added one costs the mean of both fits' `cost`: a picture of the robot solved at too few
+        exposures is fainter, so that each of them would seem to cost less.
         """
         more = len(self.poses) - len(other.poses)
         return self.explained - other.explained - 0.5 * (self.cost + other.cost) * more
@@ -110,7 +110,7 @@ class MeanReading(Reading):
 
     @cached_property
     def weighing(self) -> Array:
-        """Matrix (3, 3) that whitens the floor's colours to standard deviation `SCALE`."""
+        """Matrix W (3, 3) that whitens the floor's colours, (n, 3) @ W, to deviation `SCALE`."""
         return SCALE * self.floor.whitening
 
     @cached_property
@@ -135,7 +135,7 @@ class MeanReading(Reading):
         return float((self.detail**2).sum())
 
     def find(self) -> Array:
-        """Find the poses (n, 3), the known one first, that explain most of the picture."""
+        """Find the poses (n, 3), known one first, that gain most (`Fit.gain`); drop weak ones."""
         best = self.fitted(self.first_matches(self.known.pose.planar), rounds=2)
         for _ in range(_ROUNDS):
             tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
@@ -149,7 +149,7 @@ class MeanReading(Reading):
         """Align each exposure with the residual of the picture after the others are subtracted.
 
         Where exposures overlap (median distance below the robot's length), those of too little
-        correlation are dropped; elsewhere they keep their pose on the raster.
+        correlation but the known one are dropped; elsewhere they keep their pose on the raster.
         """
         known = self.known
         fine = fine_whitening(known)
@@ -164,7 +164,7 @@ class MeanReading(Reading):
     def residuals(
         self, poses: Array, weighed: NDArray[np.float32], weighed_again: Array
     ) -> list[NDArray[np.float32]]:
-        """Subtract from the picture, for each exposure, all other exposures around it.
+        """Return for each exposure the picture `weighed` less all other exposures around it.
 
         Args:
             poses: x, y and yaw of the exposures, shape (n, 3) [m, m, rad].
@@ -180,7 +180,7 @@ class MeanReading(Reading):
         return residuals
 
     def accepted(self, fit: Fit) -> Array:
-        """Return the poses of the known exposure and of those of enough score and strength."""
+        """Return the known pose and those that reach all `LEAST_...` of score and strength."""
         usual = float(np.median(fit.scores[1:])) if len(fit.scores) > 1 else 0.0
         least = max(LEAST_SCORE, LEAST_OF_USUAL * usual)
         good = (fit.scores >= least) & (fit.strengths >= LEAST_STRENGTH)
@@ -188,7 +188,7 @@ class MeanReading(Reading):
         return fit.poses[good]
 
     def first_matches(self, anchor: Array) -> Array:
-        """Match the part of the picture at the known pose (3,); return poses (n, 3), it first."""
+        """Match the robot as seen at the known pose (3,) everywhere; return poses, it first."""
         robot = self.body.read(self.detail, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]
@@ -204,7 +204,8 @@ class MeanReading(Reading):
             poses: Known exposures, shape (n, 3) [m, m, rad].
 
         Returns:
-            Pose, shape (3,), or None. Farther matches count only where steps are long.
+            Pose, shape (3,), or None. Farther matches count only beside a single known exposure, or
+            where the usual step is at least `REACH` lengths of the robot.
         """
         new = self.candidates(matches, poses)
         away = [float(distances(poses, pose).min()) for pose in new]
@@ -218,8 +219,8 @@ class MeanReading(Reading):
         """List the poses of matches that may be further exposures.
 
         Each is a step from a known exposure with nearly the same heading, or has at least
-        `LONELY_SCORE` and is farther than a step from all. The heading of such a match may be
-        turned by a half; it is corrected by the direction from the nearest exposure.
+        `LONELY_SCORE` and is farther than a step from all. The heading of such a match may be off
+        by a half turn (a quarter, if square): the direction from the nearest exposure corrects it.
 
         Args:
             matches: Matches, best first.
@@ -262,7 +263,7 @@ class MeanReading(Reading):
         return far and is_beside(pose, list(poses), self.length)
 
     def varied(self, fit: Fit) -> list[Array]:
-        """List sets of poses that differ from a fit by one or two added or removed exposures."""
+        """List sets of poses, all apart, that differ from a fit by one or two added or removed."""
         left = self.detail - superposed(self.body, fit.poses, fit.robot)
         left *= self.used[..., None]
         new = self.candidates(self.matches(left, fit.robot), fit.poses)
@@ -274,7 +275,7 @@ class MeanReading(Reading):
         return [poses for poses in sets if are_apart(poses, self.length)]
 
     def fitted(self, poses: Array, *, rounds: int) -> Fit:
-        """Fit poses and the robot's picture by alternating least squares and local search.
+        """Fit all poses but the first, and the robot's picture, by least squares and local search.
 
         Args:
             poses: Poses to start from, the known one first, shape (n, 3) [m, m, rad]; not changed.
@@ -338,7 +339,7 @@ class MeanReading(Reading):
             pose: x, y [m] and yaw [rad] at which to compare, shape (3,).
 
         Returns:
-            Correlation and regression coefficient ("strength") [-].
+            Correlation and regression coefficient ("strength") of the colours on the body [-].
         """
         seen = self.body.read(change, pose)[self.body.body]
         own = robot[self.body.body]

@@ -46,12 +46,15 @@ _HALF_LEVER = 0.5  # lever arm for the heading, of the length
 def floor_pattern(
     picture: KnownExposure, weighed: NDArray[np.float32], poses: Array
 ) -> FloorPattern:
-    """Fit the pattern of the floor to the pixels far from all exposures.
+    """Fit the pattern of the floor to the pixels farther than 0.15 lengths from all exposures.
 
     Args:
         picture: The picture and the known exposure.
         weighed: The picture in whitened colours, shape (height, width, 3).
         poses: x, y and yaw of all exposures, shape (n, 3) [m, m, rad].
+
+    Raises:
+        numpy.linalg.LinAlgError: There is no such floor.
     """
     floor = ~picture.hidden
     for pose in poses:
@@ -60,8 +63,9 @@ def floor_pattern(
 
 
 def fine_whitening(picture: KnownExposure) -> Array:
-    """Compute the matrix (3, 3) that whitens the floor's fine pattern to `SCALE` grey levels.
+    """Compute the matrix W (3, 3) that whitens the floor's fine pattern to deviation `SCALE`.
 
+    It applies to colours as rows, (n, 3) @ W; fine is below 1/24 of the robot's length.
     Lenses and JPEG reduce fine detail of colour more than of brightness.
     """
     pixels, width = picture.pixels.astype(np.float32), _FINE_WIDTH * picture.length_px
@@ -89,14 +93,17 @@ class MeanAlignment:
 
     @property
     def least_clear(self) -> float:
-        """Least correlation of an exposure to use its alignment, by whether there is a pattern."""
+        """Least correlation to use an alignment: `LEAST_NEW_SCORE` if there is a `pattern`.
+
+        `LEAST_CLEAR_SCORE` without.
+        """
         return LEAST_CLEAR_SCORE if self.pattern is None else LEAST_NEW_SCORE
 
     def exposures(self) -> tuple[Exposure, ...]:
         """Align all exposures, the known one first.
 
-        Exposures of a correlation below `least_clear` keep the raster's pose; where exposures
-        overlap they are dropped, unless the known one itself could not be aligned.
+        Exposures of a correlation below `least_clear` keep the raster's pose. Where exposures
+        overlap they are dropped, but not the known one, and none if that could not be aligned.
         """
         overlap, found, exposures = self.pattern is None, self.with_others(), []
         slip, lever = (MEAN_OVERLAP_SD, _HALF_LEVER) if overlap else (MEAN_SD, LEVER)
@@ -108,7 +115,11 @@ class MeanAlignment:
         return tuple(exposures)
 
     def with_others(self) -> list[Alignment | None]:
-        """Align each exposure with the mean of the others, twice; None where it diverges."""
+        """Align each exposure with the mean of the others, twice; None where it diverges.
+
+        None for all where the known one diverges or has too small a correlation (`anchored`). Of n
+        poses each moves by (n - 1) / n of its step.
+        """
         poses, found = self.poses, []
         share = (len(poses) - 1) / len(poses)
         for _ in range(_ROUNDS):
@@ -154,6 +165,9 @@ class MeanAlignment:
 
         Args:
             poses: x, y and yaw of all exposures, shape (n, 3) [m, m, rad].
+
+        Raises:
+            CompositeError: The known exposure is too small or, in its residual, too faint.
         """
         picture, plate, most = self.known, self.known.body_plate, MOST_POINTS
         if self.pattern is not None:

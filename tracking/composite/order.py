@@ -27,7 +27,11 @@ def order_exposures(poses: ArrayLike) -> tuple[int, ...]:
 
 
 def _step_costs(places: Array) -> Array:
-    """Compute the cost of a step from pose i (row) to pose j (column), shape (n, n) [m]."""
+    """Compute the cost of a step from pose i (row) to pose j (column), shape (n, n) [m].
+
+    It is the step's length times 1 + 3 (1 - cos(chord - mean heading)) + 2 (1 - cos(turn)); inf on
+    the diagonal.
+    """
     move = places[None, :, :2] - places[:, None, :2]
     distance = np.hypot(move[..., 0], move[..., 1])
     turn = np.angle(np.exp(1j * (places[None, :, 2] - places[:, None, 2])))
@@ -66,7 +70,7 @@ def _nearest_neighbours(cost: Array, start: int) -> list[int]:
 
 
 def _changed(tour: list[int]) -> Iterator[list[int]]:
-    """Yield tours in which a segment of up to four is reversed in place, or moved."""
+    """Yield tours in which a segment of up to four is reversed in place, or moved anywhere."""
     for i, length in product(range(len(tour)), range(1, 5)):
         segment, rest = tour[i : i + length], tour[:i] + tour[i + length :]
         yield tour[:i] + segment[::-1] + tour[i + length :]

@@ -80,7 +80,8 @@ class Pasted(NamedTuple):
     Attributes:
         pose: x, y [m] and yaw [rad], shape (3,).
         gain: Log odds, mean over all points of the robot's top, 0 where hidden [-].
-        look: Colours of the robot's top, on the robot's raster.
+        look: Colours of the robot's top, on the robot's raster, shape (rows, columns, 3): what is
+            visible in this exposure, elsewhere as in those found before.
     """
 
     pose: Array
@@ -102,13 +103,13 @@ class PastedReading(Reading):
 
     @cached_property
     def usual(self) -> NDArray[np.float32]:
-        """Density of each point's colour among all points used, (rows, columns)."""
+        """Density of each point's colour among all points used, per cubed grey level."""
         density = colour_density(self.picture[self.used], self.picture, blur=1.0)
         return density.astype(np.float32)
 
     @cached_property
     def floor(self) -> NDArray[np.bool_]:
-        """Mask of points whose colour is the floor's, lit or in shadow."""
+        """Mask of the plane's points whose colour is the floor's, lit or in shadow."""
         width = self.length / self.plane.cell
         return FloorColours.of(self.picture, self.used, width=width, noise=3.0).shows(self.picture)
 
@@ -130,7 +131,7 @@ class PastedReading(Reading):
     def align(self, poses: Array) -> tuple[Exposure, ...]:
         """Align the visible part of each exposure, in order; keep the raster's pose on failure.
 
-        Each exposure hides pixels from those after it.
+        The poses are those of `find`: each exposure hides pixels of those after it.
         """
         known, found = self.known, []
         template, visible = known.body_template(known.pixels), ~known.hidden
@@ -149,7 +150,13 @@ class PastedReading(Reading):
         return tuple(found)
 
     def hidden_pixels(self, pose: BodyPose) -> NDArray[np.bool_]:
-        """Compute the mask of pixels that an exposure hides or may hide, shape (height, width)."""
+        """Compute the mask (height, width) of pixels of lower exposures that one hides or may hide.
+
+        If `with_floor`, it may hide pixels of the floor's colour up to `FLOOR_LEFT` around it.
+
+        Args:
+            pose: Pose of the exposure on top, whose cut-out with its margin hides them.
+        """
         hidden = self.known.box.hidden(pose.state, left=LEFT)
         if self.with_floor:
             floor = self.known.on_photo(self.floor, self.plane, pose.planar, reach=1.25) > 0.5
@@ -157,14 +164,20 @@ class PastedReading(Reading):
         return hidden
 
     def hidden_points(self, pose: Array) -> NDArray[np.bool_]:
-        """Compute the mask of raster points that an exposure at a pose (3,) hides or may hide."""
+        """Compute the mask of the plane's points of lower exposures that one hides or may hide.
+
+        If `with_floor`, it may hide points of the floor's colour up to `FLOOR_LEFT` around it.
+
+        Args:
+            pose: x, y [m] and yaw [rad] of the exposure on top, shape (3,).
+        """
         hidden = self.known.box.hidden_on(self.plane, pose, left=LEFT)
         if self.with_floor:
             hidden |= self.known.box.hidden_on(self.plane, pose, left=FLOOR_LEFT) & self.floor
         return hidden
 
     def shown(self, found: Sequence[Pasted]) -> NDArray[np.float32]:
-        """Return 1 at points used that no exposure hides, else 0, shape (rows, columns)."""
+        """Return 1 at points used that none of `found` hides, else 0, shape (rows, columns)."""
         visible = self.used.copy()
         for each in found:
             visible &= ~self.hidden_points(each.pose)
@@ -234,7 +247,8 @@ class PastedReading(Reading):
     def in_step(self, found: Sequence[Pasted]) -> list[Pasted]:
         """Drop exposures nearer to another than 0.6 of the usual step, those of least gain first.
 
-        The first stays. Of three none is dropped: the middle one is half as far from the others.
+        The first stays. Of three or fewer none is dropped: the middle one of three is half as far
+        from the others.
         """
         kept = list(found)
         for each in sorted(found[1:], key=lambda each: each.gain):
@@ -248,9 +262,10 @@ class PastedReading(Reading):
         """Find the likeliest exposure below all known ones, beside one of them.
 
         Args:
-            above: The exposure beside which to search.
+            above: The exposure beside which to search, whose colours are expected.
             found: Known exposures.
-            places: Candidate poses, shape (n, 3) [m, m, rad].
+            places: Candidate poses, shape (n, 3) [m, m, rad]; none nearer to a known exposure than
+                `LEAST_STEP` is tried.
 
         Returns:
             The exposure, or None where none is likely enough.
@@ -273,8 +288,8 @@ class PastedReading(Reading):
             look: Colours expected of the robot's top, on the robot's raster.
 
         Returns:
-            The exposure of greatest gain that reaches `LEAST_GAIN` and `LEAST_ODDS` and is apart
-            from all known ones, or None.
+            The exposure of greatest gain that reaches `LEAST_GAIN` and `LEAST_ODDS` and is farther
+            than `LEAST_STEP` from all known ones, with its own `look` (`seen_again`); or None.
         """
         shown, known, best = self.shown(found), [each.pose for each in found], None
         for start in starts:

@@ -39,7 +39,8 @@ class PatternResidual(NamedTuple):
     Attributes:
         seen: Prewhitened values of the photograph, pixels and colours raveled, shape (n,).
         expected: Prewhitened values of the template drawn at the pose, shape (n,).
-        slopes: Derivative of `expected` by m of the state and the camera's pose, shape (n, m).
+        slopes: Derivative of `expected` by m components of the robot's state and the camera's
+            pose, shape (n, m).
         noise: Standard deviation of the residual, by the median absolute deviation [-].
         weight: Huber's weights, 1 for small residuals, shape (n,) [-].
     """
@@ -119,7 +120,10 @@ class PatternAlignment:
 
     @cached_property
     def window(self) -> tuple[tuple[slice, slice], Array]:
-        """Slices of rows and columns around `start`; x, y of pixels on the top's plane [m]."""
+        """Slices of the picture's rows and columns around `start`, and x, y of its pixels.
+
+        x, y on the plane of the top, in the floor frame, shape (rows, columns, 2) [m].
+        """
         return self.known.around(self.start, reach=_REACH)
 
     @cached_property
@@ -162,12 +166,12 @@ class PatternAlignment:
         return (self.window[1] - pose[:2]) @ np.array([[c, -s], [s, c]])
 
     def drawn(self, body: Array) -> NDArray[np.float32]:
-        """Interpolate the template at points of the body frame, shape (rows, columns, 3)."""
+        """Interpolate the template at x, y of the body frame, (rows, columns, 3), 0 outside."""
         front_left = self.template.points_body[0, 0, :2]
         return sample(self.template.colours, (front_left - body)[..., ::-1] / self.template.step)
 
     def slopes(self, drawn: NDArray[np.float32], body: Array, pose: Array) -> Array:
-        """Compute the Jacobian of the drawn picture by the robot's state and the camera's pose.
+        """Compute the Jacobian of the drawn picture, before filtering, by state and camera's pose.
 
         Args:
             drawn: The drawn picture, shape (rows, columns, 3).

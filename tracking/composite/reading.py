@@ -36,8 +36,10 @@ class Reading(ABC):
     Attributes:
         known: The picture with the known exposure.
         plane: Raster of the level plane at the height of the robot's top.
-        picture: The picture's colours on `plane`, shape (rows, columns, 3) [grey levels].
-        used: True at points inside the picture and not hidden, shape (rows, columns).
+        picture: The picture's colours on `plane`, slightly blurred, shape (rows, columns, 3) [grey
+            levels].
+        used: True at points inside the picture and over 2 px from pixels to ignore, shape (rows,
+            columns).
         body: Raster of the robot's body, with the margin of the class around it.
     """
 

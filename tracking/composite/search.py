@@ -77,11 +77,12 @@ def find_exposures(
         reach: Half the side of that square [m].
 
     Returns:
-        The exposures, not in order of the walk: those found by the marker first, the greatest
-        correlation first.
+        The exposures, not in order of the walk: those found by the marker first, in first place
+        the one of greatest correlation.
 
     Raises:
         CompositeError: When none is found.
+        ValueError: When the picture shows nothing of the marker's plane (see `floor_in_view`).
     """
     size = body_size or (template.plate.length, template.plate.width)
     area = floor_in_view(camera, view, prior.height + template.plate.height, near, reach)
@@ -100,7 +101,10 @@ def find_exposures(
 
 
 def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return the picture with hidden pixels filled with the median colour of the others."""
+    """Return the picture with hidden pixels filled with the median colour of the others.
+
+    Without hidden pixels it is the same array.
+    """
     if not hidden.any():
         return pixels
     painted = pixels.copy()
@@ -120,7 +124,10 @@ class _Search:
     area: tuple[Array, Array]
 
     def superposed(self) -> list[Exposure]:
-        """Find exposures by correlation with the whole marker; `visible` is 1 for all."""
+        """Find exposures by correlation with the whole marker; `visible` is 1 for all.
+
+        They have at least `BESIDE_SCORE`, are selected by `along_a_walk` and `refined`.
+        """
         top = self.template.plate
         half = 0.5 * float(np.hypot(top.length, top.width))
         plane = Plane.over(
@@ -139,7 +146,7 @@ class _Search:
     def aligned(
         self, start: Array, *, least_hope: float, shines_through: bool = False
     ) -> Alignment | None:
-        """Align the marker with the photograph from x, y, yaw (3,); None where `align` fails."""
+        """Align the marker with the picture from `start`, x, y, yaw (3,); None as for `align`."""
         return align(
             self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
             start=start, blurs_px=(1.0,), least_hope=least_hope, shines_through=shines_through,
@@ -179,9 +186,9 @@ class _Search:
     def layers(self, whole: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that occlude each other, from `whole`, those found by the marker.
 
-        Kept are those of high correlation, and exposures found by the body's appearance: less than
-        0.9 visible as found, others only with a marker there, by the marker's alignment. Where
-        none is kept, as in a blurred picture, `whole` is returned.
+        Kept are those of high correlation (`CLEAR_SCORE`, `CLEAR_SPREAD`), and exposures found by
+        the body's appearance elsewhere: less than 0.9 visible as found, others only with one of
+        `whole` there, as that. Where none is kept, as in a blurred picture, `whole` is returned.
         """
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
@@ -197,7 +204,7 @@ class _Search:
     def occluded_by(self, clear: Sequence[Exposure]) -> Sequence[Exposure]:
         """Find exposures, also occluded ones, by the body's appearance in a fully visible one.
 
-        The first usable of `clear` is taken; empty if none is.
+        The first usable of `clear` is taken, and comes first; empty if none is.
         """
         top = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
         for exposure in clear:

@@ -286,7 +286,7 @@ def is_apart(pose: Array, others: Iterable[Array], distance: float) -> bool:
 
 
 def is_beside(pose: Array, poses: Sequence[Array], length: float) -> bool:
-    """Return whether a pose is within `REACH` and 32 degrees of heading of some other pose.
+    """Return whether a pose is within `REACH` lengths and 32 degrees of heading of some other.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).

@@ -21,7 +21,7 @@ def superposed(body: BodyRaster, poses: Array, robot: NDArray[np.float32]) -> ND
         robot: The robot's picture on the raster of `body`, shape (m, k, 3).
 
     Returns:
-        Sum on the plane's raster, shape (rows, columns, 3).
+        Sum on the plane's raster, shape (rows, columns, 3); 0 where there is no exposure.
     """
     total = np.zeros((*body.plane.seen_px.shape[:2], 3), np.float32)
     for pose in poses:
@@ -37,7 +37,8 @@ def solve_robot(
 
     Damped least squares by conjugate gradients. What the exposures do not determine is held near
     zero. The mean of the colours at all poses is not enough: where exposures repeat by a steady
-    step, a pattern that alternates with it shows only at the two ends of the walk.
+    step, a pattern that alternates with it shows only at the two ends of the walk. For a single
+    pose it is the picture there.
 
     Args:
         body: The robot's raster.
@@ -57,7 +58,7 @@ def solve_robot(
     ]
 
     def normal(values: Array) -> Array:
-        """Multiply by the normal equations' matrix: sum the picture moved by all pairs of poses."""
+        """Multiply by the damped normal matrix: the picture moved by all pairs of poses, summed."""
         robot = values.reshape(shape).astype(np.float32)
         total = (1 + _DAMPING) * robot
         for shift in shifts:

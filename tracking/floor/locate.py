@@ -23,7 +23,7 @@ class FloorView:
     Attributes:
         photo: Name of the photograph.
         pixels: By key of `FloorMap.marks`, pixels of the mark's points, shape (n, 2): 4 corners
-            of a marker, 1 clicked point [px].
+            of a marker, 1 clicked point [px]; other keys are ignored.
         covariances: By the same keys, covariance of the raveled pixels, shape (2n, 2n) [px²].
     """
 
@@ -54,7 +54,7 @@ class FloorView:
         """Return the view with added floor points that a person clicked on.
 
         Args:
-            clicked: Pixel u, v of the click, by name of the floor point [px].
+            clicked: Pixel column u and row v of the click, by name of the floor point [px].
             click_sd: Standard deviation of u and of v of a click [px].
         """
         pixels = {name: np.array([pixel], dtype=float) for name, pixel in clicked.items()}
@@ -75,7 +75,8 @@ def locate_camera(camera: Camera, floor: FloorMap, view: FloorView) -> CameraPos
 
     Raises:
         FloorError: When the photograph shows no mark or fewer than 4 points, no solution exists,
-            the map is mirrored, or the misfit exceeds 8 px (root mean square).
+            the camera would be below the floor, the map is mirrored, or the root mean square
+            distance of points from their projection exceeds 8 px.
     """
     pose, misfit = _best_pose(camera, floor, view)
     if misfit > _MISFIT_PX or pose.position[2] <= 0:
@@ -134,7 +135,10 @@ def _starting_poses(camera: Camera, points: Array, pixels: Array) -> list[Camera
 def _solutions(
     camera: Camera, points: Array, pixels: Array, methods: tuple[int, ...]
 ) -> list[tuple[Array, Array]]:
-    """Solve for rotation vector and translation by OpenCV's PnP methods; keep finite solutions."""
+    """Solve for rotation vector and translation, shape (3,) each, by each of OpenCV's PnP methods.
+
+    Solutions that are not finite are left out, as are methods that fail; empty if all do.
+    """
     found = []
     for method in methods:
         try:
@@ -151,7 +155,7 @@ def _solutions(
 def _polish(
     camera: Camera, start: CameraPose, points: Array, pixels: Array
 ) -> tuple[CameraPose, float]:
-    """Refine a camera pose by robust least squares; return pose and RMS misfit [px]."""
+    """Refine a camera pose by robust least squares; return it with covariance, RMS misfit [px]."""
 
     def pose_of(x: Array) -> CameraPose:
         return CameraPose(x[:3], x[3:], start.covariance)

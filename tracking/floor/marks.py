@@ -22,7 +22,8 @@ class FloorMarker:
         y: y of the marker's centre; y is to the left of x seen from above [m].
         yaw: Turn of the print's left-to-right direction from x, counter-clockwise [rad].
         z: Height of the print over the floor [m].
-        position_sd: Standard deviation of x and of y as measured with a tape measure [m].
+        position_sd: Standard deviation of x and of y as measured with a tape measure [m]; z is
+            taken as exact.
         yaw_sd: Standard deviation of `yaw` [rad].
         side_sd: Standard deviation of `side`: printers scale by a few tenths of a percent [m].
     """
@@ -44,7 +45,7 @@ class FloorMarker:
 
     @property
     def derivative(self) -> Array:
-        """Derivative of `points` by x, y, yaw, side (last axis), shape (4, 3, 4) [-, m/rad]."""
+        """Derivative of `points` by x, y, yaw, side, shape (4, 3, 4) [-, -, m/rad, -]."""
         arm = self.points - (self.x, self.y, self.z)
         along = [np.tile(axis, (4, 1)) for axis in np.eye(3)[:2]]
         turn = np.column_stack((-arm[:, 1], arm[:, 0], np.zeros(4)))
@@ -74,7 +75,8 @@ class FloorPoint:
         x: x of the point [m].
         y: y of the point; y is to the left of x seen from above [m].
         z: Height of the point over the floor [m].
-        position_sd: Standard deviation of x and of y as measured with a tape measure [m].
+        position_sd: Standard deviation of x and of y as measured with a tape measure [m]; z is
+            taken as exact.
     """
 
     name: str
@@ -146,7 +148,10 @@ class FloorMap:
         return self.with_marks({key: mark.mirrored() for key, mark in self.marks.items()})
 
     def with_marks(self, marks: dict[int | str, Mark]) -> "FloorMap":
-        """Return the map with each mark replaced by `marks[key]` where `marks` has its key."""
+        """Return the map with each mark replaced by `marks[key]` where `marks` has its key.
+
+        Keys that the map does not have are ignored.
+        """
         found = [marks.get(key, mark) for key, mark in self.marks.items()]
         markers = tuple(mark for mark in found if isinstance(mark, FloorMarker))
         points = tuple(mark for mark in found if isinstance(mark, FloorPoint))

@@ -6,9 +6,10 @@ point). Minimised is
 
     sum over stands and marks  r' C^-1 r  +  sum over marks  ((m - m_tape) / sd_tape)²
 
-where r is the mark's pixels minus its projection and m_tape are x, y, yaw and side as measured with
-a tape measure, which fix the frame: without them translation, rotation and scale of the floor are
-undetermined.
+where r is the mark's pixels minus its projection, C the covariance of the pixels, m the unknowns of
+a mark, and m_tape and sd_tape the same as measured with a tape measure and their standard
+deviations. Measurements fix the frame: without them translation, rotation and scale of the floor
+are undetermined. Where residuals are too large, each sum is divided by the square of a factor.
 """
 
 from collections.abc import Mapping, Sequence
@@ -35,7 +36,7 @@ class Stand:
 
     Attributes:
         pose: Pose of the camera; its covariance includes the tape measure's errors.
-        photos: Names of the photographs, in order of time.
+        photos: Names of those photographs that show a mark of the floor, in order of time.
     """
 
     pose: CameraPose
@@ -47,15 +48,17 @@ class FloorFit:
     """The floor and the camera, fitted to all photographs, with residual statistics.
 
     Attributes:
-        floor: The map with refined x, y, yaw and side of the marks.
+        floor: The map with refined x, y, yaw and side of the marks; marks that no photograph shows
+            are as measured.
         stands: One entry for each stretch of photographs with the camera at rest.
-        shifts: By key of the mark, x and y of its refined minus its measured centre, shape (2,)
+        shifts: By key of each mark, x and y of its refined minus its measured centre, shape (2,)
             [m].
-        misfit_px: Root mean square distance of the marks' points from their projection [px].
+        misfit_px: Root mean square distance of the marks' points, medians over the photographs of
+            a stand, from their projection [px].
         noise_factor: Pixel residuals over their standard deviations by the marks' covariances, 1
             where the excess is not significant; the poses' covariances include the factor [-].
-        tape_factor: The same ratio of the marks' shifts to the tape measure's standard
-            deviations [-].
+        tape_factor: The same ratio of the marks' changes in x, y, yaw and side to the standard
+            deviations of their measurement [-].
         unused: By name of photograph, why it has no camera pose: it shows no mark of the floor.
     """
 
@@ -69,7 +72,7 @@ class FloorFit:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings, one sentence each: camera moved; marks shifted by more than 4 sd."""
+        """Warnings, one sentence each: camera moved; mark shifted by more than 4 `position_sd`."""
         messages = [
             f"the camera moved between {a.photos[-1]} and {b.photos[0]}; photographs before and "
             f"after have different camera poses"
@@ -108,7 +111,8 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
         Refined map, a camera pose with covariance for each stand, residuals, unused photographs.
 
     Raises:
-        FloorError: When no photograph shows a mark, or the map does not fit (see `locate_camera`).
+        FloorError: When no photograph shows a mark, or a stand fewer than 4 points, or the map
+            does not fit one (see `locate_camera`).
     """
     usable = [view for view in views if seen_keys(floor, view)]
     unused = {view.photo: "no mark of the floor is seen" for view in views if view not in usable}
@@ -142,7 +146,10 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
 
 
 def _mean_view(views: Sequence[FloorView]) -> FloorView:
-    """Compute the median pixels and mean covariance of each mark over a stand's photographs."""
+    """Compute the median pixels and mean covariance of each mark over a stand's photographs.
+
+    The view has the name of the first photograph.
+    """
     pixels: dict[int | str, Array] = {}
     covariances: dict[int | str, Array] = {}
     for key in {key: None for view in views for key in view.pixels}:
@@ -156,7 +163,11 @@ def _mean_view(views: Sequence[FloorView]) -> FloorView:
 
 @dataclass(frozen=True)
 class _Part:
-    """Normal equations of one group of residuals: J'WJ, J'Wr, cost r'Wr and count of residuals."""
+    """Normal equations of one group of residuals: J'WJ, J'Wr, cost r'Wr and count of residuals.
+
+    r is measured minus computed, J the derivative of what is computed by the unknowns, W the
+    inverse covariance of r.
+    """
 
     normal: Array
     gradient: Array
@@ -165,7 +176,7 @@ class _Part:
 
 
 def _weighed(parts: Sequence[Array], factors: Sequence[float]) -> Array:
-    """Sum the normal equations of groups, each divided by its factor²."""
+    """Sum the matrices J'WJ or the vectors J'Wr of all groups, each divided by its factor²."""
     return np.sum([part / factor**2 for part, factor in zip(parts, factors, strict=True)], axis=0)
 
 
@@ -181,8 +192,8 @@ class _Problem:
         """Fit map and poses; refit with variances of pixels and measurements from residuals.
 
         Returns:
-            Map, poses, their covariances (6, 6), misfit [px], and the factors on the standard
-            deviations of pixels and of tape measurements [-].
+            Map, poses, their covariances (6, 6), root mean square distance of points [px], and
+            the factors on the standard deviations of pixels and of tape measurements [-].
         """
         factors = (1.0, 1.0)
         floor, poses = self._least_squares(self.floor, list(starts), factors)
@@ -217,8 +228,9 @@ class _Problem:
 
         Variance components (Helmert 1907; Koch 1999, section 3.6): with N the normal equations of
         all and N_g those of one group, its n_g residuals have r_g = n_g - tr(N^-1 N_g) degrees of
-        freedom, the expectation of their sum of squares. One factor for both would attribute the
-        error of a poor picture to the tape measurements, and widen every camera pose's covariance.
+        freedom, the expectation of their sum of squares. A factor is 1 up to the 95 % point of
+        that sum's distribution, and where r_g <= 0.5. One factor for both would attribute the error
+        of a poor picture to the tape measurements, and widen every camera pose's covariance.
         """
         inverse = np.linalg.inv(_weighed([part.normal for part in parts], factors))
         found = []
@@ -270,7 +282,7 @@ class _Problem:
         return _Part(normal, gradient, cost, count)
 
     def _squares(self, floor: FloorMap, poses: Sequence[CameraPose]) -> float:
-        """Compute the mean squared residual per pixel coordinate over all marks [px²]."""
+        """Compute the mean squared residual per pixel coordinate, all marks and stands [px²]."""
         residuals = [
             view.pixels[key] - project(self.camera, pose, floor.marks[key].points)
             for pose, view in zip(poses, self.views, strict=True)

@@ -15,8 +15,8 @@ JUMP_PX = 0.2
 def split_stands(views: Sequence[FloorView], *, jump_px: float = JUMP_PX) -> tuple[int, ...]:
     """Number the stands: stretches of photographs between which the camera moved.
 
-    A rotation by 0.05 degrees moves the floor by 1 px in a usual picture and the path by 2 mm.
-    The median shift of the marks is therefore compared with their noise.
+    A rotation by 0.05 degrees moves the floor by 1 px in a usual picture and the path by 2 mm. So
+    the median shift of the marks from their mean in the stand so far is compared with their noise.
 
     Args:
         views: Pixels of the floor's marks in each photograph, in order of time.

@@ -20,7 +20,8 @@ class CameraClockOffset:
     """Offset of the camera's clock from the computer's clock.
 
     Attributes:
-        seconds: Camera's time minus computer's time; positive when the camera is ahead [s].
+        seconds: Camera's time, its EXIF stamp taken as UTC, minus computer's time in UTC; positive
+            when the camera is ahead [s].
         sd: Standard deviation of `seconds`, from the step of the EXIF time and the renewal
             interval of the QR code [s].
     """
@@ -42,7 +43,7 @@ def clock_text(t: float) -> str:
 
 
 def clock_picture(t: float, *, module_px: int = 12) -> NDArray[np.uint8]:
-    """Draw the QR code of `clock_text(t)` with a white margin of four squares.
+    """Draw the QR code of `clock_text(t)` with a white margin of at least four squares.
 
     Args:
         t: Seconds since 1970, UTC [s].
@@ -78,12 +79,15 @@ def read_clock(pixels: NDArray[np.uint8]) -> float | None:
 def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
     """Compute the camera's clock offset from a photograph of the QR clock and its EXIF time.
 
+    Half a step is added to the EXIF time and half of `renewal` to the time shown.
+
     Args:
         path: Photograph of the QR clock.
         renewal: Interval at which the code on the screen is renewed [s].
 
     Raises:
         PhotoError: When the photograph cannot be read, shows no QR clock or has no EXIF time.
+        OSError: When the file may not be opened.
     """
     shown = read_clock(read_pixels(path))
     if shown is None:

@@ -59,6 +59,7 @@ def find_photos(folder: Path) -> tuple[Path, ...]:
 
     Raises:
         TrackingError: When `folder` is not a folder or has no photograph in it.
+        OSError: When the folder may not be read.
     """
     if not folder.is_dir():
         raise TrackingError(f"{folder} is not a folder; expected a folder of photographs")
@@ -133,8 +134,9 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
         BGR, shape (height, width, 3).
 
     Raises:
-        PhotoError: When the file is missing, empty, damaged, of an unknown format, too large (see
-            `open_picture`), has more than `MOST_SCANS` scans, or is not of the given size.
+        PhotoError: When the file cannot be read (see `open_picture`), has more than `MOST_SCANS`
+            scans, or is not of the given size.
+        OSError: When the file may not be opened.
     """
     upright = _upright(path)
     if size is not None and upright.size != size:
@@ -149,7 +151,8 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
 def _upright(path: Path) -> PIL.Image.Image:
     """Decode a picture, rotate it by its EXIF orientation and convert it to RGB.
 
-    The memory of the original is freed on return.
+    The memory of the original is freed on return. Raises PhotoError and OSError as `open_picture`,
+    PhotoError also for a JPEG of more than `MOST_SCANS` scans.
     """
     with open_picture(path) as picture:
         _refuse_many_scans(path)

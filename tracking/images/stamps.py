@@ -24,13 +24,13 @@ class IntervalFit:
     """Times of a regular interval timer fitted to whole-second stamps.
 
     Attributes:
-        t: Time of each stamp's photograph, shape (n,); where the timer is regular, within two
-            thirds of the stamps' resolution of the true time [s].
+        t: Time of each stamp's photograph, by the clock of the stamps, shape (n,); where the timer
+            is regular, within two thirds of the stamps' resolution of the true time [s].
         sd: Standard deviation of each time, shape (n,) [s].
         interval: The timer's interval [s].
         missing: Exposures of the timer without a photograph, counted from 0 for the first stamp.
-        jitter: Smallest of 0, 0.01, 0.02, 0.05, 0.1, 0.2 s of deviation from a regular timer
-            with which all stamps agree [s].
+        jitter: Smallest of 0, 0.01, 0.02, 0.05, 0.1, 0.2 s with which all stamps agree, if every
+            exposure may deviate by that much from the regular timer [s].
     """
 
     t: Array
@@ -44,12 +44,13 @@ def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit |
     """Fit start and interval of a regular timer to time stamps that were rounded down.
 
     Args:
-        stamps: Time stamps in order of the photographs, shape (n,) [s].
+        stamps: Time stamps in order of the photographs, shape (n,), n at least 1 [s].
         resolution: Step to which the stamps are rounded down [s].
 
     Returns:
-        The fit; None for fewer than 3 stamps, equal stamps, or where no regular interval agrees
-        with the stamps or a skipped exposure cannot be distinguished from a slower timer.
+        The fit of least jitter, then of fewest missing exposures; None for fewer than 3 stamps, for
+        a last one not after the first, or where no regular timer agrees with the stamps, with up to
+        n missing exposures if its interval is at least two steps of the stamps, else with none.
     """
     s = np.asarray(stamps, dtype=float)
     if len(s) < 3 or s[-1] <= s[0]:
@@ -73,7 +74,11 @@ def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit |
 def _common_polygon(
     s: Array, numbers: NDArray[np.int64], resolution: float, jitter: float
 ) -> Array | None:
-    """Intersect the stamps' strips; return vertices (t_0, T) [s], shape (m, 2); None if empty."""
+    """Intersect the strips of stamps `s` of exposures `numbers` (module docstring).
+
+    Returns:
+        Vertices (t_0, T), shape (m, 2), in any order [s]; None if empty or thinner than 1e-9 s.
+    """
     ones = np.ones(len(s))
     # -t_0 - n T + s - jitter <= 0   and   t_0 + n T - s - resolution - jitter <= 0
     above = np.column_stack((-ones, -numbers, s - jitter))
@@ -102,7 +107,10 @@ def _times(start: float, numbers: NDArray[np.int64], polygon: Array, jitter: flo
 
 
 def _centroid(polygon: Array) -> tuple[Array, Array]:
-    """Compute mean (2,) and covariance (2, 2) of the uniform density on a convex polygon."""
+    """Compute mean (2,) and covariance (2, 2) of the uniform density on a convex polygon.
+
+    Vertices (m, 2) in any order; if they enclose no area, the moments of the vertices.
+    """
     middle = polygon.mean(axis=0)
     order = np.argsort(
         np.arctan2(*(polygon - middle).T[::-1] / np.ptp(polygon, axis=0)[::-1, None])

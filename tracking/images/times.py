@@ -26,8 +26,8 @@ class PhotoTimes:
     """Times of photographs.
 
     Attributes:
-        t: Times, shape (n,) [s]: from EXIF by the camera's clock since 1970, from an interval
-            since the first photograph, from a table as written there.
+        t: Times, shape (n,) [s]: as read from EXIF by the camera's clock since 1970, from an
+            interval since the first photograph, from a table as written there.
         sd: Standard deviation of each time, shape (n,) [s].
         source: Where the times come from, in words, for the report.
     """
@@ -45,8 +45,8 @@ def exif_time(path: Path) -> tuple[float, float] | None:
 
     Returns:
         Seconds since 1970 by the camera's clock, taken as UTC [s], and the step of the stamp: 1 s,
-        or less where EXIF has fractions of a second [s]. None where the picture cannot be read or
-        EXIF has no valid time.
+        or less where EXIF has a fraction of a second, of up to 9 digits [s]. None where the picture
+        cannot be read or EXIF has no valid time; OSError where the file may not be opened.
     """
     try:
         with open_picture(path) as picture:
@@ -71,10 +71,11 @@ def exif_time(path: Path) -> tuple[float, float] | None:
 def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
     """Read the times of photographs from EXIF; fit a regular interval to stamps in whole seconds.
 
-    Where no interval fits, 0.5 s is added to each stamp, with a standard deviation of 0.29 s.
+    Where no interval fits, 0.5 s is added to each stamp, with a standard deviation of 0.29 s. If
+    all stamps have fractions, not all 0, half their step is added, and none is fitted.
 
     Args:
-        paths: The photographs, in order of time.
+        paths: The photographs, at least one, in order of time.
 
     Raises:
         TimesError: When a photograph has no EXIF time or cannot be read.
@@ -126,12 +127,13 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
 
     Args:
         table: The file, with columns `photo` (file name), `t_s` [s] and optionally `t_sigma`, the
-            standard deviation [s]; an empty number is 0.
-        paths: The photographs whose times are returned, in this order; other rows are ignored.
+            standard deviation [s]; an empty or missing number is 0, of two rows the last counts.
+        paths: The photographs whose times are returned, in this order.
 
     Raises:
-        TimesError: When the file cannot be read or exceeds `MOST_TABLE`, a column or the row of a
-            photograph is missing, a row has too many cells, or a number is not a finite number.
+        TimesError: When the file cannot be read, exceeds `MOST_TABLE` or has no rows, a column or
+            the row of a photograph is missing, or any row has too many cells or a number that is
+            not finite.
     """
     if table.exists() and not table.is_file():  # a FIFO would block until there is a writer
         raise TimesError(f"{table} is not a file; expected a table of times")

@@ -31,11 +31,12 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
 
     Yields:
         Frames named `FILE#NUMBER`, numbers from 0, with seconds since the start of the video.
-        Frames that cannot be decoded are skipped.
+        Frames that cannot be decoded are skipped, but counted.
 
     Raises:
-        PhotoError: When the file is missing, empty, not a video, has no frame or frames of more
-            than `MOST_PIXELS`.
+        PhotoError: With the first frame: when the file is missing, empty, not a video, has no frame
+            or frames of more than `MOST_PIXELS`.
+        OSError: When the file may not be opened.
     """
     if not path.is_file() or path.stat().st_size == 0:
         raise PhotoError(path.name, "the file does not exist or is empty; expected a video")

@@ -35,8 +35,9 @@ def apriltag_quads(
         numbers: Numbers of the tags that are wanted; others are ignored.
 
     Returns:
-        Of each tag its corners in OpenCV's order and pixel coordinates, shape (4, 2) [px], and its
-        number; empty where the package is not installed or the family is not in `FAMILIES`.
+        Of each tag with at most one wrong bit its corners in OpenCV's order and pixel coordinates,
+        shape (4, 2) [px], and its number; empty where the package is not installed or the
+        dictionary is not in `FAMILIES`.
     """
     family = FAMILIES.get(dictionary.lower().removeprefix("dict_"))
     detector = None if family is None else _detector(family)

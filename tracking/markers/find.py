@@ -21,7 +21,7 @@ from tracking.markers.refine import Sighting, refine_corners
 from tracking.markers.square import marker_picture
 
 ACCEPTED_SCORE = 0.8
-"""Least correlation to accept a quadrilateral that OpenCV rejected [-]."""
+"""Least correlation to accept a marker that OpenCV did not decode [-]."""
 
 LEAST_SCORE = 0.5
 """Least correlation to accept a marker that OpenCV decoded [-]."""
@@ -78,7 +78,10 @@ def find_markers(
 
     Returns:
         Markers detected, ordered by number, in pixels of the whole picture. A number occurs twice
-        if the marker is detected twice. Empty where the window is narrower than 16 px.
+        if the marker is detected twice. Empty where a side of the window is below 16 px.
+
+    Raises:
+        MarkerError: When there is no such dictionary.
     """
     area = Region(0, 0, pixels.shape[1], pixels.shape[0]) if region is None else region
     grey = _grey(pixels[area.top : area.bottom, area.left : area.right])
@@ -159,9 +162,10 @@ def _decoded(
 
 
 def _brightened(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
-    """Detect in a dark picture stretched to full contrast; empty where it is not dark.
+    """Detect in a dark picture stretched to full contrast; refine in the original.
 
-    OpenCV's threshold is 7 counts at any brightness.
+    Empty where the picture is not dark (128 grey levels or more from black to white) or uniform.
+    OpenCV's threshold is 7 grey levels at any brightness.
     """
     darkest, brightest = np.percentile(grey, (0.1, 99.9))
     if not 0 < brightest - darkest < _DARK_COUNTS:
@@ -187,6 +191,9 @@ def recognise(
 ) -> list[Sighting]:
     """Classify quadrilaterals as wanted markers by correlation with the markers' pictures.
 
+    Not considered are quadrilaterals not convex, of a side of 8 px or less, or of one below 0.2 of
+    the longest.
+
     Args:
         grey: The picture, shape (height, width).
         quads: Corners of quadrilaterals, 8 numbers each, starting from any corner [px].
@@ -194,8 +201,8 @@ def recognise(
         numbers: Numbers of the markers wanted.
 
     Returns:
-        Markers of at least `ACCEPTED_SCORE`, corners refined; of several in one place the one of
-        highest score.
+        Markers of at least `ACCEPTED_SCORE` that no other of the dictionary resembles more, corners
+        refined, best first; of several in one place the one of highest score.
     """
     candidates = []
     for quad in quads:
@@ -223,7 +230,7 @@ def _is_marker_like(corners: Array) -> bool:
 def _best_turn(
     grey: NDArray[np.uint8], corners: Array, dictionary: str, number: int
 ) -> Array | None:
-    """Rotate a quadrilateral's corners for best correlation with a marker; None below 0.5."""
+    """Rotate a quadrilateral's corners for best correlation with a marker; None up to 0.5."""
     target = marker_picture(dictionary, number, 4)
     inner = np.ascontiguousarray(target[4:-4, 4:-4])
     best, best_score = None, 0.5
@@ -237,7 +244,7 @@ def _best_turn(
 
 
 def _flattened(grey: NDArray[np.uint8], corners: Array, n: int) -> NDArray[np.float32]:
-    """Rectify the inside of a quadrilateral to a square of n x n pixels."""
+    """Rectify the inside of a quadrilateral to n x n pixels, its first corner top left."""
     square = np.array([[0, 0], [n, 0], [n, n], [0, n]], dtype=np.float32) - np.float32(0.5)
     H = cv2.getPerspectiveTransform(corners.astype(np.float32), square)
     return cv2.warpPerspective(grey, H, (n, n), flags=cv2.INTER_AREA).astype(np.float32)
@@ -259,7 +266,10 @@ def _number_at(grey: NDArray[np.uint8], corners: Array, dictionary: str) -> int:
 
 @cache
 def _cells_of_all(dictionary: str) -> Array:
-    """Return the cells of all markers in 4 rotations, mean 0 and norm 1, (4 markers, cells)."""
+    """Return the cells of all markers, border included, with mean 0 and norm 1.
+
+    Shape (4 n, cells): rows 4 k to 4 k + 3 are the rotations of marker k of n.
+    """
     count = dictionary_named(dictionary).bytesList.shape[0]
     inner = [marker_picture(dictionary, number, 1)[1:-1, 1:-1] for number in range(count)]
     turned = np.array([np.rot90(cells, turn).ravel() for cells in inner for turn in range(4)])
@@ -268,7 +278,11 @@ def _cells_of_all(dictionary: str) -> Array:
 
 
 def _apart(candidates: list[Sighting]) -> list[Sighting]:
-    """Keep of overlapping sightings the one of highest score (non-maximum suppression)."""
+    """Keep of overlapping sightings the one of highest score (non-maximum suppression).
+
+    Two overlap if their centres are within half the extent of the one of lower score, whatever
+    their numbers. The result is ordered by score, highest first.
+    """
     kept: list[Sighting] = []
     for sighting in sorted(candidates, key=lambda candidate: -candidate.score):
         centre = sighting.corners_px.mean(axis=0)

@@ -50,7 +50,8 @@ class Sighting:
         corners_px: Corners in OpenCV's order, shape (4, 2) [px]; pixel centres are integers.
         covariance: Covariance of `corners_px.ravel()`, shape (8, 8) [px²].
         score: Correlation of the picture inside the black border with the marker's pattern, 1 for
-            a perfect picture, 0.5 for the most similar other marker of a good dictionary [-].
+            a perfect picture, 0.5 for the most similar other marker of a good dictionary; 0 for
+            fewer than 16 pixels, 1 where none was computed (`find_markers`, effort 0) [-].
         blur: Standard deviation of the Gaussian blur fitted [px]; 0 where none was fitted.
     """
 
@@ -75,8 +76,9 @@ def refine_corners(
         iterations: Largest number of Gauss-Newton steps.
 
     Returns:
-        The marker with refined corners, whatever its score; None where fewer than 40 pixels are
-        left, contrast is lost, or a corner moves by more than a quarter of the shortest side.
+        The marker with refined corners, whatever its score; None where under 8 pixels of a side or
+        40 in all are left, the contrast is at most 1 grey level, the pixels do not determine the
+        fit, or a corner coordinate moves by more than a quarter of the shortest side.
     """
     shrink = max(1, round(_longest_side(corners_px) / _USUAL_SIDE))
     patch = _Patch.around(grey, corners_px, shrink)
@@ -115,7 +117,7 @@ class _Patch:
 
     @classmethod
     def around(cls, grey: NDArray[np.uint8], corners_px: Array, shrink: int) -> "_Patch | None":
-        """Crop a marker with a quarter of its size around; None if under 8 pixels are left."""
+        """Crop a marker, a quarter of its size and 3 px around; None under 8 px wide or high."""
         reach = 0.25 * np.ptp(corners_px, axis=0).max() + 3
         low = np.maximum(np.floor(corners_px.min(axis=0) - reach).astype(int), 0)
         high = np.minimum(np.ceil(corners_px.max(axis=0) + reach).astype(int) + 1, grey.shape[::-1])
@@ -153,11 +155,12 @@ class _Look:
 
     Attributes:
         points: Column and row of the pixels compared in the patch, shape (n, 2) [px].
-        design: Derivative of their modelled values by the 14 unknowns, shape (n, 14).
+        design: Derivative of their modelled values by the 14 unknowns, shape (n, 14): x, y of four
+            corners, blur, o, o_x, o_y, g, q of the module's docstring.
         inverse: Inverse of the normal equations' matrix, shape (14, 14).
         residual: Pixel values minus the fitted model, shape (n,) [grey levels].
-        contrast: White minus black [grey levels].
-        score: Correlation with the marker inside its black border [-].
+        contrast: White minus black, g [grey levels].
+        score: Correlation with the marker inside its black border; 0 below 16 pixels [-].
     """
 
     points: Array
@@ -170,9 +173,9 @@ class _Look:
     def covariance(self, patch: _Patch) -> Array:
         """Compute the covariance of the corners in the patch, shape (8, 8) [px²].
 
-        Least squares with a residual of covariance R: (J'J)^-1 J'RJ (J'J)^-1. R is estimated from
-        the residual itself: compression and model errors make neighbouring pixels correlated, so
-        that the number of pixels overstates the information.
+        Least squares of design J with a residual of covariance R: (J'J)^-1 J'RJ (J'J)^-1. R is
+        estimated from the residual itself: compression and model errors make neighbouring pixels
+        correlated, so that the number of pixels overstates the information.
         """
         column, row = (self.points - self.points.min(axis=0)).astype(int).T
         shape = (int(row.max()) + 1, int(column.max()) + 1)
@@ -192,7 +195,7 @@ class _Look:
 
 
 def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
-    """Compute the autocovariance of `left`, 0 where `used` is 0, with Bartlett's taper.
+    """Compute the autocovariance of residuals `left` where `used` is 1, with Bartlett's taper.
 
     Returns:
         By lag of rows and columns, lag 0 in the middle, shape (2 lags + 1, 2 lags + 1).
@@ -208,7 +211,7 @@ def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
 
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:
-    """Render the marker for a fit; compute residual and Jacobian, or None where undetermined."""
+    """Compute residual and Jacobian of a fit; None under 40 pixels, no contrast, or singular."""
     H = square_homography(fit.corners)
     own = apply_homography(np.linalg.inv(H), patch.points)
     used = np.flatnonzero(_is_used(own, fit, _cells(dictionary)))
@@ -235,7 +238,7 @@ def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | 
 
 
 def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
-    """Take one clipped Gauss-Newton step; return the fit and its largest corner change [px]."""
+    """Take a Gauss-Newton step, corners by at most 0.1 side; return fit and largest change [px]."""
     step = look.inverse[:9] @ (look.design.T @ look.residual)
     longest = float(np.abs(step[:8]).max())
     step[:8] *= min(1.0, 0.1 * _shortest_side(fit.corners) / max(longest, 1e-12))
@@ -249,6 +252,7 @@ def _geometry_design(
 ) -> Array:
     """Compute the Jacobian of drawn pixels by the eight corner coordinates and the blur, (9, n).
 
+    For white minus black of 1. H maps `own`, in the marker's unit square, to `points` in the patch.
     With p = (H own) / w, w the third component, a point of the marker moves with its corners by
     dp = (dH own - p (dH own)_3) / w, and what is drawn there by minus the slope times dp.
     """
@@ -269,7 +273,7 @@ def _geometry_design(
 
 
 def _slopes_of_homography(corners: Array, H: Array) -> Array:
-    """Compute the numerical derivative of the homography by its corners, shape (3, 3, 8)."""
+    """Compute the derivative of the homography by x, y of the four corners, shape (3, 3, 8)."""
     step = 1e-4 * _shortest_side(corners)
     moved = square_homography(corners + step * _UNITS)
     return (np.moveaxis(moved, 0, -1) - H[:, :, None]) / step
@@ -294,9 +298,10 @@ def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float
 
 
 def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
-    """Mask the pixels on the marker and on the part of its margin not blurred from outside.
+    """Compare `own`, in the unit square, with the marker and its margin not blurred from outside.
 
-    Every print has a margin one cell wide; what lies beyond it is not known.
+    True inside: on the marker or on at most 0.09 of its side around. Every print has a margin one
+    cell wide; what lies beyond it is not known.
     """
     blurred = _BLURS_INSIDE * fit.blur / _shortest_side(fit.corners)
     margin = np.clip(1 / cells - blurred, 0.0, _MARGIN)

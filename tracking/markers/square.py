@@ -48,6 +48,10 @@ def marker_picture(dictionary: str, marker_id: int, cell_px: int) -> Array:
     Returns:
         Brightness, 0 black and 1 white, shape (n, n), n = `cell_px` times cells with border and
         margin. Cached and read-only.
+
+    Raises:
+        MarkerError: When there is no such dictionary.
+        cv2.error: When the dictionary has no such number.
     """
     family = dictionary_named(dictionary)
     cells = family.markerSize + 2
@@ -66,7 +70,8 @@ def square_homography(corners: ArrayLike) -> Array:
         corners: Images of the corners of `UNIT_SQUARE`, in its order, shape (..., 4, 2).
 
     Returns:
-        H with (x, y, 1) ~ H (u, v, 1), shape (..., 3, 3), H[2, 2] = 1.
+        H with (x, y, 1) ~ H (u, v, 1), shape (..., 3, 3), H[2, 2] = 1; (u, v) in the square.
+        LinAlgError where the last three corners lie exactly on a line.
 
     >>> (square_homography([[3, 4], [5, 4], [5, 7], [3, 7]]) + 0.0).round(9).tolist()
     [[2.0, 0.0, 3.0], [0.0, 3.0, 4.0], [0.0, 0.0, 1.0]]

@@ -50,8 +50,10 @@ def track_by_look(
         scene: Camera, floor and robot, with the annotated top.
         photos: The photographs, in order of time.
         times: By photograph, time and its standard deviation [s].
-        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
-        workers: Number of processes; one is used for fewer than 6 photographs.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
+            interval.
+        workers: Number of processes; one is used to find the robot in fewer than 6 photographs,
+            and to detect markers below `WORTH_WORKERS` pixels in all.
         progress: Receiver of progress and of requests to stop.
 
     Returns:
@@ -59,9 +61,10 @@ def track_by_look(
 
     Raises:
         NoUsablePhoto: No photograph, or not the one with the annotated top, can be used.
-        TrackingError: No top is annotated or it cannot serve as template, the floor's map does not
-            fit, the robot is found in no photograph, its head and tail cannot be distinguished, or
-            a correction is invalid.
+        TrackingError: No top is annotated or it cannot serve as template, no photograph shows a
+            mark of the floor or its map does not fit, the robot's head and tail cannot be
+            distinguished, no pose is left, two photographs have the same time, or a correction is
+            invalid.
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
@@ -86,7 +89,11 @@ def _found(
     scene: Scene, seen: FloorSeen, template: BodyTemplate, photos: Sequence[Photo], *,
     workers: int, progress: Progress,
 ) -> list[BodyCandidates | None]:  # fmt: skip
-    """Find the template in each photograph, in a process pool; None where it is not found."""
+    """Find the template in each photograph, in a process pool; None where it is not found.
+
+    It is searched near its place before, then in the whole photograph. Below 6 photographs there is
+    no pool.
+    """
     workers = workers if len(photos) >= _WORTH_WORKERS else 1
     jobs = [
         _Search(scene.camera, template, scene.prior,
@@ -106,7 +113,7 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
         photos: The photographs.
 
     Raises:
-        BodyError: No top is annotated.
+        BodyError: `scene.top` is None.
         NoUsablePhoto: The annotated photograph is not among `photos`, or cannot be used.
     """
     top = scene.top
@@ -122,7 +129,12 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
 
 
 def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTemplate:
-    """Cut the robot's template out of the photograph in which its top is annotated."""
+    """Cut the robot's template out of the photograph in which its top is annotated.
+
+    Raises:
+        BodyError: No top is annotated, or it cannot serve as template (see `make_template`).
+        NoUsablePhoto: The annotated photograph is not among `photos`, or cannot be used.
+    """
     top = marked_top(scene, seen, photos)
     view = seen.fit.pose_of(top.photo)
     files = {photo.name: photo.path for photo in photos}

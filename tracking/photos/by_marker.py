@@ -24,12 +24,13 @@ def track_by_marker(
     """Track a robot by the marker on its back.
 
     Args:
-        scene: Camera, floor, prior and corrections.
+        scene: Camera, floor, clicked points, prior and corrections.
         robot: The robot's marker and prior.
         photos: The photographs, in order of time.
         times: By photograph, time and its standard deviation [s].
-        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
-        workers: Number of processes; one is used for few photographs.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
+            interval.
+        workers: Number of processes; one is used below `WORTH_WORKERS` pixels in all.
         progress: Receiver of progress and of requests to stop.
 
     Returns:
@@ -38,7 +39,8 @@ def track_by_marker(
     Raises:
         NoUsablePhoto: No photograph can be used, or the marker is detected in none and there are
             no corrections.
-        TrackingError: The floor's map does not fit, or a correction is invalid.
+        TrackingError: No photograph shows a mark of the floor or its map does not fit, two
+            photographs have the same time, no pose is left, or a correction is invalid.
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=robot, workers=workers, progress=progress)
@@ -73,7 +75,7 @@ def other_markers(pixels: NDArray[np.uint8], robot: MarkedRobot, floor: FloorMap
 
     The list serves the error message when the robot's marker is not detected: a wrong number or
     dictionary is the most frequent cause. Tried are the robot's, the floor's and a guessed
-    dictionary, in this order.
+    dictionary, in this order; of the floor's dictionary the floor map's numbers are left out.
 
     Args:
         pixels: The photograph, grey or BGR.

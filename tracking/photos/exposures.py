@@ -39,7 +39,8 @@ def track_exposures(
         photo: The picture.
         merged: How the exposures were merged.
         times_of: Function from the names of the exposures, in order, to their times.
-        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
+            interval.
         progress: Receiver of progress and of requests to stop.
 
     Returns:
@@ -48,8 +49,9 @@ def track_exposures(
 
     Raises:
         NoUsablePhoto: The picture cannot be used, or the annotated top is in another picture.
-        TrackingError: There is neither marker nor annotated top, the floor's map does not fit, the
-            body's size is unknown, no exposure is found, or a correction is invalid.
+        TrackingError: There is neither marker nor annotated top, or the top cannot serve as
+            template; no mark of the floor is seen or its map does not fit; `scene.body_size` is
+            None; no exposure is found or left; two have the same time; or a correction is invalid.
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)
@@ -69,7 +71,10 @@ def track_exposures(
 
 
 def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> tuple[Exposure, ...]:
-    """Find exposures by the robot's marker, or without one by the exposure of annotated top."""
+    """Find exposures by the robot's marker, or without one by the exposure of annotated top.
+
+    Raises CompositeError if `scene.body_size` is None or none is found, and as `marked_top`.
+    """
     size = scene.body_size
     if size is None:
         raise CompositeError("the length and width of the robot's body (body_size) are not known")

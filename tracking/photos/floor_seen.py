@@ -25,8 +25,10 @@ class FloorSeen:
 
     Attributes:
         fit: Fitted floor map and camera poses.
-        detections: Markers detected in each readable photograph, in order of time.
-        lost: By name of each photograph that cannot be used, the reason.
+        detections: Markers detected in each photograph whose detection did not fail (see
+            `look_at`), in order of time, also if it shows no mark of the floor.
+        lost: By name of each photograph that cannot be used, the reason: detection failed, or it
+            shows no mark of the floor.
     """
 
     fit: FloorFit
@@ -41,7 +43,8 @@ class FloorSeen:
             shape: Height and width of the photograph [px].
 
         Returns:
-            True on markers and 0.25 of their side around them, shape (height, width).
+            True on markers and 0.25 of their side around them, shape (height, width); False
+            everywhere for a photograph without detections.
         """
         hidden = np.zeros(shape, dtype=np.uint8)
         for detection in self.detections:
@@ -62,15 +65,16 @@ def see_floor(
         scene: Camera, floor and clicked points.
         photos: The photographs, in order of time.
         robot: The robot whose marker is also detected; None to detect only the floor's markers.
-        workers: Number of processes; one is used for few photographs.
+        workers: Number of processes; one is used below `WORTH_WORKERS` pixels in all.
         progress: Receiver of progress and of requests to stop.
 
     Returns:
         Fitted floor and camera, and the markers detected in each photograph.
 
     Raises:
-        NoUsablePhoto: No photograph can be used.
-        TrackingError: No photograph shows a mark of the floor, or the floor's map does not fit.
+        NoUsablePhoto: Detection failed in all photographs (see `look_at`).
+        TrackingError: No photograph shows a mark of the floor, a stand shows fewer than 4 points,
+            or the floor's map does not fit.
         TrackStopped: A stop was requested.
     """
     wanted = Wanted(scene.camera.size, scene.floor, robot)

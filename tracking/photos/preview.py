@@ -23,8 +23,9 @@ class TapeCheck:
 
     Attributes:
         marks: Marker numbers or point names of the two marks, as text.
-        tape: Distance between their centres in the floor map, measured with a tape measure [m].
-        seen: Distance between their centres computed from the photograph [m].
+        tape: Distance between their centres in x, y by the floor map, measured with a tape measure
+            [m].
+        seen: The same from the photograph, at the marks' heights by the map [m].
     """
 
     marks: tuple[str, str]
@@ -49,9 +50,10 @@ class Preview:
         misfit_px: Root mean square distance of the marks' points from their projection after the
             fit of floor and camera [px].
         scale: Size of a pixel on the floor at the middle of the marks [m/px].
-        robot: x, y [m] and yaw [rad] of the robot; None where its marker is not detected.
+        robot: x, y [m] and yaw [rad] of the robot; None where its marker is not detected, or there
+            is none.
         robot_side_px: Mean side of the robot's marker in the photograph [px]; None likewise.
-        tape: Distance checks of all pairs of detected marks.
+        tape: Distance checks of all pairs of `marks`; empty for a single mark.
     """
 
     detection: Detection
@@ -83,8 +85,8 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
         photo: The photograph.
 
     Raises:
-        PhotoError: The photograph cannot be read, shows no floor marker, or two robot markers.
-        TrackingError: The floor's map does not fit, or too few of its points are visible.
+        PhotoError: Detection in the photograph failed (see `look_at`).
+        TrackingError: The floor's map does not fit, or none or fewer than 4 of its points are seen.
     """
     look = look_at(photo, Wanted(scene.camera.size, scene.floor, scene.robot))
     if look.seen is None:

@@ -27,7 +27,8 @@ class Tracked:
     Attributes:
         track: The smoothed path with covariance.
         floor: Fitted floor and camera, and the detections in each photograph.
-        lost: By name of each photograph without a pose in the track, the reason.
+        lost: By name of each photograph without a pose in the track, the reason: it cannot be used,
+            does not show the robot, or its pose was deleted by a correction.
         notes: Notes and warnings for the user, one line each.
     """
 
@@ -76,11 +77,12 @@ def finish(
         observations: Poses observed by the tracker.
         unseen: By name of each photograph in which the robot was not found, the reason.
         times: By photograph, time and its standard deviation [s].
-        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
+            interval.
 
     Returns:
-        The track, with the warnings of the floor fit and notes on gaps, outliers, height and
-        corrections.
+        The track, with the warnings of the floor fit and notes on gaps, outliers, a median height 3
+        or more standard deviations off the prior's, and corrections, each where there are any.
 
     Raises:
         TrackingError: No observation is left, two have the same time, or a correction is invalid.

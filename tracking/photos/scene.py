@@ -14,7 +14,7 @@ from tracking.floor import FloorMap, FloorView
 from tracking.pose import BodyPrior
 
 Click = tuple[float, float]
-"""A pixel that a person clicked on: u, v [px]."""
+"""A pixel that a person clicked on: column u and row v [px]."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,10 @@ class Scene:
     body_size: tuple[float, float] | None = None
 
     def with_clicks(self, view: FloorView) -> FloorView:
-        """Return the view of a photograph with the scene's clicked floor points for it added."""
+        """Return the view of a photograph with the scene's clicked floor points for it added.
+
+        On a floor without markers, a photograph without clicks has those of the first with clicks.
+        """
         clicks = self._clicks_for(view.photo)
         return view if not clicks else view.with_clicked(clicks)
 

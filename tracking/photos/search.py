@@ -2,8 +2,9 @@
 """Detect markers in many photographs, in a process pool; damaged photographs are reported.
 
 The camera stands still and the robot moves a little between two photographs. After the first
-photograph each marker is therefore searched where it was before. The whole photograph is searched
-only where the robot, or most of the floor, is not found there.
+photograph each marker is therefore searched where it was before, and in the whole photograph if it
+is not found there. Floor markers that the photograph before did not show are searched only if none
+of the others is found. Without a robot marker the whole photograph is searched for all.
 """
 
 from collections.abc import Sequence
@@ -66,6 +67,7 @@ def search_photos(
         Detection in each photograph, or why it cannot be used, in the same order.
 
     Raises:
+        MarkerError: There is no dictionary of a given name.
         TrackStopped: A stop was requested.
     """
     if len(photos) * wanted.size[0] * wanted.size[1] < WORTH_WORKERS:
@@ -96,7 +98,11 @@ def look_at(photo: Photo, wanted: Wanted, hint: Detection | None = None) -> Phot
         hint: Detection in a photograph taken shortly before, near which to search first.
 
     Returns:
-        The detection, or why the photograph cannot be used.
+        The detection; or why the photograph cannot be used: it cannot be read, is of another size
+        or, if a robot's marker is wanted, shows that twice or none of the floor's markers.
+
+    Raises:
+        MarkerError: There is no dictionary of a given name.
     """
     try:
         pixels = read_pixels(photo.path, size=wanted.size)
@@ -126,6 +132,6 @@ def _detected(
 
 
 def _floor_alone(name: str, pixels: NDArray[np.uint8], floor: FloorMap) -> Detection:
-    """Detect the floor's markers only; none detected is not an error."""
+    """Detect the floor's markers only, leave out those detected twice; none is not an error."""
     found = find_markers(pixels, floor.dictionary, wanted=floor.marker_ids) if floor.markers else ()
     return Detection(name, FloorView.of(name, found), None)

@@ -22,10 +22,11 @@ def track_photos(
     Args:
         scene: Camera, floor, robot and annotations; tracked is a composite picture if
             `scene.merged` is given, else by the marker if `scene.robot` is, else by the template.
-        photos: The photographs in order of time, or the one composite picture.
+        photos: The photographs, at least one, in order of time, or the one composite picture.
         times_of: Function from names of photographs, in order, to their times; of a composite
             picture, from names of its exposures found, `walk.jpg#1`, `walk.jpg#2` and so on.
-        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
+            interval.
         workers: Largest number of processes.
         progress: Receiver of progress and of requests to stop; None for none.
 
@@ -33,10 +34,12 @@ def track_photos(
         The path with covariance, the fitted floor and camera, and photographs left out and why.
 
     Raises:
-        NoUsablePhoto: No photograph is given or can be used, or the robot's marker is detected in
-            none.
-        TrackingError: The floor's map does not fit, the robot's head and tail cannot be
-            distinguished, no pose or exposure is found, or a correction is invalid.
+        NoUsablePhoto: No photograph is given or can be used, or not the one with the annotated top,
+            or the robot's marker is detected in none and there are no corrections.
+        TrackingError: No photograph shows a mark of the floor or its map does not fit; the robot
+            has no marker and no top that can serve as template, or its head and tail cannot be
+            distinguished; `body_size` of a composite picture's robot is not known; no exposure is
+            found or no pose left; two have the same time; or a correction is invalid.
         TrackStopped: A stop was requested.
     """
     if not photos:

@@ -169,7 +169,7 @@ def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:
             draws = anchored(draws, pose, at=at, covariance=spread, rng=rng)
     manifest = read_walk_manifest(folder)
     source = str(manifest.get("source", "unknown"))
-    return _Predicted(walk, robot_of_walk(manifest), source, single.draws(0), draws)
+    return _Predicted(walk, robot_of_walk(manifest, folder), source, single.draws(0), draws)
 
 
 def _write_legs(log: _Stamped, run: Path | None, predicted: _Predicted | None) -> None:

@@ -114,7 +114,9 @@ def photos_of_track(track: Path) -> TrackedPhotos:
     manifest = read_track_manifest(folder)
     table = read_table_file(folder / TRACK_CSV)
     if "photo" not in table.columns:
-        raise DataError("does not name photographs, as a track that was imported", file=folder / TRACK_CSV)
+        raise DataError(
+            "does not name photographs, as a track that was imported", file=folder / TRACK_CSV
+        )
     names = tuple(str(name) for name in table.columns["photo"])
     inputs = {Path(path): str(digest) for path, digest in manifest["inputs"].items()}
     annotated = folder / ANNOTATIONS_FILE

@@ -14,6 +14,7 @@ from model.poses import Poses
 from model.robot import Robot
 from model.walk.path import WalkPath
 from model.walk_models import baseline_paths
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.track.file import read_poses
@@ -65,7 +66,7 @@ def read_prediction(path: Path) -> PredictionFile:
     manifest = read_walk_manifest(folder)
     has_draws = (folder / DRAWS).is_file()
     draws = read_draws(folder) if has_draws else None
-    walk = WalkedPath(read_walk(folder), robot_of_walk(manifest))
+    walk = WalkedPath(read_walk(folder), robot_of_walk(manifest, folder))
     baselines, notes = _baselines(walk, manifest)
     return PredictionFile(
         Prediction(poses, draws, baselines),
@@ -76,21 +77,31 @@ def read_prediction(path: Path) -> PredictionFile:
     )
 
 
-def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
-    """Construct the robot in a walk's manifest, with leg offsets 0: a walk's angles are exact.
+def robot_of_walk(manifest: Mapping[str, Any], folder: Path) -> Robot:
+    """Construct the robot of a walk's manifest, with leg offsets 0: a walk's angles are exact.
+
+    Args:
+        manifest: Content of the walk's manifest.
+        folder: Folder of the walk, for the message.
 
     Raises:
-        KeyError: The manifest has no robot or not all of its parameters.
+        DataError: The manifest has no robot or not all of its parameters.
     """
-    described = manifest["settings"]["robot"]
-    return Robot(
-        hips=np.array(described["hips"]),
-        leg_radius=described["leg_radius"],
-        leg_arc=described["leg_arc"],
-        mass=described["mass"],
-        body_size=tuple(described["body_size"]),
-        inertia=tuple(described["inertia"]),
-    )
+    try:
+        described = manifest["settings"]["robot"]
+        return Robot(
+            hips=np.array(described["hips"]),
+            leg_radius=described["leg_radius"],
+            leg_arc=described["leg_arc"],
+            mass=described["mass"],
+            body_size=tuple(described["body_size"]),
+            inertia=tuple(described["inertia"]),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise DataError(
+            f"settings.robot is missing or incomplete ({error}); predict the walk again",
+            file=folder / MANIFEST,
+        ) from error
 
 
 def _baselines(

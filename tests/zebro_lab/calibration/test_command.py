@@ -325,7 +325,7 @@ def test_damaged_checkpoint_is_one_line_and_is_kept(sweep, tmp_path, refusal):
     (tmp_path / "checkpoint.npz").write_bytes(b"PK\x03\x04 no archive")
     line = refusal(sweep, "--resume", out=tmp_path)
     assert "checkpoint.npz: is not a checkpoint of zebro-lab" in line
-    assert "remove it and start anew" in line
+    assert "delete it and run without --resume" in line
     assert names(tmp_path) == {"checkpoint.npz"}
 
 

@@ -48,7 +48,7 @@ def test_a_real_rig_has_a_person_at_its_shaft_and_no_axis():
     with rig_at_hand("rig-board-serial@/dev/null") as rig:
         assert (rig.twin, rig.fast, rig.truth) == (None, False, {})
         assert isinstance(rig.load_setter(HAND, Control()), HandShaft)
-        with pytest.raises(SettingsError, match="no profile knows a driven axis"):
+        with pytest.raises(SettingsError, match="'axis', which only a simulated rig has"):
             rig.load_setter(AXIS, Control())
 
 
@@ -59,7 +59,7 @@ def test_a_twin_has_an_operator_and_an_axis():
 
 
 @pytest.mark.parametrize(("address", "error", "said"), [
-    ("rig-board-serial@/dev/null", SettingsError, "only a simulated rig's time"),
+    ("rig-board-serial@/dev/null", SettingsError, "works only with a simulated rig"),
     ("rig-odrive-netft@sim", SettingsError, "runs in real time only"),
     ("replay:RUN", ProfileError, "replays a recording"),
 ])  # fmt: skip

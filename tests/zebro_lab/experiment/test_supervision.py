@@ -120,7 +120,7 @@ def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
             require_well()
 
         monkeypatch.setattr(folder, "_require_working", look)
-        with pytest.raises(SinkFailed, match="the writer has ended"):
+        with pytest.raises(SinkFailed, match="the thread that writes has ended unexpectedly"):
             folder.close_run(None, reason="failed")
         monkeypatch.undo()
 

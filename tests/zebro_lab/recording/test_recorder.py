@@ -148,7 +148,7 @@ def test_a_disk_with_too_little_room_is_refused_before_it_begins(tmp_path):
 
 def test_a_place_that_takes_no_folder_is_named(tmp_path):
     (tmp_path / "data").write_text("a file")
-    with pytest.raises(RecordingError, match="folder as --data"):
+    with pytest.raises(RecordingError, match="Not a directory; choose another folder with --data"):
         recorder(tmp_path / "data").__enter__()
     with pytest.raises(RecordingError, match="cannot write to"):
         recorder(tmp_path / "data" / "below").__enter__()

@@ -186,7 +186,9 @@ def test_another_marker_than_the_robots_is_told_which_is_seen(marker, lab, track
 
 
 def test_a_marker_that_is_the_robots_and_the_floors_is_refused(lab, track):
-    assert_refused(track("photos", "--marker", "4x4_50:12:120mm"), "marker 12 is the robot's and")
+    assert_refused(
+        track("photos", "--marker", "4x4_50:12:120mm"), "marker 12 is listed both for the robot and"
+    )
 
 
 @pytest.mark.parametrize("kind", ["empty", "text", "cut short", "no frames"])

@@ -66,5 +66,12 @@ def test_another_lens_in_the_camera_file_is_refused(track):
 
 def test_a_table_alone_is_no_track_folder(track):
     (track / "manifest.json").unlink()
-    with pytest.raises(NotFound, match="no track folder"):
+    with pytest.raises(NotFound, match="not a track folder: manifest.json is missing"):
+        photos_of_track(track)
+
+
+def test_a_track_that_names_no_photographs_is_said_to_be_so(track):
+    table = pd.read_csv(track / "track.csv", comment="#").drop(columns="photo")
+    table.to_csv(track / "track.csv", index=False)
+    with pytest.raises(DataError, match=r"track\.csv: does not name photographs"):
         photos_of_track(track)

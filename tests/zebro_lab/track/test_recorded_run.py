@@ -119,7 +119,7 @@ def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run_command):
 
 FAULTS = {
     "photographs of another day": (("--start", "2020-05-31T12:00:00"), "86400.0 to 86408.0 s"),
-    "a moment without a clock": (("--interval", "2", "--start", "2020-06-01"), "--start: these ph"),
+    "a moment without a clock": (("--interval", "2", "--start", "2020-06-01"), "--start: the ph"),
     "no run": (("--run", "photos"), "photos is not a run folder"),
     "no clock in the picture": (("--clock", "photos/simulated_00.jpg"), "no QR clock is decoded"),
 }  # fmt: skip

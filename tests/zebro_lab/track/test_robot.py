@@ -44,7 +44,7 @@ def test_the_files_own_marker_is_sought_unless_another_is_named():
 
 
 def test_a_number_beyond_its_dictionary_says_how_far_it_goes():
-    with pytest.raises(SettingsError, match=r"--marker: number 50 .* 0 to 49"):
+    with pytest.raises(SettingsError, match=r"--marker: marker 50 .* 0 to 49"):
         tracked_robot(RobotFile(marker=Marker((0, 0, 0.04))), "4x4_50:50:1cm", prior=PRIOR)
     own = RobotFile(
         marker=Marker((0, 0, 0.04), printed=MarkerPrint(number=99)), file=Path("robot.toml")

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: MIT
 """A prediction is read with its draws and with baselines for its leg angles."""
 
+import json
+
 import numpy as np
 import pandas as pd
+import pytest
 
 from model.bayes.walks.prior import WrongLeg
 from model.gait import tetrapod_reference
 from support.validated_walks import predicted
 from support.walk_posteriors import posterior_of, predict_log, stored
+from zebro_lab.files.errors import DataError
 from zebro_lab.walk.prediction_file import read_prediction
 
 
@@ -41,3 +45,13 @@ def test_a_table_of_poses_has_no_baseline_but_the_robot_that_stands_still(tmp_pa
     assert (found.walk, found.source) == (None, "unknown")
     assert "is the only baseline" in found.notes[0]
     assert found.files == (tmp_path / "poses.csv",)
+
+
+def test_a_manifest_without_the_robot_is_one_line(legs, tmp_path):
+    folder = predicted(tmp_path, legs[0], draws=0)
+    manifest = folder / "manifest.json"
+    content = json.loads(manifest.read_text())
+    del content["settings"]["robot"]["hips"]
+    manifest.write_text(json.dumps(content))
+    with pytest.raises(DataError, match=r"manifest\.json: settings\.robot is .* \('hips'\)"):
+        read_prediction(folder)

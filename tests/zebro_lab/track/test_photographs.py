@@ -66,7 +66,7 @@ def test_another_lens_in_the_camera_file_is_refused(track):
 
 def test_a_table_alone_is_no_track_folder(track):
     (track / "manifest.json").unlink()
-    with pytest.raises(NotFound, match="not a track folder: manifest.json is missing"):
+    with pytest.raises(NotFound, match=r"not a track folder: manifest\.json is missing"):
         photos_of_track(track)
 
 

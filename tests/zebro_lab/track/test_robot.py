@@ -49,7 +49,7 @@ def test_a_number_beyond_its_dictionary_says_how_far_it_goes():
     own = RobotFile(
         marker=Marker((0, 0, 0.04), printed=MarkerPrint(number=99)), file=Path("robot.toml")
     )
-    with pytest.raises(SettingsError, match=r"robot\.toml, marker: number 99"):
+    with pytest.raises(SettingsError, match=r"robot\.toml, marker: marker 99"):
         tracked_robot(own, prior=PRIOR)
 
 

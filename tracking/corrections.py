@@ -130,12 +130,8 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     if kind not in _KINDS:
         raise CorrectionError(f"kind '{kind}' is unknown; expected {', '.join(_KINDS)}")
     values = {key: value for key, value in entry.items() if key != "kind"}
-    names = [field.name for field in fields(_KINDS[kind])]
-    for key in values:
-        if key not in names:
-            near = difflib.get_close_matches(key, names, n=1) or names[:1]
-            raise CorrectionError(f"correction '{kind}' has no '{key}'; did you mean '{near[0]}'?")
-        _require_value(kind, key, values[key])
+    for key, value in values.items():
+        _require_value(kind, key, value)
     needed = [each.name for each in fields(_KINDS[kind]) if each.default is MISSING]
     missing = [name for name in needed if name not in values]
     if missing:
@@ -146,7 +142,11 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
 
 
 def _require_value(kind: str, key: str, value: Any) -> None:
-    """Raise `CorrectionError` where a value is not what the attribute of that name holds."""
+    """Raise `CorrectionError` for an unknown key, or a value that its attribute cannot hold."""
+    names = [field.name for field in fields(_KINDS[kind])]
+    if key not in names:
+        near = difflib.get_close_matches(key, names, n=1) or names[:1]
+        raise CorrectionError(f"correction '{kind}' has no '{key}'; did you mean '{near[0]}'?")
     if key == "photos":
         wanted, valid = "a list of names", isinstance(value, list | tuple)
         valid = valid and all(isinstance(name, str) for name in value)

@@ -38,10 +38,7 @@ def oplus(a: ArrayLike, b: ArrayLike) -> Array:
 
 
 def otimes(a: ArrayLike, b: ArrayLike) -> Array:
-    r"""Compute a ⊗ b: a sum with a number, the matrix product of arrays, Eq. (2-8).
-
-    .. math::
-        [A \otimes C]_{ij} = \max_k (a_{ik} + c_{kj})
+    r"""Compute a ⊗ b, Eq. (2-8): the sum with a number, of arrays :math:`max_k (a_{ik} + b_{kj})`.
 
     Args:
         a: A number, or a matrix of shape (n, m).

@@ -40,8 +40,7 @@ def read_folder_manifest(
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file cannot be read as JSON, is no JSON object, or its kind or schema is
-            missing or another.
+        DataError: The file is not a JSON object, or its kind or schema is missing or another.
     """
     content = read_json_object(file, of=f"{of} folder")
     if content.get("kind") not in tuple(kinds):

@@ -30,8 +30,7 @@ class Runs:
 def separate_runs(table: RigTable, label: str) -> Runs:
     """Assign every kept row to a run by `[runs]`, else by the `run` column, else to a single run.
 
-    Runs are found on all rows, before [rows] keep is applied: filtering rows must not split a
-    recording in two.
+    Runs are found on all rows, before [rows] keep is applied, which therefore splits none in two.
 
     Args:
         table: The table, with the rule in its column map.

@@ -112,16 +112,11 @@ def photos_of_track(track: Path) -> TrackedPhotos:
     """
     folder = track if track.is_dir() else track.parent
     manifest = read_track_manifest(folder)
-    table = read_table_file(folder / TRACK_CSV)
-    if "photo" not in table.columns:
-        raise DataError(
-            "does not name photographs, as a track that was imported", file=folder / TRACK_CSV
-        )
-    names = tuple(str(name) for name in table.columns["photo"])
+    t, names = _poses_of(folder / TRACK_CSV)
     inputs = {Path(path): str(digest) for path, digest in manifest["inputs"].items()}
     annotated = folder / ANNOTATIONS_FILE
     return TrackedPhotos(
-        t=table.numbers("t_s"),
+        t=t,
         names=names,
         files={name: _file_of(name, inputs) for name in names},
         camera=_camera(inputs, folder),
@@ -129,6 +124,14 @@ def photos_of_track(track: Path) -> TrackedPhotos:
         annotations=read_annotations(annotated) if annotated.is_file() else Annotations(),
         simulated="sim:" in str(manifest["source"]),
     )
+
+
+def _poses_of(file: Path) -> tuple[Array, tuple[str, ...]]:
+    """Read time [s] and name of the photograph of each pose of a track, n each."""
+    table = read_table_file(file)
+    if "photo" not in table.columns:
+        raise DataError("does not name photographs, as a track that was imported", file=file)
+    return table.numbers("t_s"), tuple(str(name) for name in table.columns["photo"])
 
 
 def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:

@@ -69,8 +69,7 @@ def body_prior(
 
     Args:
         described: Content of `robot.toml`.
-        height: Height of the body's origin above the floor [m]; None for the marker's height
-            while the robot stands minus the marker's z on the body.
+        height: Height of the body's origin [m]; None for that of the standing robot's marker.
         height_sd: Standard deviation of the body's height over a walk [m].
 
     Raises:

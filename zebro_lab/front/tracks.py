@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Track photographs and compare predictions with tracks, for notebooks."""
 
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
 
 from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
@@ -33,7 +33,7 @@ def track_photos(
     out: PathLike,
     camera: PathLike,
     floor: PathLike,
-    robot: PathLike | None = None,
+    robot: PathLike,
     times: PathLike | None = None,
     start: datetime | None = None,
     annotations: PathLike | None = None,
@@ -47,12 +47,11 @@ def track_photos(
         out: Track folder to write.
         camera: The `camera.toml`.
         floor: The `floor.toml`.
-        robot: The `robot.toml`, with the marker's place and its height while the robot stands;
-            None, the thesis's robot, raises, as it has neither.
+        robot: The `robot.toml`, with the marker's place and its height while the robot stands.
         times: CSV with columns `photo`, `t_s` and optionally `t_sigma` [s]; None for EXIF times or
             the time stamps of a video, not for a composite picture.
-        start: Moment from which time is counted: what the camera's clock shows, with time zone UTC;
-            None for the first photograph.
+        start: Moment from which time is counted, as the camera's clock shows it, without a time
+            zone or with UTC; None for the first photograph.
         annotations: File of annotations that a person made in the photographs; None for none.
         without_marker: Whether to track the robot by a template, annotated in one photograph.
         merged: How the exposures of a composite picture were merged: "pasted", "darkest" or
@@ -62,8 +61,10 @@ def track_photos(
         ZebroLabError: A file or an option cannot be used.
         TrackingError: The photographs do not give a track.
     """
+    if start is not None and start.tzinfo is None:
+        start = start.replace(tzinfo=UTC)
     request = TrackRequest(
-        Path(photos), Path(camera), Path(floor), robot=optional(robot), out=Path(out),
+        Path(photos), Path(camera), Path(floor), robot=Path(robot), out=Path(out),
         times=TimeRequest(table=optional(times)), start=start, annotations=optional(annotations),
         without_marker=without_marker, merged=merged, workers=1,
     )  # fmt: skip

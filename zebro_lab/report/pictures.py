@@ -96,15 +96,21 @@ def lies_in(folder: Path, name: str) -> bool:
 def place_of(name: str) -> tuple[int, str]:
     """Return the sort key of a picture's file name: index in `CAPTIONS` (else last), then name.
 
-    A key with a leading dot fits if it is in the name, another if it is the name without `.png`.
+    A key with a leading dot fits if it is in the name, one with a final dot if the name begins with
+    it, another if it is the name without `.png`.
 
     >>> sorted(["corner.png", "curves.png", "b.imu.png", "b.png"], key=place_of)
     ['curves.png', 'corner.png', 'b.imu.png', 'b.png']
     """
     stem = name.removesuffix(".png")
     keys = list(CAPTIONS)
-    mine = (i for i, key in enumerate(keys) if stem == key or (key[0] == "." and key in stem))
+    mine = (i for i, key in enumerate(keys) if _names(key, stem) or (key[0] == "." and key in stem))
     return next(mine, len(keys)), name
+
+
+def _names(key: str, stem: str) -> bool:
+    """Return whether a key of `CAPTIONS` is a picture's name, or with a final dot its beginning."""
+    return stem == key or (key[-1] == "." and stem.startswith(key))
 
 
 def caption_of(stem: str, *, stage: str) -> str:
@@ -119,10 +125,13 @@ def caption_of(stem: str, *, stage: str) -> str:
 
     >>> caption_of("walk-3.photos", stage="validation")
     'Photographs from above, and the robot drawn at its predicted pose'
+    >>> caption_of("left_out.walk1", stage="walks")
+    'A walk predicted from a fit of the other walks, and its track'
     >>> caption_of("my-walk", stage="validation")
     'Predicted paths and the track, and errors over time'
     """
     if stage == VALIDATION:
         end = next((end for end in CAPTIONS if end[0] == "." and stem.endswith(end)), ERRORS)
         return CAPTIONS[end]
-    return CAPTIONS.get(stem, stem.replace("_", " ").replace("-", " "))
+    words = stem.replace("_", " ").replace("-", " ")
+    return next((CAPTIONS[key] for key in CAPTIONS if _names(key, stem)), words)

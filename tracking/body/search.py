@@ -103,7 +103,7 @@ def _all_headings(
     square = abs(plate.length - plate.width) < 0.2 * max(plate.length, plate.width)
     options = [best]
     for turn in (0.5 * np.pi, np.pi, 1.5 * np.pi) if square else (np.pi,):
-        start = _turned_about_plate(best.pose.planar, plate.centre_x, turn)
+        start = _turned_about_plate(best.pose.planar, (plate.centre_x, plate.centre_y), turn)
         other = align(
             pixels, camera, view, template=template, prior=prior, start=start, visible=visible
         )
@@ -116,10 +116,10 @@ def _differ(a: Alignment, b: Alignment) -> bool:
     return bool(np.cos(a.pose.state[5] - b.pose.state[5]) < 0.7)
 
 
-def _turned_about_plate(planar: Array, centre_x: float, turn: float) -> Array:
+def _turned_about_plate(planar: Array, centre: tuple[float, float], turn: float) -> Array:
     x, y, yaw = planar
-    ends = np.array([yaw, yaw + turn])
-    shift = centre_x * (np.column_stack((np.cos(ends), np.sin(ends))))
+    c, s = np.cos([yaw, yaw + turn]), np.sin([yaw, yaw + turn])
+    shift = np.column_stack((c * centre[0] - s * centre[1], s * centre[0] + c * centre[1]))
     return np.array([*(np.array([x, y]) + shift[0] - shift[1]), yaw + turn])
 
 

@@ -26,11 +26,12 @@ class TopPlate:
         length: Extent along the body's x [m].
         width: Extent along the body's y [m].
         height: Height over the body's origin [m].
-        centre_x: x of the plate's middle in the body frame; y is 0 [m].
+        centre_x: x of the plate's middle in the body frame [m].
         margin: Width at the rear and sides of the plate that is added to the template, so that
             the plate's edges are inside [m].
         front_margin: Width ahead of the plate that is added to the template, where a nose may
             distinguish head from tail [m].
+        centre_y: y of the plate's middle in the body frame [m].
     """
 
     length: float
@@ -39,6 +40,7 @@ class TopPlate:
     centre_x: float = 0.0
     margin: float = 0.006
     front_margin: float = 0.006
+    centre_y: float = 0.0
 
     def __post_init__(self) -> None:
         if not (self.length > 0 and self.width > 0):
@@ -51,7 +53,7 @@ class TopPlate:
     def corners_body(self) -> Array:
         """Corners front left, front right, rear right, rear left in the body frame, (4, 3) [m]."""
         x, y = self.length / 2, self.width / 2
-        flat = np.add([[x, y], [x, -y], [-x, -y], [-x, y]], [self.centre_x, 0.0])
+        flat = np.add([[x, y], [x, -y], [-x, -y], [-x, y]], [self.centre_x, self.centre_y])
         return np.column_stack((flat, np.full(4, self.height)))
 
     @property
@@ -60,7 +62,7 @@ class TopPlate:
         rear = self.centre_x - self.length / 2 - self.margin
         front = self.centre_x + self.length / 2 + self.front_margin
         side = self.width / 2 + self.margin
-        return rear, front, -side, side
+        return rear, front, self.centre_y - side, self.centre_y + side
 
 
 @dataclass(frozen=True)
@@ -185,7 +187,8 @@ def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
     # The outermost half cell is left out, since prints are often cut there.
     width = marker.side * (1 + 1 / cells)
     plate = TopPlate(marker.side, marker.side, marker.position[2], marker.position[0],
-                     (width - marker.side) / 2, (width - marker.side) / 2)  # fmt: skip
+                     (width - marker.side) / 2, (width - marker.side) / 2,
+                     marker.position[1])  # fmt: skip
     across = (np.arange(points) + 0.5) / points - 0.5
     ahead, left = np.meshgrid(-across * width, -across * width, indexing="ij")
     c, s = np.cos(marker.yaw), np.sin(marker.yaw)

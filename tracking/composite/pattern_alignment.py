@@ -147,7 +147,8 @@ class PatternAlignment:
         """
         body = self.body_at(pose)
         half = 0.5 * np.array([self.known.plate.length, self.known.plate.width])
-        inside = (np.abs(body - [self.known.plate.centre_x, 0.0]) <= half).all(axis=-1)
+        centre = [self.known.plate.centre_x, self.known.plate.centre_y]
+        inside = (np.abs(body - centre) <= half).all(axis=-1)
         used = inside & self.shown
         if used.sum() < _LEAST_POINTS:
             return None

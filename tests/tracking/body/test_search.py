@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The robot is found by its own picture, and nowhere on an empty floor."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,19 @@ def test_the_robot_is_found_anywhere_in_any_heading(template):
     assert np.abs(errors)[:, :2].max() < 2e-3
     assert np.degrees(np.abs(errors)[:, 2].max()) < 1.0
     assert np.sqrt(np.mean(np.square(z))) < 1.5
+
+
+def test_a_top_beside_the_body_s_origin_is_found_from_there(template):
+    planar, beside = np.array([0.2, 0.1, 0.7]), np.array([0.03, 0.12])
+    plate = replace(PLATE, centre_x=beside[0], centre_y=beside[1])
+    moved = replace(
+        template, plate=plate, points_body=template.points_body + np.array([*beside, 0.0])
+    )
+    picture = picture_of(planar, np.random.default_rng(4))
+    found = find_body(picture, LENS, VIEW, template=moved, prior=PRIOR, near=(0.2, 0.1), reach=0.3)
+    c, s = np.cos(planar[2]), np.sin(planar[2])
+    origin = planar[:2] - np.array([[c, -s], [s, c]]) @ beside
+    np.testing.assert_allclose(found.best.pose.planar[:2], origin, atol=2e-3)
 
 
 def test_an_empty_floor_shows_no_robot(template):

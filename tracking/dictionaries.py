@@ -2,6 +2,7 @@
 """Dictionaries (families) of ArUco and AprilTag markers, by name."""
 
 import difflib
+from contextlib import suppress
 from pathlib import Path
 
 import cv2
@@ -42,13 +43,14 @@ def dictionary_named(name: str) -> cv2.aruco.Dictionary:
 
 def _dictionary_of_file(path: str) -> cv2.aruco.Dictionary:
     dictionary = cv2.aruco.Dictionary()
-    storage = cv2.FileStorage(path, cv2.FILE_STORAGE_READ)
-    if not (storage.isOpened() and dictionary.readDictionary(storage.root())):
-        raise MarkerError(
-            f"{path} does not exist or is not a dictionary of markers; expected nmarkers, "
-            f"markersize and marker_0, marker_1, ... as cv2.aruco.Dictionary.writeDictionary writes"
-        )
-    return dictionary
+    with suppress(cv2.error, SystemError):  # raised by OpenCV for a malformed file
+        storage = cv2.FileStorage(path, cv2.FILE_STORAGE_READ)
+        if storage.isOpened() and dictionary.readDictionary(storage.root()):
+            return dictionary
+    raise MarkerError(
+        f"{path} does not exist or is not a dictionary of markers; expected nmarkers, "
+        f"markersize and marker_0, marker_1, ... as cv2.aruco.Dictionary.writeDictionary writes"
+    )
 
 
 def guess_dictionary(pixels: NDArray[np.uint8]) -> str | None:

@@ -43,6 +43,7 @@ def test_a_dictionary_of_ones_own_is_read_from_the_file_that_opencv_writes(tmp_p
 
 def test_a_file_without_a_dictionary_says_what_one_holds(tmp_path):
     (tmp_path / "empty.yml").write_text("%YAML:1.0\n---\nnothing: 1\n")
-    for name in ("empty.yml", "missing.yml"):
+    (tmp_path / "broken.yml").write_text("%YAML:1.0\n---\na: [1, 2\nb: {")
+    for name in ("empty.yml", "missing.yml", "broken.yml"):
         with pytest.raises(MarkerError, match=rf"{name} .* is not a dictionary .*nmarkers"):
             dictionary_named(str(tmp_path / name))

@@ -13,6 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.errors import CompositeError
+
 REACH_PX = 3
 """Largest offset, in rows and in columns, of a neighbour in the prediction filter [px]."""
 
@@ -45,7 +47,7 @@ class FloorPattern:
             width: Standard deviation of the blur that is subtracted before filtering [px].
 
         Raises:
-            numpy.linalg.LinAlgError: Nowhere is a neighbourhood of `REACH_PX` all floor.
+            CompositeError: Nowhere is a neighbourhood of `REACH_PX` all floor.
         """
         flat = _flat(picture, width)
         side = 2 * REACH_PX + 1
@@ -54,6 +56,11 @@ class FloorPattern:
             borderValue=(0,),
         )  # fmt: skip
         rows, columns = np.nonzero(whole)
+        if not len(rows):
+            raise CompositeError(
+                f"nowhere between the exposures are {side} by {side} px of floor visible; expected "
+                "a picture with floor around them, from whose pattern exposures are distinguished"
+            )
         some = slice(None, None, 1 + len(rows) // _MOST_POINTS)
         chosen = (rows[some], columns[some])
         return cls(width, np.stack([_filter(flat[..., colour], *chosen) for colour in range(3)]))

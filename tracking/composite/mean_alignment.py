@@ -54,7 +54,7 @@ def floor_pattern(
         poses: x, y and yaw of all exposures, shape (n, 3) [m, m, rad].
 
     Raises:
-        numpy.linalg.LinAlgError: There is no such floor.
+        CompositeError: There is no such floor.
     """
     floor = ~picture.hidden
     for pose in poses:

@@ -6,6 +6,7 @@ import pytest
 
 from support.drawn_grain import WIDTH, grain
 from tracking.composite.floor_pattern import FloorPattern
+from tracking.errors import CompositeError
 
 
 def correlation(picture, dy, dx):
@@ -47,3 +48,9 @@ def test_pixels_that_may_show_the_robot_do_not_count_to_the_floor():
     np.testing.assert_allclose(
         FloorPattern.of(robot, shown, width=5.0).filters, flat.filters, atol=0.05
     )
+
+
+def test_a_picture_without_floor_between_the_exposures_is_refused():
+    floor = grain(np.random.default_rng(4))
+    with pytest.raises(CompositeError, match="7 by 7 px of floor"):
+        FloorPattern.of(floor, np.zeros(floor.shape[:2], bool), width=WIDTH)

@@ -280,7 +280,9 @@ def _registers(frame: TomlTable, layout: Layout, channels: int) -> Registers:
         return Registers(positions)
     targets = frame.wholes("set_point_registers", most=last)
     for key, found in (("registers", positions), ("set_point_registers", targets)):
-        expected = [found[0] + 2 * leg for leg in range(channels)] if found else channels
+        expected = (
+            [found[0] + 2 * leg for leg in range(channels)] if found else f"{channels} values"
+        )
         if list(found) != expected:
             raise frame.fault(f"found {list(found)}; expected {expected}, in steps of two", key)
     duration = frame.whole("duration_register", most=last)

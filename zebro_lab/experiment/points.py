@@ -73,7 +73,7 @@ def finished_points(data: Path, journal: Journal) -> Finished:
         elif (lost := _lost_log(run, manifest)) is not None:
             notices.append(f"{lost}; point {number} is measured again")
             if manifest.excluded is None:
-                exclude_run(run, why="the run's log is lost; its point is measured again")
+                exclude_run(run, why="log missing or changed; its point is measured again")
         elif number not in numbers:
             numbers.add(number)
         elif manifest.excluded is None:

@@ -75,8 +75,8 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
     least = np.array([part[np.argmin(lag[part])] for part in bins])
     if not device_time[least[-1]] > device_time[least[0]]:
         raise ProtocolError(
-            f"the device's clock stood still at {device_time[0]:g} s for {len(lag)} samples; "
-            "expected increasing device times"
+            f"the device's times do not increase: {device_time[least[0]]:g} s early and "
+            f"{device_time[least[-1]]:g} s late in {len(lag)} samples; check the device's clock"
         )
     centre = device_time[least].mean()
     x = device_time[least] - centre

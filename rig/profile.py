@@ -71,7 +71,8 @@ def split_address(address: str) -> tuple[str, str]:
     profile, _, port = address.partition("@")
     if not profile or not port:
         raise ProfileError(
-            f"found '{address}'; expected PROFILE@PORT, such as zebro-100-serial@/dev/ttyUSB0"
+            f"found '{address}'; expected PROFILE@PORT with a profile of this device, such as for "
+            "the legs zebro-100-serial@/dev/ttyUSB0"
         )
     return profile, port
 

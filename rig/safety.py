@@ -147,7 +147,7 @@ class SilenceGuard:
             self._last_arrival = now
         elif now - self._last_arrival > self._limit:
             raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._last_arrival,
-                             advice=f"the limit is {self._limit:g} s")  # fmt: skip
+                             advice=f"limit {self._limit:g} s: check power and cable")  # fmt: skip
 
 
 class StopCategory(IntEnum):

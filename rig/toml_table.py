@@ -115,7 +115,7 @@ class TomlTable:
         value = self.value(key, [])
         texts = [value] if isinstance(value, str) else value
         if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
-            raise self.fault(f"found {value!r}; expected a list of texts", key)
+            raise self.fault(f"found {value!r}; expected a text or a list of texts", key)
         return tuple(texts)
 
     def choice(
@@ -207,18 +207,19 @@ class TomlTable:
         """
         return tuple(self._finite(item, key) for item in self._list(key, count))
 
-    def wholes(self, key: str, *, most: int) -> tuple[int, ...]:
-        """Read a required list of integers from 0, of any length.
+    def wholes(self, key: str, *, least: int = 0, most: int) -> tuple[int, ...]:
+        """Read a required list of integers, of any length.
 
         Args:
             key: Name of the key.
+            least: Smallest allowed value.
             most: Largest allowed value.
         """
         value = self.value(key)
         items: list[Any] = value if isinstance(value, list) else [None]
-        if any(type(item) is not int or not 0 <= item <= most for item in items):
+        if any(type(item) is not int or not least <= item <= most for item in items):
             raise self.fault(
-                f"found {value!r}; expected a list of whole numbers from 0 to {most}", key
+                f"found {value!r}; expected a list of whole numbers from {least} to {most}", key
             )
         return tuple(items)
 

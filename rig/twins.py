@@ -74,7 +74,7 @@ def robot_twin(
     """
     if profile.layout not in BYTE_ROBOTS:
         raise ProfileError(
-            f"no serial port carries the layout '{profile.layout}'; use {', '.join(BYTE_ROBOTS)}",
+            f"no serial port carries layout '{profile.layout}'; use {' or '.join(BYTE_ROBOTS)}",
             file=profile.name,
         )
     legs = SimulatedLegs(reference, profile=profile, imperfections=imperfections, rng=rng)

@@ -86,13 +86,13 @@ class Condition:
             return "keys have no effect: the run has ended"
         by_ctrl_c = next_stop(self.pending)
         known = [
-            f"{'Ctrl-C or ' if category is by_ctrl_c else ''}{_KEYS[category]}: {name}"
+            f"{'Ctrl-C or ' if category is by_ctrl_c else ''}{_KEYS[category]} + Enter: {name}"
             for category, name in _STOP_NAMES.items()
             if category > (self.pending or 0) or category is StopCategory.EMERGENCY
         ]
         if self.state is RigState.HOLDING:
-            known.insert(0, "r: resume")
-            known.append(f"a safe stop follows after {self.hold:g} s without a command")
+            known.insert(0, "r + Enter: resume")
+            known.append(f"a safe stop follows unless resumed within {self.hold:g} s")
         elif self.state is RigState.RUNNING:
-            known.insert(0, "Enter: confirm a prompt; p: pause after this point")
+            known.insert(0, "Enter: confirm a prompt; p + Enter: pause after this point")
         return "; ".join(known)

@@ -130,7 +130,7 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
             "too busy: send the command again"
         ) from problem
     if not reply.startswith("ok"):
-        raise ProtocolError(reply.removeprefix("error: ") or "the run sent no answer")
+        raise ProtocolError(reply.removeprefix("error: ") or "the run closed the link unanswered")
     return reply.removeprefix("ok").strip()
 
 

@@ -157,13 +157,13 @@ def _require_guard(table: TomlTable, limits: RunLimits, name: str, highest: floa
     value, unit = getattr(limits, name), LIMIT_UNITS[name]
     if value > highest and name not in limits.guards_off:
         raise table.fault(
-            f"found {value:g} {unit}; above {highest:g} {unit} this guard has no effect: lower the "
-            f'limit, or add "{name}" to guards_off',
+            f"found {value:g} {unit}; above {highest:g} {unit} this guard counts as off: lower the "
+            f'limit, or add "{name}" to limits.guards_off',
             name,
         )
     if value <= highest and name in limits.guards_off:
         raise table.fault(
-            f"names '{name}', whose limit of {value:g} {unit} has an effect; remove the name, or "
-            f"raise the limit above {highest:g} {unit}",
+            f"names '{name}', but limits.{name} is {value:g} {unit}, and this guard counts as off "
+            f"only above {highest:g} {unit}; remove the name, or raise the limit",
             "guards_off",
         )

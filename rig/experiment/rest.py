@@ -71,7 +71,7 @@ class RestProof:
             if problem := self._problem(disc):
                 break
         else:
-            disc, problem = DISCS[0], f"new readings cover less than {WINDOW:g} s"
+            disc, problem = DISCS[0], f"no {WINDOW:g} s of readings up to {self._oldest:g} s old"
         return NotAtRest(
             f"{disc} disc did not come to rest within {waited:.3g} s: {problem}", limit=self._limit
         )
@@ -81,8 +81,8 @@ class RestProof:
         speeds = np.array([speed for _, speed in self._seen[disc]])
         if len(speeds) < FEWEST:
             return (
-                f"its speed was read {len(speeds)} times in {WINDOW:g} s, no reading older than "
-                f"{self._oldest:g} s (expected {FEWEST} times)"
+                f"its speed was read {len(speeds)} times in {WINDOW:g} s, or since a reading was "
+                f"last older than {self._oldest:g} s (expected {FEWEST} or more)"
             )
         mean, scatter = float(speeds.mean()), float(np.sqrt(np.mean(speeds**2)))
         if not abs(mean) <= self._limit:

@@ -216,7 +216,7 @@ class _Run:
             return self._control.stop.pending is None and not self._control.paused
 
         if not self._acquire.until(released, self._plan.limits.hold):
-            waited = f"held for {self._plan.limits.hold:g} s without a command: {why}"
+            waited = f"held for {self._plan.limits.hold:g} s and not resumed: {why}"
             self._control.stop.request(StopCategory.SAFE, waited)
         self._acquire.ignore_stops(None)
         self._acquire.poll()  # raises if the wait ended in a harder stop

@@ -145,13 +145,14 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
         if own is not None and key in FURTHER_LIMITS and key not in profile.measured:
             raise ProfileError(
                 f"the plan's limits.{key} is {own:g} {unit}, but no device of the rig "
-                f"'{profile.name}' measures this quantity; remove limits.{key}, or use another rig"
+                f"'{profile.name}' measures it (torque: needs load_cell.counts_per_torque in the "
+                f"profile); remove limits.{key}, or use another rig"
             )
         if own is not None and rigs is not None:
             quantity = f"the plan's limits.{key}, which the rig's profile limits,"
             require_within(own, rigs, quantity=quantity, unit=unit)
     omega = plan.points.omega_leg
-    require_within(omega, allowed.speed, quantity="points.omega_leg", unit="rad/s")
+    require_within(omega, allowed.speed, quantity="points.omega_leg (limits.speed)", unit="rad/s")
     for step in spell_out(plan):
         if isinstance(step, Tare):
             continue
@@ -162,7 +163,7 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
             ground = ground_speed(
                 slip, omega, radius_leg=profile.radius_leg, radius_ground=profile.radius_ground
             )
-            quantity = f"ground disc's speed of {step.label}"
+            quantity = f"ground disc's speed of {step.label} (limits.speed)"
             require_within(ground, allowed.speed, quantity=quantity, unit="rad/s")
 
 

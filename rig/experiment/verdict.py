@@ -120,7 +120,8 @@ def judge_point(
     problems = [] if settled else ["the rig was not steady within settle.timeout"]
     covered = span(readings)
     if covered < LEAST_COVERED * duration:
-        problems.append(f"the samples cover {covered:.2f} s of the {duration:g} s to be recorded")
+        problems.append(f"the samples cover {covered:.2f} s of the {duration:g} s to be recorded "
+                        f"(expected {100 * LEAST_COVERED:g} % or more)")  # fmt: skip
     return PointVerdict(
         problems=(*problems, *_deviations(readings, slip, point, accept)),
         samples=len(readings),
@@ -143,7 +144,9 @@ def _deviations(readings: Readings, slip: Array, point: Point, accept: Acceptanc
         first, late = halves(readings)
         drift = float(slip[len(first) :].mean() - slip[: len(first)].mean())
         if not abs(drift) <= accept.slip_drift:
-            yield f"slip ratio drifted by {drift:+.4f} (limit {accept.slip_drift:g})"
+            limit = accept.slip_drift
+            yield f"slip ratio drifted by {drift:+.4f} from first to second half (limit {limit:g})"
         change = friction(late) - friction(first)
         if not abs(change) <= accept.friction_drift:
-            yield f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})"
+            limit = accept.friction_drift
+            yield f"friction drifted by {change:+.3f} from first to second half (limit {limit:g})"

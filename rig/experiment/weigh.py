@@ -120,7 +120,7 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     """
     force, reading = np.array(weighing.forces), np.array(weighing.readings)
     if np.ptp(force) <= 0:
-        raise ProtocolError("every weight is 0 N; expected at least one weight besides no load")
+        raise ProtocolError("every weight is 0 N; expected one above 0 N: check masses and gravity")
     design = np.column_stack([np.ones_like(force), force])
     error = np.maximum(np.array(weighing.errors), 1e-9)
     weighted = design / error[:, None]

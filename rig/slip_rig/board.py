@@ -100,7 +100,7 @@ class RigBoard(PacketStream):
         if self._status:
             raise DeviceFault(
                 f"the board reports status {self._status:#x} (expected 0; 0x1: its watchdog has "
-                "stopped the discs); energise the discs again",
+                "stopped the discs); energise the discs again: repeat the run with --resume",
                 status=self._status,
             )
 

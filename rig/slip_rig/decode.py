@@ -206,7 +206,7 @@ def tare(forces: Forces) -> Zero:
     """
     if len(forces.time) < BATCHES:
         raise ProtocolError(
-            f"found {len(forces.time)} forces for a zero; expected at least {BATCHES}"
+            f"found {len(forces.time)} forces for a zero; expected at least {BATCHES}: take longer"
         )
     return Zero(
         normal=float(forces.normal.mean()),

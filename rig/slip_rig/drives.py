@@ -145,7 +145,7 @@ class DriveBus(LinkedStream[CanLink]):
                 lambda: all(axis.state for axis in self._axes.values()),
                 HEARTBEAT_TIMEOUT,
                 "no heartbeat came from at least one of the two drives",
-                "check power, nodes and bit rate of both",
+                "check their power, and in the profile drives.baudrate and the node of each",
             )
         except BaseException:
             self._link.close()

@@ -114,8 +114,8 @@ def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOC
         wanted = step if other == channel else 0
         if abs(moved - wanted) > max(step / 4, 1):
             raise DeviceFault(
-                f"channel {channel + 1} was commanded to move by {step} counts; channel "
-                f"{other + 1} moved by {moved:g} where {wanted} was expected; free the legs",
+                f"channel {channel + 1} was to move by {step} counts; channel {other + 1} "
+                f"moved by {moved:g}, expected {wanted} +/- {max(step / 4, 1):g}; free the legs",
                 status=other,
             )
 

@@ -259,8 +259,8 @@ def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[
 
 
 def _order(legs: TomlTable) -> tuple[int, ...]:
-    found = legs.wholes("order", most=6)
-    if not found or sorted(set(found)) != sorted(found) or not set(found) <= set(range(1, 7)):
+    found = legs.wholes("order", least=1, most=6)
+    if not found or len(set(found)) < len(found):
         raise legs.fault(f"found {list(found)}; expected different leg numbers, 1 to 6", "order")
     return found
 
@@ -280,9 +280,11 @@ def _registers(frame: TomlTable, layout: Layout, channels: int) -> Registers:
         return Registers(positions)
     targets = frame.wholes("set_point_registers", most=last)
     for key, found in (("registers", positions), ("set_point_registers", targets)):
-        expected = [found[0] + 2 * leg for leg in range(channels)] if found else "a list"
+        expected = (
+            [found[0] + 2 * leg for leg in range(channels)] if found else f"{channels} values"
+        )
         if list(found) != expected:
-            raise frame.fault(f"found {list(found)}; expected {expected}, two for each leg", key)
+            raise frame.fault(f"found {list(found)}; expected {expected}, in steps of two", key)
     duration = frame.whole("duration_register", most=last)
     if duration != targets[-1] + 2:
         raise frame.fault(
@@ -303,7 +305,7 @@ def _can_ids(frame: TomlTable) -> CanIds:
     names = ("clock", "positions", "set_points", "stop")
     ids = {name: frame.whole(f"{name}_id", most=0x7FF) for name in names}
     if len(set(ids.values())) != len(ids):
-        raise frame.fault(f"found ids {sorted(ids.values())}; expected four different ones")
+        raise frame.fault(f"found {ids} as clock_id and so on; expected four different ids")
     return CanIds(**ids)
 
 

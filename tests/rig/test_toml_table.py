@@ -80,7 +80,7 @@ def test_a_series_is_a_list_or_evenly_spaced():
 FAULTS = {
     "text": (lambda t: t.text("k"), 3, "found 3; expected a text"),
     "empty text": (lambda t: t.text("k", least=1), "", "found ''; expected a text"),
-    "texts": (lambda t: t.texts("k"), ["a", 1], "expected a list of texts"),
+    "texts": (lambda t: t.texts("k"), ["a", 1], "expected a text or a list of texts"),
     "choice": (lambda t: t.choice("k", ("a", "b")), "c", "found 'c'; expected one of a, b"),
     "names": (lambda t: t.names("k", ("a", "b")), ["c"], "expected a list of names: a, b"),
     "flag": (lambda t: t.flag("k", False), 1, "found 1; expected true or false"),

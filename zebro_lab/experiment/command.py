@@ -37,7 +37,7 @@ Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 
 @app.command()
 def plan(
     file: Annotated[Path, typer.Argument(metavar="PLAN", help="Plan file (TOML).")],
-    rig: Annotated[str, typer.Option(help="Profile whose limits apply, or sim.")] = "sim",
+    rig: Annotated[str, typer.Option(help="Profile of the rig; sim: rig-board-serial.")] = "sim",
     steps: Annotated[bool, typer.Option("--steps", help="List every step of the plan.")] = False,
 ) -> None:
     """Check a plan against the limits and list its points and duration; nothing moves."""
@@ -119,13 +119,15 @@ def weigh(request: WeighRequest) -> None:
     ):
         say(f"weight of {force:8.3f} N: the load cell reads {reading:8.4f} +/- {error:.4f} N")
     say(
-        f"reading per force {check.slope:.5f} +/- {check.slope_sd:.5f} (expected 1), without load "
+        f"reading per force {check.slope:.5f} +/- {check.slope_sd:.5f} (expected 1), unloaded "
         f"{check.zero:.4f} +/- {check.zero_sd:.4f} N, largest residual {check.misfit:.4f} N"
     )
     if abs(check.slope - 1) > 2 * check.slope_sd:
         say(
-            f"the gain is wrong: multiply counts_per_force in the rig's profile by "
-            f"{check.slope:.5f}, then run `zebro-lab rig weigh` again"
+            "the gain is wrong: in the rig's profile (a copy, if it is a shipped one) multiply "
+            f"counts_per_force by {abs(check.slope):.5f}"
+            f"{', reverse the sign of the normal force' if check.slope < 0 else ''}, then run "
+            "`zebro-lab rig weigh` again with it"
         )
     if written is None:
         typer.echo(render_load_cell(check).rstrip())
@@ -182,16 +184,16 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
     say(f"plan '{plan.name}', material {plan.material}, rig profile {foreseen.profile.name}")
     say(
         f"{foreseen.estimate.points} points in all, check points included: {len(points.loads)} "
-        f"loads x {len(points.slips)} slip ratios, repeated {points.repeats} time(s), order "
-        f"{points.order}{', slip ratios as one sweep' if points.sweep else ''}"
+        f"loads x {len(points.slips)} slip ratios, gone through {points.repeats} time(s), "
+        f"order {points.order}{', slip ratios as one sweep' if points.sweep else ''}"
     )
-    say(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
-    say(f"the plan takes about {minutes} min {seconds} s if no point is repeated")
-    say("all set-points are within these limits:")
+    say(f"the load is set {foreseen.estimate.loads} times, 0 N included, by {plan.load.set_by}")
+    say(f"the plan takes about {minutes} min {seconds} s if every point is good at once")
+    say("limits of the plan, which all set-points keep, as those of the profile:")
     for name, unit in LIMIT_UNITS.items():
         value = getattr(plan.limits, name)
-        limit = "not limited" if value is None else f"{value:g}"
-        say(f"  {name:<20}{limit:>12} {unit}")
+        limit = "the profile's, if any" if value is None else f"{value:g} {unit}"
+        say(f"  {name:<20}{limit:>24}")
     if plan.limits.guards_off:
         say(f"guards switched off by the plan: {plan.limits.guards_off_text}")
     if steps:

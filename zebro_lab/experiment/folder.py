@@ -193,7 +193,7 @@ class ExperimentFolder:
         try:
             self._thread.start()
         except RuntimeError as error:
-            raise SinkFailed(f"the thread that writes cannot be started: {error}") from error
+            raise SinkFailed(f"the thread that writes the data cannot start: {error}") from error
         return self
 
     def __exit__(
@@ -322,8 +322,8 @@ class ExperimentFolder:
         free = shutil.disk_usage(self._data).free
         if free < self._least_room:
             raise SinkFailed(
-                f"the disk of {self._data} has {free / 1e6:.0f} MB free; the plan's "
-                f"limits.free_space is {self._least_room / 1e6:.0f} MB"
+                f"the disk of {self._data} has {free / 1e6:.0f} MB free; expected "
+                f"the plan's limits.free_space, {self._least_room:g} bytes: free some space"
             )
 
 

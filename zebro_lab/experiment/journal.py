@@ -220,8 +220,8 @@ def _resumed(data: Path, plan_text: str) -> Journal:
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
-            "was started with another plan; use the plan it was started with, or choose another "
-            "folder with --data",
+            "was started with another plan or another text of it, comments included; use the text "
+            "in the first line of this file, or choose another folder with --data",
             file=data / JOURNAL_FILE,
         )
     return journal

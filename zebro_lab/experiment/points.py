@@ -18,7 +18,7 @@ from zebro_lab.runs.exclusion import exclude_run
 from zebro_lab.runs.folder import LOG_FILE, require_recorded, run_state
 from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_manifest
 
-UNJUDGED: Final = "the run ended before its point was accepted; the point is measured again"
+UNJUDGED: Final = "the run ended before its point was accepted; --resume measures it again"
 """Reason for which a run is excluded until its end record holds a verdict."""
 _POINT_LABEL: Final = re.compile(r"(point|check)-\d{4} ")
 
@@ -73,14 +73,14 @@ def finished_points(data: Path, journal: Journal) -> Finished:
         elif (lost := _lost_log(run, manifest)) is not None:
             notices.append(f"{lost}; point {number} is measured again")
             if manifest.excluded is None:
-                exclude_run(run, why="the run's log is lost; its point is measured again")
+                exclude_run(run, why="log missing or changed; its point is measured again")
         elif number not in numbers:
             numbers.add(number)
         elif manifest.excluded is None:
             why = f"point {number} was finished in another run"
             exclude_run(run, why=why)
             notices.append(f"{run.name}: {why}; this run is excluded")
-    notices += [f"{name}: the run folder is missing; its point is measured again"
+    notices += [f"{name}: the run folder is missing; its point is measured again if in no other run"
                 for name in sorted(journal.accepted) if not (data / name).exists()]  # fmt: skip
     return Finished(frozenset(numbers), tuple(notices))
 

@@ -10,10 +10,10 @@ from typer import Argument, BadParameter, Option
 
 STANDARD_GRAVITY: Final = 9.80665
 
-Rig: TypeAlias = Annotated[str, Option(help="Rig: PROFILE@PORT, or PROFILE@sim or sim.")]
+Rig: TypeAlias = Annotated[str, Option(help="PROFILE@PORT or PROFILE@sim; sim: rig-board-serial")]
 Data: TypeAlias = Annotated[Path, Option(metavar="DIR", help="Folder of the experiment.")]
 Fast: TypeAlias = Annotated[
-    bool, Option("--fast", help="Run a simulated rig faster than real time.")
+    bool, Option("--fast", help="Run a simulated rig with a board faster than real time.")
 ]
 Seed: TypeAlias = Annotated[
     int, Option(help="Seed of a simulated rig: load cell errors, noise, slip wander.")
@@ -54,7 +54,7 @@ class WeighRequest:
         Option(metavar="KG,KG…", parser=_masses, help="Known masses to hang, in order [kg]."),
     ]
     data: Annotated[
-        Path | None, Option(metavar="DIR", help="Folder for columns.toml with the gain's prior.")
+        Path | None, Option(metavar="DIR", help="Folder for columns.toml with gain_sd and bias_sd.")
     ] = None
     weight_sd: Annotated[
         float, Option(min=0.0, help="Sd of the relative error common to all masses [-].")

@@ -78,7 +78,7 @@ class RigAtHand:
             return HandShaft(control, tolerance=setting.tolerance)
         if self.twin is None:
             raise SettingsError(
-                "found 'axis', which only a simulated rig has; expected 'hand'",
+                "found 'axis' in the plan, which only a simulated rig has; expected 'hand'",
                 key="load.set_by",
             )
         axis = SimulatedAxis(self.twin, clock=self.clock)

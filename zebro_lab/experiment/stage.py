@@ -191,7 +191,7 @@ def command_run(data: Path, command: str) -> str:
     """
     file = data / CONTROL_FILE
     if not file.exists():
-        raise NotFound(f"{data}: no experiment is running here; start it with zebro-lab rig run")
+        raise NotFound(f"{data}: no experiment is running here; start one, or give its --data")
     port, token = _address(file)
     return send_command(port, token, command)
 

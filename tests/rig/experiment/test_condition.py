@@ -22,20 +22,22 @@ def test_no_key_acts_once_the_run_is_over(state):
 
 def test_only_stops_harder_than_the_one_obeyed_are_offered():
     keys = Condition(RigState.STOPPING, True, pending=StopCategory.SOFT).keys
-    assert keys.startswith("Ctrl-C or ss: safe stop")
+    assert keys.startswith("Ctrl-C or ss + Enter: safe stop")
     assert "soft stop" not in keys
-    assert "; e: emergency stop" in keys
+    assert "; e + Enter: emergency stop" in keys
 
 
 def test_a_held_run_can_go_on_and_says_how_long_it_waits():
     keys = Condition(RigState.HOLDING, True, pending=StopCategory.SOFT, hold=5.0).keys
-    assert keys.startswith("r: resume; ")
-    assert keys.endswith("a safe stop follows after 5 s without a command")
+    assert keys.startswith("r + Enter: resume; ")
+    assert keys.endswith("a safe stop follows unless resumed within 5 s")
 
 
 def test_a_running_one_can_be_confirmed_paused_and_stopped():
     keys = Condition(RigState.RUNNING, True).keys
-    assert keys.startswith("Enter: confirm a prompt; p: pause after this point; Ctrl-C or s: soft")
+    assert keys.startswith(
+        "Enter: confirm a prompt; p + Enter: pause after this point; Ctrl-C or s"
+    )
 
 
 @pytest.mark.parametrize(("energised", "why", "said"), [

@@ -60,7 +60,7 @@ def test_a_guard_is_off_only_where_it_is_named_so(lab):
     plan = lab["plan"](limits={"silence": 1.5, "frozen": 9.0, "guards_off": ["silence", "frozen"]})
     assert plan.limits.guards_off_text == "silence (1.5 s), frozen (9 s)"
     assert lab["plan"]().limits.guards_off_text == ""
-    with pytest.raises(ProfileError, match=r"guards_off: names 'silence', whose limit of 0.25 s"):
+    with pytest.raises(ProfileError, match=r"names 'silence', but limits.silence is 0.25 s"):
         lab["plan"](limits={"guards_off": ["silence"]})
     with pytest.raises(ProfileError, match=r"guards_off: found \['everything'\]; expected a list"):
         lab["plan"](limits={"guards_off": ["everything"]})

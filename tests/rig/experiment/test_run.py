@@ -205,7 +205,7 @@ def test_a_soft_stop_holds_and_the_point_is_done_anew(lab):
     def passing(duration):
         sleep(duration)
         if twin.control.status.startswith(
-            "HOLDING, discs energised: soft stop: planted; r: resume"
+            "HOLDING, discs energised: soft stop: planted; r + Enter: resume"
         ):
             held.append(twin.clock.now())
             if twin.clock.now() - held[0] > 2.0:
@@ -225,7 +225,7 @@ def test_a_soft_stop_without_a_word_becomes_a_safe_one(lab):
     twin = lab["twin"]()
     twin.sink = lab["At"](10, lambda: twin.control.stop.request(StopCategory.SOFT, "planted"))
     outcome = twin.run()
-    assert outcome.reason.startswith("safe stop: held for 5 s without a command")
+    assert outcome.reason.startswith("safe stop: held for 5 s and not resumed")
     assert twin.at_rest()
 
 

@@ -70,7 +70,10 @@ def test_the_estimate_counts_points_loads_and_time(lab):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"points": {"omega_leg": 45.0}}, r"omega_leg is 45 rad/s; its limit is 40 rad/s"),
+        (
+            {"points": {"omega_leg": 45.0}},
+            r"omega_leg \(limits.speed\) is 45 rad/s; its limit is 40",
+        ),
         ({"points": {"loads": [26.0]}}, r"Fn 26 N .* is 26 N; its limit is 25 N"),
         ({"points": {"slips": [-12.0]}}, r"ground disc's speed .* 45.5 rad/s; its limit is 40"),
         (

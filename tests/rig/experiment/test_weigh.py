@@ -47,7 +47,7 @@ def test_the_weights_own_error_stays_in_the_slopes():
 
 
 def test_no_weight_at_all_is_refused():
-    with pytest.raises(ProtocolError, match="expected at least one weight besides no load"):
+    with pytest.raises(ProtocolError, match="expected one above 0 N"):
         check_gain(Weighing((0.0,), (0.1,), (0.01,)))
 
 

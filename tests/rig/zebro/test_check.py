@@ -64,7 +64,7 @@ def test_a_channel_that_does_not_follow_is_named():
     stream, clock = robot()
     with stream:
         stream.set_points = lambda counts, duration: True
-        with pytest.raises(DeviceFault, match="channel 2 moved by 0 where 10"):
+        with pytest.raises(DeviceFault, match="channel 2 moved by 0, expected 10"):
             move_channel(stream, 1, clock=clock)
 
 

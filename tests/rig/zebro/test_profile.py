@@ -124,7 +124,7 @@ def test_a_malformed_profile_is_refused_and_the_place_named(tmp_path, old, new, 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("set_point_registers = [", "set_point_registers = [] # [", "found []; expected a list"),
+        ("set_point_registers = [", "set_point_registers = [] # [", "[]; expected 6 values"),
         ("set_point_registers = [", "set_point_registers = [1, ", "; expected [1, 3"),
         ("duration_register = ", "duration_register = 1  # ", "the next after the set-points"),
     ],

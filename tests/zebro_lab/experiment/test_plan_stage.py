@@ -22,7 +22,7 @@ def test_the_sources_plan_is_foreseen():
     assert result.exit_code == 0, result.output
     assert "4 loads x 62 slip ratios" in result.output
     assert "takes about 10 min" in result.output
-    assert "all set-points are within these limits" in result.output
+    assert "limits of the plan, which all set-points keep" in result.output
 
 
 def test_guards_that_are_off_are_named(plan):

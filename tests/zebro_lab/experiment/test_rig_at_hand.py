@@ -48,7 +48,7 @@ def test_a_real_rig_has_a_person_at_its_shaft_and_no_axis():
     with rig_at_hand("rig-board-serial@/dev/null") as rig:
         assert (rig.twin, rig.fast, rig.truth) == (None, False, {})
         assert isinstance(rig.load_setter(HAND, Control()), HandShaft)
-        with pytest.raises(SettingsError, match="'axis', which only a simulated rig has"):
+        with pytest.raises(SettingsError, match="'axis' in the plan, which only a simulated"):
             rig.load_setter(AXIS, Control())
 
 

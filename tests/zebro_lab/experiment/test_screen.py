@@ -91,5 +91,5 @@ def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
     shown = console.file.getvalue()
     assert "HOLDING" in shown
     assert "discs energised" in shown
-    assert "r: resume" in shown
+    assert "r + Enter: resume" in shown
     assert "safe stop" in shown

@@ -88,7 +88,7 @@ def test_byte_order_mark_is_accepted(tmp_path):
         ("[constants]\nradius_leg = '35 N'", "constants.radius_leg: unit 'N' cannot"),
         ("[constants]\nradius_leg = true", "expected a number in m"),
         ("[runs]\nby = ['a']\ngap = 1", "runs: found by and gap; keep only one"),
-        ("[runs]\nby = [1]", r"runs.by: found \[1\]; expected a list of texts"),
+        ("[runs]\nby = [1]", r"runs.by: found \[1\]; expected a text or a list"),
         ("[runs]\ngap = 0", "runs.gap: is 0 s; expected more than 0"),
         ("[runs]\neach_row = 1", "runs.each_row: found 1; expected true or false"),
         ("[rows]\nkeep = ['slip']", "rows.keep: 'slip' is not a condition"),

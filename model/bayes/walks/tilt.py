@@ -77,7 +77,8 @@ class TiltMisfit:
         if shared.sum() < FEWEST:
             raise InsufficientData(
                 f"the IMU's {seen.t[0]:g} to {seen.t[-1]:g} s and the walk's {t[0]:g} to {t[-1]:g} "
-                f"s share {TIME * shared.sum():.1f} s; expected {TIME * FEWEST:g} s or more"
+                f"s share samples in {shared.sum()} intervals of {TIME:g} s; expected {FEWEST} or "
+                "more: do both keep the same clock?"
             )
         measured = imu[shared] @ seen.angles
         return cls(path[shared], measured - measured.mean(axis=0), _strides(legs, t))

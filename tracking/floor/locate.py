@@ -103,7 +103,8 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
         expected = ", ".join(str(key) for key in floor.marks)
         raise FloorError(
             f"{view.photo}: none of the floor's marks ({expected}) is seen; check dictionary "
-            f"'{floor.dictionary}' in floor.toml and that the marks lie in the picture"
+            f"'{floor.dictionary}' in floor.toml and that the marks lie in the picture, or click "
+            f"on points of the floor with `zebro-lab annotate --click`"
         )
     points = np.concatenate([floor.marks[key].points for key in keys])
     pixels = np.concatenate([view.pixels[key] for key in keys])
@@ -115,7 +116,10 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
     starts = _starting_poses(camera, points, pixels)
     poses = [_polish(camera, pose, points, pixels) for pose in starts]
     if not poses:
-        raise FloorError(f"{view.photo}: the floor's marks in floor.toml fit no pose of the camera")
+        raise FloorError(
+            f"{view.photo}: the floor's marks in floor.toml fit no pose of the camera; check their "
+            f"x, y, yaw_deg and side, and clicked points"
+        )
     return min(poses, key=lambda found: found[1])
 
 
@@ -186,10 +190,12 @@ def _explain(camera: Camera, floor: FloorMap, view: FloorView, misfit: float) ->
     ):
         raise FloorError(
             f"{view.photo}: the map of the floor is mirrored (its marks are off by {misfit:.0f} "
-            f"px, reversed in y by {other_misfit:.1f} px); y must grow left of x, seen from above"
+            f"px or seen from below, reversed in y off by {other_misfit:.1f} px); y must grow left "
+            f"of x, seen from above"
         )
     raise FloorError(
         f"{view.photo}: the floor's marks are off by {misfit:.0f} px (rms) from where floor.toml "
-        f"has them, expected at most {_MISFIT_PX:g} px; check x, y, yaw_deg and side of each mark, "
-        f"clicked points, and that camera.toml is of this camera, zoom and focus"
+        f"has them, expected at most {_MISFIT_PX:g} px and a camera above the floor; check x, y, "
+        f"yaw_deg and side of each mark, clicked points, and that camera.toml is of this camera, "
+        f"zoom and focus"
     )

@@ -96,7 +96,9 @@ def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
         )
     stamp = exif_time(path)
     if stamp is None:
-        raise PhotoError(path.name, "no EXIF time is in the file; give it as the camera wrote it")
+        raise PhotoError(
+            path.name, "no EXIF time is in the file; give the file that the camera wrote"
+        )
     taken, step = stamp
     sd = float(np.sqrt((step**2 + renewal**2) / 12))
     return CameraClockOffset(taken + step / 2 - (shown + renewal / 2), sd)

@@ -139,8 +139,8 @@ def _check_determined(fit: CameraCalibration) -> None:
     if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
         raise CalibrationError(
             f"the focal length is {focal:.0f} px with a standard deviation of {sd:.3g} px; "
-            f"expected above 0 and below 5 % of it: photograph the board tilted by 20 to 45 degrees, "
-            f"each time another way"
+            f"expected above 0 and below 5 % of it: photograph the board tilted by 20 to 45 "
+            f"degrees, each time another way"
         )
 
 

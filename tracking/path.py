@@ -158,10 +158,7 @@ def assemble_track(
         PathError: When there is no observation or two photographs have the same time.
     """
     if not observations:
-        raise PathError(
-            "the robot is found in no photograph, or corrections delete all its poses; look at one "
-            "photograph with `zebro-lab track --preview`"
-        )
+        raise PathError("the robot is found in no photograph, or corrections delete all its poses")
     ordered = tuple(sorted(observations, key=lambda seen: seen.t))
     path = smooth(
         [seen.t for seen in ordered],

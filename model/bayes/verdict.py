@@ -184,9 +184,8 @@ def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> C
         share <= MAX_OFFSET_SHARE and tau <= MAX_OFFSET_RATIO * scale,
         f"they explain {share:.0%} of the force variance, limit {MAX_OFFSET_SHARE:.0%}; their "
         f"standard deviation is {tau:.3g} N, limit {MAX_OFFSET_RATIO * scale:.3g} N",
-        "zero offsets between runs are larger than the load cell's zero stability, or cannot be "
-        "separated from the curve: tare before each run and state the zero stability "
-        "(--zero-stability), or vary slip within runs",
+        "zero offsets between runs are too large, or cannot be separated from the curve: tare "
+        "before each run and give --zero-stability, or vary slip within runs",
     )
 
 
@@ -200,9 +199,8 @@ def _weak(
     """
     names = [parameter.name for parameter in law.parameters]
     weak = {
-        name: f"{name}: the data reduce its prior variance by {max(contraction[name], 0):.0%}, "
-        f"expected at least {MIN_CONTRACTION:.0%}; use F_max and BCD, peak force and initial "
-        "slope, instead"
+        name: f"{name}: data reduce its prior variance by {max(contraction[name], 0):.0%}, not by "
+        f"{MIN_CONTRACTION:.0%}; use F_max and BCD, peak force and initial slope, instead"
         for name in names
         if contraction.get(name, 1.0) < MIN_CONTRACTION
     }

@@ -61,8 +61,7 @@ def _widest(robot: Robot, theta: Array, contact: Contact) -> Stance:
     if not stances:
         numbers = ", ".join(str(leg + 1) for leg in contact)
         raise DomainError(
-            f"contact legs {numbers} are fewer than three, or their lowest points lie on one line "
-            "seen from above; expected three or more that span a triangle"
+            f"legs {numbers} lie on one line seen from above; expected three that span a triangle"
         )
     return max(stances, key=lambda stance: (_above_ground(stance, contact), stance.depth))
 

@@ -80,9 +80,8 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
     sd = max(_sd_of_fit(misfit[best], curvature), _sd_of_blocks(inside, path, near))
     if not sd < LARGEST_SD:
         raise InsufficientData(
-            f"the motion determines the clock offset only to {sd:.2g} s (standard deviation), "
-            f"expected below {LARGEST_SD:g} s; let the robot start and stop in view, or give the "
-            "offset"
+            f"the motion determines the clock offset only to {sd:.2g} s (limit {LARGEST_SD:g} s); "
+            "let the robot start and stop in view, or give the offset"
         )
     at = track.t + offsets[:, None]
     held = ((at >= path.t[0]) & (at <= path.t[-1])).sum(axis=1)

@@ -240,8 +240,7 @@ def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
     if kappa[-1] < 2 * x_m or np.count_nonzero(tail) < 2:
         raise DomainError(
             f"the curve ends at slip {kappa[-1]:.4g} with its peak at {x_m:.4g}: too near to see "
-            f"what it falls to; measure to twice the peak's slip at least, with two samples or "
-            f"more in the outer half of the slip"
+            f"what it falls to; measure to twice the peak's slip, two samples in the outer half"
         )
     y_a = float(np.polyfit(1 / kappa[tail], f[tail], 1)[1])
     if abs(f[-1] - y_a) > _UNSETTLED * D:

@@ -120,8 +120,7 @@ def _tilt_of(path: PlanarWalk) -> Array:
     """Return roll and pitch as rows, shape (2, n) [rad]; raise `WalkError` if the path has none."""
     if path.tilt is None:
         raise WalkError(
-            "roll and pitch of a periodic gait, which is walked by strides, are not kept; pass its "
-            "leg angles as a SampledReference"
+            "roll and pitch of periodic gaits are not kept; sample its leg angles: SampledReference"
         )
     return path.tilt.T
 

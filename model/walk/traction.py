@@ -139,8 +139,7 @@ def law_table(
         worst = float(loads[~valid][0])
         raise DomainError(
             f"at a load of {worst:g} N the curve of '{law.name}' has more than one peak or changes "
-            f"sign; a robot of {weight:g} N may load a leg with {loads[0]:g} to {loads[-1]:g} N: "
-            "calibrate at such loads"
+            f"sign; calibrate at {loads[0]:g} to {loads[-1]:g} N, the loads of a leg of this robot"
         )
     stiffness = float(np.max(law.slip_derivative(0.0, loads, values) / loads))
     peak = _peak(law, values, loads)

@@ -143,8 +143,7 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
         raise PhotoError(
             path.name,
             f"it has {upright.size[0]}x{upright.size[1]} px; expected {size[0]}x{size[1]} px, as "
-            "most of the photographs, or the camera, have: use photographs of one size, not turned "
-            "or cropped",
+            "most photographs, or the camera, have: use photographs of one size, not cropped",
         )
     return np.ascontiguousarray(np.asarray(upright)[:, :, ::-1])
 

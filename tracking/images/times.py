@@ -156,9 +156,7 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
     times = {row["photo"]: _numbers(table, line, row) for line, row in enumerate(rows, 2)}
     missing = [path.name for path in paths if path.name not in times]
     if missing:
-        raise TimesError(
-            f"{table} has no row for {missing[0]} ({len(missing)} photographs have none)"
-        )
+        raise TimesError(f"{table} has no row for {missing[0]} ({len(missing)} photos lack one)")
     pairs = np.array([times[path.name] for path in paths]).reshape(-1, 2)
     return PhotoTimes(pairs[:, 0], pairs[:, 1], f"table {table.name}")
 

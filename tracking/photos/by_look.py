@@ -123,8 +123,7 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
         )
     if top.photo not in {photo.name for photo in photos}:
         raise NoUsablePhoto(
-            f"the annotated photograph '{top.photo}' is not among the photographs; add it, or "
-            "annotate one of them (`zebro-lab annotate --corners`)"
+            f"annotated photograph '{top.photo}' is not among the photographs; add it"
         )
     if top.photo in seen.lost:
         raise NoUsablePhoto(f"the annotated photograph {top.photo}: {seen.lost[top.photo]}")

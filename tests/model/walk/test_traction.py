@@ -79,7 +79,7 @@ def test_a_law_of_another_definition_is_evaluated_at_the_converted_slip(definiti
 
 def test_parameters_that_lose_the_laws_shape_are_refused_with_the_load():
     steep = np.array([20.0, 1.8, 0.4, 0.5])
-    with pytest.raises(DomainError, match=r"at a load of .* N the curve of .* may load a leg with"):
+    with pytest.raises(DomainError, match=r"at a load of .* N the curve of .* loads of a leg"):
         law_table(MagicFormula("peak"), steep, weight=WEIGHT)
 
 

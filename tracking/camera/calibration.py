@@ -138,7 +138,7 @@ def _check_determined(fit: CameraCalibration) -> None:
     focal, sd = fit.camera.matrix[0, 0], fit.sd[0]
     if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
         raise CalibrationError(
-            f"focal length {focal:.0f} px has a standard deviation of {sd:.3g} px, expected above 0 "
+            f"focal length {focal:.0f} px has a standard deviation of {sd:.3g} px, expected over 0 "
             f"and below 5 %; photograph the board tilted by 20 to 45 degrees, each another way"
         )
 

@@ -117,7 +117,7 @@ def judge(
         )
     first, at = seen.states[0], float(seen.t[0])
     if anchor and not np.isfinite(first[2]):
-        raise InsufficientData("the track has no headings, so its first pose cannot start a path")
+        raise InsufficientData("the track has no headings to start a path; pass anchor=False")
     covariance = np.zeros((len(seen), 3, 3)) if seen.covariance is None else seen.covariance
 
     def placed(path: Poses) -> Poses:

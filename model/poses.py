@@ -47,14 +47,15 @@ class Poses:
             or (self.covariance is not None and self.covariance.shape != (n, 3, 3))
         ):
             raise DomainError(
-                f"times {self.t.shape}, positions {self.position.shape} and headings "
-                f"{self.yaw.shape} do not match; expected (n,), (n, 2), (n,)"
+                f"times {self.t.shape}, positions {self.position.shape}, headings {self.yaw.shape} "
+                f"or covariance {getattr(self.covariance, 'shape', None)} do not match; expected "
+                "(n,), (n, 2), (n,) and (n, 3, 3) or None; for m draws (n,), (m, n, 2) and (m, n)"
             )
         if not np.all(np.diff(self.t) > 0):
             worst = int(np.argmin(np.diff(self.t) > 0))
             raise DomainError(
-                f"time goes from {self.t[worst]:g} to {self.t[worst + 1]:g} s at pose {worst + 1}; "
-                "expected increasing times"
+                f"time goes from {self.t[worst]:g} to {self.t[worst + 1]:g} s after pose "
+                f"{worst + 1} (the first is 1); expected increasing times"
             )
         if not (np.isfinite(self.t).all() and np.isfinite(self.position).all()):
             raise DomainError("a time or position is not finite; leave such poses out")

@@ -58,8 +58,8 @@ class ModelSpread:
         for name in ("distance", "curvature", "contacts"):
             if not (getattr(self, name) >= 0 and np.isfinite(getattr(self, name))):
                 raise DomainError(
-                    f"{name} of the model's error is {getattr(self, name):g}; expected a finite "
-                    "number of zero or more"
+                    f"the standard deviation '{name}' of the model's error is "
+                    f"{getattr(self, name):g}; expected a finite number of zero or more"
                 )
 
 

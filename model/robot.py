@@ -61,16 +61,16 @@ class Robot:
         _require_positive("mass", self.mass, "kg")
         _require_positive("leg_radius", self.leg_radius, "m")
         _require_shape("body_size", np.array(self.body_size), (3,))
-        for axis, size in enumerate(self.body_size):
-            _require_positive(f"body_size[{axis}]", size, "m")
+        for side, size in zip(("length", "width", "height"), self.body_size, strict=True):
+            _require_positive(f"the {side} in body_size", size, "m")
         if self.inertia is not None:
             _require_shape("inertia", np.array(self.inertia), (3,))
-            for axis, moment in enumerate(self.inertia):
-                _require_positive(f"inertia[{axis}]", moment, "kg m2")
+            for axis, moment in zip("xyz", self.inertia, strict=True):
+                _require_positive(f"inertia about {axis}", moment, "kg m2")
         if not np.pi / 2 <= self.leg_arc < 2 * np.pi:
             raise DomainError(
-                f"leg_arc is {np.degrees(self.leg_arc):g} degrees; expected 90 to 360 "
-                "(a half circle is 180)"
+                f"leg_arc is {np.degrees(self.leg_arc):g} degrees (legs.arc_deg of robot.toml); "
+                "expected 90 to below 360 (a half circle is 180)"
             )
 
     @property
@@ -122,4 +122,4 @@ def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
 def _require_positive(name: str, value: float, unit: str) -> None:
     """Raise `DomainError` unless a value is positive and finite."""
     if not (value > 0 and np.isfinite(value)):
-        raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")
+        raise DomainError(f"{name} is {value:g} {unit}; expected more than zero, and finite")

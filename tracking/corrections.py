@@ -128,7 +128,7 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     """
     kind = str(entry.get("kind", ""))
     if kind not in _KINDS:
-        raise CorrectionError(f"kind '{kind}' is unknown; expected {', '.join(_KINDS)}")
+        raise CorrectionError(f"kind '{kind}' is missing or unknown; expected {', '.join(_KINDS)}")
     values = {key: value for key, value in entry.items() if key != "kind"}
     for key, value in values.items():
         _require_value(kind, key, value)
@@ -154,7 +154,7 @@ def _require_value(kind: str, key: str, value: Any) -> None:
         wanted, valid = "a name", isinstance(value, str)
     else:
         sd = key.endswith("_sd")
-        wanted = "a number above 0" if sd else "a finite number"
+        wanted = "a number above 0, finite" if sd else "a finite number"
         valid = isinstance(value, int | float) and math.isfinite(value) and not (sd and value <= 0)
     if not valid:
         raise CorrectionError(f"{key} of correction '{kind}' is {value!r}; expected {wanted}")
@@ -176,7 +176,7 @@ def plain(correction: Correction) -> dict[str, Any]:
 def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
     if photo not in found:
         near = difflib.get_close_matches(photo, found, n=1)
-        hint = f"; did you mean '{near[0]}'?" if near else ""
+        hint = f"; did you mean '{near[0]}'?" if near else "; correct the name, or remove it"
         raise CorrectionError(f"a correction names '{photo}', of which there is no pose{hint}")
     return found[photo]
 

@@ -131,7 +131,7 @@ def _no_floor(pixels: NDArray[np.uint8], floor: FloorMap) -> str:
     other = guess_dictionary(pixels)
     if other is not None and other != floor.dictionary.lower():
         return f"{message}; the picture has markers of '{other}': correct dictionary in floor.toml"
-    return f"{message}; check that they lie flat, unshaded and inside the picture"
+    return f"{message}; check their numbers, and that they lie flat, unshaded and inside"
 
 
 def observe(

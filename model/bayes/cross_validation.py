@@ -41,7 +41,7 @@ class CrossValidation:
         n_folds = len(self.values)
         if n_folds == len(self.fold):
             return f"leave one run out, {n_folds} runs"
-        return f"leave out runs in {n_folds} interleaved groups of {len(self.fold)} runs"
+        return f"leave out {len(self.fold)} runs in {n_folds} interleaved groups"
 
     def predict(self, samples: SlipSamples, law: SlipLaw) -> Array:
         """Predict every sample's measured traction by the fit without its run, shape (n,) [N].

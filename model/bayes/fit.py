@@ -123,8 +123,8 @@ def explain_numerical_errors(samples: SlipSamples, law: SlipLaw) -> Iterator[Non
             )
         )
         raise FitError(
-            f"the data do not determine '{law.name}' ({error}): {', '.join(ranges)}; check units "
-            "and signs, or add other set-points"
+            f"the fit of '{law.name}' failed numerically ({error}) with {', '.join(ranges)}; check "
+            "units and signs, or add other set-points"
         ) from error
 
 
@@ -180,8 +180,8 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
         largest = float(np.abs(force).max())
         if not largest <= MOST_FORCE:
             raise DomainError(
-                f"{name} force reaches {largest:.15g} N; expected at most {MOST_FORCE:g} N: check "
-                "its unit"
+                f"{name} force reaches {largest:.15g} N in absolute value; expected numbers up to "
+                f"{MOST_FORCE:g} N: check its unit"
             )
     if np.ptp(traction) == 0:
         raise InsufficientData(

@@ -216,8 +216,8 @@ def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
     inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
         raise FitError(
-            f"the posterior is zero at all {len(starts)} starting points; the law cannot take a "
-            "shape its priors allow on these loads"
+            f"the posterior density is zero at all {len(starts)} starting points: no curve within "
+            "the law's priors fits these forces; check units and signs of slip and forces"
         )
     tops = [_climb(log_density, start) for start in inside]
     return sorted(tops, key=lambda z: -float(log_density(z[None])[0]))

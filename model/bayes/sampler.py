@@ -92,8 +92,8 @@ def start_chains(
     inside = np.flatnonzero(np.isfinite(heights))[: ensembles * walkers]
     if len(inside) < ensembles * walkers:
         raise FitError(
-            f"only {len(inside)} of {len(drawn)} starting points lie inside the support; the "
-            "posterior's mode sits on its edge, so the law hardly suits these data"
+            f"only {len(inside)} of {len(drawn)} starting points lie inside the support, expected "
+            f"{ensembles * walkers}; the law hardly suits these data: try another --law"
         )
     states = [
         np.random.MT19937(int(seed)).state["state"] for seed in rng.integers(2**31, size=ensembles)

@@ -135,8 +135,8 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
         name,
         abs(residuals.lag_one) < limit,
         f"lag-1 correlation of whitened residuals {residuals.lag_one:+.3f}, limit {limit:.2f}",
-        "residuals of successive blocks are correlated, so intervals are too narrow: look at "
-        "residuals.png for what the law misses",
+        "residuals of successive blocks are correlated, so intervals are too narrow (too wide if "
+        "negative): look at residuals.png for what the law misses",
     )
 
 
@@ -149,7 +149,7 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
         "run means are predicted",
         residuals.inside_p > MIN_P,
         f"{residuals.inside:.0%} of {blocks.n_runs} run means inside their 90 % interval "
-        f"(p = {residuals.inside_p:.2g})",
+        f"(p = {residuals.inside_p:.2g}, expected above {MIN_P:g})",
         "run means scatter more, or less, than the model predicts: look for runs of another "
         "material or with a lost zero",
     )
@@ -164,7 +164,7 @@ def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks
         "the law fits the shape of the curve",
         not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
         f"the misfit that all runs share is {residuals.misfit:.1%} of the peak force, limit "
-        f"{MAX_MISFIT:.0%} (p = {residuals.misfit_p:.2g})",
+        f"{MAX_MISFIT:.0%} where p is below {MISFIT_P:g} (p = {residuals.misfit_p:.2g})",
         "the law does not fit: all runs deviate from the curve in the same way; check the slip "
         "definition, fit driving and braking apart, or try another --law",
     )
@@ -184,8 +184,8 @@ def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> C
         share <= MAX_OFFSET_SHARE and tau <= MAX_OFFSET_RATIO * scale,
         f"they explain {share:.0%} of the force variance, limit {MAX_OFFSET_SHARE:.0%}; their "
         f"standard deviation is {tau:.3g} N, limit {MAX_OFFSET_RATIO * scale:.3g} N",
-        "zero offsets between runs cannot be separated from the curve: tare before each run and "
-        "state the load cell's zero stability, or vary slip within runs",
+        "zero offsets between runs are too large, or cannot be separated from the curve: tare "
+        "before each run and give --zero-stability, or vary slip within runs",
     )
 
 
@@ -199,8 +199,8 @@ def _weak(
     """
     names = [parameter.name for parameter in law.parameters]
     weak = {
-        name: f"{name}: the data narrow its prior by {max(contraction[name], 0):.0%} only; use "
-        "F_max and BCD, peak force and initial slope, instead"
+        name: f"{name}: data reduce its prior variance by {max(contraction[name], 0):.0%}, not by "
+        f"{MIN_CONTRACTION:.0%}; use F_max and BCD, peak force and initial slope, instead"
         for name in names
         if contraction.get(name, 1.0) < MIN_CONTRACTION
     }
@@ -208,8 +208,8 @@ def _weak(
     if "shape" in names and reach < MIN_REACH:
         reason = (
             f"shape C and peak factor D cannot be separated: slip ends at {reach:.1f} times the "
-            f"peak's slip, {MIN_REACH:g} are needed; use F_max and BCD, peak force and initial "
-            "slope, instead"
+            f"peak's slip (0 without a peak), {MIN_REACH:g} are needed; use F_max and BCD, peak "
+            "force and initial slope, instead"
         )
         weak |= {"shape": reason, "friction": reason}
     return weak

@@ -61,7 +61,7 @@ def _widest(robot: Robot, theta: Array, contact: Contact) -> Stance:
     if not stances:
         numbers = ", ".join(str(leg + 1) for leg in contact)
         raise DomainError(
-            f"contact legs {numbers} lie on one line; expected three or more that span a triangle"
+            f"legs {numbers} lie on one line seen from above; expected three that span a triangle"
         )
     return max(stances, key=lambda stance: (_above_ground(stance, contact), stance.depth))
 
@@ -88,8 +88,8 @@ def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance
     if not feasible:
         angles = ", ".join(f"{angle:.4g}" for angle in theta)
         raise DomainError(
-            f"no contact state fits leg angles {angles} rad; start from legs that can hold the "
-            "robot, or take shorter steps"
+            f"at leg angles {angles} rad no three of the legs to choose from keep the others on or "
+            "above the ground; start from legs that can hold the robot, or take shorter steps"
         )
     holding = [stance for stance in feasible if stance.depth >= -ON_GROUND]
     if holding:

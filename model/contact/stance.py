@@ -84,7 +84,7 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
         theta, robot.hips, robot.leg_radius, robot.toe_beyond, three, points, up, seen
     ):
         numbers = ", ".join(str(leg + 1) for leg in three)
-        raise DomainError(f"legs {numbers} lie on one line; expected three that span a triangle")
+        raise DomainError(f"legs {numbers} lie on one line seen from above; expected a triangle")
     levels = points @ up
     height = -float(levels[three].mean())
     depth = float(depth_in_triangle(np.zeros(2), seen[three]))
@@ -111,7 +111,7 @@ def resting_stance(robot: Robot, theta: Array) -> Stance:
     if stance is None or stance.depth < -ON_GROUND:
         angles = ", ".join(f"{angle:.4g}" for angle in theta)
         raise DomainError(
-            f"at leg angles {angles} rad no three legs hold the robot; look at its hips and arc"
+            f"at leg angles {angles} rad no three legs hold the robot; check angles, hips and arc"
         )
     return stance
 

@@ -118,5 +118,5 @@ def _require_clock(
     if not 0 < stance_angle < turn:
         raise DomainError(
             f"stance angle (lift-off minus touchdown) is {np.degrees(stance_angle):g} degrees; "
-            f"expected between 0 and {np.degrees(turn):g}"
+            f"expected above 0 and below {np.degrees(turn):g}"
         )

@@ -85,7 +85,7 @@ class CyclicReference:
             if not (ground > 0 and flight > 0):
                 raise DomainError(
                     f"leg {leg + 1} spends {ground:g} s on the ground and {flight:g} s in flight; "
-                    "expected both more than zero"
+                    "expected both more than zero: raise the gait's cycle, ground or flight time"
                 )
             if not 0 <= wait < flight:
                 raise DomainError(
@@ -94,8 +94,8 @@ class CyclicReference:
                 )
             if not np.isclose(ground + flight, self.period, rtol=1e-9):
                 raise DomainError(
-                    f"leg {leg + 1} has a period of {ground + flight:g} s and leg 1 of "
-                    f"{self.period:g} s; expected the same for all"
+                    f"leg {leg + 1} has a period of {ground + flight:.12g} s and leg 1 of "
+                    f"{self.period:.12g} s; expected the same ground plus flight time for all"
                 )
 
     @property

@@ -201,5 +201,5 @@ def _require_order(times: Array) -> None:
         event, leg = late[0]
         raise DomainError(
             f"leg {leg + 1} has an event at {times[event, leg]:g} s and the next at "
-            f"{times[event + 1, leg]:g} s; expected touchdowns and lift-offs in turn"
+            f"{times[event + 1, leg]:g} s; expected touchdown and lift-off in turn, each later"
         )

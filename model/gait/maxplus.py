@@ -55,7 +55,7 @@ def otimes(a: ArrayLike, b: ArrayLike) -> Array:
         return left + right
     if left.ndim != 2 or left.shape[1] != right.shape[0]:
         raise DomainError(
-            f"cannot multiply shapes {left.shape} and {right.shape}; expected (n, m) and (m, p)"
+            f"cannot multiply shapes {left.shape} and {right.shape}; want (n, m), (m, p) or (m,)"
         )
     if right.ndim == 1:
         return (left + right).max(axis=1)

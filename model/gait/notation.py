@@ -84,7 +84,7 @@ def _require_each_leg_once(legs: list[int]) -> None:
     """Raise `DomainError` unless the leg numbers are 1 to n, once each."""
     twice = sorted(leg for leg, count in Counter(legs).items() if count > 1)
     if twice:
-        raise DomainError(f"leg {twice[0]} is in the gait twice; expected every leg once")
+        raise DomainError(f"leg {twice[0]} is in the gait more than once; expected every leg once")
     if min(legs) < 1:
         raise DomainError(f"the gait contains leg {min(legs)}; expected leg numbers from 1")
     missing = sorted(set(range(1, max(legs) + 1)) - set(legs))
@@ -134,7 +134,7 @@ def _parse_group(part: str, text: str) -> tuple[int, ...]:
     for leg in legs:
         if not leg.isdecimal():
             raise DomainError(
-                f"{leg!r} in group {part} of the gait is not a leg number; expected 1 or more"
+                f"{leg!r} in group {part} of the gait is not a leg number; expected 1, 2, 3 ..."
             )
     return tuple(int(leg) for leg in legs)
 

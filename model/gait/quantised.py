@@ -129,7 +129,7 @@ class QuantisedLog:
     def __post_init__(self) -> None:
         """Check that the angle of a count is positive and finite."""
         if not (self.step > 0 and np.isfinite(self.step)):
-            raise DomainError(f"one count is {self.step:g} rad; expected more than zero")
+            raise DomainError(f"one count is {self.step:g} rad; expected more than zero, finite")
 
     @cached_property
     def _legs(self) -> list[CountedLeg | None]:

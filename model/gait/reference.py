@@ -58,8 +58,8 @@ class SampledReference:
         if not np.all(steps > 0):
             worst = int(np.argmin(steps > 0))
             raise DomainError(
-                f"time goes from {self.t[worst]:g} to {self.t[worst + 1]:g} s at sample "
-                f"{worst + 1}; expected increasing times"
+                f"time goes from {self.t[worst]:g} to {self.t[worst + 1]:g} s after sample "
+                f"{worst + 1} (the first is 1); expected increasing times"
             )
 
     @property

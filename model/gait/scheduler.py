@@ -78,6 +78,6 @@ def require_times(**times: float) -> None:
     Times of other names may be zero, but not negative.
     """
     for name, value in times.items():
-        least = "more than zero" if name in ("ground_time", "flight_time") else "zero or more"
-        if not (np.isfinite(value) and (value > 0 or (value == 0 and least == "zero or more"))):
-            raise DomainError(f"{name} is {value:g} s; expected {least}")
+        least = "time above 0" if name in ("ground_time", "flight_time") else "time of 0 or more"
+        if not (np.isfinite(value) and (value > 0 or (value == 0 and least != "time above 0"))):
+            raise DomainError(f"{name.replace('_', ' ')} is {value:g} s; expected a finite {least}")

@@ -95,9 +95,9 @@ def ideal_liftoff(touchdown: ArrayLike, leg_arc: float = np.pi) -> Array:
     highest = _highest_hip(leg_arc)
     if not np.all((theta > -np.pi / 2) & (theta < highest)):
         raise DomainError(
-            f"touchdown angle is {np.degrees(theta)} degrees; expected between -90 and "
-            f"{np.degrees(highest):g}, where a leg of {np.degrees(leg_arc):g} degrees has its hip "
-            "highest: after that it never is as high again"
+            f"touchdown angle is {np.degrees(theta)} degrees; expected above -90 and below "
+            f"{np.degrees(highest):g}, where the hip of a leg with an arc of "
+            f"{np.degrees(leg_arc):g} degrees is highest: later it never is as high again"
         )
     return _ideal_liftoff(theta, leg_arc)
 

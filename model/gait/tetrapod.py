@@ -47,8 +47,8 @@ def tetrapod_reference(
         if not touchdown <= middle_start <= liftoff:
             raise DomainError(
                 f"legs 2 and 5 start at {np.degrees(middle_start):g} degrees, Eq. (5-6); expected "
-                f"between touchdown, {np.degrees(touchdown):g}, and lift-off, "
-                f"{np.degrees(liftoff):g} degrees: move them, or start at middle_start=None"
+                f"from touchdown, {np.degrees(touchdown):g}, to lift-off, {np.degrees(liftoff):g} "
+                "degrees: change one of the three, or pass middle_start=None for halfway"
             )
         share = (middle_start - touchdown) / (liftoff - touchdown)
     past_touchdown = np.array([1.0, share, 0.0]) * 2 / 3

@@ -70,8 +70,8 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
     best = int(np.argmin(misfit))
     if not np.isfinite(misfit[best]) or best in (0, len(offsets) - 1):
         raise InsufficientData(
-            "no clock offset makes track and path overlap enough, or the best is at the end of the "
-            "search; give the offset"
+            f"no clock offset puts {SHARE:.0%} of the track and four poses within the path's time, "
+            "or the best is the first or last that was tried; give the offset"
         )
     value, curvature = _parabola(offsets, misfit, best)
     near = value + np.arange(-1.0, 1.0 + STEP, STEP)
@@ -80,8 +80,8 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
     sd = max(_sd_of_fit(misfit[best], curvature), _sd_of_blocks(inside, path, near))
     if not sd < LARGEST_SD:
         raise InsufficientData(
-            f"the motion determines the clock offset only to {sd:.2g} s; let the robot start and "
-            "stop in view, or give the offset"
+            f"the motion determines the clock offset only to {sd:.2g} s (limit {LARGEST_SD:g} s); "
+            "let the robot start and stop in view, or give the offset"
         )
     at = track.t + offsets[:, None]
     held = ((at >= path.t[0]) & (at <= path.t[-1])).sum(axis=1)
@@ -104,7 +104,7 @@ def _require_one(offsets: Array, misfit: Array, value: float, least: float) -> N
     if len(misfit) and misfit.min() < AS_GOOD * least:
         other = offsets[int(np.argmin(misfit))]
         raise InsufficientData(
-            f"the motion fits about as well with clocks {other:+.1f} s apart as with "
+            f"the motion fits about as well with {other:+.1f} s added to the track's times as with "
             f"{value:+.1f} s, as strides do that repeat; let the robot start and stop in view, or "
             "give the offset"
         )

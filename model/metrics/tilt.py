@@ -51,7 +51,7 @@ def tilt_errors(
     inside = (measured_t >= t[0]) & (measured_t <= t[-1])
     if inside.sum() < FEWEST:
         raise InsufficientData(
-            f"{inside.sum()} of {len(measured_t)} measurements lie within the walk's {t[0]:g} to "
+            f"{inside.sum()} of {len(measured_t)} measured tilts lie within the walk's {t[0]:g} to "
             f"{t[-1]:g} s; {FEWEST} are needed: do both keep the same clock?"
         )
     at = measured_t[inside]

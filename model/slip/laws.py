@@ -49,4 +49,4 @@ def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:
         return
     nearest = get_close_matches(found, known, n=1, cutoff=0.3)
     hint = f"; did you mean '{nearest[0]}'?" if nearest else ""
-    raise DomainError(f"'{found}' is not a {what}; expected one of {', '.join(known)}{hint}")
+    raise DomainError(f"'{found}' is no {what}; expected one of {', '.join(known)}{hint}")

@@ -181,15 +181,15 @@ def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
     kappa, f = np.asarray(slip, dtype=float), np.asarray(force, dtype=float)
     if kappa.ndim != 1 or kappa.shape != f.shape:
         raise DomainError(
-            f"slip has shape {kappa.shape} and force {f.shape}; one curve is two arrays of one "
-            f"length"
+            f"slip has shape {kappa.shape} and force {f.shape}; one curve is two arrays of "
+            f"one shape (n,)"
         )
     if not (np.all(np.isfinite(kappa)) and np.all(np.isfinite(f))):
         raise DomainError("the curve has NaN or infinite samples; leave them out")
     if len(kappa) < 2 or kappa[0] < 0 or np.any(np.diff(kappa) <= 0):
         raise DomainError(
-            f"{len(kappa)} slip ratios that do not increase from zero or above; sort them, average "
-            f"repeated ones, and read the braking side off as (-slip, -force)"
+            f"found {len(kappa)} slip ratios; expected two or more, increasing from zero or above: "
+            f"sort them, average repeated ones, and read the braking side off as (-slip, -force)"
         )
     return kappa, f
 
@@ -203,8 +203,8 @@ def _vertex(kappa: Array, f: Array) -> tuple[float, float]:
     if top in (0, len(f) - 1) or f[top] <= 0:
         raise DomainError(
             f"no peak within slip {kappa[0]:.4g} to {kappa[-1]:.4g}: the greatest force, "
-            f"{f[top]:.4g} N, is at slip {kappa[top]:.4g}; measure further out, or fit a law "
-            f"without a peak"
+            f"{f[top]:.4g} N, is at slip {kappa[top]:.4g}; expected a positive one between other "
+            f"samples: check its sign, measure beyond it, or fit a law without a peak"
         )
     around = slice(top - 1, top + 2)
     shift = kappa[around] - kappa[top]  # centred, or the parabola's terms cancel
@@ -240,7 +240,7 @@ def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
     if kappa[-1] < 2 * x_m or np.count_nonzero(tail) < 2:
         raise DomainError(
             f"the curve ends at slip {kappa[-1]:.4g} with its peak at {x_m:.4g}: too near to see "
-            f"what it falls to; measure to twice the peak's slip at least"
+            f"what it falls to; measure to twice the peak's slip, two samples in the outer half"
         )
     y_a = float(np.polyfit(1 / kappa[tail], f[tail], 1)[1])
     if abs(f[-1] - y_a) > _UNSETTLED * D:

@@ -52,7 +52,7 @@ class DynamicsOptions:
         for name, unit in (("dt", "s"), ("stiffness", "N/m"), ("damping", "N s/m")):
             value = getattr(self, name)
             if not (value > 0 and np.isfinite(value)):
-                raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")
+                raise DomainError(f"{name} is {value:g} {unit}; expected more than zero, finite")
 
 
 DEFAULT_OPTIONS = DynamicsOptions()
@@ -260,7 +260,7 @@ def _settled(
     except WalkError as error:
         raise WalkError(
             f"the robot cannot stand at x {x:g}, y {y:g} m on legs at {np.degrees(theta).round(1)} "
-            "degrees; expected finite numbers"
+            "degrees: settling diverged; check that all are finite, and stiffness and damping"
         ) from error
     turned = yaw - roll_pitch_yaw(state.q[None])[0, 2]
     state.p[2] += ground_at(ground, x, y)[0] - ground_at(ground, state.p[0], state.p[1])[0]

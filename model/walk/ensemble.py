@@ -120,7 +120,7 @@ def _tilt_of(path: PlanarWalk) -> Array:
     """Return roll and pitch as rows, shape (2, n) [rad]; raise `WalkError` if the path has none."""
     if path.tilt is None:
         raise WalkError(
-            "roll and pitch of a gait walked by strides are not kept; sample its leg angles"
+            "roll and pitch of periodic gaits are not kept; sample its leg angles: SampledReference"
         )
     return path.tilt.T
 
@@ -131,8 +131,8 @@ def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
         raise DomainError("no draws were given; expected at least one")
     if t.ndim != 1 or not len(t) or not (t[0] >= 0 and np.all(np.diff(t) > 0)):
         raise DomainError(
-            f"times wanted of an ensemble are {np.array2string(t, threshold=6)} s; expected them "
-            "to increase, from zero or later"
+            f"times wanted of an ensemble are {np.array2string(t, threshold=6)} s; expected one "
+            "or more that increase, from zero or later"
         )
 
 

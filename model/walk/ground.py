@@ -55,7 +55,7 @@ def sample_ground(
             another shape than the positions or are not finite.
     """
     if not (x[1] - x[0] > step > 0 and y[1] - y[0] > step):
-        raise DomainError(f"ground from x {x} to y {y} in steps of {step:g} m has no area")
+        raise DomainError(f"ground x {x}, y {y} is not wider than a positive step, {step:g} m")
     grid = np.meshgrid(_samples(x, step), _samples(y, step), indexing="ij")
     heights = np.asarray(height(*grid), dtype=float)
     if heights.shape != grid[0].shape:

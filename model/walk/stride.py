@@ -57,7 +57,7 @@ def walk_by_strides(
     """
     period = reference.period
     if period is None:
-        raise WalkError("these leg angles do not repeat, so there is no stride; walk them whole")
+        raise WalkError("these leg angles do not repeat, so there is no stride; use planar_walk")
     n = int(np.ceil(period / options.dt - 1e-9))
     t = step_times(duration, period / n)
     strides = int(np.ceil((len(t) - 1) / n))

@@ -138,8 +138,8 @@ def law_table(
     if not valid.all():
         worst = float(loads[~valid][0])
         raise DomainError(
-            f"the parameters of '{law.name}' lose the law's shape at a load of {worst:g} N, which "
-            f"a robot of {weight:g} N puts on a leg; calibrate over these loads"
+            f"at a load of {worst:g} N the curve of '{law.name}' has more than one peak or changes "
+            f"sign; calibrate at {loads[0]:g} to {loads[-1]:g} N, the loads of a leg of this robot"
         )
     stiffness = float(np.max(law.slip_derivative(0.0, loads, values) / loads))
     peak = _peak(law, values, loads)

@@ -86,7 +86,7 @@ def test_a_correction_of_nothing_is_named(correction, message):
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ({"kind": "turn", "photo": "a"}, "'turn' is unknown"),
+        ({"kind": "turn", "photo": "a"}, "'turn' is missing or unknown"),
         ({"kind": "flip", "foto": "a"}, "did you mean 'photo'"),
         ({"kind": "move", "photo": "a", "y": 1}, "needs x, yaw"),
         ({"kind": "order"}, "needs photos"),

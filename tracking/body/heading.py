@@ -55,7 +55,7 @@ def resolve_headings(
         raise AmbiguousHeading(
             f"head and tail of the robot cannot be distinguished: the headings found in "
             f"{len(candidates)} photographs are likelier than reversed by {np.exp(odds):.1f} to 1, "
-            f"expected at least 1000 to 1; mark the robot's nose, or raise front_margin in "
+            f"expected at least 1000 to 1; put a mark on its nose, or raise front_margin in "
             f"annotations.toml so that the template includes the nose",
             float(np.exp(odds)),
         )

@@ -225,6 +225,6 @@ def _corners_px(camera: Camera, view: CameraPose, pose: BodyPose, plate: TopPlat
 def _refuse_cut(corners_px: Array, size: tuple[int, int]) -> None:
     if (corners_px < 0).any() or (corners_px > np.subtract(size, 1)).any():
         raise BodyError(
-            "the robot's top is cut by the edge of the annotated photograph; annotate a photograph "
-            "that shows its whole top"
+            "the robot's top (in a composite picture its body) is cut by the edge of the annotated "
+            "photograph; annotate the robot where it is seen whole"
         )

@@ -138,8 +138,8 @@ def _check_determined(fit: CameraCalibration) -> None:
     focal, sd = fit.camera.matrix[0, 0], fit.sd[0]
     if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
         raise CalibrationError(
-            f"the focal length is {focal:.0f} px with a standard deviation of {sd:.0f} px, more "
-            f"than 5 %; photograph the board tilted by 20 to 45 degrees, each time another way"
+            f"focal length {focal:.0f} px has a standard deviation of {sd:.3g} px, expected over 0 "
+            f"and below 5 %; photograph the board tilted by 20 to 45 degrees, each another way"
         )
 
 
@@ -147,8 +147,8 @@ def _warnings(fit: CameraCalibration) -> list[str]:
     messages = []
     if fit.coverage < 0.6:
         messages.append(
-            f"corners cover {fit.coverage:.0%} of the picture, expected 60%; it is extrapolated "
-            f"elsewhere: photograph the board near the picture's edges and corners too"
+            f"corners cover {fit.coverage:.0%} of the picture, expected 60% or more; distortion is "
+            f"extrapolated elsewhere: photograph the board near the picture's edges and corners too"
         )
     if len(fit.view_names) < 10:
         messages.append(f"{len(fit.view_names)} photographs are used; 10 to 15 are advised")

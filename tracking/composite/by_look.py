@@ -58,7 +58,7 @@ def find_exposures_like(
     found = reading.align(poses) if len(poses) > 1 else ()
     if len(found) < 2:
         raise CompositeError(
-            "no exposure is found but the one in which the robot's top is annotated; annotate one "
+            "no second exposure of the robot is found that can be aligned; annotate its top in one "
             "that is fully visible, and check the length and width of the robot's body and that "
             f"--merged {merged} is how the picture was made"
         )

@@ -103,7 +103,7 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
         expected = ", ".join(str(key) for key in floor.marks)
         raise FloorError(
             f"{view.photo}: none of the floor's marks ({expected}) is seen; check dictionary "
-            f"'{floor.dictionary}' in floor.toml and that the marks lie in the picture"
+            f"'{floor.dictionary}' in floor.toml, or click on points: `zebro-lab annotate --click`"
         )
     points = np.concatenate([floor.marks[key].points for key in keys])
     pixels = np.concatenate([view.pixels[key] for key in keys])
@@ -115,7 +115,7 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
     starts = _starting_poses(camera, points, pixels)
     poses = [_polish(camera, pose, points, pixels) for pose in starts]
     if not poses:
-        raise FloorError(f"{view.photo}: the floor's marks in floor.toml fit no pose of the camera")
+        raise FloorError(f"{view.photo}: marks and clicks fit no pose of the camera; check both")
     return min(poses, key=lambda found: found[1])
 
 
@@ -185,11 +185,11 @@ def _explain(camera: Camera, floor: FloorMap, view: FloorView, misfit: float) ->
         other.position[2] > 0 and other_misfit < _MISFIT_PX
     ):
         raise FloorError(
-            f"{view.photo}: the map of the floor is mirrored (its marks are off by {misfit:.0f} "
-            f"px, reversed in y by {other_misfit:.1f} px); y must grow left of x, seen from above"
+            f"{view.photo}: the map of the floor is mirrored (off by {misfit:.0f} px or seen from "
+            f"below; by {other_misfit:.1f} px with y reversed); y must grow left of x from above"
         )
     raise FloorError(
         f"{view.photo}: the floor's marks are off by {misfit:.0f} px (rms) from where floor.toml "
-        f"has them, expected at most {_MISFIT_PX:g} px; check x, y, yaw_deg and side of each mark, "
-        f"clicked points, and that camera.toml is of this camera, zoom and focus"
+        f"has them (limit {_MISFIT_PX:g} px), or seen from below; check x, y, yaw_deg and side of "
+        f"each mark, clicked points, and that camera.toml is of this camera, zoom and focus"
     )

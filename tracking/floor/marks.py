@@ -161,4 +161,4 @@ class FloorMap:
 def _refuse_doubles(names: Sequence[str]) -> None:
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise FloorError(f"the floor has {twice[0]} twice; each may lie in one place only")
+        raise FloorError(f"the floor has {twice[0]} more than once; each may lie in one place only")

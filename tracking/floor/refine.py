@@ -83,7 +83,7 @@ class FloorFit:
             if np.linalg.norm(shift) > 4 * sd:
                 messages.append(
                     f"mark {key} lies {1e3 * float(np.linalg.norm(shift)):.1f} mm from its place "
-                    f"in floor.toml (position_sd {1e3 * sd:.1f} mm); measure it again"
+                    f"in floor.toml, over 4 times position_sd ({1e3 * sd:.1f} mm); measure it again"
                 )
         return tuple(messages)
 

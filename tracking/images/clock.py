@@ -96,7 +96,7 @@ def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
         )
     stamp = exif_time(path)
     if stamp is None:
-        raise PhotoError(path.name, "no EXIF time is in the file; give it as the camera wrote it")
+        raise PhotoError(path.name, "the file has no EXIF time; give the camera's own file")
     taken, step = stamp
     sd = float(np.sqrt((step**2 + renewal**2) / 12))
     return CameraClockOffset(taken + step / 2 - (shown + renewal / 2), sd)

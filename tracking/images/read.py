@@ -143,7 +143,7 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
         raise PhotoError(
             path.name,
             f"it has {upright.size[0]}x{upright.size[1]} px; expected {size[0]}x{size[1]} px, as "
-            "most of the photographs have: use photographs of one size, not turned or cropped",
+            "most photographs, or the camera, have: use photographs of one size, not cropped",
         )
     return np.ascontiguousarray(np.asarray(upright)[:, :, ::-1])
 
@@ -169,8 +169,8 @@ def _refuse_unreadable(path: Path) -> None:
         found = "it is not a regular file; remove it from the folder"
         raise PhotoError(path.name, found if path.exists() else f"no such file in {path.parent}")
     if path.stat().st_size > MOST_FILE:
-        found = f"the file has {path.stat().st_size / 1e6:.0f} MB: too many"
-        raise PhotoError(path.name, _too_large(found))
+        found = f"the file has {path.stat().st_size / 1e6:.0f} MB; at most {MOST_FILE / 1e6:.0f} MB"
+        raise PhotoError(path.name, f"{found} are read: scale the photograph down")
     try:
         with path.open("rb") as file:
             head = file.read(12)
@@ -184,7 +184,7 @@ def _refuse_unreadable(path: Path) -> None:
             path.name,
             "HEIC is not read; set the phone's camera to 'most compatible' (JPEG), or convert the "
             f"photographs with their EXIF data: heif-convert -q 95 {path.name} {path.stem}.jpeg "
-            "(Linux), sips -s format jpeg (macOS)",
+            f"(Linux), sips -s format jpeg {path.name} --out {path.stem}.jpeg (macOS)",
         )
 
 
@@ -192,7 +192,8 @@ def _refuse_many_scans(path: Path) -> None:
     data = path.read_bytes()
     scans = data.count(b"\xff\xda") if data.startswith(b"\xff\xd8") else 0
     if scans > MOST_SCANS:
-        raise PhotoError(path.name, f"the JPEG has {scans} scans; at most {MOST_SCANS} are read")
+        found = f"the JPEG has {scans} scans; at most {MOST_SCANS} are read"
+        raise PhotoError(path.name, f"{found}: save it as a JPEG that is not progressive")
 
 
 def _refuse_large(path: Path, size: tuple[int, int]) -> None:

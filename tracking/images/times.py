@@ -18,6 +18,7 @@ from tracking.images.stamps import fit_interval
 MOST_TABLE = 16 << 20
 """Largest size of a table of times that is read: some hundred thousand photographs [bytes]."""
 _MOST_DIGITS = 9  # of a fraction of a second
+_HEADER = "(the header is row 1)"
 _EXIF_FOLDER, _TAKEN, _FRACTION, _CHANGED = 0x8769, 0x9003, 0x9291, 0x0132
 
 
@@ -146,27 +147,28 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
         raise TimesError(f"{table} cannot be read: {error.strerror}") from error
     except (csv.Error, ValueError) as error:
         raise TimesError(f"{table} cannot be read as CSV in UTF-8: {error}") from error
-    if any(None in row for row in rows):
-        raise TimesError(f"{table} has a row with more cells than its header; correct the row")
+    long = [line for line, row in enumerate(rows, 2) if None in row]
+    if long:
+        raise TimesError(f"{table}, row {long[0]} {_HEADER}: has more cells than the header")
     if not rows or not {"photo", "t_s"} <= set(rows[0]):
         found = f"the columns {', '.join(rows[0])}" if rows else "no rows"
         raise TimesError(f"{table} has {found}; expected columns photo, t_s, optionally t_sigma")
     times = {row["photo"]: _numbers(table, line, row) for line, row in enumerate(rows, 2)}
     missing = [path.name for path in paths if path.name not in times]
     if missing:
-        raise TimesError(f"{table} has no row for {missing[0]} ({len(missing)} have none)")
+        raise TimesError(f"{table} has no row for {missing[0]} ({len(missing)} photos lack one)")
     pairs = np.array([times[path.name] for path in paths]).reshape(-1, 2)
     return PhotoTimes(pairs[:, 0], pairs[:, 1], f"table {table.name}")
 
 
 def _numbers(table: Path, line: int, row: dict[str, str]) -> tuple[float, float]:
-    numbers = []
+    numbers, place = [], f"{table}, row {line} {_HEADER}"
     for column in ("t_s", "t_sigma"):
         text = row.get(column) or "0"
         try:
             numbers.append(float(text))
         except ValueError as error:
-            raise TimesError(f"{table}, row {line}, {column}: '{text}' is not a number") from error
+            raise TimesError(f"{place}, {column}: '{text}' is not a number in s") from error
         if not math.isfinite(numbers[-1]):
-            raise TimesError(f"{table}, row {line}, {column}: '{text}' is not a time in s")
+            raise TimesError(f"{place}, {column}: found '{text}'; expected a finite number in s")
     return numbers[0], numbers[1]

@@ -122,7 +122,9 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
             "the robot has no marker, and its top is not annotated (`zebro-lab annotate --corners`)"
         )
     if top.photo not in {photo.name for photo in photos}:
-        raise NoUsablePhoto(f"the annotated photograph '{top.photo}' is not among the photographs")
+        raise NoUsablePhoto(
+            f"annotated photograph '{top.photo}' is not among the photographs; add it"
+        )
     if top.photo in seen.lost:
         raise NoUsablePhoto(f"the annotated photograph {top.photo}: {seen.lost[top.photo]}")
     return top

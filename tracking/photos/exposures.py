@@ -77,7 +77,7 @@ def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> t
     """
     size = scene.body_size
     if size is None:
-        raise CompositeError("the length and width of the robot's body (body_size) are not known")
+        raise CompositeError("the robot's body has no size; give body_size in robot.toml")
     pixels = read_pixels(photo.path, size=scene.camera.size)
     view = seen.fit.pose_of(photo.name)
     # The floor's markers are similar to the robot's, so they are masked.

@@ -109,7 +109,7 @@ class WalkPrior:
         if not 0 < self.wrong < 1:
             raise DomainError(
                 f"found {self.wrong:g} as the probability of a wrongly mounted leg; expected a "
-                "number between 0 and 1"
+                "number above 0 and below 1"
             )
 
     @property

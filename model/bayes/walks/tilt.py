@@ -76,8 +76,8 @@ class TiltMisfit:
         shared = path.any(axis=1) & imu.any(axis=1)
         if shared.sum() < FEWEST:
             raise InsufficientData(
-                f"the IMU's {seen.t[0]:g} to {seen.t[-1]:g} s and the walk's {t[0]:g} to {t[-1]:g} "
-                f"s share {TIME * shared.sum():.1f} s; expected {TIME * FEWEST:g} s or more"
+                f"IMU, {seen.t[0]:g} to {seen.t[-1]:g} s, and walk, {t[0]:g} to {t[-1]:g} s, share "
+                f"samples in {shared.sum()} intervals of {TIME:g} s; expected {FEWEST} or more"
             )
         measured = imu[shared] @ seen.angles
         return cls(path[shared], measured - measured.mean(axis=0), _strides(legs, t))

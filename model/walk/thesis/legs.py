@@ -70,7 +70,7 @@ class SwitchedLegs:
             slowest = min(self.ground_speed[leg], self.flight_speed[leg])
             if not slowest > 0:
                 raise DomainError(
-                    f"leg {leg + 1} turns at {slowest:g} rad/s; expected more than zero"
+                    f"leg {leg + 1}: slowest speed is {slowest:g} rad/s; expected more than zero"
                 )
 
     @classmethod
@@ -86,7 +86,7 @@ class SwitchedLegs:
         if np.any(gait.pause) or np.any(gait.offset):
             raise DomainError(
                 f"the gait pauses for {gait.pause} s and is off by {gait.offset} rad; legs that "
-                "switch speed by angle take neither: follow the gait by the clock"
+                "switch speed by angle take neither: pass the gait, followed by the clock"
             )
         return cls(
             gait.touchdown, gait.liftoff, gait.ground_speed, gait.flight_speed,

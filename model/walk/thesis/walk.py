@@ -59,7 +59,7 @@ class ThesisOptions:
     def __post_init__(self) -> None:
         """Check that the step, the automaton, the direction and `every` are valid."""
         if not (self.dt > 0 and np.isfinite(self.dt)):
-            raise DomainError(f"dt is {self.dt:g} s; expected more than zero")
+            raise DomainError(f"dt is {self.dt:g} s; expected more than zero, and finite")
         inner_legs(self.direction)
         if self.automaton not in AUTOMATA:
             raise DomainError(f"automaton is '{self.automaton}'; expected {' or '.join(AUTOMATA)}")
@@ -140,8 +140,8 @@ def _require_tripod(motion: LegMotion, dt: float) -> None:
         if apart[worst] > APART:
             raise DomainError(
                 f"legs {first + 1} and {other + 1} are {np.degrees(apart[worst]):.3g} degrees "
-                f"apart at t = {worst * dt:.4g} s; the thesis's model walks tripods only, "
-                "{1,4,5} and {2,3,6}: use the dynamics model for other gaits"
+                f"apart at t = {worst * dt:.4g} s, expected at most {np.degrees(APART):g}; the "
+                "thesis's model walks tripods only, {1,4,5} and {2,3,6}: use the dynamics model"
             )
 
 

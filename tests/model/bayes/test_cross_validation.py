@@ -189,7 +189,7 @@ def test_many_runs_are_left_out_in_interleaved_groups(monkeypatch):
     mode = posterior.coordinates({"noise_floor": 0.05})
     found = cross_validate(posterior, mode)
     np.testing.assert_array_equal(found.fold, np.arange(24) % 10)
-    assert found.scheme == "leave out runs in 10 interleaved groups of 24 runs"
+    assert found.scheme == "leave out 24 runs in 10 interleaved groups"
     np.testing.assert_array_equal(found.values, np.repeat(posterior.values(mode[None]), 10, axis=0))
     np.testing.assert_allclose(
         found.log_density, posterior.run_log_likelihood(mode[None])[0], rtol=1e-12

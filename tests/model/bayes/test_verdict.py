@@ -182,11 +182,13 @@ def test_curve_is_told_from_its_peak_two_and_a_half_peak_slips_out(reach, weak):
 def test_parameter_that_stays_as_wide_as_its_prior_is_weak():
     verdict = verdict_on(contraction=WELL_INFORMED | {"curvature": 0.3})
     assert list(verdict.weak) == ["curvature"]
-    assert "30% only" in verdict.weak["curvature"]
+    assert "variance by 30%" in verdict.weak["curvature"]
 
 
 def test_contraction_below_zero_reads_as_none():
-    assert "0% only" in verdict_on(contraction=WELL_INFORMED | {"shape": -0.04}).weak["shape"]
+    assert (
+        "variance by 0%" in verdict_on(contraction=WELL_INFORMED | {"shape": -0.04}).weak["shape"]
+    )
 
 
 def test_law_without_a_shape_factor_needs_no_reach():

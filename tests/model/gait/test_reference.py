@@ -50,7 +50,7 @@ def test_angles_and_speeds_have_a_row_for_each_time():
 def test_times_that_do_not_increase_are_refused_with_the_sample(bad):
     t = T.copy()
     t[2] = bad
-    with pytest.raises(DomainError, match=r"time goes from 1 to .* s at sample 2; expected incr"):
+    with pytest.raises(DomainError, match=r"time goes from 1 to .* s after sample 2 .*; expect"):
         SampledReference(t, THETA)
 
 

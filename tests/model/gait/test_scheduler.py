@@ -109,7 +109,7 @@ def test_rotating_the_groups_keeps_the_cycle_time(gait, f, g):
 )
 def test_impossible_times_are_refused(name, value):
     times = {"ground_time": 1.0, "flight_time": 1.0, "double_stance": 0.0, name: value}
-    with pytest.raises(DomainError, match=f"{name} is {value:g} s"):
+    with pytest.raises(DomainError, match=f"{name.replace('_', ' ')} is {value:g} s"):
         straight_system(TRIPOD, **times)
 
 

@@ -103,7 +103,7 @@ def test_steering_factor_that_is_not_positive_is_refused(steering):
 
 @pytest.mark.parametrize("touchdown", [-np.pi / 2, np.pi / 2, 3.0, np.nan])
 def test_touchdown_without_an_equal_height_later_is_refused(touchdown):
-    with pytest.raises(DomainError, match="between -90 and 90"):
+    with pytest.raises(DomainError, match="above -90 and below 90"):
         ideal_liftoff(touchdown)
 
 

@@ -111,5 +111,5 @@ def test_inner_legs_that_the_gait_has_not_are_refused():
 
 
 def test_negative_turn_time_is_refused():
-    with pytest.raises(DomainError, match=r"turn_time is -0\.1 s"):
+    with pytest.raises(DomainError, match=r"turn time is -0\.1 s"):
         build(TRIPOD, LEFT, 1.0, 1.0, -0.1, 0.0)

@@ -108,8 +108,8 @@ def test_peak_too_far_out_for_the_rest_is_refused():
     [
         ([0.0, 0.1], [0.0], "one curve is two arrays"),
         ([0.0, np.nan, 0.2], [0.0, 1.0, 1.0], "NaN or infinite"),
-        ([0.0, 0.2, 0.1], [0.0, 1.0, 1.0], "do not increase"),
-        ([-0.1, 0.0, 0.1], [-1.0, 0.0, 1.0], "do not increase from zero"),
+        ([0.0, 0.2, 0.1], [0.0, 1.0, 1.0], "found 3 slip ratios; .* increasing from zero"),
+        ([-0.1, 0.0, 0.1], [-1.0, 0.0, 1.0], "increasing from zero"),
     ],
 )
 def test_what_is_no_curve_is_refused(slip, force, message):

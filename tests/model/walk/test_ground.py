@@ -151,7 +151,7 @@ def test_toes_on_bristles_slide_at_friction_where_it_is_used_up():
     [{"x": (0, 0), "y": (0, 1)}, {"x": (0, 1), "y": (1, 0)}, {"x": (0, 1), "y": (0, np.nan)}],
 )
 def test_an_area_that_is_none_is_refused(area):
-    with pytest.raises(DomainError, match="has no area"):
+    with pytest.raises(DomainError, match="is not wider than a positive step"):
         sample_ground(lambda x, y: 0 * x, **area)
 
 

@@ -12,7 +12,7 @@ from tracking.floor import FloorMap, FloorMarker, FloorPoint
 
 
 def test_a_mark_laid_down_twice_is_refused():
-    with pytest.raises(FloorError, match="marker 10 twice"):
+    with pytest.raises(FloorError, match="marker 10 more than once"):
         FloorMap("4x4_50", (FLOOR.markers[0], FLOOR.markers[0]))
 
 

@@ -115,7 +115,7 @@ def photos_of_track(track: Path) -> TrackedPhotos:
     table = read_table_file(folder / TRACK_CSV)
     if "photo" not in table.columns:
         raise DataError(
-            "does not name photographs, as a track that was imported", file=folder / TRACK_CSV
+            "has no column photo; a track that was imported has none", file=folder / TRACK_CSV
         )
     names = tuple(str(name) for name in table.columns["photo"])
     inputs = {Path(path): str(digest) for path, digest in manifest["inputs"].items()}
@@ -159,4 +159,4 @@ def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
             if file_hash(path) != digest:
                 raise DataError("has changed: it is not the camera file of this track", file=path)
             return camera
-    raise NotFound(f"{folder}: the camera.toml of this track is not where it was")
+    raise NotFound(f"{folder}: the camera.toml of this track is not where it was, or damaged")

@@ -85,7 +85,7 @@ class TrackRequest:
     ]
     camera: Annotated[Path, Option(help="camera.toml, the lens.")]
     floor: Annotated[Path, Option(help="floor.toml, the marks on the floor.")]
-    robot: Annotated[Path | None, Option(help="robot.toml; default: one without a marker.")] = None
+    robot: Annotated[Path | None, Option(help="robot.toml; default: thesis's, no marker.")] = None
     out: Annotated[Path | None, Option(help="Folder to write; default: RUN/track.")] = None
     run: Annotated[Path | None, Option(metavar="RUN", help="Run of the photographed walk.")] = None
     times: TimeRequest = field(default_factory=TimeRequest)
@@ -117,7 +117,7 @@ class TrackRequest:
         str | None,
         Option(
             metavar="LENGTH",
-            help="Height of the body's centre while the robot stands; default: by marker.height.",
+            help="Height of the body's centre while the robot stands; default: by the marker's.",
         ),
     ] = None
     height_sd: Annotated[

@@ -127,22 +127,22 @@ def _curve(content: Mapping[str, Any]) -> SlipCurve:
     law = slip_law(content["law"]["name"], **options)
     k, tested = len(law.parameters), content["tested"]
     means = [content["parameters"][p.name]["mean"] for p in law.parameters]
-    load_low, load_high = _numbers(tested["normal_force"], (2,)).tolist()
-    slip_low, slip_high = _numbers(tested["slip_ratio"], (2,)).tolist()
+    load_low, load_high = _numbers("tested.normal_force", tested["normal_force"], (2,))
+    slip_low, slip_high = _numbers("tested.slip_ratio", tested["slip_ratio"], (2,))
     return SlipCurve(
         law=law,
-        values=_numbers(means, (k,)),
-        covariance=_numbers(content["covariance"]["matrix"], (k, k)),
+        values=_numbers("parameters", means, (k,)),
+        covariance=_numbers("covariance.matrix", content["covariance"]["matrix"], (k, k)),
         definition=SlipDefinition(content["slip_definition"]),
-        load_range=(load_low, load_high),
-        slip_range=(slip_low, slip_high),
+        load_range=(float(load_low), float(load_high)),
+        slip_range=(float(slip_low), float(slip_high)),
     )
 
 
-def _numbers(found: object, shape: tuple[int, ...]) -> np.ndarray:
+def _numbers(key: str, found: object, shape: tuple[int, ...]) -> np.ndarray:
     numbers = np.array(found, dtype=float)
     if numbers.shape != shape:
-        raise ValueError(f"expected numbers of shape {shape}, found {numbers.shape}")
+        raise ValueError(f"{key} has numbers of shape {numbers.shape}; expected {shape}")
     return numbers
 
 

@@ -33,7 +33,7 @@ class CalibrationRequest:
         str,
         Option(
             help="Curvature E of the Magic Formula: auto (compares peak and constant); peak (the "
-            "slip of the peak grows with load); constant; or a fixed number."
+            "slip of the peak grows with load); constant; or a fixed number below 1."
         ),
     ] = "auto"
     load_sensitivity: Annotated[
@@ -43,11 +43,13 @@ class CalibrationRequest:
         int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
     ] = None
     zero_stability: Annotated[
-        float | None, Option(min=0.0, help="Prior scale of the zero offsets' spread [N].")
-    ] = None
+        float | None, Option(min=0.0, help="Prior scale of the zero offsets' spread [N]; default: "
+            "columns.toml's, else 0.15, or 0.5 % of the largest traction if that is more.")
+    ] = None  # fmt: skip
     gain_sd: Annotated[
-        float | None, Option(min=0.0, help="Relative gain error of the load cell (sd) [-].")
-    ] = None
+        float | None, Option(min=0.0, help="Relative gain error (sd) of the load cell [-]; default"
+            ": columns.toml's, else 0.005.")
+    ] = None  # fmt: skip
     ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
     max_steps: Annotated[
         int,

@@ -79,11 +79,11 @@ def _coulomb(text: str, numbers: list[str]) -> VelocityCoulomb:
         values = [float(number) for number in numbers]
     except ValueError as error:
         raise SettingsError(
-            f"'{text}' has no numbers; expected {expected}", key="--slip"
+            f"'{text}' has a part that is no number; expected {expected}", key="--slip"
         ) from error
     if not 1 <= len(values) <= 2 or not all(0 < value < np.inf for value in values):
         raise SettingsError(
-            f"'{text}' is not a friction law; expected {expected}, both above zero", key="--slip"
+            f"'{text}' is no friction law; expected {expected}, finite, above 0", key="--slip"
         )
     return VelocityCoulomb(*values)
 

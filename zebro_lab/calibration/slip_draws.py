@@ -14,7 +14,7 @@ from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
 POSTERIOR = "posterior.nc"
-_ADVICE = f"calibrate again, or choose a slip.toml with no {POSTERIOR} in its folder"
+_ADVICE = f"delete it and calibrate again, or choose a slip.toml without {POSTERIOR} beside it"
 MOST_TABLES = 200  # a table costs as much as 1 s of simulated walk, and paths hardly differ by it
 
 
@@ -87,7 +87,7 @@ def _posterior(file: Path, curve: SlipCurve) -> Array:
     if not drawn:
         raise DataError(
             f"holds draws of {', '.join(others) or 'nothing'}, but the slip.toml beside it is of "
-            f"the law '{curve.law.name}' with {', '.join(names)}; calibrate again",
+            f"the law '{curve.law.name}' with {', '.join(names)}; {_ADVICE}",
             file=file,
         )
     m = len(columns[drawn[0]])

@@ -152,7 +152,7 @@ def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
     file = folder / WALKS_TOML
     if not (folder / MANIFEST).is_file() or not file.is_file():
         return None
-    remedy = f"{_ANEW}, or delete {folder}"
+    remedy = f"delete {folder}, then {_ANEW} if they are to be used"
     content = read_toml_document(file, remedy=remedy, fault=DataError)
     with parsing(file, "cannot be read", advice=remedy):
         if content["schema"] != SCHEMA:
@@ -188,7 +188,7 @@ def _posterior(content: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> 
     n = len(weight)
     cases = all_cases(len(names))
     if values.shape != (n, WRONG + 1) or case.shape != (n,) or best.shape != (WRONG + 1,):
-        raise ValueError(f"draws of shape {values.shape}; expected ({n}, {WRONG + 1})")
+        raise ValueError(f"values, case or best is not of {n} draws of {WRONG + 1} parameters")
     return WalkPosterior(
         prior=WalkPrior(**{**prior, "spread": ModelSpread(**prior["spread"])}),
         walks=names,

@@ -25,15 +25,17 @@ class AnnotateRequest:
         ),
     ] = None
     plate: Annotated[
-        str | None, Option(metavar="LENGTHxWIDTH@HEIGHT", help="Robot's top; default: its body.")
-    ] = None
+        str | None,
+        Option(metavar="LENGTHxWIDTH@HEIGHT",
+               help="Robot's top, its height above the body's centre; default: the body's size."),
+    ] = None  # fmt: skip
     margin: Annotated[
         str, Option(metavar="LENGTH", help="Width around the top that is also compared.")
     ] = "20mm"
     robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
     clicks: Annotated[
         tuple[str, ...],
-        Option("--click", metavar="PHOTO:NAME=U,V", help="Pixel of a floor point; repeatable."),
+        Option("--click", metavar="PHOTO:NAME=U,V", help="Pixel of floor point NAME; repeatable."),
     ] = ()
     moves: Annotated[
         tuple[str, ...],
@@ -48,7 +50,7 @@ class AnnotateRequest:
         Option("--delete", metavar="PHOTO", help="Delete the pose in a photograph; repeatable."),
     ] = ()
     order: Annotated[
-        str | None, Option(metavar="PHOTO,PHOTO,…", help="Order in time of photographs.")
+        str | None, Option(metavar="PHOTO,PHOTO,…", help="Order in time of these photographs.")
     ] = None
     added: Annotated[
         Path | None, Option("--from", metavar="TOML", help="Another annotations.toml to add.")

@@ -44,7 +44,7 @@ def read_camera_file(file: Path) -> Camera:
 def _size(table: SettingsTable) -> tuple[int, int]:
     width, height = table.quantities("size", 2, "dimensionless")
     if min(width, height) < 16 or width % 1 or height % 1:
-        raise table.fault(f"is {width:g} x {height:g} px; expected whole numbers of pixels", "size")
+        raise table.fault(f"is {width:g} x {height:g} px; expected integers of at least 16", "size")
     return int(width), int(height)
 
 

@@ -117,10 +117,11 @@ def _outside_run(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
         length = (datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds()
     first, last = float(counted.t.min()), float(counted.t.max())
     if last < -_RUN_TOLERANCE or first > length + _RUN_TOLERANCE:
+        end = "has no end in run.json" if manifest.stop is None else f"lasted {length:.1f} s"
         raise TimesError(
             f"the photographs were taken {first:.1f} to {last:.1f} s after the run's start, and "
-            f"the run lasted {length:.1f} s; give their run as --run, or correct --start (the "
-            "moment of the run's start as the camera's clock shows it)"
+            f"the run {end}; give their run as --run, or give as --start the moment of the run's "
+            "start as the camera's clock shows it"
         )
     outside = int(((counted.t < 0) | (counted.t > length)).sum())
     if not outside:

@@ -83,7 +83,7 @@ def track_of_table(table: RawTable) -> TrackFile:
     notes = [] if poses.has_yaw else [f"{file.name} has no column yaw_rad; yaw is not scored"]
     has_covariance = all(name in table.columns for name in _COVARIANCE)
     if not has_covariance:
-        notes.append(f"{file.name} has no covariance; its poses are taken as exact")
+        notes.append(f"{file.name} has no full covariance; its poses are taken as exact")
     if has_covariance:
         poses = replace(poses, covariance=_covariance(table))
     source = table.source or _tracked_source(file) or "unknown"

@@ -60,7 +60,7 @@ def _common(table: SettingsTable) -> dict[str, float]:
 
 def _marker(markers: SettingsTable, number: str, common: Mapping[str, float]) -> FloorMarker:
     if not number.isdecimal() or len(number) > _MOST_DIGITS:
-        raise markers.fault("is not a marker's number; expected one such as 10", number)
+        raise markers.fault("is not a marker's number; expected up to 6 digits, as in 10", number)
     table = markers.table(number)
     own = {
         key: table.quantity(key, unit, default=common.get(key), above=0.0)

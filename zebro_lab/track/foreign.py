@@ -120,7 +120,7 @@ def read_tum(path: Path) -> RawTable:
     numbered = [(i, line) for i, line in enumerate(lines, start=1)
                 if line.strip() and not line.startswith("#")]  # fmt: skip
     if not numbered:
-        raise DataError("is empty; expected lines of t x y z qx qy qz qw", file=path)
+        raise DataError("has no pose; expected lines of t x y z qx qy qz qw", file=path)
     rows = np.array([_pose(path, row, *line) for row, line in enumerate(numbered, start=1)])
     t, x, y, z, qx, qy, qz, qw = rows.T
     yaw = np.unwrap(np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2)))
@@ -153,6 +153,6 @@ def _pose(path: Path, row: int, line: int, text: str) -> list[float]:
     norm = float(np.linalg.norm(numbers[4:]))
     if abs(norm - 1) > 0.05:
         raise DataError(
-            f"the quaternion has length {norm:.3g}; expected 1", file=path, row=row, line=line
+            f"quaternion length {norm:.4g}; expected 0.95 to 1.05", file=path, row=row, line=line
         )
     return numbers

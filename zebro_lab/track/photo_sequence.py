@@ -231,7 +231,7 @@ def _of_video(
         if not cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
             raise DataError(
                 f"frame {frame.name} cannot be written to {folder.parent}; is the disk full? "
-                "--every SECONDS takes fewer frames",
+                "A longer --every SECONDS takes fewer frames",
                 file=video,
             )
         photos.append(Photo(frame.name, path))

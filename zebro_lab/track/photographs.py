@@ -130,7 +130,7 @@ def _poses_of(file: Path) -> tuple[Array, tuple[str, ...]]:
     """Read time [s] and name of the photograph of each pose of a track, n each."""
     table = read_table_file(file)
     if "photo" not in table.columns:
-        raise DataError("does not name photographs, as a track that was imported", file=file)
+        raise DataError("has no column photo; a track that was imported has none", file=file)
     return table.numbers("t_s"), tuple(str(name) for name in table.columns["photo"])
 
 
@@ -162,4 +162,4 @@ def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
             if file_hash(path) != digest:
                 raise DataError("has changed: it is not the camera file of this track", file=path)
             return camera
-    raise NotFound(f"{folder}: the camera.toml of this track is not where it was")
+    raise NotFound(f"{folder}: the camera.toml of this track is not where it was, or damaged")

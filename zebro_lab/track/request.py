@@ -42,7 +42,7 @@ class TimeRequest:
 
     interval: Annotated[
         float | None,
-        Option(help="Interval of the camera's timer, for photographs without EXIF times [s]."),
+        Option(help="Interval of the camera's timer or of exposures, instead of EXIF times [s]."),
     ] = None
     table: Annotated[
         Path | None,
@@ -59,7 +59,7 @@ class TimeRequest:
         ),
     ] = None
     clock: Annotated[
-        Path | None, Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
+        Path | None, Option(metavar="PHOTO", help="Photograph of what `camera clock` shows.")
     ] = None
 
     def __post_init__(self) -> None:
@@ -85,16 +85,17 @@ class TrackRequest:
     ]
     camera: Annotated[Path, Option(help="camera.toml, the lens.")]
     floor: Annotated[Path, Option(help="floor.toml, the marks on the floor.")]
-    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
+    robot: Annotated[Path | None, Option(help="robot.toml; default: thesis's, no marker.")] = None
     out: Annotated[Path | None, Option(help="Folder to write; default: RUN/track.")] = None
     run: Annotated[Path | None, Option(metavar="RUN", help="Run of the photographed walk.")] = None
     times: TimeRequest = field(default_factory=TimeRequest)
     start: Annotated[
         datetime | None,
         Option(
-            metavar="TIME",
+            metavar="YYYY-MM-DDTHH:MM:SS",
             parser=_moment,
-            help="Moment from which time is counted, as the camera's clock shows it.",
+            help="Moment from which time is counted, as the camera's clock shows it; default: the "
+            "run's start with --run and --clock, else the first photograph.",
         ),
     ] = None
     marker: Annotated[
@@ -116,7 +117,7 @@ class TrackRequest:
         str | None,
         Option(
             metavar="LENGTH",
-            help="Height of the body's centre while the robot stands; default: the marker's.",
+            help="Height of the body's centre while the robot stands; default: by the marker's.",
         ),
     ] = None
     height_sd: Annotated[

@@ -46,8 +46,8 @@ def tracked_robot(
     roll, pitch, yaw = place.roll_pitch_yaw
     if max(abs(roll), abs(pitch)) > STEEPEST:
         raise SettingsError(
-            f"roll {np.degrees(roll):.1f} and pitch {np.degrees(pitch):.1f} degrees; a marker on "
-            f"the robot must lie within {np.degrees(STEEPEST):.0f} degrees of level",
+            f"roll {np.degrees(roll):.2f} and pitch {np.degrees(pitch):.2f} degrees; a marker on "
+            f"the robot must lie within {np.degrees(STEEPEST):.2f} degrees of level in both",
             file=described.file, key="marker.roll_pitch_yaw_deg",
         )  # fmt: skip
     printed = place.printed if marker is None else parse_marker(marker)

@@ -33,8 +33,8 @@ def validate(request: ValidateRequest) -> None:
     n_predicted, n_tracks = len(request.predicted), len(request.track)
     if n_predicted != n_tracks or not (request.runs or n_predicted):
         raise typer.BadParameter(
-            f"{n_predicted} --predicted and {n_tracks} --track; give the same number of both, or "
-            "run folders"
+            f"{n_predicted} --predicted and {n_tracks} --track; give the same number of both, one "
+            "or more, or run folders"
         )
     if request.estimate_offset and request.time_offset:
         raise typer.BadParameter("give --time-offset, or let --estimate-offset find it; not both")

@@ -51,15 +51,15 @@ def judge_run(
     inside = shared_time(track.poses, predicted.prediction.path, file=track.file)
     if inside.sum() - anchor < 2:
         raise DataError(
-            "poses left to score, without the first if paths start from it: "
-            f"{max(int(inside.sum()) - anchor, 0)}; expected two or more: track more photographs "
-            "or try --no-anchor",
+            "tracked poses to score within the predicted time, without the first if paths start "
+            f"from it: {max(int(inside.sum()) - anchor, 0)}; expected two or more: track more "
+            "photographs of that time or try --no-anchor",
             file=track.file,
         )
     if anchor and not np.isfinite(track.poses.yaw[inside][0]):
         raise SettingsError(
-            "the track has no headings, so its first pose cannot start a prediction; use "
-            "--no-anchor and look at the aligned errors",
+            "the track has no headings (column yaw_rad), so its first pose cannot start a "
+            "prediction; use --no-anchor and look at the aligned errors",
             key="--anchor",
         )
     judgement = judge(predicted.prediction, track.poses, anchor=anchor, rng=rng)

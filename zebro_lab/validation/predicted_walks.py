@@ -70,7 +70,7 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
     if not (track / TRACK_CSV).is_file():
         raise NotFound(
             f"{track}: no {TRACK_CSV}; make one with: zebro-lab track PHOTOS --run {run} "
-            "--camera camera.toml --floor floor.toml"
+            "--camera camera.toml --floor floor.toml --robot robot.toml"
         )
     return prediction, track
 

@@ -17,7 +17,7 @@ class ValidateRequest:
     ] = ()
     predicted: Annotated[
         tuple[Path, ...],
-        Option(help="Walk folder of predict, or a table with t, x, y, yaw; repeatable."),
+        Option(help="Walk folder, or a table with t [s], x, y [m] and yaw [rad]; repeatable."),
     ] = ()
     track: Annotated[
         tuple[Path, ...], Option(help="track.csv or its folder; one for each --predicted.")

@@ -53,7 +53,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     given = zip(request.predicted, request.track, strict=True)
     asked = (*map(pairs_of_run, request.runs), *given)
     if not asked:
-        raise SettingsError("missing: nothing to validate", key="--predicted, --track")
+        raise SettingsError("missing: give run folders or both", key="--predicted, --track")
     inputs = [path for pair in asked for path in pair]
     require_replaceable(request.folder, VALIDATION, inputs=inputs)
     watcher.step("reading", None)

@@ -88,7 +88,8 @@ def informed_legs(
     names = ", ".join(walks.posterior.walks)
     if not same:
         floor = walks.posterior.of_floor_alone(rng=np.random.default_rng(_SEED))
-        note = f"walks: {names} inform the floor alone, since another robot walked them"
+        why = "another robot walked them" if same_legs is None else "the leg angles are exact"
+        note = f"walks: of the fit to {names} the floor alone is used, since {why}"
         return InformedLegs(floor, None, walks.folder, (note,))
     index = _index(walks, logs)
     notes = [f"walks: legs and floor are those fitted to {names}"]

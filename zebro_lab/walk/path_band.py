@@ -28,6 +28,7 @@ from zebro_lab.walk.walking import INFORMED_MODEL, Walked
 SAMPLING = 0.1  # s between the poses kept of each draw
 ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand
 _STEPS_SHOWN = 50  # progress reports
+_ADVICE = f"delete {DRAWS} if it is there, and run walk or predict again with --draws 500"
 
 
 def band_settings(request: BandRequest) -> dict[str, object]:
@@ -109,8 +110,8 @@ def _leg_state(
         return LegState.of_prior(request.draws, offset_sd=offset_sd, rng=rng)
     if request.offset_sd_deg is not None:
         raise SettingsError(
-            f"the walks of {informed.folder} determine the legs' offsets; leave the option out, or "
-            "choose a slip.toml with no walks/ in its folder",
+            f"the fit of walks in {informed.folder} gives the spread of the legs' offsets; leave "
+            "the option out, or choose a slip.toml with no walks/ in its folder",
             key="--offset-sd-deg",
         )
     return informed.draw(request.draws, rng=rng)
@@ -159,15 +160,15 @@ def read_draws(folder: Path) -> Poses:
             times do not increase.
     """
     file = folder / DRAWS
-    arrays = read_arrays(file, ("t", "poses"), advice="run predict with --draws 500 to create it")
+    arrays = read_arrays(file, ("t", "poses"), advice=_ADVICE)
     t, poses = arrays["t"], arrays["poses"]
     if t.ndim != 1 or poses.ndim != 3 or poses.shape[1:] != (len(t), 3) or 0 in poses.shape:
         raise DataError(
-            f"holds poses of shape {poses.shape} at times of shape {t.shape}; predict again",
+            f"holds poses of shape {poses.shape} at times of shape {t.shape}; {_ADVICE}",
             file=file,
         )
-    with parsing(file, "cannot be read as poses", advice="predict again"):
+    with parsing(file, "cannot be read as poses", advice=_ADVICE):
         t, poses = t.astype(float), poses.astype(float)
     if not np.all(np.diff(t) > 0):
-        raise DataError("holds times that do not increase; predict again", file=file)
+        raise DataError(f"holds times that do not increase; {_ADVICE}", file=file)
     return Poses.of_states(t, poses)

@@ -99,7 +99,7 @@ def robot_of_walk(manifest: Mapping[str, Any], folder: Path) -> Robot:
         )
     except (KeyError, TypeError, ValueError) as error:
         raise DataError(
-            f"settings.robot is missing or incomplete ({error}); predict the walk again",
+            f"settings.robot is missing or invalid ({error}); run walk or predict again",
             file=folder / MANIFEST,
         ) from error
 

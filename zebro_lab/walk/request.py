@@ -21,7 +21,7 @@ class BandRequest:
     draws: Annotated[
         int,
         Option(
-            min=0, help="Number of draws for the band (draws.npz, band.csv, band.png); 0 for none."
+            min=0, help="Draws for the band (draws.npz, band.csv, band.png), 2 or more; 0 for none."
         ),
     ] = 0
     seed: Annotated[int, Option(help="Seed of the band's draws.")] = 1
@@ -29,8 +29,8 @@ class BandRequest:
         float | None,
         Option(
             min=0.0,
-            help="Standard deviation of the unknown leg offsets [deg]; default: that of an "
-            "encoder count, or 0.3.",
+            help="Standard deviation of the unknown leg offsets [deg]; default: encoder step / "
+            "sqrt(12), or 0.3 for angles that are not in encoder steps.",
         ),
     ] = None
     start_sd: Annotated[
@@ -43,10 +43,10 @@ class BandRequest:
         """Raise `SettingsError` for one or negative draws, or a negative sd for some draws."""
         if self.draws < 2 and self.draws != 0:
             raise SettingsError(
-                f"is {self.draws}; a band needs 2 or more, such as 200", key="--draws"
+                f"is {self.draws}; expected 2 or more, or 0 for no band", key="--draws"
             )
         if self.draws and any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
-            raise SettingsError("a standard deviation is negative", key="--start-sd")
+            raise SettingsError("expected standard deviations of 0 or more", key="--start-sd")
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class ModelRequest:
     slip: Annotated[
         str | None,
         Option(
-            help="Slip law: a slip.toml, its folder, coulomb:MU[:V] (V in m/s) or thesis. "
-            "Required by models with slip.",
+            help="Slip law: a slip.toml, its folder, thesis, or coulomb:MU[:V], friction MU, 71 % "
+            "of it at slip velocity V (0.001 m/s). Required by dynamics and thesis.",
             metavar="SLIP",
         ),
     ] = None
@@ -73,17 +73,17 @@ class ModelRequest:
     ] = "saturated"
     robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
     arc_deg: Annotated[
-        float | None, Option(help="Arc of the legs, 180 to 200, instead of the robot's [deg].")
+        float | None, Option(help="Arc of the legs, 90 to below 360 [deg]; default: the robot's.")
     ] = None
     dt: Annotated[
-        float | None, Option(min=0.0, help="Time step [s]; default: that of the model.")
+        float | None, Option(min=0.0, help="Time step, above 0 [s]; default: the model's.")
     ] = None
     band: BandRequest = field(default_factory=BandRequest)
     figures: Annotated[
         bool, Option("--figures", help="Draw figures of path, motion, forces and contacts.")
     ] = False
     animate: Annotated[
-        bool, Option("--animate", help="Write an animation of the robot: mp4, or gif.")
+        bool, Option("--animate", help="Write an animation: mp4, or gif without ffmpeg.")
     ] = False
 
     @property

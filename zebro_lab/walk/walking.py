@@ -169,14 +169,14 @@ def _require_steps(duration: float, dt: float) -> None:
     """Raise `SettingsError` unless the walk has more than 1 and at most `MOST_STEPS` steps."""
     if not (dt > 0 and duration > dt and np.isfinite(duration)):
         raise SettingsError(
-            f"found {duration:g} s in steps of {dt:g} s; expected a step above 0 and a finite "
-            "duration longer than one step",
+            f"found a walk of {duration:g} s in steps of {dt:g} s; expected a step above 0 and a "
+            "finite duration longer than one step (predict takes that of its leg log)",
             key="--duration, --dt",
         )
     if duration / dt > MOST_STEPS:
         raise SettingsError(
             f"{duration:g} s in steps of {dt:g} s is {duration / dt:.3g} steps; at most "
-            f"{MOST_STEPS:,} are walked, which take 1 GB of memory: walk for a shorter time, or "
-            "lengthen --dt",
+            f"{MOST_STEPS:,} are walked, which take 1 GB of memory: shorten the walk (for predict "
+            "its leg log), or lengthen --dt",
             key="--duration, --dt",
         )

@@ -158,7 +158,7 @@ def _tilt(
         return None, (), ()
     inside = (measured.t >= start) & (measured.t <= end)
     if not inside.any() or np.ptp(measured.t[inside]) < FEWEST * TIME:
-        note = f"roll and pitch are not used: no IMU data from {start:g} to {end:g} s, as the legs"
+        note = f"roll and pitch are not used: under 1 s of IMU data at {start:g} to {end:g} s"
         return None, (), (note,)
     seen = MeasuredTilt(measured.t[inside] - start, measured.angles[inside])
     return seen, measured.files, ("roll and pitch of the IMU inform which leg is mounted wrong",)
@@ -193,7 +193,7 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
             file=track.file,
         )
     left_out = int((~keep).sum())
-    notes = (f"{left_out} tracked poses lie outside the leg log's time",) if left_out else ()
+    notes = (f"{left_out} poses outside the leg log's time are not used",) if left_out else ()
     part = replace(track, poses=track.poses.part(keep))
     return part, notes
 
@@ -201,9 +201,10 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
 def _require_states(track: TrackFile) -> None:
     """Raise `DataError` unless a track has headings and positive definite covariances."""
     if not track.poses.has_yaw:
-        raise DataError("has no headings, which a fit of walks needs", file=track.file)
+        raise DataError("has no headings (yaw_rad), which a fit of walks needs", file=track.file)
     if not np.all(np.linalg.eigvalsh(track.covariance) > 0):
         raise DataError(
-            "has no covariance, which a fit of walks needs: add columns cov_xx to cov_yawyaw",
+            "has no covariance, or a singular one (a variance of 0); a fit of walks needs columns "
+            "cov_xx, cov_xy, cov_xyaw, cov_yy, cov_yyaw, cov_yawyaw, positive definite",
             file=track.file,
         )

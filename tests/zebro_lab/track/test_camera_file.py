@@ -45,7 +45,7 @@ FAULTS = {
     "unknown key": (GOOD + "focall = 1", "did you mean 'focal'"),
     "no focal length": ("size = [1280, 960]\ncentre = [640, 480]", "focal: is missing"),
     "negative focal length": (GOOD.replace("1401", "-3"), "focal: is 1400, -3 px"),
-    "half a pixel": (GOOD.replace("1280", "1280.5"), "whole numbers"),
+    "half a pixel": (GOOD.replace("1280", "1280.5"), "integers of at least 16"),
     "too few numbers": (GOOD + "distortion = [0.1]", "expected a list of 5"),
     "text": (GOOD.replace("1400", '"wide"'), r"focal\[0\]"),
     "no TOML": ("size = ", "cannot be read as TOML"),

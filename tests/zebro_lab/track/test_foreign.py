@@ -65,7 +65,7 @@ def test_a_tum_file_comes_back_as_it_was_written(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "is empty"),
+        ("", "has no pose"),
         ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.*found 3 numbers"),
         ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.*length 2"),
         ("0 0 0 0 0 0 zero 1\n", "expected 8 numbers"),

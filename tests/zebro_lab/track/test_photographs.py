@@ -73,5 +73,5 @@ def test_a_table_alone_is_no_track_folder(track):
 def test_a_track_that_names_no_photographs_is_said_to_be_so(track):
     table = pd.read_csv(track / "track.csv", comment="#").drop(columns="photo")
     table.to_csv(track / "track.csv", index=False)
-    with pytest.raises(DataError, match=r"track\.csv: does not name photographs"):
+    with pytest.raises(DataError, match=r"track\.csv: has no column photo"):
         photos_of_track(track)

@@ -53,7 +53,7 @@ ERRORS = {
     "option of another gait": (("--tau-turn", 0.1), "--tau-turn: does not apply to gait 'trip"),
     "no such robot": (("--robot", "none.toml"), "none.toml: no such file"),
     "no slip law": (("--slip", "ice"), "--slip: 'ice' is not a file or folder"),
-    "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is not a friction law"),
+    "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is no friction law"),
     "no time": (("--duration", 0), "finite duration longer than one step"),
     "no arc": (("--arc-deg", 10), "leg_arc is 10 degrees"),
 }  # fmt: skip

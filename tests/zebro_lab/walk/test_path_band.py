@@ -92,10 +92,10 @@ def test_offsets_spread_as_asked_by_the_count_or_as_assumed():
 @pytest.mark.parametrize(
     ("t", "poses", "message"),
     [
-        ([[0.0, 1.0]], np.zeros((2, 2, 3)), r"at times of shape \(1, 2\); predict again"),
+        ([[0.0, 1.0]], np.zeros((2, 2, 3)), r"at times of shape \(1, 2\); delete"),
         ([0.0, 1.0], np.zeros((2, 3, 3)), r"holds poses of shape \(2, 3, 3\)"),
         ([], np.zeros((2, 0, 3)), r"holds poses of shape \(2, 0, 3\)"),
-        ([1.0, 1.0], np.zeros((2, 2, 3)), "holds times that do not increase; predict again"),
+        ([1.0, 1.0], np.zeros((2, 2, 3)), "holds times that do not increase; delete draws"),
         (["a", "b"], np.zeros((2, 2, 3)), "cannot be read as poses"),
     ],
 )

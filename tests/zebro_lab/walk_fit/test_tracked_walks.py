@@ -29,7 +29,7 @@ def test_a_walk_comes_with_its_time_from_zero_and_its_counts_recognised(tmp_path
 def test_poses_outside_the_log_are_left_out_and_said(tmp_path):
     walk = read_walk_on_file(write_walk(tmp_path / "walk", late=-3.0))
     assert len(walk.tracked.t) == 4
-    assert any("2 tracked poses lie outside" in note for note in walk.notes)
+    assert any("2 poses outside the leg log" in note for note in walk.notes)
 
 
 @pytest.mark.parametrize(

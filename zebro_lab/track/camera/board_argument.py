@@ -58,7 +58,7 @@ def _grid(text: str, part: str) -> tuple[int, int]:
 def _length(text: str, part: str) -> float:
     length = quantity_to_si(part, "m")
     if not 0 < length < 1:
-        raise _error(text, f"'{part}' is not between 0 and 1 m; give a unit, as in 25mm")
+        raise _error(text, f"'{part}' is not above 0 and below 1 m; give a unit, as in 25mm")
     return length
 
 

@@ -89,7 +89,7 @@ def _common_loads(curves: tuple[SlipCurve, ...], second: Path) -> Array:
         ranges = [f"{a:.3g} to {b:.3g} N" for a, b in (curve.load_range for curve in curves)]
         raise DataError(
             f"was tested at {ranges[1]}, the first at {ranges[0]}: no load is common to both; test "
-            "one again",
+            "one again at loads of the other",
             file=second,
         )
     return np.unique(np.linspace(low, high, 3))

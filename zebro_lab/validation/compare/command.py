@@ -19,9 +19,9 @@ zebro-lab compare calibration-tiles calibration-carpet
 
 zebro-lab compare data/RUN1 data/RUN2 --out tiles-carpet
 
-Of calibrations the curve is compared at loads that both were tested at, and what walks said. Of
-runs speed, yaw rate and curvature, tracked and predicted. Probabilities take the two for
-independent; a track's errors are taken for independent from pose to pose.
+Of calibrations the curve is compared at loads that both were tested at, and legs and floor if both
+were fitted to walks. Of runs speed, yaw rate and curvature, tracked and predicted. Probabilities
+take the two for independent; a track's errors are taken for independent from pose to pose.
 """
 
 

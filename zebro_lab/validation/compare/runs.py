@@ -52,7 +52,7 @@ def compare_runs(
     if not quantities:
         raise DataError(
             f"has {_what(runs[1])}, the first has {_what(runs[0])}: nothing is common to both; "
-            "track or predict the same in both",
+            "track both (with headings), or predict both with --draws 500",
             file=second,
         )
     return Comparison(
@@ -159,5 +159,6 @@ def _from_origin(poses: Poses) -> Poses:
 
 
 def _what(run: _Run) -> str:
-    parts = [name for name, part in (("a track", run.track), ("draws", run.band)) if part]
-    return " and ".join(parts)
+    has_yaw = run.track is not None and run.track.poses.has_yaw
+    track = "a track" if has_yaw else "a track without headings"
+    return " and ".join(name for name, part in ((track, run.track), ("draws", run.band)) if part)

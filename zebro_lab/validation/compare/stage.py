@@ -66,8 +66,8 @@ def _kind(path: Path) -> str:
     if is_walked(path):
         return "run"
     raise NotFound(
-        f"{path} holds no {SLIP_TOML}, track/ or prediction/ with draws; choose two folders that "
-        "calibrate-slip wrote, or two runs"
+        f"{path} is no folder with {SLIP_TOML}, track/track.csv or prediction/draws.npz; choose "
+        "two folders that calibrate-slip wrote, or two runs"
     )
 
 

@@ -30,7 +30,7 @@ def test_what_cannot_be_compared_is_named(tmp_path):
     (tmp_path / "empty").mkdir()
     with pytest.raises(SettingsError, match="two of a kind"):
         compare(CompareRequest(slip, run, tmp_path / "out"))
-    with pytest.raises(NotFound, match="holds no"):
+    with pytest.raises(NotFound, match="is no folder with"):
         compare(CompareRequest(slip, tmp_path / "empty", tmp_path / "out"))
     with pytest.raises(SettingsError, match="with itself"):
         compare(CompareRequest(slip, slip, tmp_path / "out"))

@@ -40,15 +40,23 @@ class ImportRequest:
         None
     )
     columns: Annotated[
-        Path | None, Option(metavar="FILE", help="columns.toml instead of those by the files.")
+        Path | None,
+        Option(metavar="FILE", help="columns.toml to use instead of those beside the files."),
     ] = None
-    label: Annotated[str | None, Option(help="Name of the run; default: name of the file.")] = None
+    label: Annotated[
+        str | None,
+        Option(
+            help="Name of the run, or first part of the names of several runs in a rig table; "
+            "default: name of the leg or rig file."
+        ),
+    ] = None
     start: Annotated[
         datetime | None,
         Option(
             metavar="TIME",
             parser=_moment,
-            help="Date at which time in the files is 0, such as 2026-03-04T05:06:07+00:00.",
+            help="Date, time and time zone at which the files' time is 0, such as "
+            "2026-03-04T05:06:07+00:00; default: 1970 for times of 1e9 s and more, else now.",
         ),
     ] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"

@@ -225,7 +225,10 @@ class ForceCheck:
         elif cell is not None:
             self._forces = partial(decode_forces, cell)
         else:
-            raise SettingsError(f"profile '{profile.name}' has no board or load cell", key="--rig")
+            problem = (
+                f"profile '{profile.name}' has neither [board] nor [load_cell]; choose another"
+            )
+            raise SettingsError(problem, key="--rig")
         self._normal = SampleGuard(limits.normal_force, quantity="normal force", unit="N")
         self._traction = SampleGuard(limits.traction_force, quantity="traction force", unit="N")
 

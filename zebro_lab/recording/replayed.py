@@ -69,7 +69,10 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     views = profile_views(file)
     for each in chosen:
         if each not in views:
-            raise DataError(f"does not describe the recorded stream '{each}'", file=file)
+            problem = (
+                f"has no section for the stream '{each}' of the run; restore the run's profile"
+            )
+            raise DataError(problem, file=file)
     streams = {name or each: (each, found[names[each]]) for each in chosen}
     return Replayed(
         tuple(

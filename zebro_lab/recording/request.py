@@ -31,8 +31,9 @@ class RecordRequest:
     duration: Annotated[
         float | None,
         Option(
-            help="Duration after every device has sent a sample [s]; default: until q, Ctrl-C or "
-            "the end of --play or of the replayed run."
+            help="Longest duration, from when every device has sent a sample, more than 0 [s]; "
+            "q, Ctrl-C and the end of --play or of the longest replayed run end it earlier; "
+            "default: no limit."
         ),
     ] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
@@ -48,13 +49,16 @@ class CheckRequest:
     address: Annotated[
         str, Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim to simulate one.")
     ]
-    save: Annotated[Path, Option(metavar="FILE", help="Profile to write.")] = Path("zebro.toml")
+    save: Annotated[Path, Option(metavar="FILE", help="Profile to write, a new file.")] = Path(
+        "zebro.toml"
+    )
     touchdown_deg: Annotated[
         float | None,
         Option(
             "--lift-off-for",
             metavar="DEG",
-            help="Also find the lift-off angle of equal hip height for this touchdown angle [deg].",
+            help="Also find the lift-off angle with the hip height of this touchdown angle, which "
+            "is below 90; 0 is ahead, 90 down [deg].",
         ),
     ] = None
 
@@ -65,7 +69,7 @@ Can: TypeAlias = Annotated[
     Option(
         metavar="INTERFACE:CHANNEL",
         help="CAN bus of the system to use, such as socketcan:vcan0; default: a simulated SLCAN "
-        "adapter at a serial port. Only for profiles of devices on CAN.",
+        "adapter at a new port. Without effect if the profile is of a device that is not on CAN.",
     ),
 ]
 Socket: TypeAlias = Annotated[

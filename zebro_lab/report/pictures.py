@@ -68,7 +68,8 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
     """
     data = read_bytes(file, most=MOST_PICTURE)
     if not data.startswith(_PNG):
-        raise DataError("is not a PNG picture; run the command that wrote it again", file=file)
+        problem = "is not a PNG picture; delete it and run the command that wrote it again"
+        raise DataError(problem, file=file)
     encoded = base64.b64encode(data).decode("ascii")
     caption = caption_of(file.stem, stage=stage)
     return Picture(

@@ -17,37 +17,57 @@ class GaitRequest:
 
     name: Annotated[GaitName, Option("--gait", help="Gait: pattern of leg motion.")] = "tripod"
     steering: Annotated[
-        float | None, Option(help="Outer to inner stance angle of the tripod; 1 is straight.")
+        float | None,
+        Option(
+            help="Stance angle of the outer legs by that of the inner legs, for tripod, more than "
+            "0; default: 1, which is straight."
+        ),
     ] = None
     direction: Annotated[
-        Side | None, Option(help="Side to turn to, for tripod, suriana and maxplus.")
+        Side | None, Option(help="Side to turn to, for tripod, suriana and maxplus; default: left.")
     ] = None
     touchdown_deg: Annotated[
-        str | None, Option(metavar=_PAIR, help="Leg angle at touchdown [deg].")
+        str | None,
+        Option(
+            metavar=_PAIR,
+            help="Leg angle at touchdown, 0 ahead, 90 down [deg]; default: 50 for tripod and "
+            "buehler, 45 for tetrapod, else 35. OUTER for tripod only; default: computed.",
+        ),
     ] = None
     liftoff_deg: Annotated[
         str | None,
-        Option(metavar=_PAIR, help="Leg angle at lift-off [deg]; default for tripod: computed."),
+        Option(
+            metavar=_PAIR,
+            help="Leg angle at lift-off, 0 ahead, 90 down [deg]; default: computed for tripod, 118 "
+            "for buehler, 135 for tetrapod, else 130. OUTER for tripod only.",
+        ),
     ] = None
     cycle: Annotated[
-        float | None, Option(help="Duration of a cycle, for tripod, tetrapod and buehler [s].")
+        float | None,
+        Option(
+            help="Duration of a cycle, for tripod, tetrapod and buehler [s]; default: 2, for "
+            "tetrapod 3."
+        ),
     ] = None
     tau_ground: Annotated[
         float | None,
         Option(
             help="Stance time without --tau-turn, for suriana and buehler; shortest stance time, "
-            "for maxplus [s]."
+            "for maxplus [s]; default: 0.8, for buehler half a cycle."
         ),
     ] = None
     tau_flight: Annotated[
         float | None,
-        Option(help="Flight time of the legs without --tau-turn, for suriana and maxplus [s]."),
+        Option(
+            help="Flight time of the legs without --tau-turn, for suriana and maxplus [s]; "
+            "default: 0.8."
+        ),
     ] = None
     tau_turn: Annotated[
         float | None,
         Option(
             help="Time added to stance of the inner and to flight of the outer legs, for suriana "
-            "and maxplus [s]."
+            "and maxplus [s]; default: 0, which is straight."
         ),
     ] = None
 

@@ -169,12 +169,13 @@ def _require_radii(manifest: RunManifest, file: Path) -> None:
         radius = manifest.constants.get(name)
         if isinstance(radius, bool) or not isinstance(radius, (int, float)):
             raise DataError(
-                f"constants.{name} is {radius!r}, expected a radius in m", file=file, column=name
-            )
+                f"constants.{name} is {'missing or null' if radius is None else repr(radius)}, "
+                "expected a radius in m", file=file, column=name,
+            )  # fmt: skip
         if not (np.isfinite(radius) and radius > 0):
             raise DataError(
-                f"is {radius:g} m, expected more than 0", file=file, column=name, value=radius,
-                unit="m",
+                f"is {radius:g} m, expected more than 0 and finite (constants.{name})", file=file,
+                column=name, value=radius, unit="m",
             )  # fmt: skip
 
 
@@ -191,7 +192,8 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
     if manifest.log_sha256 is not None and file_hash(path) != manifest.log_sha256:
         raise DataError(
             f"was changed after the recording: its SHA-256 differs from that in {MANIFEST_FILE}; "
-            "restore the log, or exclude the run: zebro-lab exclude RUN --why REASON",
+            "restore the log, or leave the run out of calibrations: zebro-lab exclude RUN --why "
+            "REASON",
             file=path,
         )
 

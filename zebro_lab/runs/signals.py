@@ -107,7 +107,8 @@ def read_signals(folder: Path) -> RunSignals:
         run = read_slip_rig_run(folder)
         panels, notes = list(_of_table(run.table.rows(), manifest)), run.notes
     if not panels:
-        raise DataError("holds no samples to plot", file=log)
+        problem = f"holds no samples to plot, or only of streams that {RIG}.toml does not describe"
+        raise DataError(problem, file=log)
     state = run_state(folder, manifest)
     if manifest.excluded is not None:
         state = f"excluded: {manifest.excluded.get('why', 'no reason given')}"

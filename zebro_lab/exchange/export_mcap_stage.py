@@ -133,10 +133,8 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     predicted = _read_predicted(run / PREDICTION, track)
     recorded = read_manifest(run) if is_recorded(run) else None
     if track is None and predicted is None:
-        raise NotFound(
-            f"{run} has neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{PATH_CSV}; first write one "
-            f"with zebro-lab track --run {run} or zebro-lab predict {run} --out {run / PREDICTION}"
-        )
+        what = f"neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{PATH_CSV}"
+        raise NotFound(f"{run} has {what}; first run track --run, or predict --out, for it")
     start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)
@@ -281,6 +279,5 @@ def _notes(run: Path, track: TrackFile | None, predicted: _Predicted | None) -> 
     if predicted is None:
         return [f"without a prediction: zebro-lab predict {run} --out {run / PREDICTION} writes it"]
     if predicted.draws is None:
-        again = f"zebro-lab predict {run} --draws 500 --out {run / PREDICTION}"
-        return [f"without an uncertainty band: {again} writes it, with its earlier options"]
+        return ["without an uncertainty band: zebro-lab predict with --draws 500 writes it"]
     return []

@@ -219,10 +219,6 @@ def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -
         require_new(path)
     if len(set(paths)) < len(paths):
         twice = next(path for path in paths if paths.count(path) > 1)
-        one, other, *_ = (
-            m.label for m, path in zip(manifests, paths, strict=True) if path == twice
-        )
-        raise DataError(
-            f"runs '{one}' and '{other}' start in the same second, and the folder of both would be "
-            f"{twice}; change the letters or digits of a name in the table"
-        )
+        names = [f"'{m.label}'" for m, path in zip(manifests, paths, strict=True) if path == twice]
+        found = f"runs {' and '.join(names)} start in the same second, and would all be {twice}"
+        raise DataError(f"{found}; change the letters or digits of a name in the table")

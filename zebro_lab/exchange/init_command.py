@@ -43,7 +43,5 @@ def _to_check(found: set[str]) -> list[str]:
         advice.append("[columns.slip_ratio] needs definition: material, travel or larger")
     if speeds and not {"radius_leg", "radius_ground"} <= found:
         advice.append("[constants] needs radius_leg and radius_ground, except those in a column")
-    advice.append(
-        "[runs] must state what separates runs, unless a column 'run' does or a file is one run"
-    )
+    advice.append("[runs] must state what separates runs, if neither a column 'run' nor files do")
     return advice

@@ -50,8 +50,7 @@ def read_arrays(
         unpacked = sum(member.file_size for member in wanted.values())
         if unpacked > most:
             raise DataError(
-                f"would unpack to {unpacked / 1e6:.0f} MB; expected at most {most / 1e6:.0f} MB: "
-                "check that this is the right file",
+                f"would unpack to {unpacked / 1e6:.0f} MB; expected at most {most / 1e6:.0f} MB",
                 file=path,
             )
         return {name: _array(archive, member, path) for name, member in wanted.items()}

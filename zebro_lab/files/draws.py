@@ -14,7 +14,6 @@ from zebro_lab.files.opening import open_file, parsing
 if TYPE_CHECKING:
     import h5py
 
-_AGAIN: Final = "delete the file and calibrate again"
 MOST_DRAWS: Final = 4_000_000
 """Largest number of draws per parameter; a calibration writes some ten thousand."""
 
@@ -70,7 +69,9 @@ def _own(group: "h5py.Group", name: str, path: Path) -> object:
     import h5py
 
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-        raise DataError(f"has no '{name}', or only a link to one elsewhere; {_AGAIN}", file=path)
+        raise DataError(
+            f"has no '{name}', or only a link to one elsewhere; calibrate again", file=path
+        )
     return group[name]
 
 
@@ -79,9 +80,11 @@ def _draws(group: "h5py.Group", name: str, path: Path) -> NDArray[np.float64]:
 
     found = _own(group, name, path)
     if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "fiu":
-        raise DataError(f"'{name}' does not hold numbers; {_AGAIN}", file=path)
+        raise DataError(f"'{name}' does not hold numbers; calibrate again", file=path)
     if found.external or found.is_virtual:
-        raise DataError(f"refers to data elsewhere for the draws of '{name}'; {_AGAIN}", file=path)
+        raise DataError(
+            f"refers to data elsewhere for the draws of '{name}'; calibrate again", file=path
+        )
     size = found.size or 0  # None for a dataset declared empty
     if not 0 < size <= MOST_DRAWS:
         raise DataError(f"has {size} draws of '{name}'; expected 1 to {MOST_DRAWS}", file=path)

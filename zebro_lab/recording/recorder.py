@@ -224,8 +224,7 @@ class RunRecorder:
             finishing.join(JOIN_LIMIT + END_LIMIT)
             raise
         if finishing.is_alive():
-            limit = JOIN_LIMIT + END_LIMIT
-            self._fail(f"the end of the run could not be written within {limit:g} s")
+            self._fail(f"the run's end was not written within {JOIN_LIMIT + END_LIMIT:g} s")
 
     def _start_thread(self, task: Callable[[RunFiles], None], files: RunFiles) -> threading.Thread:
         thread = threading.Thread(target=task, args=(files,), daemon=True, name="recorder")

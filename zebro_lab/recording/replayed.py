@@ -69,10 +69,7 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     views = profile_views(file)
     for each in chosen:
         if each not in views:
-            problem = (
-                f"has no section for the stream '{each}' of the run; restore the run's profile"
-            )
-            raise DataError(problem, file=file)
+            raise DataError(f"does not describe stream '{each}' of the log; restore it", file=file)
     streams = {name or each: (each, found[names[each]]) for each in chosen}
     return Replayed(
         tuple(

@@ -179,14 +179,12 @@ def _part(name: str, folder: Path, data: Path) -> Part:
     expected = ("predict", "walk") if name == PREDICTION else (name,)
     if kind not in expected:
         raise DataError(
-            f"'kind' is {kind or 'missing'}, expected {' or '.join(expected)}: in this folder the "
-            f"report shows the result {name}",
+            f"'kind' is {kind or 'missing'}, expected {' or '.join(expected)} in this folder",
             file=folder / MANIFEST,
         )
     listed = documents[MANIFEST].get("outputs", {})
     if not isinstance(listed, dict):
-        problem = f"'outputs' is {listed!r}; expected an object with a SHA-256 for each file name"
-        raise DataError(problem, file=folder / MANIFEST)
+        raise DataError(f"'outputs' is {listed!r}; expected an object", file=folder / MANIFEST)
     named = [each for each in sorted(listed, key=place_of) if each.endswith(".png")]
     inside = {each: folder / each for each in named if lies_in(folder, each)}
     return Part(
@@ -228,8 +226,5 @@ def _read(file: Path) -> Mapping[str, Any]:
     except NotFound as error:
         raise DataError("is missing; run the command that writes it again", file=file) from error
     if not isinstance(content, dict):
-        problem = (
-            "is not a JSON object: expected named values in braces; restore the file, or move "
-        )
-        raise DataError(f"{problem}its folder away and create that again", file=file)
+        raise DataError("is not a JSON object; restore it, or create its folder anew", file=file)
     return content

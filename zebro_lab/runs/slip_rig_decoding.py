@@ -55,8 +55,7 @@ def derive_table(
             cell, drives = (_require(streams, name, folder) for name in ("load_cell", "drives"))
             table = _of_two(profile.drives, profile.load_cell, drives, cell)
         else:
-            problem = "has neither [board] nor both [drives] and [load_cell]; restore the profile"
-            raise DataError(problem, file=file)
+            raise DataError("lacks [board], or [drives] and [load_cell]; restore it", file=file)
     except RigError as error:
         raise DataError(str(error), file=folder) from error
     if table.shape[1] == 0:

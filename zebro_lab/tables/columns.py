@@ -206,9 +206,7 @@ def _source(table: SettingsTable) -> str | None:
         return None
     source = table.text("source")
     if source.split(":")[0] not in _SOURCES:
-        raise table.fault(
-            f"found '{source}'; expected real, sim:WHAT, replay:WHAT or unknown", "source"
-        )
+        raise table.fault(f"found '{source}'; expected real, sim:WHAT or replay:WHAT", "source")
     return source
 
 

@@ -153,9 +153,8 @@ def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition)
             "slip_ratio",
             _first_rejected(inner, definition, other),
             lambda value: (
-                f"the slip ratio is {value}, impossible for the definition '{definition}', which "
-                f"is {_RANGES[definition]}; check in {COLUMNS_FILE} the definition, the sign and "
-                'the unit (such as unit = "%")'
+                f"the slip ratio is {value}, impossible for the definition '{definition}' "
+                f'({_RANGES[definition]}); check in {COLUMNS_FILE} definition, sign and unit = "%"'
             ),
         ) from error
 

@@ -70,7 +70,7 @@ def test_a_folder_with_nothing_to_report_is_named(tmp_path):
         (
             "manifest.json",
             "[]",
-            r"manifest\.json: is not a JSON object: expected named values in braces; restore",
+            r"manifest\.json: is not a JSON object; restore it",
         ),
         ("slip.toml", "[", r"slip\.toml: cannot be read as TOML.*delete it and run the command"),
     ],

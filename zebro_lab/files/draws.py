@@ -82,9 +82,7 @@ def _draws(group: "h5py.Group", name: str, path: Path) -> NDArray[np.float64]:
     if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "fiu":
         raise DataError(f"'{name}' does not hold numbers; calibrate again", file=path)
     if found.external or found.is_virtual:
-        raise DataError(
-            f"refers to data elsewhere for the draws of '{name}'; calibrate again", file=path
-        )
+        raise DataError(f"draws of '{name}' are stored elsewhere; calibrate again", file=path)
     size = found.size or 0  # None for a dataset declared empty
     if not 0 < size <= MOST_DRAWS:
         raise DataError(f"has {size} draws of '{name}'; expected 1 to {MOST_DRAWS}", file=path)

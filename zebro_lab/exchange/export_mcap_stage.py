@@ -133,7 +133,8 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     predicted = _read_predicted(run / PREDICTION, track)
     recorded = read_manifest(run) if is_recorded(run) else None
     if track is None and predicted is None:
-        raise NotFound(f"{run} has neither {TRACK}/ nor {PREDICTION}/; first run track or predict")
+        what = f"neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{PATH_CSV}"
+        raise NotFound(f"{run} has {what}; first run track --run, or predict --out, for it")
     start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)
@@ -274,7 +275,7 @@ def _thinned(t: Array, rate: float) -> Sequence[int]:
 
 def _notes(run: Path, track: TrackFile | None, predicted: _Predicted | None) -> list[str]:
     if track is None:
-        return [f"without a track: none is in {run / TRACK}; write it with zebro-lab track"]
+        return [f"without a track: none is in {run / TRACK}; zebro-lab track --run {run} writes it"]
     if predicted is None:
         return [f"without a prediction: zebro-lab predict {run} --out {run / PREDICTION} writes it"]
     if predicted.draws is None:

@@ -99,5 +99,5 @@ def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumn
             raise SettingsError(f"unknown key; {nearest(key, known)}", file=file, key=key)
     entries = document.get(what, {})
     if not isinstance(entries, dict):
-        raise SettingsError(f"found {entries!r}; expected a section", file=file, key=what)
+        raise SettingsError(f"found {entries!r}; expected a section [{what}]", file=file, key=what)
     return ForeignColumns(SettingsTable(source | entries, file=file, path=what))

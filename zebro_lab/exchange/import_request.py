@@ -8,6 +8,12 @@ from typing import Annotated
 
 from typer import BadParameter, Option
 
+_LABEL = "Name of the run, first part of it if a rig table has several; default: name of the file."
+_START = (
+    "Date, time and time zone at which the files' time is 0, such as 2026-03-04T05:06:07+00:00; "
+    "default: 1970 for times of 1e9 s and more, else now."
+)
+
 
 def _moment(text: str) -> datetime:
     try:
@@ -40,16 +46,9 @@ class ImportRequest:
         None
     )
     columns: Annotated[
-        Path | None, Option(metavar="FILE", help="columns.toml instead of those by the files.")
+        Path | None, Option(metavar="FILE", help="columns.toml instead of those beside the files.")
     ] = None
-    label: Annotated[str | None, Option(help="Name of the run; default: name of the file.")] = None
-    start: Annotated[
-        datetime | None,
-        Option(
-            metavar="TIME",
-            parser=_moment,
-            help="Date at which time in the files is 0, such as 2026-03-04T05:06:07+00:00.",
-        ),
-    ] = None
+    label: Annotated[str | None, Option(help=_LABEL)] = None
+    start: Annotated[datetime | None, Option(metavar="TIME", parser=_moment, help=_START)] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the person who recorded.")] = "unknown"

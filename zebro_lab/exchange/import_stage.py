@@ -97,8 +97,8 @@ def _require_something(request: ImportRequest) -> None:
                                     key=f"--{name}")  # fmt: skip
     if request.start is not None and request.start.tzinfo is None:
         raise SettingsError(
-            f"{request.start.isoformat()} has no time zone; write it as "
-            f"{request.start.isoformat()}+00:00",
+            f"{request.start.isoformat()} has no time zone; append it, such as +00:00 for UTC or "
+            "+01:00",
             key="--start",
         )
     if request.start is not None and not _FIRST <= request.start < _LAST:
@@ -179,8 +179,8 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
     began = _FIRST + timedelta(seconds=first) if first >= _UNIX else None
     if given is not None and began is not None:
         raise SettingsError(
-            f"times are seconds since 1970 already: the first is {began.isoformat()}; leave out "
-            "--start, or count times from 0",
+            f"times in the file are seconds since 1970 already: the first is {began.isoformat()}; "
+            "leave out --start, or count times from 0",
             key="--start",
         )
     if given is not None:
@@ -219,4 +219,6 @@ def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -
         require_new(path)
     if len(set(paths)) < len(paths):
         twice = next(path for path in paths if paths.count(path) > 1)
-        raise DataError(f"two runs would be written to {twice}; give the runs different names")
+        names = [f"'{m.label}'" for m, path in zip(manifests, paths, strict=True) if path == twice]
+        found = f"runs {' and '.join(names)} start in the same second, and would all be {twice}"
+        raise DataError(f"{found}; change the letters or digits of a name in the table")

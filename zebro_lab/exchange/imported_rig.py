@@ -83,8 +83,8 @@ def rig_runs(
     raw = read_table_file(path)
     table = RigTable(raw, columns, kept_rows(raw, columns))
     if columns.runs.each_row:
-        raise DataError(f"each row is the mean of a trial ([runs] each_row), not a sample; {_ELSE}",
-                        file=path)  # fmt: skip
+        raise DataError(f"each row is the mean of a trial, not a sample, as {COLUMNS_FILE} states "
+                        f"in [runs] each_row; {_ELSE}", file=path)  # fmt: skip
     _require_columns(table)
     runs = separate_runs(table, label)
     run_times(table, runs)

@@ -38,10 +38,10 @@ def _to_check(found: set[str]) -> list[str]:
     if not speeds and "slip_ratio" not in found:
         missing.append("slip_ratio (or omega_leg and omega_ground)")
     if missing:
-        advice.append(f"no column was found for {', '.join(missing)}: add it to columns.toml")
+        advice.append(f"no column was found for {', '.join(missing)}: add [columns.NAME] for each")
     if "slip_ratio" in found:
         advice.append("[columns.slip_ratio] needs definition: material, travel or larger")
     if speeds and not {"radius_leg", "radius_ground"} <= found:
-        advice.append("[constants] needs radius_leg and radius_ground")
-    advice.append("[runs] must state what separates runs, unless each file is one run")
+        advice.append("[constants] needs radius_leg and radius_ground, except those in a column")
+    advice.append("[runs] must state what separates runs, if neither a column 'run' nor files do")
     return advice

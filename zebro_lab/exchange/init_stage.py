@@ -95,7 +95,7 @@ def _column_section(table: RawTable, name: str, guesses: Mapping[str, ColumnGues
     if guess.others:
         lines[-1] += f"; CHECK: could also be {', '.join(map(_quoted, guess.others))}"
     if canonical.unit is not None:
-        check = "from its header" if guess.unit else "CHECK: the header shows no unit"
+        check = "from its header" if guess.unit else "CHECK: the header shows no fitting unit"
         lines.append(f"unit = {_quoted(guess.unit or canonical.unit)}  # {check}")
     if name == "normal_force":
         sign = "-1  # negative in the file" if guess.negative else "1"

@@ -44,7 +44,9 @@ def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
 
 def _chosen(rows: dict[str, Any], topic: str | None, path: Path) -> str:
     if topic is not None and topic not in rows:
-        raise DataError(f"has no joint states of topic {topic}; {nearest(topic, rows)}", file=path)
+        raise DataError(
+            f"has no joint positions on topic {topic}; {nearest(topic, rows)}", file=path
+        )
     if not rows:
         raise DataError(
             f"holds no joint positions; expected the leg angles in ROS 2 messages of type "

@@ -17,6 +17,7 @@ from zebro_lab.files.opening import open_file, parsing
 MOST_BYTES: Final = 256 << 20
 """Largest unpacked size of the arrays read: a band of 10,000 paths of one minute [bytes]."""
 _HEADERS: Final = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+_AGAIN: Final = "delete the file and compute the result again"
 _NUMBERS: Final = "biufU"  # booleans, integers, floats and fixed-length strings
 
 
@@ -59,7 +60,7 @@ def _member(archive: zipfile.ZipFile, name: str, path: Path) -> zipfile.ZipInfo:
     try:
         return archive.getinfo(f"{name}.npy")
     except KeyError as error:
-        raise DataError(f"has no array '{name}'; compute the result again", file=path) from error
+        raise DataError(f"has no array '{name}'; {_AGAIN}", file=path) from error
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDArray:
@@ -70,8 +71,8 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDA
     count = _product(shape)
     if dtype.kind not in _NUMBERS or dtype.hasobject or count * dtype.itemsize != len(data):
         raise DataError(
-            f"the array '{member.filename.removesuffix('.npy')}' holds {len(data)} bytes, expected "
-            f"{count} numbers of type {dtype}; compute the result again",
+            f"the array '{member.filename.removesuffix('.npy')}' has {len(data)} bytes of type "
+            f"{dtype}, expected {count * dtype.itemsize} bytes of numbers or texts; {_AGAIN}",
             file=path,
         )
     return np.frombuffer(data, dtype).reshape(shape, order="F" if fortran else "C")
@@ -81,7 +82,7 @@ def _header(
     file: IO[bytes], member: zipfile.ZipInfo, path: Path
 ) -> tuple[tuple[int, ...], bool, np.dtype]:
     name = member.filename.removesuffix(".npy")
-    with parsing(path, f"'{name}' is not an array of numbers", advice="compute the result again"):
+    with parsing(path, f"'{name}' is not an array of numbers", advice=_AGAIN):
         return _HEADERS[npy.read_magic(file)](file)
 
 

@@ -69,5 +69,5 @@ def require_object(content: object, path: Path) -> dict[str, Any]:
         DataError: The content is not an object but a list, number, string, bool or null.
     """
     if not isinstance(content, dict):
-        raise DataError("is not a JSON object", file=path)
+        raise DataError("is not a JSON object: expected named values in braces", file=path)
     return content

@@ -55,7 +55,7 @@ def read_draws_of(
         held = tuple(_text(name) for name in found)
         draws = {name: _draws(found, name, path) for name in names if name in held}
     if len({len(values) for values in draws.values()}) > 1:
-        raise DataError(f"holds different numbers of draws of parameters; {advice}", file=path)
+        raise DataError(f"has more draws of one parameter than of another; {advice}", file=path)
     return draws, held
 
 
@@ -69,7 +69,9 @@ def _own(group: "h5py.Group", name: str, path: Path) -> object:
     import h5py
 
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-        raise DataError(f"has a link to another place or file instead of '{name}'", file=path)
+        raise DataError(
+            f"has no '{name}', or only a link to one elsewhere; calibrate again", file=path
+        )
     return group[name]
 
 
@@ -78,9 +80,9 @@ def _draws(group: "h5py.Group", name: str, path: Path) -> NDArray[np.float64]:
 
     found = _own(group, name, path)
     if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "fiu":
-        raise DataError(f"'{name}' does not hold numbers", file=path)
+        raise DataError(f"'{name}' does not hold numbers; calibrate again", file=path)
     if found.external or found.is_virtual:
-        raise DataError(f"stores the draws of '{name}' in another file", file=path)
+        raise DataError(f"draws of '{name}' are stored elsewhere; calibrate again", file=path)
     size = found.size or 0  # None for a dataset declared empty
     if not 0 < size <= MOST_DRAWS:
         raise DataError(f"has {size} draws of '{name}'; expected 1 to {MOST_DRAWS}", file=path)

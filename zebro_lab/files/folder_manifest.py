@@ -44,11 +44,12 @@ def read_folder_manifest(
     """
     content = read_json_object(file, of=f"{of} folder")
     if content.get("kind") not in tuple(kinds):
-        raise DataError(f"is not a manifest of a {of}: expected 'kind' {' or '.join(kinds)}",
-                        file=file)  # fmt: skip
+        raise DataError(f"is not a manifest of a {of}: expected 'kind' {' or '.join(kinds)}, found "
+                        f"{content.get('kind', 'none')}", file=file)  # fmt: skip
     if content.get("schema") != schema:
         raise DataError(
-            f"has schema {content.get('schema')}; this version of zebro-lab reads schema {schema}",
+            f"has schema {content.get('schema', 'missing')}; this version of zebro-lab reads "
+            f"schema {schema}: use the version that wrote the file",
             file=file,
         )
     return content

@@ -53,7 +53,7 @@ def factor_to_si(unit: str, si_unit: str) -> float:
     if found[1] != wanted[1]:
         raise UnitError(
             f"unit '{unit}' cannot be converted to {si_unit}; "
-            f"expected one like {', '.join(_like(wanted[1]))}",
+            f"expected one like {', '.join(_like(wanted[1])) or si_unit}",
             unit=unit,
         )
     return found[0] / wanted[0]
@@ -81,7 +81,7 @@ def quantity_to_si(quantity: str | float, si_unit: str) -> float:
     else:
         raise UnitError(f"'{quantity}' is not a number with a unit such as '1 {si_unit}'", unit="")
     if not math.isfinite(number):
-        raise UnitError(f"{quantity} is not finite", unit=si_unit)
+        raise UnitError(f"{quantity} is infinite or NaN; expected a finite number", unit=si_unit)
     return number * factor
 
 

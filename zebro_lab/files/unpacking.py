@@ -97,7 +97,7 @@ class _Counted(io.BufferedIOBase):
         last = max(data.rfind(b"\n"), data.rfind(b"\r"))
         self._line = len(data) - last if last >= 0 else self._line + len(data)
         if self._line > LONGEST_LINE:
-            raise self._refuse(f"has a line of more than {LONGEST_LINE >> 20} MB; is it a table?")
+            raise self._refuse(f"has a line of more than {LONGEST_LINE >> 20} MB; is this a table?")
         if self._lines * self._width > MOST_CELLS:
             raise self._refuse(
                 f"has more than {MOST_CELLS / 1e6:.0f} million cells; split it, or drop columns "

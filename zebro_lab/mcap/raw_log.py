@@ -100,7 +100,7 @@ def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
     counts = reader.array(dtype)
     lengths = {len(part) for part in (host, device, sequence, status, channel)}
     if len(lengths) != 1 or len(counts) != len(host) * width:
-        raise ValueError(f"a message of {len(data)} bytes does not hold {len(host)} whole samples")
+        raise ValueError(f"a message has columns of different lengths, not of {len(host)} samples")
     shaped = counts.reshape(len(host), width)
     return SampleColumns(host, device, sequence, status, channel, shaped)
 

@@ -85,7 +85,7 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
     reader = CdrReader(data)
     columns = [reader.array("<f8") for _ in fields(SlipRigTable)]
     if len({len(column) for column in columns}) > 1 or not len(columns[0]):
-        raise ValueError(f"a message of {len(data)} bytes does not hold whole samples")
+        raise ValueError("a message has columns of different lengths, or no samples")
     return np.column_stack(columns)
 
 

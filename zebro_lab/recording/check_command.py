@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rig.zebro.check import MovedLeg
 
 app = typer.Typer(no_args_is_help=True)
+_LEGS = "1 to 6: left 1, 3, 5 and right 2, 4, 6, from the front"
 
 
 @app.callback()
@@ -32,8 +33,8 @@ def check(request: CheckRequest) -> None:
     checked = check_zebro(request, _Terminal())
     if checked.lift_off is not None:
         say(
-            f"lift-off angle {checked.lift_off.theta_deg:.1f} degrees: the height of the hip there "
-            f"differs by {1e3 * checked.lift_off.mismatch:+.1f} mm from that at touchdown"
+            f"lift-off angle {checked.lift_off.theta_deg:.1f} degrees (0 ahead, 90 down): the hip "
+            f"height there minus that at touchdown is {1e3 * checked.lift_off.mismatch:+.1f} mm"
         )
     say(f"wrote the profile {checked.file}; record with --zebro {checked.file}@PORT")
 
@@ -45,7 +46,7 @@ class _Terminal:
         """Prompt for the leg that moved with a channel (from 0), and for its direction."""
         from rig.zebro.check import MovedLeg
 
-        asked = f"channel {channel + 1} was moved; which leg turned (1 to 6)?"
+        asked = f"channel {channel + 1} was moved; which leg turned ({_LEGS})?"
         leg = typer.prompt(asked, value_proc=_leg_number)
         return MovedLeg(leg, typer.confirm("did that leg turn as in walking forward?"))
 
@@ -56,11 +57,11 @@ class _Terminal:
 
     def measure_height(self, theta_deg: float) -> float:
         """Prompt for the height of leg 1's hip in mm, leg at `theta_deg`; return it in m."""
-        asked = f"leg 1 stands at {theta_deg:.1f} degrees; hip height above ground [mm]?"
+        asked = f"legs are at {theta_deg:.1f} degrees; height of leg 1's hip above ground [mm]?"
         return typer.prompt(asked, type=float) / 1000
 
 
 def _leg_number(text: str) -> int:
     if text not in {"1", "2", "3", "4", "5", "6"}:
-        raise typer.BadParameter(f"found '{text}'; expected the number of a leg, 1 to 6")
+        raise typer.BadParameter(f"found '{text}'; expected {_LEGS}")
     return int(text)

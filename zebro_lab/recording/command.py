@@ -50,8 +50,8 @@ def _report(recorded: "Recorded") -> str:
         simulated = "SIMULATED " if manifest.sources[name].startswith("sim:") else ""
         lines.append(
             f"{simulated}{name}: {counters['received']} samples received, {counters['lost']} lost "
-            f"on the way, {rejected} rejected as damaged, repeated or impossible, "
-            f"{counters['dropped']} dropped by a slow disk"
+            f"on the way, {rejected} rejected as damaged, repeated, impossible or for another "
+            f"device, {counters['dropped']} dropped by a slow disk"
         )
     for name, clock in manifest.clocks.items():
         pace = "slower" if clock["drift"] > 0 else "faster"

@@ -225,7 +225,9 @@ class ForceCheck:
         elif cell is not None:
             self._forces = partial(decode_forces, cell)
         else:
-            raise SettingsError(f"profile '{profile.name}' has no board or load cell", key="--rig")
+            raise SettingsError(
+                f"profile '{profile.name}' lacks [board] or [load_cell]", key="--rig"
+            )
         self._normal = SampleGuard(limits.normal_force, quantity="normal force", unit="N")
         self._traction = SampleGuard(limits.traction_force, quantity="traction force", unit="N")
 

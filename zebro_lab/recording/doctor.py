@@ -136,8 +136,8 @@ def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
         if others:
             yield Finding(
                 Grade.BROKEN, f"module {module}",
-                f"is part of {package} and of {', '.join(others)}; run `pip uninstall "
-                f"{' '.join(others)}`, then `pip install --force-reinstall {package}`",
+                f"is provided by {', '.join(others)}, expected only from {package}; run `pip "
+                f"uninstall {' '.join(others)}`, then `pip install --force-reinstall {package}`",
             )  # fmt: skip
     yield from _local_shadows(folder, home)
 
@@ -172,7 +172,7 @@ def check_port(
     group = _group(device)
     return Finding(
         Grade.NOTE, what,
-        f"{description}; you may not read and write it. It belongs to the group {group}: run "
+        f"{description}; you may not read and write it. Join the group {group}, which may: run "
         f"`sudo usermod -aG {group} $USER`, then log in again",
     )  # fmt: skip
 

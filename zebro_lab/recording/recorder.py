@@ -224,7 +224,7 @@ class RunRecorder:
             finishing.join(JOIN_LIMIT + END_LIMIT)
             raise
         if finishing.is_alive():
-            self._fail(f"the end of the run could not be written within {END_LIMIT:g} s")
+            self._fail(f"the run's end was not written within {JOIN_LIMIT + END_LIMIT:g} s")
 
     def _start_thread(self, task: Callable[[RunFiles], None], files: RunFiles) -> threading.Thread:
         thread = threading.Thread(target=task, args=(files,), daemon=True, name="recorder")
@@ -298,7 +298,7 @@ class RunRecorder:
         whole = False
         with self._storing_failure(files.folder / LOG_FILE):
             if any(thread.is_alive() for thread in before):
-                raise RecordingError(f"the disk completed no write within {JOIN_LIMIT:g} s")
+                raise RecordingError(f"a write to the disk did not end within {JOIN_LIMIT:g} s")
             files.free_reserve()
             if self._failure is None:
                 self._finish_log(files)

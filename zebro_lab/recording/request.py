@@ -8,6 +8,14 @@ from typing import Annotated, TypeAlias
 from typer import Argument, Option
 
 _ADDRESS = "PROFILE@PORT|sim|replay:RUN"
+_DURATION = (
+    "Longest duration, from when every device has sent a sample, more than 0 [s]; q, Ctrl-C and "
+    "the end of --play or of the longest replayed run end it earlier; default: no limit."
+)
+_FOR = (
+    "Also find the lift-off angle with the hip height of this touchdown angle, which is below 90; "
+    "0 is ahead, 90 down [deg]."
+)
 
 
 @dataclass(frozen=True)
@@ -28,13 +36,7 @@ class RecordRequest:
         Option("--imu", metavar=_ADDRESS, help="Inertial measurement unit to record; repeatable."),
     ] = ()
     rig: Annotated[str | None, Option(metavar=_ADDRESS, help="Slip rig to record.")] = None
-    duration: Annotated[
-        float | None,
-        Option(
-            help="Duration after every device has sent a sample [s]; default: until q, Ctrl-C or "
-            "the end of --play or of the replayed run."
-        ),
-    ] = None
+    duration: Annotated[float | None, Option(help=_DURATION)] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the operator.")] = "unknown"
     robot: Annotated[str | None, Option(help="Name of the robot, noted in run.json.")] = None
@@ -48,15 +50,10 @@ class CheckRequest:
     address: Annotated[
         str, Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim to simulate one.")
     ]
-    save: Annotated[Path, Option(metavar="FILE", help="Profile to write.")] = Path("zebro.toml")
-    touchdown_deg: Annotated[
-        float | None,
-        Option(
-            "--lift-off-for",
-            metavar="DEG",
-            help="Also find the lift-off angle of equal hip height for this touchdown angle [deg].",
-        ),
-    ] = None
+    save: Annotated[Path, Option(metavar="FILE", help="New profile to write.")] = Path("zebro.toml")
+    touchdown_deg: Annotated[float | None, Option("--lift-off-for", metavar="DEG", help=_FOR)] = (
+        None
+    )
 
 
 Profile: TypeAlias = Annotated[str, Argument(help="Name of a shipped profile, or a profile file.")]
@@ -65,7 +62,7 @@ Can: TypeAlias = Annotated[
     Option(
         metavar="INTERFACE:CHANNEL",
         help="CAN bus of the system to use, such as socketcan:vcan0; default: a simulated SLCAN "
-        "adapter at a serial port. Only for profiles of devices on CAN.",
+        "adapter at a new port. Without effect if the profile is of a device that is not on CAN.",
     ),
 ]
 Socket: TypeAlias = Annotated[

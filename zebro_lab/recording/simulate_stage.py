@@ -117,7 +117,7 @@ def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
             yield Served(board.source, {"board": port}, f"{request.profile}@{port}")
         return
     if profile.drives is None or profile.load_cell is None:
-        raise SettingsError(f"profile '{profile.name}' has no board, nor drives and load cell")
+        raise SettingsError(f"profile '{profile.name}' lacks [board], or [drives] and [load_cell]")
     with ExitStack() as stack:
         bus, place = stack.enter_context(_bus(request, "sim:rig"))
         drives = SimulatedDrives(rig, bus, profile=profile.drives, watchdog=WATCHDOG)

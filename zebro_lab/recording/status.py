@@ -97,9 +97,9 @@ class StreamWatch:
             silent = [name for name, reader in self._readers.items() if reader.first is None]
             if silent:
                 return (
-                    f"received no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, and "
-                    "--duration counts from the first sample of every device; check that the "
-                    "device is connected and switched on, or record without it"
+                    f"received no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, but the "
+                    "duration of the run counts from when every device has sent one; check that "
+                    "the device is connected and switched on, or record without it"
                 )
         return problem
 

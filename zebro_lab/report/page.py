@@ -72,7 +72,7 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
     template = _template()
     with parsing(
         sources.data, "cannot be reported on: a manifest or slip.toml lacks what is shown",
-        advice="make the part again that is named there",
+        advice="run calibrate, track, predict and validate again, as far as they were run",
     ):  # fmt: skip
         page = template.render(
             sources=sources,

@@ -68,7 +68,7 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
     """
     data = read_bytes(file, most=MOST_PICTURE)
     if not data.startswith(_PNG):
-        raise DataError("is not a PNG picture; run the command that wrote it again", file=file)
+        raise DataError("is not a PNG; delete it and run again what wrote it", file=file)
     encoded = base64.b64encode(data).decode("ascii")
     caption = caption_of(file.stem, stage=stage)
     return Picture(

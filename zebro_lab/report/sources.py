@@ -25,6 +25,7 @@ CALIBRATION = "calibration"
 BESIDE: Mapping[str, tuple[str, ...]] = {CALIBRATION: (SLIP_TOML, SUMMARY), WALKS: (WALKS_TOML,)}
 """Files of a stage's result that are read in addition to the manifest, by name of the part."""
 _MOST_TABLE = 4 << 20  # bytes of summary.csv, one line per parameter
+_AGAIN = "delete it and run the command that wrote it again"
 WALK_PARTS = (TRACK, PREDICTION, VALIDATION)
 MAKERS: Mapping[str, str] = {
     CALIBRATION: "zebro-lab calibrate {data} --out {folder}",
@@ -178,12 +179,12 @@ def _part(name: str, folder: Path, data: Path) -> Part:
     expected = ("predict", "walk") if name == PREDICTION else (name,)
     if kind not in expected:
         raise DataError(
-            f"is the manifest of a result of kind '{kind}'; expected kind {' or '.join(expected)}",
+            f"'kind' is {kind or 'missing'}, expected {' or '.join(expected)} in this folder",
             file=folder / MANIFEST,
         )
     listed = documents[MANIFEST].get("outputs", {})
     if not isinstance(listed, dict):
-        raise DataError(f"'outputs' is {listed!r}; expected a table", file=folder / MANIFEST)
+        raise DataError(f"'outputs' is {listed!r}; expected an object", file=folder / MANIFEST)
     named = [each for each in sorted(listed, key=place_of) if each.endswith(".png")]
     inside = {each: folder / each for each in named if lies_in(folder, each)}
     return Part(
@@ -198,7 +199,7 @@ def _rows(file: Path) -> dict[str, dict[str, Any]]:
     Rows with more cells than headers are left out.
     """
     text = read_text(file, most=_MOST_TABLE)
-    with parsing(file, "cannot be read as CSV", advice="run the command that wrote it again"):
+    with parsing(file, "cannot be read as CSV", advice=_AGAIN):
         rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]
         return {
             next(iter(row.values())): {k: _value(v or "") for k, v in row.items()} for row in rows
@@ -214,7 +215,7 @@ def _value(cell: str) -> float | str:
 
 _READERS: Mapping[str, Callable[[Path], Any]] = {
     ".json": read_json_document,
-    ".toml": lambda file: read_toml_document(file, remedy="write it again", fault=DataError),
+    ".toml": lambda file: read_toml_document(file, remedy=_AGAIN, fault=DataError),
     ".csv": _rows,
 }
 
@@ -225,5 +226,5 @@ def _read(file: Path) -> Mapping[str, Any]:
     except NotFound as error:
         raise DataError("is missing; run the command that writes it again", file=file) from error
     if not isinstance(content, dict):
-        raise DataError("holds no named entries; run the command that wrote it again", file=file)
+        raise DataError("is not a JSON object; restore it, or create its folder anew", file=file)
     return content

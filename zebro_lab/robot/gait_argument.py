@@ -215,7 +215,7 @@ def _angles(
 
 def _no_angle(option: str, text: str | None) -> SettingsError:
     return SettingsError(
-        f"'{text}' is not an angle; expected INNER or INNER,OUTER in degrees, like 50 or 50,46",
+        f"'{text}' is not an angle; expected degrees like 50; tripod: or INNER,OUTER like 50,46",
         key=_flag(option),
     )
 

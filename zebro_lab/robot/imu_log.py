@@ -109,5 +109,7 @@ def _require_unit(table: RawTable, mapping: MappedColumns, quaternion: Array) ->
     good = np.abs(norm - 1) <= _NORM_TOLERANCE
     if not good.all():
         index = int(np.argmin(good))
-        problem = f"the quaternion in this row has length {norm[index]:.3g}; expected 1"
+        problem = (
+            f"the quaternion has length {norm[index]:.3g}; expected 1 within {_NORM_TOLERANCE}"
+        )
         raise table.fault(problem, mapping.mapped["qw"].name, index)

@@ -90,8 +90,8 @@ def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
     if wide.any():
         index = int(np.argmax(wide)) + 1
         raise table.fault(
-            f"time jumps from {t[index - 1]:g} to {t[index]:g} s, while samples are usually "
-            f"{usual:.4g} s apart; split the file before this row and use each part by itself",
+            f"time jumps from {t[index - 1]:g} to {t[index]:g} s; expected at most {_WIDEST_GAP:g} "
+            f"times the usual {usual:.4g} s: split the file before this row, use each part alone",
             column,
             index,
         )

@@ -23,7 +23,8 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
     for number in numbers:
         if number >= count:
             raise MarkerError(
-                f"marker {number} is not in the dictionary '{dictionary}' of 0 to {count - 1}"
+                f"marker {number} is not in the dictionary '{dictionary}' of 0 to {count - 1}; "
+                "correct the number or the dictionary"
             )
 
 
@@ -42,5 +43,5 @@ def require_apart(robot: MarkedRobot, floor: FloorMap) -> None:
     if number in floor.marker_ids:
         raise MarkerError(
             f"marker {number} is listed both for the robot and for the floor; remove it from "
-            "floor.toml, or correct the robot's number (id in robot.toml, or --marker)"
+            "floor.toml, or correct the robot's number (marker.id in robot.toml, or --marker)"
         )

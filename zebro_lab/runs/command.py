@@ -8,9 +8,9 @@ import typer
 
 from zebro_lab.terminal.messages import say
 
-DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder with run folders, searched.")]
+DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder to search for run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
-Why = Annotated[str | None, typer.Option(help="Reason, added to the run's run.json.")]
+Why = Annotated[str | None, typer.Option(help="Reason, kept in run.json; required without --undo.")]
 Undo = Annotated[bool, typer.Option("--undo", help="Undo the exclusion of the run.")]
 
 

@@ -17,7 +17,7 @@ from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, Recording
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable, read_log
-from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_manifest
+from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, in_json, read_manifest
 
 LOG_FILE = "log.mcap"
 _BOARD_TOPIC: Final = raw_topic("board")
@@ -169,12 +169,13 @@ def _require_radii(manifest: RunManifest, file: Path) -> None:
         radius = manifest.constants.get(name)
         if isinstance(radius, bool) or not isinstance(radius, (int, float)):
             raise DataError(
-                f"constants.{name} is {radius!r}, expected a radius in m", file=file, column=name
-            )
+                f"constants.{name} is {in_json(manifest.constants, name)}, expected a radius in m",
+                file=file, column=name,
+            )  # fmt: skip
         if not (np.isfinite(radius) and radius > 0):
             raise DataError(
-                f"is {radius:g} m, expected more than 0", file=file, column=name, value=radius,
-                unit="m",
+                f"is {radius:g} m, expected more than 0 and finite (constants.{name})", file=file,
+                column=name, value=radius, unit="m",
             )  # fmt: skip
 
 
@@ -191,7 +192,7 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
     if manifest.log_sha256 is not None and file_hash(path) != manifest.log_sha256:
         raise DataError(
             f"was changed after the recording: its SHA-256 differs from that in {MANIFEST_FILE}; "
-            "restore the log, or exclude the run: zebro-lab exclude RUN --why REASON",
+            "restore it, or, for calibrations, exclude the run: zebro-lab exclude RUN --why REASON",
             file=path,
         )
 

@@ -191,8 +191,8 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
     found = document.get("schema_version")
     if found != SCHEMA_VERSION:
         raise DataError(
-            f"'schema_version' is {found!r}, expected {SCHEMA_VERSION}; use the version of "
-            "zebro-lab that wrote this file",
+            f"'schema_version' is {in_json(document, 'schema_version')}, expected "
+            f"{SCHEMA_VERSION}; use the version of zebro-lab that wrote this file",
             file=file,
         )
     for name, expected in _FIELD_TYPES.items():
@@ -200,11 +200,11 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             continue
         if not isinstance(document.get(name), expected):
             raise DataError(
-                f"'{name}' is {document.get(name)!r}, expected {_KINDS[expected]}", file=file
+                f"'{name}' is {in_json(document, name)}, expected {_KINDS[expected]}", file=file
             )
     for each in document.get("exclusions") or ():
         if not (isinstance(each, dict) and {"did", "why"} <= each.keys()):
-            raise DataError(f"'exclusions' holds {each!r}, expected 'did' and 'why'", file=file)
+            raise DataError(f"an entry of 'exclusions' lacks 'did' or 'why': {each!r}", file=file)
     if document["kind"] not in KINDS:
         raise DataError(f"'kind' is '{document['kind']}'; {nearest(document['kind'], KINDS)}",
                         file=file)  # fmt: skip
@@ -214,6 +214,11 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             _require_moment(name, document[name], file)
     known = {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
     return RunManifest(**known)
+
+
+def in_json(document: Mapping[str, Any], name: str) -> str:
+    """Format a value of a JSON object as JSON, for an error message; `missing` without the key."""
+    return json.dumps(document[name], ensure_ascii=False) if name in document else "missing"
 
 
 _KINDS: Mapping[type, str] = {

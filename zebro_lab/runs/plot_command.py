@@ -18,7 +18,7 @@ zebro-lab plot data/20260304T050607Z_walk_circle --out circle.png
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
 Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="PNG file to write; default: RUN.png by RUN.")
+    Path | None, typer.Option(metavar="FILE", help="PNG to write; default: RUN.png beside RUN.")
 ]
 
 

@@ -107,7 +107,7 @@ def read_signals(folder: Path) -> RunSignals:
         run = read_slip_rig_run(folder)
         panels, notes = list(_of_table(run.table.rows(), manifest)), run.notes
     if not panels:
-        raise DataError("holds no samples to plot", file=log)
+        raise DataError("holds no samples to plot that the run's profiles describe", file=log)
     state = run_state(folder, manifest)
     if manifest.excluded is not None:
         state = f"excluded: {manifest.excluded.get('why', 'no reason given')}"

@@ -55,14 +55,14 @@ def derive_table(
             cell, drives = (_require(streams, name, folder) for name in ("load_cell", "drives"))
             table = _of_two(profile.drives, profile.load_cell, drives, cell)
         else:
-            raise DataError("describes neither a board nor drives and a load cell", file=file)
+            raise DataError("lacks [board], or [drives] and [load_cell]; restore it", file=file)
     except RigError as error:
         raise DataError(str(error), file=folder) from error
     if table.shape[1] == 0:
         raise DataError("no force was recorded while both disc speeds are known", file=folder)
     table[3] -= zero.get("zero_normal", 0.0)
     table[4] -= zero.get("zero_traction", 0.0)
-    return _increasing(table)
+    return _increasing(table, folder.absolute().name)
 
 
 def _of_board(profile: BoardProfile, board: SampleColumns) -> Array:
@@ -118,8 +118,8 @@ def _require(streams: Mapping[str, SampleColumns], name: str, folder: Path) -> S
     return streams[raw_topic(name)]
 
 
-def _increasing(table: Array) -> tuple[SlipRigTable, tuple[str, ...]]:
+def _increasing(table: Array, run: str) -> tuple[SlipRigTable, tuple[str, ...]]:
     later = np.r_[True, np.diff(np.maximum.accumulate(table[0])) > 0]
     left_out = int(np.sum(~later))
-    notes = (f"{left_out} samples ignored whose time does not increase",) if left_out else ()
-    return SlipRigTable(*table[:, later]), notes
+    note = f"{run}: {left_out} samples are ignored, because their time does not increase"
+    return SlipRigTable(*table[:, later]), (note,) * bool(left_out)

@@ -171,7 +171,7 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
     found = columns.value(name)
     if isinstance(found, str):  # t = "ET": only a header, in SI
         found = {"name": found}
-    table = columns.as_table(name, found, expected="a table with name, unit, sign")
+    table = columns.as_table(name, found, expected="a header, or a table with name, unit, sign")
     unit, factor = table.factor("unit", si_unit) if si_unit else ("", 1.0)
     sign = table.sign("sign") if si_unit else 1
     definition = None

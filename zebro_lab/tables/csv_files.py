@@ -94,7 +94,7 @@ def _csv_errors(path: Path) -> Iterator[None]:
         except UnicodeDecodeError as error:
             raise DataError(f"is not UTF-8 text ({error}); save it as UTF-8", file=path) from error
         except (pd.errors.ParserError, pd.errors.ParserWarning) as error:
-            raise DataError(f"is not a regular table: {error}", file=path) from error
+            raise DataError(f"is not a regular table: {error}; correct it", file=path) from error
 
 
 def _csv_layout(path: Path) -> _CsvLayout:
@@ -112,7 +112,7 @@ def _csv_layout(path: Path) -> _CsvLayout:
     numbered = [(i, line) for i, line in enumerate(lines, start=1) if line.strip()]
     numbered = numbered[_count_comments(numbered) :]
     if not numbered:
-        raise DataError("is empty; expected a header line and rows", file=path)
+        raise DataError("is empty or all comments (#); expected a header and rows", file=path)
     separator = _separator(path, numbered)
     header_line, header = numbered[0]
     names = [name.strip() for name in next(csv.reader([header], delimiter=separator))]
@@ -167,7 +167,7 @@ def _separator(path: Path, lines: list[tuple[int, str]]) -> str:
     cells = counts[separator]
     for row, found in enumerate(cells[1:], start=1):
         if found > cells[0]:
-            advice = "; write decimals with a point" if separator == "," else ""
+            advice = "; write decimals with a point" if separator == "," else "; correct it"
             raise DataError(
                 f"the row has {found} cells, the header has {cells[0]}{advice}",
                 file=path, row=row, line=lines[row][0],

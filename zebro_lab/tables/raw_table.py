@@ -89,7 +89,7 @@ class RawTable:
 
         cells = self.column(name)
         if pd.api.types.is_datetime64_any_dtype(cells) or pd.api.types.is_timedelta64_dtype(cells):
-            raise self.fault("holds dates; expected numbers", name)
+            raise self.fault("holds dates or durations; expected numbers, such as seconds", name)
         with parsing(self.path, f"column '{name}' cannot be read as numbers"):
             empty = cells.isna().to_numpy(dtype=bool)
             values = _as_numbers(cells)

@@ -90,8 +90,8 @@ class RigTable:
         if constant is None:
             if source is None:
                 raise self.raw.fault(
-                    "the radius is missing and needed to compute slip from disc speeds; give it as "
-                    f'[constants] {name} = "35 mm" in {COLUMNS_FILE}',
+                    "the radius is missing, but needed with the speeds of the discs; give it in "
+                    f'{COLUMNS_FILE}, such as [constants] {name} = "35 mm", or in a column',
                     name,
                 )
             values = self.si(name)
@@ -134,7 +134,7 @@ class RigTable:
 
     def _require_finite(self, name: str, header: str, values: Array) -> None:
         good = np.isfinite(values)
-        bound = "> -1e9" if np.isneginf(values).any() else "< 1e9"
+        bound = "> -1e99" if np.isneginf(values).any() else "< 1e99"
         self.require(
             name,
             good,

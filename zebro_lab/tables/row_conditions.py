@@ -69,7 +69,7 @@ def parse_row_condition(text: str) -> RowCondition:
     if match is None:
         raise ValueError(
             f"'{text}' is not a condition; expected the header of a column, one of "
-            f"{', '.join(_OPERATORS)}, and a number, as in 'slip > 0.05'"
+            f"{', '.join(_OPERATORS)}, and a number, as in 'slip > 0.05' or '`F <N>` > 1'"
         )
     column = match["quoted"] or match["plain"]
     return RowCondition(column, match["operator"], float(match["number"]))

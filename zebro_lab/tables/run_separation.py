@@ -75,7 +75,7 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
     inside = np.diff(runs.index, prepend=-1) == 0
     advice = (
         f"if a new run begins here, state in {COLUMNS_FILE} what separates runs, by one of "
-        f'[runs] by = ["COLUMN"], gap = "1 s" or each_row = true'
+        '[runs] by = ["COLUMN"] or, for a table of means of trials, each_row = true'
     )
     table.require(
         "t",

@@ -13,6 +13,7 @@ from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_definitio
 from zebro_lab.tables.rig_table import RigTable
 
 _SPEEDS = ("omega_leg", "omega_ground")
+_RANGES = {"material": "1 or less", "travel": "-1 or more", "larger": "from -1 to 1"}
 _SLIP_NOISE = 0.1  # margin for noise beyond the limits of slip; values in percent exceed it by far
 
 
@@ -152,8 +153,8 @@ def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition)
             "slip_ratio",
             _first_rejected(inner, definition, other),
             lambda value: (
-                f"the slip ratio is {value}, impossible for the definition '{definition}'; check "
-                f'in {COLUMNS_FILE} the definition, the sign and the unit (such as unit = "%")'
+                f"the slip ratio is {value}, impossible for the definition '{definition}' "
+                f'({_RANGES[definition]}); check in {COLUMNS_FILE} definition, sign and unit = "%"'
             ),
         ) from error
 

@@ -54,7 +54,7 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
         put("traction_force", 7, None),
         "column 'traction_force', row 7 (line 8): found nan N; expected finite numbers",
     ),
-    "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e9"]'),
+    "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e99"]'),
     "nan in time": (put("t", 4, None), "column 't', row 4 (line 5)"),
     "text": (
         put("normal_force", 5, "n/m"),
@@ -113,7 +113,7 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     ),
     "no radius": (
         with_speeds().drop(columns="radius_ground"),
-        "column 'radius_ground': the radius is missing and needed to compute slip from disc speeds",
+        "column 'radius_ground': the radius is missing, but needed with the speeds of the discs",
     ),
     "standing disc": (
         with_speeds().assign(omega_leg=0.0),

@@ -153,5 +153,5 @@ def test_what_is_missing_is_said(run, tmp_path):
     assert "predict" in exported.notes[0]
     with pytest.raises(AlreadyExists, match="--out"):
         export_mcap(tmp_path, out=tmp_path / "t.mcap")
-    with pytest.raises(NotFound, match="first run track or predict"):
+    with pytest.raises(NotFound, match="first run track --run, or predict --out"):
         export_mcap(tmp_path / "nothing", out=tmp_path / "n.mcap")

@@ -76,7 +76,9 @@ def test_one_topic_of_several_is_named(tmp_path):
     ):
         read_joint_log(bag)
     np.testing.assert_array_equal(read_joint_log(bag, topic="/b").numbers("theta1"), [0.2])
-    with pytest.raises(DataError, match=r"has no joint states of topic /empty; known: '/a', '/b'"):
+    with pytest.raises(
+        DataError, match=r"has no joint positions on topic /empty; known: '/a', '/b'"
+    ):
         read_joint_log(bag, topic="/empty")
 
 

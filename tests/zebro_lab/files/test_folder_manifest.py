@@ -30,12 +30,12 @@ def test_a_manifest_of_an_expected_kind_is_returned_whole(file, kind):
     [
         (
             {"kind": "track", "schema": 2},
-            "is not a manifest of a walk: expected 'kind' walk or prediction",
+            "is not a manifest of a walk: expected 'kind' walk or prediction, found track",
         ),
         ({"kind": ["walk"], "schema": 2}, "is not a manifest of a walk"),
         ({"schema": 2}, "is not a manifest of a walk"),
         ({"kind": "walk", "schema": 3}, "has schema 3; this version of zebro-lab reads schema 2"),
-        ({"kind": "walk"}, "has schema None"),
+        ({"kind": "walk"}, "has schema missing"),
         (["kind", "walk"], "is not a JSON object"),
     ],
 )

@@ -33,7 +33,7 @@ def test_a_picture_is_a_data_url_with_caption_and_name(tmp_path):
 
 def test_what_is_no_picture_is_refused(tmp_path):
     (tmp_path / "a.png").write_bytes(b"GIF89a")
-    with pytest.raises(DataError, match="is not a PNG picture; run the command"):
+    with pytest.raises(DataError, match="is not a PNG; delete it and run again"):
         embed(tmp_path / "a.png", stage="track", simulated=True)
     with pytest.raises(NotFound):
         embed(tmp_path / "b.png", stage="track", simulated=True)

@@ -32,7 +32,7 @@ def test_a_folder_of_runs_is_one_page(walk, tmp_path):
 
 def test_a_foreign_manifest_is_refused(walk):
     write_json(walk / "track/manifest.json", {"kind": "predict"})
-    with pytest.raises(DataError, match="of kind 'predict'; expected kind track"):
+    with pytest.raises(DataError, match="'kind' is predict, expected track"):
         made(walk)
 
 
@@ -70,9 +70,9 @@ def test_a_folder_with_nothing_to_report_is_named(tmp_path):
         (
             "manifest.json",
             "[]",
-            r"manifest\.json: holds no named entries; run the command that wrote it again",
+            r"manifest\.json: is not a JSON object; restore it",
         ),
-        ("slip.toml", "[", r"slip\.toml: cannot be read as TOML.*write it again"),
+        ("slip.toml", "[", r"slip\.toml: cannot be read as TOML.*delete it and run the command"),
     ],
 )
 def test_a_part_that_cannot_be_read_is_named(walk, file, text, message):

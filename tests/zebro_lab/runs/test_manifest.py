@@ -80,10 +80,11 @@ def test_a_manifest_is_read_back_as_it_was_written(tmp_path):
     ("change", "message"),
     [
         ({"schema_version": 2}, "'schema_version' is 2, expected 1"),
-        ({"schema_version": None}, "'schema_version' is None"),
+        ({"schema_version": None}, "'schema_version' is null"),
         ({"operator": 3}, "'operator' is 3, expected a text"),
+        ({"operator": None}, "'operator' is null, expected a text"),
         ({"kind": "slip_rig"}, "'kind' is 'slip_rig'; did you mean 'slip-rig'"),
-        ({"exclusions": [{"did": "excluded"}]}, "expected 'did' and 'why'"),
+        ({"exclusions": [{"did": "excluded"}]}, "an entry of 'exclusions' lacks 'did' or 'why'"),
     ],
 )
 def test_a_manifest_of_another_form_is_named(change, message, tmp_path):

@@ -40,7 +40,7 @@ def test_a_column_is_returned_as_it_is():
          "column 't': several columns have this header"),
         (RawTable(Path("a.csv"), {"t": pd.Series([None])}, unreadable={"t": "list<int>"}),
          "column 't': holds cells of type list<int>; expected numbers"),
-        (table(t=pd.date_range("2026-01-01", periods=3)), "'t': holds dates; expected numbers"),
+        (table(t=pd.date_range("2026-01-01", periods=3)), "'t': holds dates or durations"),
         (table(t=["[s]", "1"]), r"row 1: '\[s\]' is not a number; if the row holds units"),
         (table(t=["1", "n/m"]), "row 2: 'n/m' is not a number; correct or delete the row"),
         (table(t=["1", "0,5"]), "row 2: '0,5' is not a number; write decimals with a point"),

@@ -58,7 +58,7 @@ def test_a_radius_is_a_constant_or_a_column_and_positive():
         DataError, match=r"column 'radius_leg', row 2: the radius is -1 m; expected"
     ):
         table_of({}, {}, radius_leg=[0.1, -1.0]).constant_or_column("radius_leg")
-    with pytest.raises(DataError, match="missing and needed to compute slip from disc speeds"):
+    with pytest.raises(DataError, match="missing, but needed with the speeds of the discs"):
         table_of({}, {}).constant_or_column("radius_leg")
     with pytest.raises(DataError, match="given twice"):
         table_of({}, {"radius_leg": 0.1}, radius_leg=[0.1, 0.1]).constant_or_column("radius_leg")

@@ -72,7 +72,11 @@ def require_bounded(document: object) -> None:
 
 
 def _checked_parts(node: object) -> list[object]:
-    """Check keys and plain values of a table or list; return the tables and lists in it."""
+    """Check a value, or keys and plain values of a table or list; return what is nested in it.
+
+    Raises:
+        ValueError: An integer has more than 64 bits, or a text an unpaired surrogate.
+    """
     if isinstance(node, Mapping):
         _require_plain(*node)
         values = list(node.values())

@@ -14,9 +14,8 @@ def slip_angle(velocity_x: ArrayLike, velocity_y: ArrayLike) -> Array:
         \tan\alpha = -\frac{{}^C\dot y}{{}^C\dot x}
 
     The text prints Eq. (4-41) without the minus; its own Eq. (4-30) and its listing have it, and
-    only with it does a force D·sin(…alpha…) oppose the sliding. An arctangent of the quotient
-    cannot tell forwards from backwards: for a contact moving backwards the force points along the
-    sliding. That fault is the thesis's and is kept.
+    only with it does a force D·sin(…alpha…) oppose the sliding. For a contact moving backwards it
+    points along the sliding, since an arctangent of the quotient loses the sign: the thesis's fault.
 
     Args:
         velocity_x: Velocity along the heading, in the contact frame [m/s]. The text takes the

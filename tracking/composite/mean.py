@@ -218,9 +218,9 @@ class MeanReading(Reading):
     def candidates(self, matches: Sequence[Match], poses: Array) -> list[Array]:
         """List the poses of matches that may be further exposures.
 
-        Each is a step from a known exposure with nearly the same heading, or has at least
-        `LONELY_SCORE` and is farther than a step from all. The heading of such a match may be off
-        by a half turn (a quarter, if square): the direction from the nearest exposure corrects it.
+        Each is a step from a known exposure with nearly the same heading, or has `LONELY_SCORE` and
+        is farther than a step from all. Before, matches of that score that do not follow one are
+        turned by half turns (quarters, if square) to the direction from the nearest exposure.
 
         Args:
             matches: Matches, best first.
@@ -263,7 +263,7 @@ class MeanReading(Reading):
         return far and is_beside(pose, list(poses), self.length)
 
     def varied(self, fit: Fit) -> list[Array]:
-        """List sets of poses, all apart, that differ from a fit by one or two added or removed."""
+        """List sets of poses, the known first: one added, the weakest removed, ends moved by one."""
         left = self.detail - superposed(self.body, fit.poses, fit.robot)
         left *= self.used[..., None]
         new = self.candidates(self.matches(left, fit.robot), fit.poses)

@@ -40,7 +40,7 @@ def plan(
     rig: Annotated[str, typer.Option(help="Profile of the rig; sim: rig-board-serial.")] = "sim",
     steps: Annotated[bool, typer.Option("--steps", help="List every step of the plan.")] = False,
 ) -> None:
-    """Check a plan against the limits and list its points and duration; nothing moves."""
+    """Check a plan by its own limits and the rig's; print duration and number of points."""
     from zebro_lab.experiment.plan_stage import foresee
 
     _print_plan(foresee(file, rig), steps=steps)

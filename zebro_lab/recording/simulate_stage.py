@@ -157,10 +157,18 @@ def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
 def _bus(
     request: ZebroTwinRequest | RigTwinRequest, source: str
 ) -> Iterator[tuple[can.BusABC, str]]:
-    """Open the named CAN bus, or a virtual one behind a simulated SLCAN adapter; yield bus, port.
+    """Open the named CAN bus, or a virtual one behind a simulated SLCAN adapter.
+
+    Args:
+        request: Options, with the name of the bus or None.
+        source: Origin of the data that the adapter passes on, "sim:WHAT".
+
+    Yields:
+        The bus, and the name by which a driver opens it: as given, or "slcan:PORT".
 
     Raises:
         SettingsError: The named bus cannot be opened.
+        LinkError: The system provides no port for the adapter.
     """
     if request.can is None:
         with (

@@ -142,7 +142,7 @@ def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
 
     Raises:
         SettingsError: Neither an interval nor a table was given.
-        TrackingError: The table is invalid or has no time of an exposure.
+        TrackingError: The interval is not above 0, or the table is invalid or lacks an exposure.
     """
     times = _given_times([Path(name) for name in names], request)
     if times is None:

@@ -83,7 +83,7 @@ def summarise(path: WalkPath) -> WalkSummary:
 
 
 def stride_poses(path: WalkPath) -> tuple[Array, int]:
-    """Interpolate the poses between strides, where the mean leg angle completes a whole turn.
+    """Interpolate the poses between strides: at whole turns of the mean leg angle from the start.
 
     The first stride is the transient from standstill and is left out if there are several.
 

@@ -115,7 +115,7 @@ class _Density:
 
 
 class WalkFit:
-    """A finished fit: `posterior` of all walks, and posteriors with one walk left out."""
+    """A finished fit: `posterior` of all walks; `without` computes that of all walks but one."""
 
     def __init__(
         self,

@@ -68,8 +68,8 @@ class ModeSearch:
     def modes(self, *, progress: Callable[[float], None]) -> list[Mode]:
         """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
 
-        Optimised are the case of no wrongly mounted leg and up to `CLIMBED` others that are within
-        `UNLIKELY` of the best; the rest keep a scan's Gaussian. `progress` gets the share done.
+        Optimised are no wrongly mounted leg and the `CLIMBED` others of the largest log evidence
+        within `UNLIKELY` of the best; others keep a scan's. `progress` gets the share done.
 
         Raises:
             WalkError: A walk diverged, or the robot cannot stand at its start.

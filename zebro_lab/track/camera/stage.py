@@ -105,7 +105,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
         The files `kit.pdf` and `floor.toml`.
 
     Raises:
-        AlreadyExists: `out` is a file, or has a `floor.toml` or a `kit.pdf` with other content.
+        AlreadyExists: `out` is a file, has any `floor.toml`, or a `kit.pdf` with other content.
         SettingsError: The paper is unknown.
     """
     from zebro_lab.track.camera.pictures import save_pages  # matplotlib takes most of a second

@@ -15,7 +15,7 @@ def slip_angle(velocity_x: ArrayLike, velocity_y: ArrayLike) -> Array:
 
     The text prints Eq. (4-41) without the minus; its own Eq. (4-30) and its listing have it, and
     only with it does a force D·sin(…alpha…) oppose the sliding. For a contact moving backwards it
-    points along the sliding, since an arctangent of the quotient loses the sign: the thesis's fault.
+    points along the sliding, since an arctangent of the quotient loses the sign, as in the thesis.
 
     Args:
         velocity_x: Velocity along the heading, in the contact frame [m/s]. The text takes the

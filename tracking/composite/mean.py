@@ -263,7 +263,7 @@ class MeanReading(Reading):
         return far and is_beside(pose, list(poses), self.length)
 
     def varied(self, fit: Fit) -> list[Array]:
-        """List sets of poses, the known first: one added, the weakest removed, ends moved by one."""
+        """List sets of poses, the known first: one added, the weakest removed, ends moved one."""
         left = self.detail - superposed(self.body, fit.poses, fit.robot)
         left *= self.used[..., None]
         new = self.candidates(self.matches(left, fit.robot), fit.poses)

@@ -80,7 +80,7 @@ class Condition:
         effect.
 
         >>> Condition(RigState.STOPPING, True, "", StopCategory.SAFE).keys
-        'Ctrl-C or e: emergency stop (de-energise at once, latched)'
+        'Ctrl-C or e + Enter: emergency stop (de-energise at once, latched)'
         """
         if self.state in (RigState.STOPPED, RigState.LATCHED):
             return "keys have no effect: the run has ended"

@@ -22,7 +22,7 @@ from tracking.composite.known import KnownExposure
 from tracking.composite.match import CELLS, match_whole
 from tracking.composite.pasted import PastedReading
 from tracking.composite.reading import Merged
-from tracking.composite.steps import LEAST_STEP, apart, is_apart, is_beside
+from tracking.composite.steps import LEAST_STEP, apart, is_apart, is_beside, usual_step
 from tracking.errors import CompositeError
 from tracking.pose import BodyPrior
 
@@ -91,6 +91,8 @@ def find_exposures(
     found = search.superposed()
     if merged is Merged.PASTED:
         found = search.layers(found)
+    elif merged is Merged.DARKEST:
+        found = search.apart_as_pasted(found)
     if not found:
         raise CompositeError(
             "no exposure of the robot is found in the composite picture; check the marker's number "
@@ -200,6 +202,19 @@ class _Search:
                 options = [new] if new.visible < SHOWS_WHOLE else whole
                 found += [x for x in options if not is_apart(new.planar, [x.planar], same)][:1]
         return found or list(whole)
+
+    def apart_as_pasted(self, whole: Sequence[Exposure]) -> list[Exposure]:
+        """Align exposures of a picture of darkest values as pasted ones where they are apart.
+
+        They then hide nothing of each other. Where they overlap, or `layers` finds others than
+        `whole`, those found by the marker, `whole` is returned.
+        """
+        poses = np.array([each.planar for each in whole])
+        if len(whole) < 2 or usual_step(poses) < self.body[0]:
+            return list(whole)
+        found, same = self.layers(whole), LEAST_STEP * self.body[0]
+        missed = any(is_apart(pose, [each.planar for each in found], same) for pose in poses)
+        return found if len(found) == len(whole) and not missed else list(whole)
 
     def occluded_by(self, clear: Sequence[Exposure]) -> Sequence[Exposure]:
         """Find exposures, also occluded ones, by the body's appearance in a fully visible one.

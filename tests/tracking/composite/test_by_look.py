@@ -22,7 +22,7 @@ def test_exposures_that_overlap_are_found_in_order_and_none_is_made_up(kind):
 @pytest.mark.parametrize("kind", ["pasted", "mean"])
 def test_one_exposure_alone_is_no_composite(kind):
     planar = np.array([0.0, 0.0, 0.3])
-    with pytest.raises(CompositeError, match="but the one in which the robot's top"):
+    with pytest.raises(CompositeError, match="no second exposure of the robot"):
         found_in(composite(planar[None], "pasted"), planar, kind, near=(0, 0), reach=0.15)
 
 

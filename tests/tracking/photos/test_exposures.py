@@ -71,5 +71,5 @@ def test_a_mean_whose_exposures_overlap_is_noted_as_less_sure_than_it_says(
 
 
 def test_the_size_of_the_body_must_be_known(scene, photos):
-    with pytest.raises(CompositeError, match="length and width"):
+    with pytest.raises(CompositeError, match="body has no size"):
         tracked(scene, photos[0])

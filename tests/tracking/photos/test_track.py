@@ -31,7 +31,7 @@ def test_without_a_marker_the_marked_top_is_tracked(scene, photos, walk, top):
 
 
 def test_one_picture_that_is_merged_is_no_photograph(scene, photos):
-    with pytest.raises(CompositeError, match="length and width"):
+    with pytest.raises(CompositeError, match="body has no size"):
         track_photos(replace(scene, merged=Merged.MEAN), photos, times_of=every_two_seconds)
 
 

@@ -132,7 +132,7 @@ def test_what_cannot_be_taken_is_named_and_leaves_nothing(files, tmp_path, spoil
         ("1 2 3\n", "found 3 numbers"),
         ("0 0 0 0 0 0 0 x\n", "could not convert"),
         ("0 0 0 0 0 0 0 0\n", "length 0"),
-        ("# nothing\n", "is empty"),
+        ("# nothing\n", "has no pose"),
         ("0 0 0 0 0 0 0 1\n" * 3, "increasing"),
     ],
 )

@@ -64,7 +64,7 @@ SETTINGS = {
     "unknown key": ('[columns.t]\nnam = "x"', "columns.t.nam: unknown key; did you mean 'name'"),
     "frequency": ('[columns.theta1]\nunit = "Hz"', "columns.theta1.unit: unit 'Hz' cannot be conv"),
     "sign": ("[columns.theta1]\nsign = 0", "columns.theta1.sign: found 0; expected 1 or -1"),
-    "a number": ("[columns]\nt = 1", "columns.t: found 1; expected a table"),
+    "a number": ("[columns]\nt = 1", "columns.t: found 1; expected a header"),
 }  # fmt: skip
 
 

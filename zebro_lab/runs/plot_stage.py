@@ -46,7 +46,9 @@ def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
     place = folder.absolute()
     file = out or place.with_name(place.name + SUFFIX)
     if file.suffix.lower() != SUFFIX or file.is_dir():
-        raise SettingsError(f"found '{file}'; expected a name ending in {SUFFIX}", key="--out")
+        raise SettingsError(
+            f"found '{file}'; expected a file, not a folder, ending in {SUFFIX}", key="--out"
+        )
     target = require_own(file, PLOT, inputs=(folder / LOG_FILE, folder / MANIFEST_FILE))
     signals = read_signals(folder)
     from zebro_lab.plots.sheet import save

@@ -217,7 +217,12 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
 
 
 def in_json(document: Mapping[str, Any], name: str) -> str:
-    """Format a value of a JSON object as JSON, for an error message; `missing` without the key."""
+    """Format a value of a JSON object as JSON, for an error message; `missing` without the key.
+
+    Args:
+        document: The object.
+        name: Key of the value.
+    """
     return json.dumps(document[name], ensure_ascii=False) if name in document else "missing"
 
 

@@ -119,12 +119,13 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     """Parse a correction from plain values, as a file holds them.
 
     Args:
-        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind; types
-            are not checked. An order without `photos` names none (TypeError if not iterable).
+        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind;
+            `photos` as a list.
 
     Raises:
-        CorrectionError: When the kind or a key is unknown, a required key is missing, or a value
-            is not a name, a finite number, or for a standard deviation a positive one.
+        CorrectionError: The kind or a key is unknown, a required key is missing, or a value is
+            not a name, a list of names, a finite number or, for a standard deviation, a positive
+            one.
     """
     kind = str(entry.get("kind", ""))
     if kind not in _KINDS:

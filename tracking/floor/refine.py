@@ -57,8 +57,8 @@ class FloorFit:
             a stand, from their projection [px].
         noise_factor: Pixel residuals over their standard deviations by the marks' covariances, 1
             where the excess is not significant; the poses' covariances include the factor [-].
-        tape_factor: The same ratio of the marks' changes in x, y, yaw and side to the standard
-            deviations of their measurement [-].
+        tape_factor: The same ratio, used likewise, of the marks' changes in x, y, yaw and side to
+            the standard deviations of their measurement [-].
         unused: By name of photograph, why it has no camera pose: it shows no mark of the floor.
     """
 

@@ -58,7 +58,8 @@ class StreamView:
 def legs_view(name: str, *, profile: LegProfile) -> StreamView:
     """Return the converter of leg counts to joint states of unwrapped angles, not of speeds.
 
-    Their rate in a call is at most `FASTEST`. Another number of counts raises ProtocolError.
+    The messages' rate in a call is at most `FASTEST`. Another number of counts raises
+    ProtocolError.
 
     Args:
         name: Name of the stream; the topic is `/NAME/joint_states`.

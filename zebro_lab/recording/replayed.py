@@ -69,7 +69,11 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     views = profile_views(file)
     for each in chosen:
         if each not in views:
-            raise DataError(f"does not describe stream '{each}' of the log; restore it", file=file)
+            raise DataError(
+                f"does not describe stream '{each}' of the log, as the recorded rig's does; "
+                "copy that profile from the computer where the run was recorded",
+                file=file,
+            )
     streams = {name or each: (each, found[names[each]]) for each in chosen}
     return Replayed(
         tuple(

@@ -42,13 +42,13 @@ def read_csv_file(path: Path) -> RawTable:
     """Read a CSV file, also gzipped: UTF-8, separated by commas, semicolons or tabs.
 
     Empty lines, and comment lines (#) before the header, are skipped; repeated headers are numbered
-    and listed in `repeated`. Missing cells at a row's end are empty. Decimal commas are possible
-    unless commas separate cells.
+    and listed in `repeated`. Missing cells at a row's end are empty; a header alone gives a table
+    without rows. Decimal commas are possible unless commas separate cells.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not UTF-8 text or no whole gzip file, has no header or rows, a row
-            has more cells than the header, the separator is ambiguous, or a size limit is exceeded.
+        DataError: The file is not UTF-8 text or no whole gzip file, has no header, a row has more
+            cells than the header, the separator is ambiguous, or a size limit is exceeded.
     """
     import pandas as pd
 

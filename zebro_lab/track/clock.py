@@ -80,7 +80,11 @@ def counted_later(*, manifest: RunManifest | None, request: TimeRequest) -> Coun
 
 
 def unknown_start(advice: str) -> tuple[str, ...]:
-    """Return the note, one line, that times are not tied to the run's; `advice` is put into it."""
+    """Return the note, one line, that times are not tied to the run's.
+
+    Args:
+        advice: What else to do, ending with ", or ", as `--time-offset` follows; may be empty.
+    """
     return (
         "time is counted from the first photograph; when it was taken within the run is unknown: "
         f"{advice}bring it to the run's clock with `validate --time-offset`",

@@ -100,7 +100,8 @@ def track_lines(result: "TrackResult") -> list[str]:
         *([f"left out: {len(lost) - _MOST_LISTED} more, see manifest.json"]
           if len(lost) > _MOST_LISTED else []),
         *(f"WARNING: {note}" for note in result.tracked.notes),
-        f"\nwritten to {result.folder}:",
+        "",
+        f"written to {result.folder}:",
         *(f"  {file}" for file in written(result.folder)),
     ]  # fmt: skip
 

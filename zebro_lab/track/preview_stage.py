@@ -19,7 +19,7 @@ PREVIEW = picture("track --preview")
 
 
 def preview(request: TrackRequest, file: Path) -> Preview:
-    """Detect marks in the first photograph, draw them in a PNG, and return what was found.
+    """Detect marks in the first photograph by time, draw them in a PNG, and return what was found.
 
     In a composite picture no robot is searched.
 
@@ -29,8 +29,9 @@ def preview(request: TrackRequest, file: Path) -> Preview:
 
     Raises:
         ZebroLabError: A file or an option is invalid.
-        TrackingError: There is no photograph, the first is unreadable or shows no floor mark, or
-            the floor's map does not fit its marks.
+        TrackingError: There is no photograph, times are missing or invalid, the first photograph is
+            unreadable, shows fewer than 4 points of the floor or the robot's marker twice, or the
+            floor's map does not fit its marks or has the robot's marker.
     """
     target = require_own(file, PREVIEW, inputs=request.inputs)
     inputs = read_inputs(request)

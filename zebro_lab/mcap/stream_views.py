@@ -58,8 +58,7 @@ class StreamView:
 def legs_view(name: str, *, profile: LegProfile) -> StreamView:
     """Return the converter of leg counts to joint states of unwrapped angles, not of speeds.
 
-    The messages' rate in a call is at most `FASTEST`. Another number of counts raises
-    ProtocolError.
+    A call gives messages at `FASTEST` at most. Another number of counts raises ProtocolError.
 
     Args:
         name: Name of the stream; the topic is `/NAME/joint_states`.

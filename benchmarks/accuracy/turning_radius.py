@@ -100,7 +100,7 @@ def radius_against_steering() -> None:
             found[factor] = turn(measured_angles(factor), LONG)
     table(
         "Turning radius [m] against steering factor",
-        ["s", "wheels 2rθ̇", "no slip", "source's model", "ours, its angles",
+        ["s", "wheels 2rθ̇", "no slip", "thesis's model", "ours, its angles",
          "ours, measured angles, 200° legs"],
         [
             [f"{s:g}", *(f"{x:.3f}" for x in row), f"{found[s]:.3f}" if s in found else ""]

@@ -51,8 +51,8 @@ def settle(acquire: GuardedAcquisition, plan: Plan, point: Point, zero: Zero) ->
         Whether the rig was steady, see `is_steady`, before the plan's timeout after the ramp.
 
     Raises:
-        RigError: As `GuardedAcquisition.start_ramp` and `poll`; after `StopRequested` and
-            `SinkFailed` the discs are still energised.
+        RigError: As `GuardedAcquisition.start_ramp` and `poll`. After its subclasses
+            `StopRequested` and `SinkFailed` the discs are still energised.
     """
     criterion = plan.settle
     acquire.start_ramp(plan.points.omega_leg, point.slips[0])

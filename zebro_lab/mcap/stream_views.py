@@ -58,7 +58,7 @@ class StreamView:
 def legs_view(name: str, *, profile: LegProfile) -> StreamView:
     """Return the converter of leg counts to joint states of unwrapped angles, not of speeds.
 
-    A call gives messages at `FASTEST` at most. Another number of counts raises ProtocolError.
+    Messages are thinned to `FASTEST` or fewer. Another number of counts raises ProtocolError.
 
     Args:
         name: Name of the stream; the topic is `/NAME/joint_states`.

@@ -57,7 +57,8 @@ def _read(file: IO[bytes], path: Path) -> "pa.Table":
     # A long string that repeats in many rows is stored once, but unpacked it is copied to each row.
     texts = [field.name for field in schema if _is_text(field.type)]
     with pq.ParquetFile(file, read_dictionary=texts, **limits) as opened:
-        return opened.read()
+        # In one thread: of several, a damaged column could abort the process at exit (pyarrow 17).
+        return opened.read(use_threads=False)
 
 
 def _require_bounded(metadata: Any, path: Path, size: int) -> None:

@@ -8,9 +8,11 @@ from typing import get_args
 
 import pytest
 
-from support.bundled_walk import PHOTOS, WALK
+from support.bundled_walk import PHOTOS, WALK, Nobody
 from support.commands import COMMAND
+from zebro_lab.track.command import track_lines
 from zebro_lab.track.request import MergedAs
+from zebro_lab.track.stage import track
 
 
 @pytest.mark.parametrize(
@@ -102,3 +104,11 @@ def test_how_a_composite_was_merged_is_asked_for_with_a_line_for_each_way(run_co
     for kind in get_args(MergedAs):
         assert f"\n{kind}: " in err
     assert not (files / "out").exists()
+
+
+def test_a_track_is_summed_up_in_lines_that_hold_no_line_breaks(request_, undrawn):
+    result = track(request_, Nobody())
+    lines = track_lines(result)
+    assert lines[0].startswith("SIMULATED track ")
+    assert f"written to {result.folder}:" in lines
+    assert not any("\n" in line for line in lines)

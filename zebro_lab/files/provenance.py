@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from importlib.metadata import version
 from pathlib import Path
 
+from zebro_lab.files.commit import software_commit
+
 RECORDED = ("zebro-lab", "numpy", "scipy", "emcee", "arviz", "numba")
 
 
@@ -34,8 +36,12 @@ def fingerprint(hashes: Mapping[str, str], settings: Mapping[str, object]) -> st
 
 
 def software() -> dict[str, str]:
-    """Return the installed versions of Python and of the packages in `RECORDED`, by name."""
+    """Return the versions of Python and of the packages in `RECORDED`, and our `commit`, by name.
+
+    The commit has the form of `zebro_lab.files.commit.software_commit`.
+    """
     return {
         "python": platform.python_version(),
         **{name: version(name) for name in RECORDED},
+        "commit": software_commit(),
     }

@@ -20,6 +20,7 @@ import numpy as np
 
 from rig.exclusive import try_lock
 from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
+from zebro_lab.files.commit import software_commit
 from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import read_json_object
@@ -70,6 +71,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
         NotWritten: The nearest existing parent folder cannot be written to.
         DataError: Only `out.previous` is left of an interrupted replacement; it cannot be renamed.
     """
+    software_commit()  # of the code that computes, not of what is committed meanwhile
     folder = real_place(out)
     settle(folder, writing=True)
     _require_ground(out)

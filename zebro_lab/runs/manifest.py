@@ -11,6 +11,7 @@ from typing import Any
 
 from rig.nearest_name import nearest
 from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.commit import software_commit
 from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import read_json_object
@@ -43,12 +44,13 @@ def profile_file(folder: Path, stream: str) -> Path:
 def software_version() -> dict[str, str]:
     """Return the installed `version` of zebro-lab, "unknown" if it is not installed, and `commit`.
 
-    The commit is always "unknown".
+    The commit has the form of `zebro_lab.files.commit.software_commit`.
     """
     try:
-        return {"version": version("zebro-lab"), "commit": "unknown"}
+        installed = version("zebro-lab")
     except PackageNotFoundError:
-        return {"version": "unknown", "commit": "unknown"}
+        installed = "unknown"
+    return {"version": installed, "commit": software_commit()}
 
 
 @dataclass(frozen=True, kw_only=True)

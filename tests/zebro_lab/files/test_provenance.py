@@ -50,7 +50,7 @@ def test_fingerprint_changes_with_any_setting(name, value):
     )
 
 
-def test_software_names_every_version_that_decides_numbers():
+def test_software_names_commit_and_every_version_that_decides_numbers():
     versions = software()
-    assert versions.keys() == {"python", *RECORDED}
+    assert versions.keys() == {"python", *RECORDED, "commit"}
     assert all(versions.values())

@@ -11,7 +11,7 @@ from rig.device import Counters, Sample
 from rig.links.can import CanLink
 from rig.links.linked_stream import LinkedStream
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
-from rig.zebro.commands import milliseconds
+from rig.zebro.commands import leave_still, milliseconds
 from rig.zebro.profile import LegProfile
 
 # Layouts written by hand: cantools decodes about 20 times slower. It serves tests and tools.
@@ -35,6 +35,8 @@ class CanLegs(LinkedStream[CanLink]):
     CAN protects each frame with a checksum. The device time arrives in a separate frame before the
     positions of the same number; where that frame is lost, the positions have no device time.
 
+    Leaving the driver stops legs that it has moved; those that it only read go on.
+
     Args:
         link: Link to the robot's bus.
         profile: Profile of the robot, of the layout `can`.
@@ -47,6 +49,12 @@ class CanLegs(LinkedStream[CanLink]):
         self._tracker = SequenceTracker(modulus=SEQUENCE_WRAP, rate=profile.rate)
         self._device_time = TimeUnwrapper(modulus=TICKS_WRAP, tick=TICK)
         self._stamp: tuple[int, int] | None = None
+        self._moved = False
+
+    def __exit__(self, *exception: object) -> None:
+        if self._moved:
+            leave_still(self)
+        super().__exit__(*exception)
 
     @property
     def counters(self) -> Counters:
@@ -84,6 +92,7 @@ class CanLegs(LinkedStream[CanLink]):
             Whether the link took the command.
         """
         data = SET_POINTS.pack(*counts, milliseconds(duration))
+        self._moved = True
         return self._link.write(self.profile.can_ids.set_points, data)
 
     def stop(self) -> bool:

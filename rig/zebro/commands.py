@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Commands to the robot: leg set-points of a gait, and stop."""
 
+from contextlib import suppress
 from typing import Final, Protocol
 
 from model.gait.reference import LegReference
-from rig.errors import LimitExceeded
+from rig.errors import LimitExceeded, RigError
 from rig.zebro.profile import LegProfile, encode_counts
 
 LONGEST_MOTION: Final = 65.535
@@ -41,6 +42,16 @@ class LegCommands(Protocol):
     def stop(self) -> bool:
         """Send the command to stop every leg where it is; return whether the link took it."""
         ...
+
+
+def leave_still(legs: LegCommands) -> None:
+    """Stop legs that were moved, before their driver is left; a link that fails is left as it is.
+
+    Args:
+        legs: Robot whose legs were commanded.
+    """
+    with suppress(RigError):
+        legs.stop()
 
 
 def milliseconds(duration: float) -> int:

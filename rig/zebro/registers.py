@@ -14,7 +14,7 @@ from rig.errors import ProtocolError
 from rig.links.byte_link import ByteLink
 from rig.links.framing import TrailerFramer
 from rig.links.linked_stream import LinkedStream
-from rig.zebro.commands import milliseconds
+from rig.zebro.commands import leave_still, milliseconds
 from rig.zebro.profile import DUMP_REGISTERS, LegProfile
 
 SYNC: Final = bytes.fromhex("FF4512EA4B")
@@ -112,6 +112,8 @@ class PolledLegs(_RegisterStream):
     are requested at the profile's rate. Buffered bytes are discarded before each request, so that
     a late answer is never taken for the next one.
 
+    Leaving the driver stops legs that it has moved; those that it only read go on.
+
     Args:
         link: Bytes to and from the bridge.
         profile: Profile of the robot, of the layout `poll`.
@@ -125,6 +127,12 @@ class PolledLegs(_RegisterStream):
         self._damaged = 0
         self._resynchronised = 0
         self._out_of_sync = False
+        self._moved = False
+
+    def __exit__(self, *exception: object) -> None:
+        if self._moved:
+            leave_still(self)
+        super().__exit__(*exception)
 
     @property
     def counters(self) -> Counters:
@@ -176,6 +184,7 @@ class PolledLegs(_RegisterStream):
         """
         values = (*counts, milliseconds(duration))
         data = self.profile.words(len(values)).pack(*values)
+        self._moved = True
         return self._write(self.profile.registers.set_points[0], data)
 
     def stop(self) -> bool:

@@ -5,12 +5,14 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.links.byte_link import ByteLink
 from rig.links.packet import Kind
 from rig.links.packet_stream import PacketStream
-from rig.zebro.commands import milliseconds
+from rig.zebro.commands import leave_still, milliseconds
 from rig.zebro.profile import LegProfile
 
 
 class PacketLegs(PacketStream):
     """Stream of the layout `packet`; implements the protocols `Stream` and `LegCommands`.
+
+    Leaving the driver stops legs that it has moved; those that it only read go on.
 
     Args:
         link: Bytes to and from the bridge.
@@ -29,6 +31,12 @@ class PacketLegs(PacketStream):
             clock=clock,
         )
         self.profile = profile
+        self._moved = False
+
+    def __exit__(self, *exception: object) -> None:
+        if self._moved:
+            leave_still(self)
+        super().__exit__(*exception)
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
         """Send the command to turn every leg to a count; see `LegCommands.set_points`.
@@ -41,6 +49,7 @@ class PacketLegs(PacketStream):
             Whether the link took the command.
         """
         body = self.profile.words(7).pack(*counts, milliseconds(duration))
+        self._moved = True
         return self.send(Kind.LEG_SET_POINTS, body)
 
     def stop(self) -> bool:

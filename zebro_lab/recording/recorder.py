@@ -196,11 +196,11 @@ class RunRecorder:
                 self._counters[name] = Counters()
             for task in (self._write_loop, self._sync_loop, self._check_loop):
                 self._start_thread(task, self._files)
-        except (RecordingError, OSError) as error:
+        except BaseException as error:
             self._undo()
-            if isinstance(error, RecordingError):
-                raise
-            raise RecordingError(f"cannot write {self.folder}: {error.strerror}") from error
+            if isinstance(error, OSError) and not isinstance(error, RecordingError):
+                raise RecordingError(f"cannot write {self.folder}: {error.strerror}") from error
+            raise
         return self
 
     def __exit__(

@@ -30,6 +30,18 @@ def test_legs_on_can_go_to_their_set_points_and_stop(take):
     assert held[0] != (60,) * 6
 
 
+def test_leaving_the_driver_stops_legs_on_can_that_it_moved():
+    profile = load_leg_profile("zebro-100-can")
+    channel = "left"
+    with can.Bus(interface="virtual", channel=channel) as bus:
+        for moved in (False, True):
+            with leg_driver(profile, CanLink(f"virtual:{channel}")) as stream:
+                if moved:
+                    stream.set_points((1,) * 6, 1.0)
+            sent = [message.arbitration_id for message in iter(lambda: bus.recv(0.0), None)]
+            assert sent == [profile.can_ids.set_points, profile.can_ids.stop] * moved
+
+
 def test_the_shipped_dbc_agrees_with_the_layouts():
     database = cantools.database.load_string(shipped_file("zebro-100-can.dbc").read_text(), "dbc")
     ids = load_leg_profile("zebro-100-can").can_ids

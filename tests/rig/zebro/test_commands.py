@@ -10,10 +10,10 @@ from model.gait.reference import SampledReference
 from rig.backends import leg_driver
 from rig.clock import ManualClock
 from rig.device import iterate
-from rig.errors import LimitExceeded, ProtocolError
+from rig.errors import LimitExceeded, ProtocolError, RigTimeout
 from rig.links.memory import MemoryLink
 from rig.twins import robot_twin
-from rig.zebro.commands import follow, milliseconds
+from rig.zebro.commands import follow, leave_still, milliseconds
 from rig.zebro.profile import decode_angles, load_leg_profile
 
 STANDING = SampledReference(np.array([0.0, 1.0]), np.tile(np.linspace(0.2, 1.2, 6), (2, 1)))
@@ -47,6 +47,28 @@ def test_stop_holds_every_leg(name):
         held = list(iterate(stream, duration=1.0, clock=clock))
     assert len({s.counts for s in moving}) > 10
     assert len({s.counts for s in held}) == 1
+
+
+@pytest.mark.parametrize("name", ["zebro-100-serial", "zebrobus-uart"])
+def test_leaving_the_driver_stops_legs_that_it_moved_and_no_others(name):
+    walking = SampledReference(np.array([0.0, 60.0]), np.array([[0.0] * 6, [240.0] * 6]))
+    for moved in (False, True):
+        stream, clock = robot(name, gait=walking)
+        with stream:
+            if moved:
+                stream.set_points((10, 20, 30, 40, 50, 60), 30.0)
+            list(iterate(stream, duration=0.5, clock=clock))
+        with stream:  # the twin goes on meanwhile
+            later = list(iterate(stream, duration=2.0, clock=clock))[20:]
+        assert (len({s.counts for s in later}) == 1) == moved
+
+
+def test_leaving_a_driver_whose_link_takes_nothing_is_no_error():
+    class Deaf:
+        def stop(self):
+            raise RigTimeout("the port takes no bytes", waited=1.0)
+
+    leave_still(Deaf())
 
 
 def test_following_a_gait_walks_it():

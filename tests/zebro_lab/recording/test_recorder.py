@@ -12,14 +12,16 @@ import pytest
 
 from rig.clock import ManualClock
 from rig.device import Counters
+from rig.errors import RigError
 from support.recorders import PROFILE, count_in, recorder, some, until
 from zebro_lab.files.errors import AlreadyExists, RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording import recorder as module
 from zebro_lab.recording import run_files
 from zebro_lab.recording.devices import profile_text
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.folder import run_state
-from zebro_lab.runs.manifest import profile_file, read_manifest
+from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
 from zebro_lab.runs.stage import list_runs
 
 
@@ -253,6 +255,14 @@ def test_a_writer_that_cannot_be_started_leaves_nothing(tmp_path, monkeypatch, s
         recorder(tmp_path).__enter__()
     assert list(tmp_path.iterdir()) == []
     assert set(threading.enumerate()) <= before
+
+
+def test_a_profile_that_is_invalid_leaves_no_run_folder(tmp_path):
+    manifest = RunManifest(kind="walk", label="x", source="sim:test", sources={"legs": "sim:test"})
+    run = RunRecorder(tmp_path, manifest=manifest, profiles={"legs": ("mine", "device = 'legs'")})
+    with pytest.raises(RigError, match="legs"):
+        run.__enter__()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_beginning_of_a_run_waits_for_no_disk(tmp_path, monkeypatch):

@@ -7,8 +7,9 @@ import typer
 
 from zebro_lab.exchange import export_command, import_command, init_command
 from zebro_lab.experiment import command as rig
-from zebro_lab.recording import check_command, doctor_command, simulate_command
+from zebro_lab.recording import check_command, simulate_command
 from zebro_lab.recording import command as record
+from zebro_lab.recording.doctor import command as doctor
 from zebro_lab.report import command as report
 from zebro_lab.runs import command as runs
 from zebro_lab.runs import plot_command
@@ -43,7 +44,7 @@ app.command()(runs.exclude)
 app.command()(export_command.export)
 app.command(epilog=track.EPILOG)(track.track)
 app.command(epilog=annotate_command.EPILOG)(annotate_command.annotate)
-app.command(epilog=doctor_command.EPILOG)(doctor_command.doctor)
+app.command(epilog=doctor.EPILOG)(doctor.doctor)
 app.add_typer(camera.app, name="camera")
 app.add_typer(rig.app, name="rig")
 app.add_typer(simulate_command.app, name="sim")

@@ -23,7 +23,8 @@ Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings 
 
 def doctor(data: Data = Path()) -> None:
     """Check versions, packages, serial ports, CAN interfaces, disk and optional programs."""
-    from zebro_lab.recording.doctor import Grade, examine
+    from zebro_lab.recording.doctor.finding import Grade
+    from zebro_lab.recording.doctor.stage import examine
 
     broken = 0
     for finding in examine(data):

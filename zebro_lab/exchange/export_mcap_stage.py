@@ -42,7 +42,7 @@ from zebro_lab.mcap.ros_poses import (
 )
 from zebro_lab.mcap.stream_views import FASTEST
 from zebro_lab.robot.leg_log import ANGLES
-from zebro_lab.runs.folder import epoch_ns
+from zebro_lab.runs.folder import LOG_FILE, epoch_ns
 from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.track.file import TrackFile, read_track
@@ -133,8 +133,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     predicted = _read_predicted(run / PREDICTION, track)
     recorded = read_manifest(run) if is_recorded(run) else None
     if track is None and predicted is None:
-        what = f"neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{PATH_CSV}"
-        raise NotFound(f"{run} has {what}; first run track --run, or predict --out, for it")
+        raise NotFound(_nothing_to_add(run, recorded=recorded is not None))
     start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)
@@ -152,6 +151,15 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     log.finish()
     atomic_write_bytes(out, content.getvalue())
     return Exported(out, log.counts, tuple(_notes(run, track, predicted)))
+
+
+def _nothing_to_add(run: Path, *, recorded: bool) -> str:
+    what = f"{run} has neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{PATH_CSV}"
+    then = f"run track --run {run}, or predict {run}, before the export"
+    if not recorded:
+        return f"{what}; {then}"
+    log = run / LOG_FILE
+    return f"{what}; {log} is already an MCAP file of what was recorded; for more {then}"
 
 
 def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:

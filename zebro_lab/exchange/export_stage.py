@@ -6,12 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from rig.sample_columns import SampleColumns
-from zebro_lab.files.atomic import atomic_folder
+from zebro_lab.files.atomic import atomic_folder, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, DataError
+from zebro_lab.files.settings_text import fill_in
+from zebro_lab.files.shown_text import shown
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE, read_slip_rig_run
 from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_legs import LEGS, read_recorded_legs
+from zebro_lab.tables.columns import COLUMNS_FILE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +29,8 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
 
     `legs` has the columns `t` and `theta1` to `theta6`, `slip_rig` those of a calibration, forces
     without the zero offset, `NAME_raw` the raw samples of a device. A Parquet table has the source
-    in its metadata, a CSV table in its first line. A damaged log is exported up to the damage.
+    in its metadata; beside CSV tables it stands in a `columns.toml`, which every command that reads
+    such a table takes into account. A damaged log is exported up to the damage.
 
     Args:
         folder: The run folder.
@@ -34,7 +38,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
         out: Folder to create, whole or not at all.
 
     Returns:
-        The files written.
+        The files written, the tables first.
 
     Raises:
         NotFound: The folder is not a run folder, or its log or profile is missing.
@@ -60,10 +64,14 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
         }  # fmt: skip
     if not tables:
         raise DataError("the run holds no samples to export", file=folder)
+    names = [f"{name}.{to}" for name in tables]
     with atomic_folder(out) as draft:
-        for name, columns in tables.items():
-            _write(draft / f"{name}.{to}", columns, to=to, source=manifest.source)
-    return tuple(out / f"{name}.{to}" for name in tables)
+        for file, columns in zip(names, tables.values(), strict=True):
+            _write(draft / file, columns, to=to, source=manifest.source)
+        if to == "csv":
+            _write_source(draft / COLUMNS_FILE, folder, manifest.source)
+            names.append(COLUMNS_FILE)
+    return tuple(out / name for name in names)
 
 
 def _raw_columns(stream: SampleColumns) -> Columns:
@@ -77,10 +85,17 @@ def _write(file: Path, columns: Columns, *, to: Format, source: str) -> None:
     table = pd.DataFrame(dict(columns))
     if to == "parquet":
         _write_parquet(file, table, source)
-        return
-    with file.open("w", encoding="utf-8", newline="") as text:
-        text.write(f"# source: {source}\n")
-        table.to_csv(text, index=False, lineterminator="\n")
+    else:
+        table.to_csv(file, index=False, lineterminator="\n")
+
+
+def _write_source(file: Path, run: Path, source: str) -> None:
+    """Write the `columns.toml` of exported CSV tables: their source, and the run in a comment.
+
+    The tables have canonical columns in SI, so that it maps none.
+    """
+    head = f"# Tables of the run {shown(run.absolute().name)}, written by zebro-lab export.\n"
+    atomic_write_text(file, fill_in(head + 'source = "unknown"\n', {"source": source}))
 
 
 def _write_parquet(file: Path, table: "pd.DataFrame", source: str) -> None:

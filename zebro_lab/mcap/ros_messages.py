@@ -2,7 +2,8 @@
 """Encode the standard ROS 2 messages that recorded runs contain besides raw counts, for viewers.
 
 Stamps are nanoseconds since the Unix epoch; numbers are SI. As in ROS, quantities that a device
-does not measure are NaN, or empty where they are a list; unknown covariances are zeros.
+does not measure are NaN, or empty where they are a list; unknown covariances are zeros, and the
+first element of a covariance is -1 where its quantity is not measured.
 """
 
 import math
@@ -113,7 +114,8 @@ uint32 nanosec
 INFO, WARNING, ERROR = 20, 30, 40
 """Severity levels of a `LOG` message, by ROS."""
 
-_UNKNOWN = (0.0,) * 9  # ROS: a covariance of zeros is one that is not known
+_UNKNOWN = (0.0,) * 9
+_ABSENT = (-1.0, *(0.0,) * 8)
 
 
 def joint_state(
@@ -160,7 +162,7 @@ def imu(
 ) -> bytes:
     """Encode the body's orientation, rate and specific force as a `sensor_msgs/Imu` in CDR.
 
-    The frame is `body`; the covariances are zeros, which means unknown.
+    The frame is `body`. A quantity of which no value is known, all NaN, is marked as not measured.
 
     Args:
         stamp: Time since the Unix epoch [ns].
@@ -169,7 +171,9 @@ def imu(
         specific_force: Acceleration minus gravity, in the body's axes, shape (3,) [m/s^2].
     """
     message = CdrWriter().time(stamp).text("body")
-    message.float64(*orientation, *_UNKNOWN, *angular_rate, *_UNKNOWN, *specific_force, *_UNKNOWN)
+    for values in (orientation, angular_rate, specific_force):
+        measured = not all(map(math.isnan, values))
+        message.float64(*values, *(_UNKNOWN if measured else _ABSENT))
     return message.message()
 
 

@@ -56,7 +56,8 @@ _LOAD_CELL = {
     "bias_sd": "N",
     "crosstalk_sd": "dimensionless",
 }
-_SOURCES = ("real", "sim", "replay", "unknown")
+_SOURCES = ("real", "sim", "replay", "import", "mixed", "unknown")
+"""Kinds of source; `import` and `mixed` only stand beside exported tables."""
 
 
 @dataclass(frozen=True)

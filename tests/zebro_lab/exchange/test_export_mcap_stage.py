@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from model.poses import Poses
 from model.robot import Robot
+from support.written_runs import make_run
 from zebro_lab.exchange.export_mcap_stage import export_mcap
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.walk.folder import walk_folder
@@ -153,5 +154,12 @@ def test_what_is_missing_is_said(run, tmp_path):
     assert "predict" in exported.notes[0]
     with pytest.raises(AlreadyExists, match="--out"):
         export_mcap(tmp_path, out=tmp_path / "t.mcap")
-    with pytest.raises(NotFound, match="first run track --run, or predict --out"):
+    with pytest.raises(NotFound, match=r"run track --run .*, or predict .* before the export"):
         export_mcap(tmp_path / "nothing", out=tmp_path / "n.mcap")
+
+
+def test_a_run_without_track_and_prediction_has_an_mcap_file_already(tmp_path):
+    run = make_run(tmp_path)
+    with pytest.raises(NotFound, match=r"log\.mcap is already an MCAP file of what was recorded"):
+        export_mcap(run, out=tmp_path / "n.mcap")
+    assert not (tmp_path / "n.mcap").exists()

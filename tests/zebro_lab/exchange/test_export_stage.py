@@ -2,6 +2,7 @@
 """An exported run is what its readers read, and says where it comes from."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from support.watchers import Onlooker
@@ -11,6 +12,7 @@ from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.tables.columns import read_columns
 from zebro_lab.tables.table_files import read_table_file
 
 
@@ -24,7 +26,7 @@ def recorded(tmp_path_factory):
 @pytest.mark.parametrize("form", FORMATS)
 def test_tables_hold_what_stages_read(recorded, tmp_path, form):
     files = export_run(recorded, to=form, out=tmp_path / "out")
-    names = {file.name.partition(".")[0] for file in files}
+    names = {file.name.partition(".")[0] for file in files if file.suffix != ".toml"}
     assert names == {"legs", "slip_rig", "legs_raw", "drives_raw", "load_cell_raw"}
     rig = read_table_file(tmp_path / "out" / f"slip_rig.{form}")
     table = read_slip_rig_run(recorded).table
@@ -35,11 +37,21 @@ def test_tables_hold_what_stages_read(recorded, tmp_path, form):
     np.testing.assert_allclose(legs.theta, read_leg_log(recorded).reference.theta, atol=1e-9)
 
 
+def test_csv_opens_in_pandas_without_arguments(recorded, tmp_path):
+    *tables, columns = export_run(recorded, to="csv", out=tmp_path / "csv")
+    assert columns.name == "columns.toml"
+    for table in tables:
+        frame = pd.read_csv(table)
+        assert len(frame) > 10, table.name
+        assert all(pd.api.types.is_numeric_dtype(column) for _, column in frame.items())
+    legs = pd.read_csv(tmp_path / "csv" / "legs.csv")
+    np.testing.assert_array_equal(legs["theta3"], read_leg_log(recorded).reference.theta[:, 2])
+
+
 def test_a_table_says_that_it_is_simulated(recorded, tmp_path):
     export_run(recorded, to="csv", out=tmp_path / "csv")
-    first, header, *_ = (tmp_path / "csv" / "legs_raw.csv").read_text().splitlines()
-    assert first == "# source: sim:zebro+rig"
-    assert header.startswith("host_time,device_time,sequence,status,channel,count1,")
+    assert read_leg_log(tmp_path / "csv" / "legs.csv").source == "sim:zebro+rig"
+    assert read_columns(tmp_path / "csv" / "columns.toml").source == "sim:zebro+rig"
     export_run(recorded, to="parquet", out=tmp_path / "parquet")
     assert read_table_file(tmp_path / "parquet" / "legs.parquet").source == "sim:zebro+rig"
 

@@ -58,6 +58,20 @@ def test_a_unit_has_orientation_rate_and_specific_force():
     assert (force.x, force.y, force.z) == (4.0, 5.0, 6.0)
 
 
+def test_what_a_unit_does_not_measure_is_marked_as_ros_asks():
+    nan = [math.nan] * 3
+    for given in ({"angular_rate": nan}, {"specific_force": nan}, {"orientation": [math.nan] * 4}):
+        whole = {"orientation": [0.0, 0.0, 0.0, 1.0], "angular_rate": [1.0, 2.0, math.nan],
+                 "specific_force": [4.0, 5.0, 6.0]}  # fmt: skip
+        found = decoded(IMU, imu(STAMP, **(whole | given)))
+        firsts = {
+            "orientation": found.orientation_covariance[0],
+            "angular_rate": found.angular_velocity_covariance[0],
+            "specific_force": found.linear_acceleration_covariance[0],
+        }
+        assert firsts == dict.fromkeys(firsts, 0.0) | dict.fromkeys(given, -1.0)
+
+
 def test_an_event_has_its_level_and_text():
     found = decoded(LOG, log_entry(STAMP, "é", level=WARNING))
     assert (found.level, found.msg, found.name) == (WARNING, "é", "zebro_lab")

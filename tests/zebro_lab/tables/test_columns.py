@@ -64,6 +64,11 @@ def test_empty_file_changes_nothing(tmp_path):
     assert read(tmp_path, "") == Columns(file=tmp_path / "columns.toml")
 
 
+@pytest.mark.parametrize("source", ["import:legs.csv", "mixed:real,sim:imu"])
+def test_the_source_of_an_exported_run_is_accepted(tmp_path, source):
+    assert read(tmp_path, f'source = "{source}"').source == source
+
+
 def test_byte_order_mark_is_accepted(tmp_path):
     assert read(tmp_path, '\ufeffsource = "real"').source == "real"
 

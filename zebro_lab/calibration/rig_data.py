@@ -11,12 +11,13 @@ import numpy as np
 from model.bayes.blocks import slip_noise_variance
 from model.bayes.samples import SlipSamples
 from model.errors import ModelError
+from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.rig_part import RigPart, read_part
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
 from zebro_lab.runs.data_paths import DataSource, find_sources
 from zebro_lab.runs.folder import LOG_FILE
-from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
 from zebro_lab.tables.columns import Columns, parse_definition, read_columns
 from zebro_lab.tables.table_files import table_stem
 
@@ -55,7 +56,10 @@ class RigData:
 def read_rig_data(
     paths: Sequence[Path], *, columns: Path | None = None, slip_definition: str | None = None
 ) -> RigData:
-    """Read rig data from CSV or Parquet tables and run folders; leave out excluded runs and copies.
+    """Read rig data from CSV or Parquet tables and run folders.
+
+    Left out, with a note, are excluded runs, copies, runs of another kind than the rig's, and runs
+    that were cut short before they had samples that can be used.
 
     Args:
         paths: Files, folders of files, run folders, folders of run folders; several.
@@ -66,7 +70,7 @@ def read_rig_data(
         ZebroLabError: A path, column map or the data is invalid; slip definitions or load cells
             differ; every run is left out; samples are too few; slip varies no more than its noise.
     """
-    named = find_sources(paths)
+    named, others = _of_the_rig(find_sources(paths))
     excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
     counted = [source for source in named if source not in excluded]
     sources, repeated = first_of_each(counted, key=_bytes_of) if len(counted) > 1 else (counted, [])
@@ -75,14 +79,15 @@ def read_rig_data(
         wanted = parse_definition(wanted, file=None, key="slip definition")
     labels = dict(zip(named, _labels(named), strict=True))
     maps = _column_maps(named, columns)
-    parts = [read_part(source, maps[source], labels[source], wanted) for source in sources]
+    parts, died = _read_parts(sources, maps, labels, wanted)
     if parts:  # the same forces under two definitions contradict each other
         _require_one_definition(parts)
     known = _known(excluded, maps, labels) if parts else {}
     parts, repeated_runs = _without_duplicates(parts, known)
     files = [(labels[one], labels[other]) for one, other in repeated]
     duplicates = duplicates_note("runs and tables", [*files, *repeated_runs])
-    skipped = [f"{labels[source]}: left out, {why}" for source, why in excluded.items()]
+    out = {**excluded, **died}
+    skipped = [f"{labels[source]}: left out, {why}" for source, why in out.items()]
     if not parts:
         raise DataError(f"every run is left out: {'; '.join((*skipped, *duplicates))}")
     samples = _joined(parts)
@@ -91,10 +96,56 @@ def read_rig_data(
         samples=samples,
         files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
         source=_joined_source(parts),
-        notes=(*_notes(parts), *skipped, *duplicates),
+        notes=(*_notes(parts), *others, *skipped, *duplicates),
         load_cell=_joined_load_cell(parts),
         repeated=duplicates,
     )
+
+
+def _of_the_rig(sources: Sequence[DataSource]) -> tuple[list[DataSource], tuple[str, ...]]:
+    """Return tables and runs of the slip rig, and a note on runs of another kind, if any.
+
+    Raises:
+        DataError: A manifest is invalid, or every path is a run of another kind.
+    """
+    kinds = {s: read_manifest(s.path).kind for s in sources if s.is_run_folder}
+    others = [s for s in sources if kinds.get(s, RIG_KIND) != RIG_KIND]
+    if not others:
+        return list(sources), ()
+    names = ", ".join(f"{s.path.name} ({kinds[s]})" for s in others)
+    found = f"runs of another kind than {RIG_KIND}: {names}"
+    if len(others) == len(sources):
+        raise DataError(
+            f"no rig data, only {found}; name tables or runs of the rig, and tracked walks as "
+            "--walks RUN"
+        )
+    return [s for s in sources if s not in others], (f"left out, {found}",)
+
+
+def _read_parts(
+    sources: Sequence[DataSource],
+    maps: Mapping[DataSource, Columns],
+    labels: Mapping[DataSource, str],
+    wanted: SlipDefinition | None,
+) -> tuple[list[RigPart], dict[DataSource, str]]:
+    """Read tables and runs; return also why runs are left out that were cut short too early.
+
+    Raises:
+        ZebroLabError: As in `read_part`, but for a run whose recorder never ended it.
+    """
+    parts, died = [], {}
+    for source in sources:
+        try:
+            parts.append(read_part(source, maps[source], labels[source], wanted))
+        except DataError as error:
+            if not (source.is_run_folder and _is_cut_short(source.path)):
+                raise
+            died[source] = f"its recording was cut short, and cannot be used: {error}"
+    return parts, died
+
+
+def _is_cut_short(run: Path) -> bool:
+    return read_manifest(run).exit_status == RECORDING
 
 
 def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[DataSource, Columns]:

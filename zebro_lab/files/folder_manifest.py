@@ -3,10 +3,12 @@
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from zebro_lab.files.documents import read_json_document, require_object
-from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.errors import DataError, NotFound, ZebroLabError
+
+MANIFEST: Final = "manifest.json"
 
 
 def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
@@ -53,3 +55,14 @@ def read_folder_manifest(
             file=file,
         )
     return content
+
+
+def result_kind(folder: Path) -> str | None:
+    """Return the kind of result that a folder holds; None without a readable manifest of ours."""
+    try:
+        content = read_json_object(folder / MANIFEST, of="result folder")
+    except ZebroLabError:
+        return None
+    kind = content.get("kind")
+    ours = isinstance(kind, str) and {"schema", "outputs"} <= content.keys()
+    return kind if ours else None

@@ -23,11 +23,10 @@ from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
 from zebro_lab.files.commit import software_commit
 from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
-from zebro_lab.files.folder_manifest import read_json_object
+from zebro_lab.files.folder_manifest import MANIFEST, read_json_object
 from zebro_lab.files.provenance import file_hash, software
 from zebro_lab.files.replacement import replace_folder, require_free_previous, settle
 
-MANIFEST: Final = "manifest.json"
 _GLOB: Final = "*"
 
 
@@ -68,7 +67,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
             the manifest lists was changed; a file to be written exists and is not listed;
             `out.previous` exists; `out` is an input, or has one among the files to be replaced; or
             another process is replacing it.
-        NotWritten: The nearest existing parent folder cannot be written to.
+        NotWritten: The nearest existing parent folder, or the folder itself, cannot be written to.
         DataError: Only `out.previous` is left of an interrupted replacement; it cannot be renamed.
     """
     software_commit()  # of the code that computes, not of what is committed meanwhile
@@ -88,8 +87,9 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
     for path in inputs:
         _require_kept(out, folder, path, {*fixed, *owned})
     ground = folder.parent if folder.parent.is_dir() else nearest_folder(folder)
-    if not os.access(ground, os.W_OK | os.X_OK):
-        raise NotWritten(f"{ground} is not writable; choose another folder with --out")
+    for place in (ground, *([folder] if folder.is_dir() else ())):
+        if not os.access(place, os.W_OK | os.X_OK):
+            raise NotWritten(f"{place} is not writable; choose another folder with --out")
 
 
 @contextmanager

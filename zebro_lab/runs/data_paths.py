@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.tables.columns import COLUMNS_FILE
@@ -47,8 +48,8 @@ def find_sources(paths: Sequence[Path]) -> list[DataSource]:
     """Find table files and run folders recursively; a path reached twice is listed once.
 
     A folder that is no run folder stands for every CSV and Parquet file and every run folder below
-    it, sorted by name. Links are followed; hidden files and folders, calibration folders, and all
-    that is inside run folders, are skipped.
+    it, sorted by name. Links are followed; hidden files and folders, results of commands, such as
+    calibration folders, and all that is inside run folders, are skipped.
 
     Args:
         paths: Files and folders, as named; `run.json` and `log.mcap` stand for their folder, any
@@ -83,7 +84,8 @@ def _sources_at(path: Path) -> list[DataSource]:
 def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
     """Yield a run folder itself, or the tables and run folders below another folder, by name.
 
-    A calibration folder yields nothing; hidden files and folders below are skipped.
+    A result of a command, such as a calibration, yields nothing; hidden files and folders below
+    are skipped.
 
     Args:
         folder: Folder to search; one already visited, as by cyclic links, yields nothing.
@@ -96,7 +98,7 @@ def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
     if (folder / MANIFEST_FILE).is_file():
         yield folder
         return
-    if (folder / CALIBRATION_FILE).is_file():
+    if (folder / CALIBRATION_FILE).is_file() or result_kind(folder) is not None:
         return
     for path in sorted(folder.iterdir()):
         if path.name.startswith("."):
@@ -110,6 +112,8 @@ def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
 def _why_empty(folder: Path) -> str:
     if (folder / CALIBRATION_FILE).is_file():
         return "is the result of a calibration; give the data that the calibration was made from"
+    if (kind := result_kind(folder)) is not None:
+        return f"is the result of a command (kind '{kind}'), not data; give tables or run folders"
     return (
         f"holds no data; expected files ending in {', '.join(TABLE_SUFFIXES)} or run folders with "
         f"a {MANIFEST_FILE}, in this folder or folders in it"

@@ -17,7 +17,14 @@ from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, Recording
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable, read_log
-from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, in_json, read_manifest
+from zebro_lab.runs.manifest import (
+    MANIFEST_FILE,
+    RECORDING,
+    RIG_KIND,
+    RunManifest,
+    in_json,
+    read_manifest,
+)
 
 LOG_FILE = "log.mcap"
 _BOARD_TOPIC: Final = raw_topic("board")
@@ -60,9 +67,9 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
             with another checksum.
     """
     manifest = read_manifest(folder)
-    if manifest.kind != "slip-rig":
+    if manifest.kind != RIG_KIND:
         raise DataError(
-            f"is a run of kind '{manifest.kind}', expected 'slip-rig'; do not give this run",
+            f"is a run of kind '{manifest.kind}', expected '{RIG_KIND}'; do not give this run",
             file=folder / MANIFEST_FILE,
         )
     path = folder / LOG_FILE

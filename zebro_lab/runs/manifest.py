@@ -19,7 +19,8 @@ from zebro_lab.files.folder_manifest import read_json_object
 PROFILES = "profiles"
 MANIFEST_FILE = "run.json"
 SCHEMA_VERSION = 1
-KINDS = ("slip-rig", "walk")
+RIG_KIND, WALK_KIND = "slip-rig", "walk"
+KINDS = (RIG_KIND, WALK_KIND)
 IMPORTED = "imported"
 RIG = "rig"
 """Name of the rig's profile in a run folder, for all streams of the rig."""

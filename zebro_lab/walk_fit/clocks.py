@@ -26,14 +26,15 @@ Clock: TypeAlias = Callable[[TrackFile, Legs, Robot], TrackFile]
 """Function that shifts a track to the clock of leg angles that start at zero, or raises."""
 
 
-def checked_clock(slip: Slip) -> Clock:
+def checked_clock(slip: Slip, *, largest: float = LARGEST_OFFSET) -> Clock:
     """Return a function that returns a track unchanged, or raises `DataError` if its clock differs.
 
-    The offset to a path predicted from the leg angles may be up to 0.5 s, or three standard
+    The offset to a path predicted from the leg angles may be up to `largest`, or three standard
     deviations if that is more. A walk of constant speed does not determine it and is accepted.
 
     Args:
         slip: Slip law with which the path is predicted.
+        largest: Largest offset that is accepted [s].
     """
 
     def check(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
@@ -41,7 +42,7 @@ def checked_clock(slip: Slip) -> Clock:
             found = estimate_offset(track.poses, _predicted_path(legs, robot, slip))
         except InsufficientData:
             return track
-        if abs(found.value) > max(LARGEST_OFFSET, 3 * found.sd):
+        if abs(found.value) > max(largest, 3 * found.sd):
             raise DataError(
                 f"the motion shows that its clock is {found.value:+.1f} ± {found.sd:.1f} s behind "
                 "the leg log's; expected one clock. Add that to its times, or let "

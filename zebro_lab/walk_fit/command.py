@@ -39,11 +39,22 @@ def calibrate(request: CalibrationRequest, tracked: WalksRequest) -> None:
         raise typer.BadParameter(
             "missing: rig data, or --walks and the --out of a finished calibration"
         )
+    if request.data and tracked.walks:
+        _require_walks(tracked, request)
     converged = fit_and_report(request) if request.data else True
     if tracked.walks:
         _fit_walks(tracked, request)
     if not converged:
         raise typer.Exit(NOT_CONVERGED)
+
+
+def _require_walks(tracked: WalksRequest, calibration: CalibrationRequest) -> None:
+    """Check the walks before a fit of rig data, which takes long and replaces files."""
+    from zebro_lab.terminal.progress import progress_bar
+    from zebro_lab.walk_fit.stage import require_walks
+
+    with progress_bar() as watcher:
+        require_walks(tracked, calibration, watcher)
 
 
 def _fit_walks(tracked: WalksRequest, calibration: CalibrationRequest) -> None:

@@ -10,15 +10,15 @@ import numpy as np
 from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import WalkPrior
 from model.progress import Watcher
-from zebro_lab.calibration.folder import SLIP_TOML
+from zebro_lab.calibration.folder import CALIBRATION, SLIP_TOML
 from zebro_lab.calibration.request import CalibrationRequest
-from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
+from zebro_lab.calibration.slip_argument import THESIS, NamedSlip, parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, write_walks
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.validation.judged_run import JudgedRun
-from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
+from zebro_lab.walk_fit.clocks import LARGEST_OFFSET, checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
 from zebro_lab.walk_fit.prediction import fit_walks_on_file, judge_left_out, metrics_by_model
 from zebro_lab.walk_fit.request import WalksRequest
@@ -43,6 +43,29 @@ class WalksCalibrated:
     folder: Path
     source: str
     notes: tuple[str, ...]
+
+
+def require_walks(request: WalksRequest, calibration: CalibrationRequest, watcher: Watcher) -> None:
+    """Check before a long fit of rig data that the walks can be fitted and written after it.
+
+    Args:
+        request: Run folders of the walks, robot, and whether to estimate clock offsets.
+        calibration: Options with the folder of the calibration to come.
+        watcher: Receives progress.
+
+    Raises:
+        ZebroLabError: As in `calibrate_walks`, as far as it does not depend on the fitted slip law;
+            of the clock check only offsets of over twice the limit are refused here.
+    """
+    require_replaceable(calibration.out, CALIBRATION, inputs=request.walks)
+    require_replaceable(calibration.out / FOLDER, WALKS, inputs=request.walks)
+    watcher.step("reading walks", None)
+    rough = parse_slip(THESIS)
+    if request.estimate_offset:
+        clock = estimated_clock_of(rough)
+    else:
+        clock = checked_clock(rough, largest=2 * LARGEST_OFFSET)
+    read_walks(request.walks, robot=request.robot, clock=clock)
 
 
 def calibrate_walks(

@@ -18,6 +18,7 @@ from zebro_lab.files.replacement import settle
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
 from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_each
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
 from zebro_lab.tables.table_files import TABLE_SUFFIXES
@@ -73,15 +74,22 @@ def read_walks(
 ) -> list[WalkOnFile]:
     """Read tracked walks of one robot, copies only once; equal folder names get a number.
 
+    Excluded runs are left out, with a note.
+
     Args:
         folders: Folder of each walk, one or more, as for `read_walk_on_file`.
         robot: A `robot.toml` to use instead of those in the folders.
         clock: Shifts each track to the clock of its leg log; None to keep the track's times.
 
     Raises:
-        ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.
+        ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots, or all excluded.
     """
-    read = [read_walk_on_file(folder, robot=robot, clock=clock) for folder in folders]
+    excluded = {each: why for each in folders if (why := _exclusion(each)) is not None}
+    skipped = tuple(f"left out, {folder}: {why}" for folder, why in excluded.items())
+    counted = [each for each in folders if each not in excluded]
+    if not counted:
+        raise DataError(f"no walk to fit: {'; '.join(skipped)}")
+    read = [read_walk_on_file(folder, robot=robot, clock=clock) for folder in counted]
     for walk in read[1:]:
         if describe_legs(walk.robot) != describe_legs(read[0].robot):
             raise SettingsError(
@@ -91,9 +99,15 @@ def read_walks(
             )
     walks, repeated = first_of_each(read, key=_content)
     duplicates = duplicates_note("walks", [(one.name, other.name) for one, other in repeated])
-    walks[0] = replace(walks[0], notes=(*walks[0].notes, *duplicates))
+    walks[0] = replace(walks[0], notes=(*walks[0].notes, *skipped, *duplicates))
     names = numbered([walk.name for walk in walks])
     return [replace(walk, name=name) for walk, name in zip(walks, names, strict=True)]
+
+
+def _exclusion(folder: Path) -> str | None:
+    """Return why a run is excluded from calibrations; None if it is not, or is no run folder."""
+    excluded = read_manifest(folder).excluded if is_recorded(folder) else None
+    return None if excluded is None else f"excluded, {excluded.get('why', 'no reason given')}"
 
 
 def _content(walk: WalkOnFile) -> str:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Tables of every accepted form become the same samples."""
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,9 @@ import pytest
 from model.slip import convert_slip
 from support.rig_tables import RADII, N, columns, given_slip, louder, speeds, write
 from support.table_runs import slip_rig_run
+from support.written_runs import START, edit, make_run
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
-from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 
 
@@ -167,6 +168,53 @@ def test_hidden_files_and_calibration_outputs_are_passed_over(tmp_path):
     write(tmp_path / "calibration", pd.DataFrame({"parameter": ["mu"]}), "summary.csv")
     (tmp_path / "calibration" / "slip.toml").write_text("")
     assert read_rig_data([tmp_path]).files == (path,)
+
+
+def test_results_among_the_data_are_passed_over(tmp_path):
+    path = write(tmp_path, given_slip())
+    write(tmp_path / "walk", pd.DataFrame({"t": [0.0], "x": [0.0]}), "path.csv")
+    (tmp_path / "walk" / "manifest.json").write_text('{"schema":1,"kind":"walk","outputs":{}}')
+    assert read_rig_data([tmp_path]).files == (path,)
+    with pytest.raises(DataError, match=r"result of a command .kind 'walk'"):
+        read_rig_data([tmp_path / "walk"])
+
+
+@pytest.fixture
+def mixed(tmp_path):
+    """A folder with a rig run, an excluded one, one that was cut short at once, and a walk."""
+    data = tmp_path / "DATA"
+    runs = {
+        name: make_run(data, n, label=name, start=START + timedelta(minutes=n))
+        for name, n in (("good", 200), ("bad", 201), ("cut", 202), ("walked", 203))
+    }
+    edit(runs["bad"], excluded={"why": "belt"})
+    edit(runs["cut"], exit_status="recording", log_sha256=...)
+    (runs["cut"] / "log.mcap").write_bytes((runs["cut"] / "log.mcap").read_bytes()[:300])
+    edit(runs["walked"], kind="walk")
+    return data, runs
+
+
+def test_of_a_mixed_folder_only_the_rigs_good_runs_count_and_the_rest_is_named(mixed):
+    data, runs = mixed
+    read = read_rig_data([data])
+    assert read.samples.run_names == (runs["good"].name,)
+    others, excluded, cut = (note for note in read.notes if "left out" in note)
+    assert others == f"left out, runs of another kind than slip-rig: {runs['walked'].name} (walk)"
+    assert excluded == f"{runs['bad'].name}: left out, belt"
+    assert cut.startswith(f"{runs['cut'].name}: left out, its recording was cut short")
+
+
+def test_a_run_that_ended_is_not_left_out_for_its_damage(mixed):
+    data, runs = mixed
+    edit(runs["cut"], exit_status="completed")
+    with pytest.raises(DataError, match="no samples of topic"):
+        read_rig_data([data])
+
+
+def test_walks_alone_are_no_rig_data(mixed):
+    _, runs = mixed
+    with pytest.raises(DataError, match=r"no rig data, only runs of another kind.*--walks RUN"):
+        read_rig_data([runs["walked"]])
 
 
 def test_what_is_named_twice_counts_once(tmp_path):

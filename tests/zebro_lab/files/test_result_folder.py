@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from support.written_tracks import content, path_from, write_track
-from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.files.errors import NotWritten, ZebroLabError
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.track.folder import TRACKED, read_track_manifest, track_folder
 
@@ -63,6 +63,17 @@ def test_a_place_that_can_hold_no_folder_is_refused_before_anything_is_computed(
     (tmp_path / "broken").symlink_to("nowhere")
     with pytest.raises(ZebroLabError, match=r"^\S+ is a (file|broken link).*--out$"):
         require_replaceable(tmp_path / out, TRACKED)
+
+
+@pytest.mark.parametrize("closed", [".", "out"])
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
+    closed, tmp_path, monkeypatch
+):
+    (tmp_path / "out").mkdir()
+    place = (tmp_path / closed).resolve()
+    monkeypatch.setattr("os.access", lambda path, _mode: Path(path) != place)
+    with pytest.raises(NotWritten, match="is not writable; choose another folder"):
+        require_replaceable(tmp_path / "out", TRACKED)
 
 
 def test_drafts_of_killed_writers_are_removed_and_those_of_living_ones_kept(tmp_path):

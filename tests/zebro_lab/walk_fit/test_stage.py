@@ -14,9 +14,11 @@ from support.watchers import Nobody
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.walks_folder import read_stored_walks
 from zebro_lab.files.errors import NotFound, SettingsError
+from zebro_lab.validation.shared_clock import shifted
 from zebro_lab.walk_fit import stage
+from zebro_lab.walk_fit.clocks import LARGEST_OFFSET
 from zebro_lab.walk_fit.request import WalksRequest
-from zebro_lab.walk_fit.stage import calibrate_walks
+from zebro_lab.walk_fit.stage import calibrate_walks, require_walks
 
 
 def test_walks_need_a_calibration(tmp_path):
@@ -25,6 +27,25 @@ def test_walks_need_a_calibration(tmp_path):
         calibrate_walks(WalksRequest((folder,)), none, Nobody())
     with pytest.raises(SettingsError, match="--walks"):
         calibrate_walks(WalksRequest(), none, Nobody())
+
+
+@pytest.mark.parametrize("estimate", [False, True])
+def test_clocks_are_looked_at_before_a_fit_and_only_large_offsets_refused(
+    estimate, tmp_path, monkeypatch
+):
+    asked = []
+
+    def clock(_, *, largest=None):
+        asked.append(largest)
+        return lambda track, *_: shifted(track, -30.0) if estimate else track
+
+    for name in ("checked_clock", "estimated_clock_of"):
+        monkeypatch.setattr(stage, name, clock)
+    walk = write_walk(tmp_path / "walk", late=30.0 * estimate)
+    options = CalibrationRequest(out=tmp_path / "new")
+    require_walks(WalksRequest((walk,), estimate_offset=estimate), options, Nobody())
+    assert asked == [None if estimate else 2 * LARGEST_OFFSET]
+    assert not (tmp_path / "new").exists()
 
 
 def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_path, monkeypatch):

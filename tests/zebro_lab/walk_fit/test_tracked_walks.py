@@ -13,6 +13,7 @@ from support.watchers import Nobody
 from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.runs.exclusion import exclude_run
 from zebro_lab.walk_fit.tracked_walks import read_walk_on_file, read_walks
 
 
@@ -124,3 +125,13 @@ def test_a_walk_under_two_names_counts_once_and_is_told(tmp_path):
     found = read_walks([one, copy, write_walk(tmp_path / "other", begin=7.0, every=1.5)])
     assert [walk.name for walk in found] == ["one", "other"]
     assert any("copy" in note and "duplicate" in note for note in found[0].notes)
+
+
+def test_an_excluded_run_is_left_out_and_told(tmp_path):
+    run, _ = imported_walk(tmp_path)
+    exclude_run(run, why="a leg was loose")
+    found = read_walks([run, run, write_walk(tmp_path / "other")])
+    assert [walk.name for walk in found] == ["other"]
+    assert f"left out, {run}: excluded, a leg was loose" in found[0].notes
+    with pytest.raises(DataError, match=r"no walk to fit: .* a leg was loose"):
+        read_walks([run])

@@ -11,10 +11,12 @@ from model.gait.reference import LegReference
 from rig.backends import open_imu, open_legs
 from rig.errors import ProfileError
 from rig.imu.profile import load_imu_profile
+from rig.imu.simulated import Attitude, at_rest
 from rig.imu.stream import ImuStream
 from rig.profile import split_address
 from rig.twins import simulated_imu, simulated_legs
 from rig.zebro.profile import load_leg_profile
+from rig.zebro.simulated_legs import SimulatedLegs
 
 SIMULATED: Final = "sim"
 """Name of a simulated twin, instead of a port or of PROFILE@PORT."""
@@ -69,19 +71,23 @@ def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> It
     """
     name, port = resolve(address, default=LEGS_PROFILE)
     if port == SIMULATED:
-        with simulated_legs(load_leg_profile(name), gait, rng=rng) as legs:
+        twin = SimulatedLegs(gait, profile=load_leg_profile(name), rng=rng)
+        with simulated_legs(twin, rng=rng) as legs:
             yield legs
     else:
         yield open_legs(address)
 
 
 @contextmanager
-def imu_at(address: str, *, name: str, rng: np.random.Generator) -> Iterator[ImuStream]:
+def imu_at(
+    address: str, *, name: str, attitude: Attitude = at_rest, rng: np.random.Generator
+) -> Iterator[ImuStream]:
     """Provide the driver of an inertial measurement unit; the port `sim` serves a twin meanwhile.
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
         name: Name of the stream.
+        attitude: Attitude of the body that carries a twin, by the host's time.
         rng: Random generator of a twin.
 
     Yields:
@@ -94,7 +100,9 @@ def imu_at(address: str, *, name: str, rng: np.random.Generator) -> Iterator[Imu
     """
     profile, port = resolve(address, default=IMU_PROFILE)
     if port == SIMULATED:
-        with simulated_imu(load_imu_profile(profile), rng=rng, name=name) as unit:
+        with simulated_imu(
+            load_imu_profile(profile), attitude=attitude, rng=rng, name=name
+        ) as unit:
             yield unit
     else:
         yield open_imu(address, name=name)

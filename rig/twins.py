@@ -18,7 +18,7 @@ from model.gait.reference import LegReference
 from rig.backends import RigDevices, leg_driver, leg_link
 from rig.errors import ProfileError
 from rig.imu.profile import ImuProfile
-from rig.imu.simulated import SimulatedImu
+from rig.imu.simulated import Attitude, SimulatedImu, at_rest
 from rig.imu.stream import ImuStream
 from rig.links.byte_link import ByteTwin
 from rig.links.can import CanLink
@@ -49,6 +49,28 @@ BYTE_ROBOTS: Final = {"packet": PacketRobot, "dump": DumpRobot, "poll": PolledRo
 _channels = itertools.count()
 
 
+def byte_robot(
+    legs: SimulatedLegs, *, faults: Faults = PERFECT_LINE, rng: np.random.Generator
+) -> ByteTwin:
+    """Return simulated legs on a serial line, as a byte twin that is not served yet.
+
+    Args:
+        legs: The legs.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
+
+    Raises:
+        ProfileError: The profile's layout is `can` or `table`, which no serial line carries.
+    """
+    layout = legs.profile.layout
+    if layout not in BYTE_ROBOTS:
+        raise ProfileError(
+            f"no serial port carries layout '{layout}'; use {' or '.join(BYTE_ROBOTS)}",
+            file=legs.profile.name,
+        )
+    return BYTE_ROBOTS[layout](legs, faults=faults, rng=rng)
+
+
 def robot_twin(
     profile: LegProfile,
     reference: LegReference,
@@ -72,51 +94,48 @@ def robot_twin(
     Raises:
         ProfileError: The profile's layout is `can` or `table`, which no serial line carries.
     """
-    if profile.layout not in BYTE_ROBOTS:
-        raise ProfileError(
-            f"no serial port carries layout '{profile.layout}'; use {' or '.join(BYTE_ROBOTS)}",
-            file=profile.name,
-        )
     legs = SimulatedLegs(reference, profile=profile, imperfections=imperfections, rng=rng)
-    return BYTE_ROBOTS[profile.layout](legs, faults=faults, rng=rng)
+    return byte_robot(legs, faults=faults, rng=rng)
 
 
 @contextmanager
-def simulated_legs(
-    profile: LegProfile, reference: LegReference, *, rng: np.random.Generator
-) -> Iterator[Any]:
-    """Serve a simulated robot at a virtual CAN bus or a port, and yield its driver.
+def simulated_legs(legs: SimulatedLegs, *, rng: np.random.Generator) -> Iterator[Any]:
+    """Serve simulated legs at a virtual CAN bus or a port, and yield their driver.
 
     Args:
-        profile: Counts, layout and rate of the robot; the layout `table` is a `ProfileError`.
-        reference: Gait that the robot walks until it is commanded.
-        rng: Random generator.
+        legs: The legs; a profile of the layout `table` is a `ProfileError`.
+        rng: Random generator of transmission errors.
 
     Yields:
         A `Stream` that also takes `LegCommands`, not yet entered.
     """
+    profile = legs.profile
     if profile.layout == "can":
         channel = _new_channel()
-        legs = SimulatedLegs(reference, profile=profile, rng=rng)
         with can.Bus(interface="virtual", channel=channel) as bus:
             robot = CanRobot(legs, bus, rng=rng)
             with Ticker(robot.poll):
                 link = leg_link(profile, f"virtual:{channel}", source=robot.source)
                 yield leg_driver(profile, link)
         return
-    twin = robot_twin(profile, reference, rng=rng)
+    twin = byte_robot(legs, rng=rng)
     with PortServer(twin) as server:
         yield leg_driver(profile, leg_link(profile, server.port, source=twin.source))
 
 
 @contextmanager
 def simulated_imu(
-    profile: ImuProfile, *, rng: np.random.Generator, name: str = "imu"
+    profile: ImuProfile,
+    *,
+    attitude: Attitude = at_rest,
+    rng: np.random.Generator,
+    name: str = "imu",
 ) -> Iterator[ImuStream]:
     """Serve a simulated inertial measurement unit at a port, and yield its driver.
 
     Args:
         profile: Scale of the counts, mounting and rate of the unit.
+        attitude: Attitude of the body that carries the unit, by the host's time.
         rng: Random generator of transmission errors.
         name: Name of the stream.
 
@@ -126,7 +145,7 @@ def simulated_imu(
     Raises:
         LinkError: The system provides no port.
     """
-    twin = SimulatedImu(profile=profile, rng=rng)
+    twin = SimulatedImu(profile=profile, attitude=attitude, rng=rng)
     with PortServer(twin) as server:
         link = SerialLink(server.port, baudrate=profile.baudrate, source=twin.source)
         yield ImuStream(link, profile=profile, name=name)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Simulated inertial measurement unit on a rocking body.
+"""Simulated inertial measurement unit on a body whose attitude over time is given.
 
-Not modelled: noise, drift, temperature, vibration and the unit's own filter.
+Not modelled: noise, drift, temperature, vibration, acceleration of the body and the unit's filter.
 """
 
-from typing import Final
+from collections.abc import Callable
+from typing import Final, TypeAlias
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -16,28 +17,23 @@ from rig.zebro.profile import Array
 
 GRAVITY: Final = 9.81
 """Acceleration of gravity [m/s²]."""
-STEP: Final = 1e-4
-"""Step of the finite difference that gives the angular rate [s]."""
+Attitude: TypeAlias = Callable[[float], tuple[float, float, float]]
+"""Computes roll, pitch and yaw of a body [rad] at a time that never decreases [s]."""
 
 
-def rocking(time: float) -> tuple[float, float, float]:
-    """Compute the attitude of a body that oscillates at 1 Hz in roll and pitch as it turns left.
-
-    Args:
-        time: Time since the unit was switched on [s].
-
-    Returns:
-        Roll, pitch and yaw [rad].
-    """
-    swing = 2 * np.pi * time
-    return 0.08 * float(np.sin(swing)), 0.05 * float(np.cos(swing)), 0.1 * time
+def at_rest(_time: float) -> tuple[float, float, float]:
+    """Return roll, pitch and yaw of a level body that stands still: zeros [rad]."""
+    return 0.0, 0.0, 0.0
 
 
 class SimulatedImu:
     """Simulated unit that sends packets; implements the protocol `ByteTwin`.
 
+    The angular rate of a sample is the mean since the sample before, zero in the first.
+
     Args:
         profile: Scale of the counts, mounting and rate of the unit.
+        attitude: Attitude of the body that carries the unit, by the clock of `poll`.
         faults: Transmission errors of the line.
         rng: Random generator of the transmission errors.
     """
@@ -46,14 +42,17 @@ class SimulatedImu:
         self,
         *,
         profile: ImuProfile,
+        attitude: Attitude = at_rest,
         faults: Faults = PERFECT_LINE,
         rng: np.random.Generator,
     ) -> None:
         self.source = "sim:imu"
         self._profile = profile
+        self._attitude = attitude
         self._wire = FaultyWire(faults, rng=rng)
         self._switched_on: float | None = None
         self._number = 0
+        self._before: Rotation | None = None
 
     def poll(self, now: float, received: bytes) -> bytes:
         """Return the packets that are due; the first call switches the unit on.
@@ -69,30 +68,26 @@ class SimulatedImu:
         if self._switched_on is None:
             self._switched_on = now
         due = int((now - self._switched_on) * self._profile.rate + 1e-9) + 1
-        frames = [self._encode(number) for number in range(self._number, due)]
+        frames = [self._encode(number, self._switched_on) for number in range(self._number, due)]
         self._number = due
         return self._wire.stream(frames)
 
-    def _encode(self, number: int) -> bytes:
+    def _encode(self, number: int, switched_on: float) -> bytes:
         time = number / self._profile.rate
-        counts = encode_orientation(self._profile, *_motion(time))
+        counts = encode_orientation(self._profile, *self._motion(switched_on + time))
         ticks = round(time / TICK)
         body = self._profile.body.pack(*counts)
         return encode_packet(Packet(Kind.ORIENTATION, number, ticks, body))
 
+    def _motion(self, now: float) -> tuple[Rotation, Array, Array]:
+        """Compute the motion of the body at the time of the next sample [s].
 
-def _motion(time: float) -> tuple[Rotation, Array, Array]:
-    """Compute the motion of the `rocking` body at a time [s].
-
-    Returns:
-        Rotation from body to inertial frame; angular rate [rad/s] and specific force [m/s²] in the
-        body's axes, each of shape (3,). The acceleration is taken as 0.
-    """
-    rotation = _rotation(time)
-    turned = (rotation.inv() * _rotation(time + STEP)).as_rotvec()
-    return rotation, turned / STEP, rotation.inv().apply([0.0, 0.0, GRAVITY])
-
-
-def _rotation(time: float) -> Rotation:
-    roll, pitch, yaw = rocking(time)
-    return Rotation.from_euler("ZYX", [yaw, pitch, roll])
+        Returns:
+            Rotation from body to inertial frame; angular rate [rad/s] and specific force [m/s²] in
+            the body's axes, each of shape (3,). The acceleration is taken as 0.
+        """
+        roll, pitch, yaw = self._attitude(now)
+        rotation = Rotation.from_euler("ZYX", [yaw, pitch, roll])
+        before, self._before = self._before or rotation, rotation
+        rate = (before.inv() * rotation).as_rotvec() * self._profile.rate
+        return rotation, rate, rotation.inv().apply([0.0, 0.0, GRAVITY])

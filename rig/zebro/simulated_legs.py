@@ -134,6 +134,13 @@ class SimulatedLegs:
             return origin + share * (target - origin)
         return self._reference.angles(max(time - self._behind, 0.0))[0]
 
+    def angles_at(self, now: float) -> Array:
+        """Compute the true leg angles at `now` by the caller's clock [s], shape (6,) [rad].
+
+        The first call of this function or of `frames` switches the robot on.
+        """
+        return self.angles(self._since_start(now))
+
     def command(self, counts: tuple[int, ...], duration: float, now: float) -> None:
         """Turn every leg to a count the short way round, at constant speed, and hold it there.
 

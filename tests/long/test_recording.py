@@ -16,12 +16,16 @@ import pytest
 from benchmarks.speed.recording import measure, report
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.backends import open_rig
+from rig.clock_watch import sample_times
+from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.slip_rig.can_simple import describe_error
 from rig.slip_rig.decode import decode_board, decode_speeds
 from support.commands import COMMAND
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.manifest import profile_file
 from zebro_lab.runs.stage import list_runs
+from zebro_lab.walk.folder import read_walk
 
 KILLS = int(os.environ.get("ZEBRO_LAB_KILLS", "20"))
 SOAK = float(os.environ.get("ZEBRO_LAB_SOAK", "600"))
@@ -122,6 +126,32 @@ def test_a_recorded_sweep_gives_the_law_that_the_simulated_rig_obeys(tmp_path):
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT]
 
 
+def commanded(*arguments):
+    subprocess.run([COMMAND, *map(str, arguments)], check=True, capture_output=True)
+
+
+def test_the_recorded_imu_turns_as_the_recorded_legs_are_predicted_to(tmp_path):
+    walk = ("walk", "--model", "no-slip", "--steering", 1.2, "--duration", 13, "--out")
+    commanded(*walk, tmp_path / "turn")
+    play = ("--play", tmp_path / "turn", "--duration", 14, "--label", "turn")
+    commanded("record", "--zebro", "sim", "--imu", "sim", *play, "--data", tmp_path / "data")
+    (run,) = (tmp_path / "data").iterdir()
+    profile = load_imu_profile(str(profile_file(run, "imu")))
+    stream = read_raw_log(run / "log.mcap").streams["/imu/raw"]
+    t, yaw = sample_times(stream), decode_orientation(profile, stream).yaw
+    turned = {}
+    for model in (("--model", "no-slip"), ("--slip", "coulomb:0.38")):
+        commanded("predict", run, *model, "--out", tmp_path / model[1])
+        path = read_walk(tmp_path / model[1])
+        seen = np.interp(path.t, t, yaw)
+        turned[model[1]] = np.degrees([seen[-1] - seen[0], path.yaw[-1] - path.yaw[0]])
+        tell(f"{model[1]}: IMU and prediction turn {turned[model[1]].round(1)} deg")
+    seen, without_slip = turned["no-slip"]
+    slip = abs(without_slip - turned["coulomb:0.38"][1])
+    assert without_slip > 25
+    assert abs(seen - without_slip) < max(slip, 1.0)
+
+
 @contextlib.contextmanager
 def driver_ended_by(number, *, device, profile):
     """Let another process turn a simulated disc, end it by a signal; yield the twin's address."""
@@ -176,6 +206,8 @@ import sys
 signal.signal(signal.SIGINT, lambda *_: sys.exit())
 from benchmarks.speed.recording import measure, report
 from rig.backends import open_rig
+from rig.clock_watch import sample_times
+from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.device import iterate
 device = getattr(open_rig(sys.argv[1]), sys.argv[2])
 with device:

@@ -20,6 +20,7 @@ from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import robot_twin, simulated_imu, simulated_legs, simulated_rig_devices
 from rig.zebro.profile import load_leg_profile
+from rig.zebro.simulated_legs import SimulatedLegs
 
 TIMES = np.linspace(0, 60, 601)
 GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
@@ -36,7 +37,9 @@ def rig():
 
 
 def legs(name):
-    return lambda: simulated_legs(load_leg_profile(name), GAIT, rng=rng())
+    return lambda: simulated_legs(
+        SimulatedLegs(GAIT, profile=load_leg_profile(name), rng=rng()), rng=rng()
+    )
 
 
 def imu():

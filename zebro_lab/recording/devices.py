@@ -12,10 +12,11 @@ import numpy as np
 
 from model.gait.reference import LegReference
 from rig.acquisition import Device
-from rig.backends import open_rig
+from rig.backends import open_legs, open_rig
 from rig.device import Sample
 from rig.imu.profile import load_imu_profile
-from rig.openers import IMU_PROFILE, LEGS_PROFILE, REPLAY, SIMULATED, imu_at, legs_at, resolve
+from rig.imu.simulated import Attitude, at_rest
+from rig.openers import IMU_PROFILE, LEGS_PROFILE, REPLAY, SIMULATED, imu_at, resolve
 from rig.profile import shipped_file
 from rig.safety import SampleGuard
 from rig.slip_rig.decode import decode_board, decode_forces
@@ -23,7 +24,10 @@ from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
-from rig.twins import simulated_rig_devices
+from rig.twins import simulated_legs, simulated_rig_devices
+from rig.zebro.profile import load_leg_profile
+from rig.zebro.simulated_body import SimulatedBody
+from rig.zebro.simulated_legs import SimulatedLegs
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.replayed import IMU, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
@@ -97,12 +101,15 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
     rng = np.random.default_rng(request.seed)
     opened = OpenDevices()
     with ExitStack() as stack:
+        twin = _simulated_robot(request, rng)
+        # Before anything is served: creating a body may compile loops for a while
+        bodies = [at_rest if twin is None else SimulatedBody(twin) for _ in request.imus]
         if request.zebro is not None:
-            _add_legs(opened, stack, request.zebro, request.play, rng)
+            _add_legs(opened, stack, request, twin, rng)
         names = ["imu"] if len(request.imus) == 1 else [f"imu{i + 1}" for i, _ in
                                                         enumerate(request.imus)]  # fmt: skip
-        for name, address in zip(names, request.imus, strict=True):
-            _add_imu(opened, stack, name, address, rng)
+        for name, address, body in zip(names, request.imus, bodies, strict=True):
+            _add_imu(opened, stack, name, address, body, rng)
         if request.rig is not None:
             _add_rig(opened, stack, request.rig, rng)
         for device in opened.devices:
@@ -139,19 +146,34 @@ def _require_any(request: DevicesRequest) -> None:
         raise SettingsError("no robot to move is given; add --zebro or omit --play", key="--play")
 
 
+def _simulated_robot(request: DevicesRequest, rng: np.random.Generator) -> SimulatedLegs | None:
+    """Return the legs of the requested robot if it is simulated, else None."""
+    if request.zebro is None or request.zebro.startswith(REPLAY):
+        return None
+    name, port = resolve(request.zebro, default=LEGS_PROFILE)
+    if port != SIMULATED:
+        return None
+    gait = request.play or default_gait()
+    return SimulatedLegs(gait, profile=load_leg_profile(name), rng=rng)
+
+
 def _add_legs(
     opened: OpenDevices,
     stack: ExitStack,
-    address: str,
-    play: LegReference | None,
+    request: DevicesRequest,
+    twin: SimulatedLegs | None,
     rng: np.random.Generator,
 ) -> None:
+    address, play = str(request.zebro), request.play
     if address.startswith(REPLAY):
         if play is not None:
             raise SettingsError("a replayed robot cannot be moved; omit --play", key="--play")
         _replay(opened, address, LEGS)
         return
-    legs = stack.enter_context(legs_at(address, play or default_gait(), rng=rng))
+    if twin is None:
+        legs = open_legs(address)
+    else:
+        legs = stack.enter_context(simulated_legs(twin, rng=rng))
     profile = legs.profile
     player = None if play is None else GaitPlayer(legs, play, profile)
     opened.devices.append(
@@ -166,14 +188,19 @@ def _add_legs(
 
 
 def _add_imu(
-    opened: OpenDevices, stack: ExitStack, stream: str, address: str, rng: np.random.Generator
+    opened: OpenDevices,
+    stack: ExitStack,
+    stream: str,
+    address: str,
+    attitude: Attitude,
+    rng: np.random.Generator,
 ) -> None:
     if address.startswith(REPLAY):
         _replay(opened, address, IMU, name=stream)
         return
     name, _ = resolve(address, default=IMU_PROFILE)
     profile = load_imu_profile(name)
-    unit = stack.enter_context(imu_at(address, name=stream, rng=rng))
+    unit = stack.enter_context(imu_at(address, name=stream, attitude=attitude, rng=rng))
     opened.devices.append(Device(unit, pause=PAUSE))
     opened.profiles[stream] = (profile.name, profile_text(name))
 

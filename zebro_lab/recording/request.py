@@ -103,6 +103,13 @@ class ImuTwinRequest:
     """Options of `zebro-lab sim imu`."""
 
     profile: Profile = "imu-quaternion-serial"
+    play: Annotated[
+        Path | None,
+        Option(
+            metavar="FILE",
+            help="Leg angles of the robot that carries the unit: walk folder, table or run.",
+        ),
+    ] = None
     as_socket: Socket = False
     flip: Flip = 0.0
     drop: Drop = 0.0

@@ -12,6 +12,7 @@ import can
 import numpy as np
 import tomlkit
 
+from model.gait.reference import LegReference
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import SimulatedImu
@@ -19,6 +20,7 @@ from rig.links.byte_link import ByteTwin
 from rig.links.faults import Faults
 from rig.links.serve import PortServer, Ticker
 from rig.links.slcan import SlcanAdapter
+from rig.openers import LEGS_PROFILE
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
@@ -26,6 +28,7 @@ from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.simulated import CanRobot
+from rig.zebro.simulated_body import SimulatedBody
 from rig.zebro.simulated_legs import RobotImperfections, SimulatedLegs
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import SettingsError
@@ -66,7 +69,7 @@ def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
     """
     profile = load_leg_profile(request.profile)
     rng = np.random.default_rng(request.seed)
-    gait = default_gait() if request.play is None else read_leg_log(request.play).reference
+    gait = _gait(request.play)
     imperfections = RobotImperfections(jitter=request.jitter, pause_probability=request.pause)
     faults = Faults(flip=request.flip, drop=request.drop, garbage=request.garbage)
     if profile.layout == "can":
@@ -85,12 +88,19 @@ def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
 def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
     """Serve a simulated inertial measurement unit on a port while the context lasts.
 
+    It is carried by a robot that walks the requested leg angles, or the default gait.
+
     Raises:
         RigError: The profile or the port is invalid.
+        ZebroLabError: The leg angles to walk cannot be read.
     """
     rng = np.random.default_rng(request.seed)
+    legs = SimulatedLegs(_gait(request.play), profile=load_leg_profile(LEGS_PROFILE), rng=rng)
     faults = Faults(flip=request.flip, drop=request.drop, garbage=request.garbage)
-    twin = SimulatedImu(profile=load_imu_profile(request.profile), faults=faults, rng=rng)
+    twin = SimulatedImu(
+        profile=load_imu_profile(request.profile), attitude=SimulatedBody(legs), faults=faults,
+        rng=rng,
+    )  # fmt: skip
     with _port(twin, request) as port:
         yield Served(twin.source, {"imu": port}, f"{request.profile}@{port}")
 
@@ -133,6 +143,11 @@ def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
         file = stack.enter_context(_profile_of_cell(request.profile, cell))
         places = {"drives": place, "load cell": f"udp://{cell.host}:{cell.port}"}
         yield Served(drives.source, places, f"{file}@{place}")
+
+
+def _gait(play: Path | None) -> LegReference:
+    """Return the leg angles of a walk folder, table or run; the default gait for None."""
+    return default_gait() if play is None else read_leg_log(play).reference
 
 
 @contextmanager

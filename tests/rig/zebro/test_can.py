@@ -12,13 +12,16 @@ from rig.profile import shipped_file
 from rig.twins import simulated_legs
 from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS
 from rig.zebro.profile import load_leg_profile
+from rig.zebro.simulated_legs import SimulatedLegs
 
 STANDING = SampledReference(np.array([0.0, 1.0]), np.tile(np.linspace(0.2, 1.2, 6), (2, 1)))
 
 
 def test_legs_on_can_go_to_their_set_points_and_stop(take):
     profile = load_leg_profile("zebro-100-can")
-    with simulated_legs(profile, STANDING, rng=np.random.default_rng(0)) as stream, stream:
+    rng = np.random.default_rng(0)
+    twin = SimulatedLegs(STANDING, profile=profile, rng=rng)
+    with simulated_legs(twin, rng=rng) as stream, stream:
         targets = (10, 20, 30, 40, 50, 60)
         assert stream.set_points(targets, 0.1)
         assert take(stream, 50)[-1].counts == targets

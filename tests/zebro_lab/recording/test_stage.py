@@ -15,6 +15,7 @@ from rig.backends import leg_driver, leg_link
 from rig.clock import ManualClock
 from rig.device import Counters, Sample
 from rig.errors import DeviceMismatch
+from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.links.serve import PortServer
 from rig.replay import ReplayStream
 from rig.sample_queue import LossyTap
@@ -80,6 +81,16 @@ def test_clocks_of_devices_that_tell_time_are_compared(everything):
     clocks = everything[0].manifest.clocks
     assert set(clocks) == {"legs", "imu1", "imu2", "load_cell"}
     assert abs(clocks["legs"]["offset"]) < 0.2
+
+
+def test_the_imus_of_a_robot_that_walks_straight_do_not_turn(everything):
+    folder = everything[0].folder
+    streams = read_raw_log(folder / "log.mcap").streams
+    profile = load_imu_profile(str(profile_file(folder, "imu1")))
+    for name in ("imu1", "imu2"):
+        seen = decode_orientation(profile, streams[f"/{name}/raw"])
+        assert np.ptp(seen.yaw) < np.radians(0.2)
+        assert np.ptp(seen.pitch) < np.radians(1)
 
 
 def test_the_twins_truth_is_in_the_record(everything):

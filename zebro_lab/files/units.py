@@ -16,7 +16,26 @@ _COMMON = (
     "N", "mN", "kN", "kgf", "lbf", "s", "ms", "us", "min", "rad/s", "deg/s", "rpm", "rev/s",
     "m", "cm", "mm", "in", "%", "dimensionless",
 )  # fmt: skip
-_NO_UNIT = {"", "-", "1"}  # how headers write that a number has no unit
+_NO_UNIT = {"", "-", "1", "–", "none", "ratio", "unitless"}  # how headers write that there is none
+_MISREAD = {"Grad": "deg", "Grad/s": "deg/s", "U/min": "rpm", "Upm": "rpm", "RPM": "rpm"}
+"""Spellings in which pint would see another unit: gigarad for the German degree."""
+_SPELLINGS = {
+    "sec": "s", "secs": "s", "sek": "s", "sekunde": "s", "sekunden": "s", "sek.": "s", "msec": "ms",
+    "usec": "us", "nsec": "ns", "kph": "km/h", "kmh": "km/h", "km/hr": "km/h", "mps": "m/s",
+    "fps": "ft/s", "°": "deg", "rev/min": "rpm", "rad/sec": "rad/s",
+    "deg/sec": "deg/s", "°/s": "deg/s", "newton": "N", "newtons": "N", "lbs": "lbf",
+    "prozent": "%", "pct": "%", "deg c": "degC", "deg f": "degF", "°c": "degC", "inches": "in",
+    "millimeter": "mm", "meter": "m",
+}  # fmt: skip
+"""What strangers write for units that pint does not know, in lower case."""
+_BASES = (
+    r"s|sec|secs|seconds?|sek|Sekunden|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs|m|mm|cm|km|um|in|inch"
+    r"|ft|N|kN|mN|lbf?|lbs|kgf?|kp|g|rad|mrad|deg|degrees?|[Gg]rad|°|rev|turns?|rpm|RPM|Hz|kHz|mV|V"
+    r"|mA|A|W|kW|J|K|°C|degC|deg ?[CF]|°F|C|F|Pa|kPa|hPa|MPa|bar|mbar|psi|%|percent|Nm|N-m|N\*m|N m"
+    r"|pix|px|pixels?|ticks|counts?|digits?|kph|mph|kmh|mps|U|G|T|uT|µT|mT|dB|ohm|Ohm|Ω|N/mm|raw"
+)
+_POWER = r"(?:\^?-?[1-4]|[²³]|\*\*-?[1-4])?"
+_UNIT_TEXT = re.compile(rf"(?:1|{_BASES}){_POWER}(?:[/*·. ](?:{_BASES}){_POWER})*")
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
 
 _SHOWN = {"rad": (180 / math.pi, "deg"), "rad/m": (180 / math.pi, "deg/m"), "-": (100.0, "%")}
@@ -49,6 +68,8 @@ def factor_to_si(unit: str, si_unit: str) -> float:
     >>> factor_to_si("mm", "m"), factor_to_si("%", "dimensionless")
     (0.001, 0.01)
     """
+    if unit.strip() == "g" and si_unit == "m/s^2":
+        unit = "g_0"  # of an acceleration never the gram
     found, wanted = _in_root_units(unit), _in_root_units(si_unit)
     if found[1] != wanted[1]:
         raise UnitError(
@@ -57,6 +78,16 @@ def factor_to_si(unit: str, si_unit: str) -> float:
             unit=unit,
         )
     return found[0] / wanted[0]
+
+
+def is_unit_text(text: str) -> bool:
+    """Return whether a text is written as units in headers are; nothing is looked up.
+
+    >>> [is_unit_text(text) for text in ("m/s²", "deg C", "-", "kappa", "FZ")]
+    [True, True, True, False, False]
+    """
+    text = text.strip()
+    return text.casefold() in _NO_UNIT or _UNIT_TEXT.fullmatch(text) is not None
 
 
 def quantity_to_si(quantity: str | float, si_unit: str) -> float:
@@ -110,15 +141,35 @@ def _registry() -> "UnitRegistry":
 
 @cache
 def _in_root_units(unit: str) -> tuple[float, str]:
-    text = "dimensionless" if unit.strip() in _NO_UNIT else unit.strip()
+    text = _MISREAD.get(unit.strip(), unit.strip())
+    text = "dimensionless" if text.casefold() in _NO_UNIT else text
     registry = _registry()
     try:
-        quantity = registry.Quantity(1.0, registry.parse_units(text)).to_root_units()
-    except Exception as error:  # pint answers malformed text with anything, AssertionError too
+        try:
+            parsed = registry.parse_units(text)
+        except Exception:  # pint answers malformed text with anything, AssertionError too
+            parsed = registry.parse_units(_respelled(text))
+        quantity = registry.Quantity(1.0, parsed).to_root_units()
+    except Exception as error:
         near = difflib.get_close_matches(text, _COMMON, n=1, cutoff=0.5)
         advice = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(_COMMON)}, …"
         raise UnitError(f"unknown unit '{unit}'; {advice}", unit=unit) from error
     return float(quantity.magnitude), str(quantity.units)
+
+
+def _respelled(unit: str) -> str:
+    """Return a unit in the spelling of pint, where strangers write it in another way.
+
+    >>> [_respelled(unit) for unit in ("Sek.", "m/s2", "N-m", "°/s")]
+    ['s', 'm/s^2', 'N*m', 'deg/s']
+    """
+    text = unit.replace("\u03bc", "u").replace("µ", "u").replace("·", "*")
+    text = text.replace("²", "^2").replace("³", "^3")
+    text = re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)
+    text = re.sub(r"(?<=[A-Za-z])(?=[234](?!\d))", "^", text)
+    if text.casefold() in _SPELLINGS:
+        return _SPELLINGS[text.casefold()]
+    return "/".join(_SPELLINGS.get(part.casefold(), part) for part in text.split("/"))
 
 
 def _like(root_units: str) -> list[str]:

@@ -51,6 +51,31 @@ def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
             raise counted.refusal or error from error
 
 
+def read_unpacked(path: Path) -> bytes:
+    """Read a whole binary file, decompressing it if its name ends in .gz.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: The file is not regular, not opened, not complete gzip, or has more than `FREELY`
+            plus `MOST_RATIO` times its packed size.
+    """
+    with open_file(path) as file:
+        if not path.name.lower().endswith(".gz"):
+            return file.read()
+        most = FREELY + MOST_RATIO * os.fstat(file.fileno()).st_size
+        try:
+            data = gzip.GzipFile(fileobj=file).read(most + 1)
+        except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+            raise DataError(
+                f"is not a complete gzip file ({error}); copy or export it again", file=path
+            ) from error
+    if len(data) > most:
+        raise DataError(
+            f"unpacks to more than {MOST_RATIO} times its size; check that it is a table", file=path
+        )
+    return data
+
+
 class _Counted(io.BufferedIOBase):
     """A file wrapper that counts bytes and lines read, and raises DataError beyond the limits.
 

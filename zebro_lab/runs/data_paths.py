@@ -10,7 +10,7 @@ from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.table_files import TABLE_SUFFIXES, is_table_file
+from zebro_lab.tables.table_files import PLAIN_SUFFIXES, is_table_file
 
 CALIBRATION_FILE = "slip.toml"  # a folder with this file is a calibration folder, not data
 
@@ -115,6 +115,6 @@ def _why_empty(folder: Path) -> str:
     if (kind := result_kind(folder)) is not None:
         return f"is the result of a command (kind '{kind}'), not data; give tables or run folders"
     return (
-        f"holds no data; expected files ending in {', '.join(TABLE_SUFFIXES)} or run folders with "
+        f"holds no data; expected files ending in {', '.join(PLAIN_SUFFIXES)} or run folders with "
         f"a {MANIFEST_FILE}, in this folder or folders in it"
     )

@@ -6,14 +6,16 @@ The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commen
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 
 from model.slip.definition import SlipDefinition
 from rig.nearest_name import nearest
-from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.settings_table import SettingsTable, read_settings
+from zebro_lab.files.units import factor_to_si
+from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition, parse_row_condition
 
 COLUMNS_FILE = "columns.toml"
@@ -69,12 +71,34 @@ class MappedColumn:
         unit: Unit of the column in the file; "" for text.
         factor: Multiplies the file's numbers to give SI with the canonical sign.
         definition: Slip definition, for `slip_ratio` only; None if not stated.
+        unit_stated: Whether the column map states the unit; else that of the file holds, if any.
     """
 
     name: str
     unit: str = ""
     factor: float = 1.0
     definition: SlipDefinition | None = None
+    unit_stated: bool = False
+
+    def in_unit_of(self, table: RawTable, si_unit: str | None) -> "MappedColumn":
+        """Return the column with the unit that the file states for it, unless the map states one.
+
+        Args:
+            table: The table that the column is read from.
+            si_unit: SI unit of the canonical column; None if its cells are text.
+
+        Raises:
+            DataError: The unit of the file is unknown or measures another quantity.
+        """
+        unit = table.units.get(self.name)
+        if unit is None or self.unit_stated or si_unit is None:
+            return self
+        try:
+            factor = factor_to_si(unit, si_unit)
+        except UnitError as error:
+            problem = f"the file states an {error}; state unit = ... of this column in "
+            raise table.fault(f"{problem}{COLUMNS_FILE}", self.name) from error
+        return replace(self, unit=unit, factor=math.copysign(factor, self.factor))
 
 
 @dataclass(frozen=True)
@@ -173,13 +197,14 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
     if isinstance(found, str):  # t = "ET": only a header, in SI
         found = {"name": found}
     table = columns.as_table(name, found, expected="a header, or a table with name, unit, sign")
+    stated = si_unit is not None and "unit" in table
     unit, factor = table.factor("unit", si_unit) if si_unit else ("", 1.0)
     sign = table.sign("sign") if si_unit else 1
     definition = None
     if name == "slip_ratio" and "definition" in table:
         key = table.dotted("definition") or ""
         definition = parse_definition(table.value("definition"), file=Path(table.file), key=key)
-    return MappedColumn(table.text("name", name), unit, sign * factor, definition)
+    return MappedColumn(table.text("name", name), unit, sign * factor, definition, stated)
 
 
 def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:

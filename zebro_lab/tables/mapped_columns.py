@@ -2,7 +2,7 @@
 """Column map of a time series: canonical names and units for the columns of a table."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from model.slip.law import Array
@@ -21,12 +21,14 @@ class MappedColumns:
         source: Source as stated in the file; None if not stated.
         file: The `columns.toml`; None without one.
         where: Dotted section in the file, with a final dot; "" for the whole file.
+        units: SI unit of each canonical column.
     """
 
     mapped: Mapping[str, MappedColumn]
     source: str | None = None
     file: Path | None = None
     where: str = ""
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def has(self, table: RawTable, name: str) -> bool:
         """Return whether a table has a column, once or repeatedly, by the header it is mapped to.
@@ -68,6 +70,7 @@ class MappedColumns:
                 f"; if its header differs, map it in {COLUMNS_FILE}: [{self.where}columns.{name}]",
                 mapped.name,
             )
+        mapped = mapped.in_unit_of(table, self.units[name])
         return table.finite(mapped.name, f"a number in {mapped.unit}: {advice}") * mapped.factor
 
 
@@ -77,7 +80,8 @@ def canonical_columns(units: Mapping[str, str]) -> MappedColumns:
     Args:
         units: SI unit of each column, by canonical name.
     """
-    return MappedColumns({name: MappedColumn(name, unit) for name, unit in units.items()})
+    columns = {name: MappedColumn(name, unit) for name, unit in units.items()}
+    return MappedColumns(columns, units=units)
 
 
 def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> MappedColumns:
@@ -100,5 +104,5 @@ def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> Mapp
     table.finish()
     where = f"{table.path}." if table.path else ""
     return MappedColumns(
-        {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where
+        {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where, units
     )

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Read Parquet files as raw tables, with limits on memory."""
 
+import io
 import os
 from collections import Counter
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
-from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO
+from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO, read_unpacked
+from zebro_lab.tables.cells import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 
 if TYPE_CHECKING:
@@ -20,8 +23,9 @@ _MOST_THRIFT = 1 << 26  # memory that a footer may ask for [bytes or entries]
 
 
 def read_parquet_file(path: Path) -> RawTable:
-    """Read a Parquet file; its source is the metadata key `source`, if there is one.
+    """Read a Parquet file, perhaps gzipped.
 
+    Its source is the metadata key `source`, if there is one.
     Columns with cells of another kind than numbers, dates or strings are read as empty and listed
     in `unreadable`.
 
@@ -29,7 +33,7 @@ def read_parquet_file(path: Path) -> RawTable:
         NotFound: There is no such file.
         DataError: The file is not complete Parquet, or exceeds the limits of size or cells.
     """
-    with open_file(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
+    with _opened(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
         table = _read(file, path)
         metadata = table.schema.metadata or {}
         columns = {name: _cells(table.column(i)) for i, name in enumerate(table.column_names)}
@@ -42,7 +46,14 @@ def read_parquet_file(path: Path) -> RawTable:
         source=source.decode(errors="replace") if source else None,
         unreadable={field.name: str(field.type)[:80] for field in table.schema
                     if not _is_plain(field.type)},
+        units={name: unit for name in columns if (unit := unit_in_header(name)) is not None},
     )  # fmt: skip
+
+
+def _opened(path: Path) -> AbstractContextManager[IO[bytes]]:
+    if path.name.lower().endswith(".gz"):
+        return io.BytesIO(read_unpacked(path))
+    return open_file(path)
 
 
 def _read(file: IO[bytes], path: Path) -> "pa.Table":
@@ -53,7 +64,7 @@ def _read(file: IO[bytes], path: Path) -> "pa.Table":
     }  # fmt: skip
     with pq.ParquetFile(file, **limits) as opened:
         metadata, schema = opened.metadata, opened.schema_arrow
-        _require_bounded(metadata, path, os.fstat(file.fileno()).st_size)
+        _require_bounded(metadata, path, file.seek(0, os.SEEK_END))
     # A long string that repeats in many rows is stored once, but unpacked it is copied to each row.
     texts = [field.name for field in schema if _is_text(field.type)]
     with pq.ParquetFile(file, read_dictionary=texts, **limits) as opened:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A table as read from a file, before columns are mapped."""
 
+import io
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
+from zebro_lab.tables.cells import may_be_thousands
 
 _BLOCK = 1 << 16  # cells converted to numbers at a time
 
@@ -31,8 +33,13 @@ class RawTable:
         repeated: Headers that more than one column has in the file, which are therefore ambiguous.
         source: Source stated in the file; None if not stated.
         decimal_comma: Whether numbers may be written with a decimal comma, e.g. 0,5.
+        decimal: Decimal sign of the table, "," or ".", where it is known; then a number such as
+            1.234 or 1,234 is not ambiguous.
         notes: Notes on how the file was read, one line each.
-        header_line: Line of the header in a text file, counted from 1; None for other files.
+        header_line: Line above the first row in a text file, counted from 1; None for other files.
+        encoding: Encoding of a text file.
+        rows_from: Number of the first row of data in the sheet of a workbook; None for other files.
+        units: Unit that the file states for a column, by header, as written in it.
         unreadable: Cell type of each column that has neither numbers nor strings, by header.
     """
 
@@ -41,8 +48,12 @@ class RawTable:
     repeated: frozenset[str] = frozenset()
     source: str | None = None
     decimal_comma: bool = False
+    decimal: str | None = None
     notes: tuple[str, ...] = ()
     header_line: int | None = None
+    encoding: str = "utf-8"
+    rows_from: int | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
     unreadable: Mapping[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -80,7 +91,8 @@ class RawTable:
     def numbers(self, name: str) -> NDArray[np.float64]:
         """Return a column as numbers in the file's unit, NaN for empty cells, shape (n,).
 
-        A decimal comma is understood if the table may have them and no cell has a point.
+        A decimal comma is understood if the table may have them and no cell has a point. Thousands
+        separators are not: of 1,234 and 1.234 the decimal sign must be known from other numbers.
 
         Raises:
             DataError: The column is missing, ambiguous or of dates, or a cell is not a number.
@@ -97,6 +109,10 @@ class RawTable:
             if bad.any() and self.decimal_comma and not _has_points(cells):
                 values = _as_numbers(cells.astype(str).str.replace(",", ".", regex=False))
                 bad = np.isnan(values) & ~empty
+                if not bad.any() and self.decimal != ",":
+                    bad = _all_grouped(cells, ",")
+            elif not bad.any() and self.decimal == ",":
+                bad = _all_grouped(cells, ".")
         if bad.any():
             raise self._not_a_number(name, int(np.argmax(bad)))
         return values
@@ -145,15 +161,18 @@ class RawTable:
         )
 
     def _line(self, row: int) -> int | None:
-        """Return the line number of a data row in a text file; None for other files.
+        """Return the line of a data row in a text file or the row of a sheet; None for others.
 
         Rows and lines count from 1. The file is read again, as this is only called for error
         messages.
         """
+        if self.rows_from is not None:
+            return self.rows_from + row - 1
         if self.header_line is None:
             return None
         with open_unpacked(self.path) as file:
-            for number, line in enumerate(file, start=1):
+            text = io.TextIOWrapper(file, encoding=self.encoding, errors="replace")
+            for number, line in enumerate(text, start=1):
                 row -= number > self.header_line and bool(line.strip())
                 if row == 0:
                     return number
@@ -161,8 +180,16 @@ class RawTable:
 
     def _not_a_number(self, name: str, index: int) -> DataError:
         text = str(self.column(name).iloc[index])
+        if may_be_thousands(text) and self.decimal_comma:
+            return self.fault(
+                f"'{text}' has a decimal sign or a thousands separator; write all numbers without "
+                "thousands separators, decimals with a point",
+                name, index, value=text,
+            )  # fmt: skip
         if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
             advice = "; write decimals with a point"
+        elif re.fullmatch(r"\s*[-+]?\d{1,3}([ .,'’\u00a0\u202f]\d{3})+([.,]\d+)?\s*", text):
+            advice = "; write it without thousands separators"
         elif index == 0:
             advice = "; if the row holds units, delete it and give them in columns.toml"
         else:
@@ -193,3 +220,11 @@ def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
 def _has_points(cells: "pd.Series") -> bool:
     # 1,234.5 and 1.234,5 are both possible: if points occur, the comma is not the decimal sign.
     return bool(cells.astype(str).str.contains(".", regex=False, na=False).any())
+
+
+def _all_grouped(cells: "pd.Series", sign: str) -> NDArray[np.bool_]:
+    """Return which cells may have a thousands separator, if all cells with this sign may."""
+    texts = [str(cell) if isinstance(cell, str) else "" for cell in cells]
+    signed = np.array([sign in text for text in texts], dtype=bool)
+    grouped = np.array([may_be_thousands(text) for text in texts], dtype=bool)
+    return signed if signed.any() and grouped[signed].all() else np.zeros(len(texts), dtype=bool)

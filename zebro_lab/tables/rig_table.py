@@ -29,14 +29,19 @@ class RigTable:
     rows: NDArray[np.intp]
 
     def source_of(self, name: str) -> MappedColumn | None:
-        """Return the mapping of a canonical column, in SI if it is not mapped but a header.
+        """Return the mapping of a canonical column; of one not mapped, if it is a header.
 
-        None if it is neither. The table may lack the header that a column is mapped to.
+        None if it is neither. Without a unit in the column map, that of the file holds, else SI.
+        The table may lack the header that a column is mapped to.
+
+        Raises:
+            DataError: The file states a unit that is unknown or measures another quantity.
         """
+        si_unit = CANONICAL[name].unit
         if name in self.columns.columns:
-            return self.columns.columns[name]
+            return self.columns.columns[name].in_unit_of(self.raw, si_unit)
         if name in self.raw.columns or name in self.raw.repeated:
-            return MappedColumn(name, CANONICAL[name].unit or "")
+            return MappedColumn(name, si_unit or "").in_unit_of(self.raw, si_unit)
         return None
 
     def required(self, name: str) -> MappedColumn:

@@ -1,43 +1,73 @@
 # SPDX-License-Identifier: MIT
-"""Read CSV and Parquet files as raw tables."""
+"""Read table files as raw tables: text of any layout, Parquet and Excel."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Final
 
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.tables.csv_files import read_csv_file
+from zebro_lab.tables.excel_files import read_excel_file
 from zebro_lab.tables.parquet_files import read_parquet_file
 from zebro_lab.tables.raw_table import RawTable
 
-READERS: Mapping[str, Callable[[Path], RawTable]] = {
+READERS: Final[Mapping[str, Callable[[Path], RawTable]]] = {
     ".csv": read_csv_file,
-    ".csv.gz": read_csv_file,
+    ".tsv": read_csv_file,
+    ".dat": read_csv_file,
+    ".lvm": read_csv_file,
+    ".txt": read_csv_file,
     ".parquet": read_parquet_file,
 }
-"""Reader of each table format, by the suffix of its files."""
+"""Reader of each table format without sheets, by the suffix of its files, which may be gzipped."""
+_EXCEL: Final = ".xlsx"
+_NAMED_ONLY: Final = ".txt"  # in folders of data mostly notes
+_OTHERS: Final = {
+    ".xls": "save it as .xlsx or CSV", ".xlsm": "save it as .xlsx or CSV",
+    ".ods": "save it as .xlsx or CSV", ".mat": "export its arrays as CSV or Parquet",
+    ".tdms": "export it as CSV", ".c3d": "export it as CSV", ".h5": "export it as CSV or Parquet",
+}  # fmt: skip
 
-TABLE_SUFFIXES = tuple(READERS)
+PLAIN_SUFFIXES: Final = tuple(s for s in (*READERS, _EXCEL) if s != _NAMED_ONLY)
+"""Suffixes of the tables that are found in a folder; a .txt is read only where it is named."""
+TABLE_SUFFIXES: Final = tuple(s + packed for s in PLAIN_SUFFIXES for packed in ("", ".gz"))
+"""The same with those of gzipped tables."""
 
 
 def is_table_file(path: Path) -> bool:
-    """Return whether a file's name ends in .csv, .csv.gz or .parquet, in either case."""
-    return bool(_suffix(path))
+    """Return whether a file in a folder is taken for a table, by its name, in either case.
+
+    Files that Excel makes while a workbook is open (~$NAME.xlsx) are none.
+    """
+    return path.name.lower().endswith(TABLE_SUFFIXES) and not path.name.startswith("~$")
 
 
-def read_table_file(path: Path) -> RawTable:
-    """Read a CSV file (also gzipped) or a Parquet file.
+def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
+    """Read a table: CSV and other text, Parquet or Excel; each of them may be gzipped.
+
+    Args:
+        path: The file.
+        sheet: Sheet of a workbook; None for the only one that is not empty.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file has another suffix, no rows, is damaged, too large, or not a table.
+        DataError: The file has another suffix, no rows, is damaged, too large, or not a table; or
+            a workbook has no such sheet, or several and none is named.
     """
     if not path.exists():
         raise NotFound(f"{path}: no such file")
-    if path.is_dir() or not is_table_file(path):
+    suffix = _suffix(path)
+    if path.is_dir() or not suffix:
+        advice = _OTHERS.get(path.suffix.lower(), "")
         raise DataError(
-            f"is not a table file; expected a name ending in {', '.join(TABLE_SUFFIXES)}", file=path
+            f"is not a table file; expected a name ending in {', '.join((*READERS, _EXCEL))}, "
+            f"perhaps with .gz{'; ' + advice if advice else ''}",
+            file=path,
         )
-    table = READERS[_suffix(path)](path)
+    if suffix.startswith(_EXCEL):
+        table = read_excel_file(path, sheet=sheet)
+    else:
+        table = READERS[suffix.removesuffix(".gz")](path)
     if len(table) == 0:
         raise DataError("has a header but no rows", file=path)
     return table
@@ -53,5 +83,7 @@ def table_stem(path: Path) -> str:
 
 
 def _suffix(path: Path) -> str:
-    """Return the matching suffix of `TABLE_SUFFIXES`, in lower case; "" for any other file."""
-    return next((s for s in TABLE_SUFFIXES if path.name.lower().endswith(s)), "")
+    """Return the suffix of a table's name, in lower case, with .gz; "" for any other file."""
+    name = path.name.lower()
+    known = [suffix for suffix in (*READERS, _EXCEL) if name.removesuffix(".gz").endswith(suffix)]
+    return "".join([*known[:1], ".gz" * name.endswith(".gz")]) if known else ""

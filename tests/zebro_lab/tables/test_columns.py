@@ -48,8 +48,8 @@ def test_every_key_is_read_in_si(tmp_path):
         file=tmp_path / "columns.toml",
         source="sim:sweep",
         columns={
-            "t": MappedColumn("ET", "ms", 1e-3),
-            "normal_force": MappedColumn("FZ", "kN", -1e3),
+            "t": MappedColumn("ET", "ms", 1e-3, unit_stated=True),
+            "normal_force": MappedColumn("FZ", "kN", -1e3, unit_stated=True),
             "slip_ratio": MappedColumn("SL", "dimensionless", 1.0, SlipDefinition.TRAVEL),
             "run": MappedColumn("trial"),
         },

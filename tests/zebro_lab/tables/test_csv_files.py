@@ -29,6 +29,22 @@ def test_separator_encoding_and_line_ends_do_not_matter(tmp_path, separator, enc
                            if separator != "," else ())  # fmt: skip
 
 
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-16", "utf-16-le", "utf-16-be"])
+def test_other_encodings_than_utf_8_are_found(tmp_path, encoding):
+    text = "Zeit [µs];Winkel [°]\r\n0,5;90\r\n1,5;91\r\n"
+    (tmp_path / "a.csv").write_bytes(text.encode(encoding))
+    table = read_csv_file(tmp_path / "a.csv")
+    assert dict(table.units) == {"Zeit [µs]": "µs", "Winkel [°]": "°"}
+    np.testing.assert_array_equal(table.numbers("Zeit [µs]"), [0.5, 1.5])
+    assert table.fault("is bad", "Winkel [°]", 1).line == 3
+
+
+def test_a_special_character_far_down_tells_the_encoding(tmp_path):
+    text = "t,where\n" + "1,here\n" * 20_000 + "2,Köln\n"
+    (tmp_path / "a.csv").write_bytes(text.encode("latin-1"))
+    assert read_csv_file(tmp_path / "a.csv").column("where").iloc[-1] == "Köln"
+
+
 def test_headers_that_are_empty_or_repeated_are_told_apart(tmp_path):
     (tmp_path / "a.csv").write_text("t,,x,x\n1,2,3,4\n")
     table = read_csv_file(tmp_path / "a.csv")
@@ -65,8 +81,12 @@ RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "empty": ("a.csv", lambda: b"", "is empty"),
     "blank": ("a.csv", lambda: b"\n\n", "is empty"),
     "binary": ("a.csv", lambda: bytes(range(256)) * 8, "binary file"),
-    "latin-1": ("a.csv", lambda: "t,Kraft µN\n1,2\n".encode("latin-1"), "is not UTF-8 text"),
-    "utf-16": ("a.csv", lambda: "t,F\n1,2\n".encode("utf-16"), "UTF-16"),
+    "broken utf-8": (
+        "a.csv",
+        lambda: "t,Kraft µN\n".encode() + b"1,2\n" * 20_000 + b"3,\xb5\n",
+        "is not UTF-8",
+    ),
+    "old spreadsheet": ("a.csv", lambda: b"\xd0\xcf\x11\xe0" + bytes(99), "old Excel (.xls)"),
     "parquet named csv": (
         "a.csv",
         lambda: b"PAR1....",
@@ -83,7 +103,18 @@ RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
         lambda: b"t,normal_force\n0,1,5,2\n0,2,5,3\n",
         "row 1 (line 2): the row has 4 cells, the header has 2; write decimals with a point",
     ),
-    "ambiguous separators": ("a.csv", lambda: b"a,b;c\n1,2;3\n", "commas or by semicolons"),
+    "ambiguous separators": ("a.csv", lambda: b"a,b;c\nx,y;z\n", "commas or by semicolons"),
+    "two headers": (
+        "a.csv",
+        lambda: b"Zeit,Kraft\ntime,force\n1,2\n",
+        "two rows above the numbers that may be",
+    ),
+    "names of rows": (
+        "a.csv",
+        lambda: b'"a" "b"\n"1" 0.5 0.6\n"2" 0.5 0.6\n',
+        "has 3 cells, the header has 2",
+    ),
+    "footer": ("a.csv", lambda: b"n,F\n1,2\n2,3\nMean,2.5\n", "'n', row 3 (line 4): 'Mean' stands"),
     "surplus cell far down": (
         "a.csv",
         lambda: b"t,F\n" + b"1,2\n" * 20_000 + b"1,2,3\n",

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""The header, the units and the separator of a text are found, or the text is refused."""
+
+import pytest
+
+from zebro_lab.tables.text_layout import BLANKS, LayoutError, find_layout
+
+
+def lines(text: str) -> list[tuple[int, str]]:
+    return [(i, line) for i, line in enumerate(text.split("\n"), start=1) if line.strip()]
+
+
+@pytest.mark.parametrize(
+    ("text", "separator", "names", "last_line", "decimal"),
+    [
+        ("t,F\n0.5,1\n", ",", "t F", 1, "."),
+        ("t,F\n", ",", "t F", 1, None),
+        ("photo,t_s\na.jpg,0\nb.jpg,1\n", ",", "photo t_s", 1, None),
+        ("x\n0,5\n0,7\n", ";", "x", 1, ","),
+        ("a,b;c\n1,2;3\n", ";", "a,b c", 1, ","),
+        ("t|F\n1|2\n", "|", "t F", 1, None),
+        ("Run 5\n  t  F\n  1  2\n  2  3\n", BLANKS, "t F", 2, None),
+        ("# pose\n# t x y\n1.5 2 3\n2.5 3 4\n", BLANKS, "t x y", 2, "."),
+        ("%time,field.x\n12,0.5\n13,0.6\n", ",", "time field.x", 1, "."),
+        ("Operator,1\nRate,1000\nA,3\nt,F,x\n0,1,2\n1,2,3\n", ",", "t F x", 4, None),
+        ("t,F,x\n0,1,2\nstart,walk,now\n1,2,3\n2,3,4\n", ",", "t F x", 1, None),
+        ("t,1,2\n0,.1,.2\n1,.1,.2\n", ",", "t 1 2", 1, "."),
+        ("t,leg,phase\n0,a,b\n1,a,b\n", ",", "t leg phase", 1, None),
+        ("time,FZ\n2026-03-04 12:00:00.5,1\n2026-03-04 12:00:01,2\n", ",", "time FZ", 1, None),
+    ],
+)
+def test_header_and_separator_are_found(text, separator, names, last_line, decimal):
+    layout = find_layout(lines(text))
+    assert (layout.separator, " ".join(layout.header.names)) == (separator, names)
+    assert (layout.last_line, layout.decimal) == (last_line, decimal)
+
+
+@pytest.mark.parametrize(
+    ("text", "units"),
+    [
+        ("ET\tV\tT\nsec\tkph\tdeg C\n1\t2\t3\n", {"ET": "sec", "V": "kph", "T": "deg C"}),
+        ("ET  V  T\nsec kph deg C\n1 2 3\n", {"ET": "sec", "V": "kph", "T": "deg C"}),
+        ("a;b\n[ms];[-]\nt;f\n1;2\n", {"a": "ms", "b": "-"}),
+        ("Zeit [ms];Kraft (N);F (left)\n1;2;3\n", {"Zeit [ms]": "ms", "Kraft (N)": "N"}),
+        ("x[0],x[1]\n1,2\n", {}),
+    ],
+)
+def test_units_of_a_row_and_of_brackets_are_kept(text, units):
+    assert dict(find_layout(lines(text)).header.units) == units
+
+
+def test_names_of_groups_tell_repeated_names_apart():
+    mocap = ",,Body,Body,Body\n,,1,1,1\n,,Rotation,Position,Position\nFrame,Time,X,X,Y\n0,0,1,2,3\n"
+    assert find_layout(lines(mocap)).header.names == (
+        "Frame", "Time", "Rotation X", "Position X", "Position Y",
+    )  # fmt: skip
+    merged = "\n,,A,,B,\nFrame,Sub,X,Y,X,Y\n,,mm,mm,mm,mm\n1,0,1,2,3,4\n2,0,1,2,3,4\n"
+    assert find_layout(lines(merged)).header.names[2:] == ("A X", "A Y", "B X", "B Y")
+
+
+def test_the_settings_of_a_labview_file_are_no_data():
+    text = (
+        "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\nSamples\t2\t2\n"
+        "X0\t0,0\t0,0\nDelta_X\t0,1\t0,1\n***End_of_Header***\nX_Value\tF\tF 2\tComment\n"
+        "0,0\t1,5\t2,5\n0,1\t1,5\t2,5\n"
+    )
+    layout = find_layout(lines(text))
+    assert layout.header.names == ("X_Value", "F", "F 2", "Comment")
+    assert (layout.last_line, layout.decimal) == (8, ",")
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("", "is empty or all comments"),
+        ("# a\n# b\n", "is empty or all comments"),
+        ("1.5 2\n2.5 3\n", "has no header: the first line is '1.5 2'"),
+        ("a,b;c\nx,y;z\n", "commas or by semicolons"),
+        ("Zeit;Kraft\ntime;force\n1;2\n", "two rows above the numbers that may be the header"),
+        ("t,F\n0,1,5,2\n0,2,5,3\n", "has 4 cells, the header has 2; write decimals with a point"),
+        ('"a" "b"\n"1" 0.5 0.6\n"2" 0.5 0.6\n', "has 3 cells, the header has 2"),
+        ("t;F\n1;2\n1;2;3\n", "has 3 cells, the header has 2"),
+    ],
+)
+def test_an_unclear_layout_is_refused(text, problem):
+    with pytest.raises(LayoutError, match=problem.replace("(", r"\(")):
+        find_layout(lines(text))

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: MIT
+"""Read a sheet of an Excel workbook (.xlsx) as a raw table; openpyxl is an optional extra."""
+
+import io
+import zipfile
+from collections.abc import Sequence
+from datetime import date, datetime, time, timedelta
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO, read_unpacked
+from zebro_lab.tables.cells import decimal_sign, kind_of
+from zebro_lab.tables.header_rows import Header, NoHeader, data_rows, find_header
+from zebro_lab.tables.raw_table import RawTable
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_HEAD_ROWS: Final = 150
+Cells = Sequence[Sequence[Any]]
+
+
+def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
+    """Read a sheet of a workbook; titles, units and repeated headers as in a text table.
+
+    Formulas count by the values that were stored with them.
+
+    Args:
+        path: The workbook, perhaps gzipped.
+        sheet: Name of the sheet; None for the only one that is not empty.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: openpyxl is not installed, the file is no workbook, no or several sheets have
+            cells, a formula has no stored value, there is no header, or a limit is exceeded.
+    """
+    content = read_unpacked(path)
+    _require_bounded(path, content)
+    with parsing(path, "cannot be read as an Excel workbook", advice="save it again, or as CSV"):
+        name, cells, first_row = _sheet(path, content, sheet)
+        header = _header(path, name, cells)
+        _require_values(path, content, name, cells, first_row)
+    notes = (f"sheet '{name}'", *header.notes)
+    return RawTable(
+        path,
+        _columns(cells, header),
+        header.repeated,
+        decimal_comma=True,
+        decimal=decimal_sign([c for row in cells[:_HEAD_ROWS] for c in row if isinstance(c, str)]),
+        notes=tuple(f"{path.name}: {note}" for note in notes),
+        rows_from=first_row + header.first,
+        units=header.units,
+    )
+
+
+def _sheet(path: Path, content: bytes, wanted: str | None) -> tuple[str, Cells, int]:
+    """Return a sheet's name, its cells from the first row that is filled, and that row's number."""
+    book = _open(path, content, values=True)
+    try:
+        names = list(book.sheetnames)
+        if wanted is not None and wanted not in names:
+            raise DataError(f"has no sheet '{wanted}'; it has {_listed(names)}", file=path)
+        filled = {name: rows for name in ([wanted] if wanted else names)
+                  if (rows := _cells(path, book[name]))}  # fmt: skip
+    finally:
+        book.close()
+    if len(filled) > 1:
+        raise DataError(
+            f"has several sheets with cells, {_listed(list(filled))}; name one with sheet = "
+            f'"{next(iter(filled))}" in columns.toml (zebro-lab init FILE --sheet NAME writes it)',
+            file=path,
+        )
+    if not filled:
+        raise DataError("is empty; expected a header and rows", file=path)
+    name, rows = next(iter(filled.items()))
+    skipped = next(i for i, row in enumerate(rows) if any(cell is not None for cell in row))
+    return name, rows[skipped:], skipped + 1
+
+
+def _open(path: Path, content: bytes, *, values: bool) -> Any:
+    try:
+        import openpyxl
+    except ImportError as error:
+        raise DataError(
+            "is an Excel workbook, which needs openpyxl: pip install 'zebro-lab[xlsx]', or save "
+            "the sheet as CSV",
+            file=path,
+        ) from error
+    return openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=values)
+
+
+def _cells(path: Path, sheet: Any) -> list[list[Any]]:
+    """Return the cells of a sheet, without empty rows at the end; empty for a sheet of charts."""
+    if not hasattr(sheet, "iter_rows"):
+        return []
+    rows, count = [], 0
+    for row in sheet.iter_rows(values_only=True):
+        count += len(row)
+        if count > MOST_CELLS // 4:
+            raise DataError(
+                f"has more than {MOST_CELLS / 4e6:.0f} million cells; save it as CSV", file=path
+            )
+        rows.append(list(row))
+    while rows and all(cell is None for cell in rows[-1]):
+        rows.pop()
+    return rows
+
+
+def _header(path: Path, name: str, cells: Cells) -> Header:
+    texts = [[_text(cell) for cell in row] for row in cells[:_HEAD_ROWS]]
+    data = data_rows(texts)
+    if data is None:
+        raise DataError(f"sheet '{name}' has no row with numbers", file=path)
+    try:
+        return find_header(texts, data)
+    except NoHeader as error:
+        first = ", ".join(text for text in texts[0] if text)[:60]
+        raise DataError(
+            f"sheet '{name}' {error}: the first row is '{first}'; expected column names in one row "
+            "above the numbers",
+            file=path,
+        ) from error
+
+
+def _require_values(path: Path, content: bytes, name: str, cells: Cells, first: int) -> None:
+    """Raise if an empty cell has a formula: its value was never computed and stored."""
+    if all(cell is not None for row in cells for cell in row):
+        return
+    book = _open(path, content, values=False)
+    try:
+        formulas = _cells(path, book[name])[first - 1 :]
+    finally:
+        book.close()
+    for i, (row, found) in enumerate(zip(formulas, cells, strict=False)):
+        for j, (formula, value) in enumerate(zip(row, found, strict=False)):
+            if value is None and formula is not None:
+                raise DataError(
+                    f"row {first + i}, column {j + 1} of sheet '{name}' has a formula without a "
+                    "stored value; open the file in Excel or LibreOffice and save it again",
+                    file=path,
+                )
+
+
+def _columns(cells: Cells, header: Header) -> "dict[str, pd.Series]":
+    import pandas as pd
+
+    rows = cells[header.first :]
+    columns = {}
+    for i, name in enumerate(header.names):
+        found = [row[i] if i < len(row) else None for row in rows]
+        plain = [None if isinstance(c, str) and kind_of(c) == "empty" else c for c in found]
+        if name == f"column {i + 1}" and all(cell is None for cell in plain):
+            continue
+        columns[name] = _series(plain, pd)
+    return columns
+
+
+def _series(cells: Sequence[Any], pd: Any) -> "pd.Series":
+    known = [cell for cell in cells if cell is not None]
+    if all(isinstance(cell, (int, float)) and not isinstance(cell, bool) for cell in known):
+        return pd.Series(cells, dtype=float)
+    if all(isinstance(cell, datetime) for cell in known):
+        return pd.Series(pd.to_datetime(pd.Series(cells)))
+    return pd.Series([None if c is None else c if isinstance(c, (int, float)) else _text(c)
+                      for c in cells], dtype=object)  # fmt: skip
+
+
+def _text(cell: Any) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, (datetime, date, time)):
+        return cell.isoformat(" ") if isinstance(cell, datetime) else cell.isoformat()
+    return f"{cell.total_seconds():g}" if isinstance(cell, timedelta) else str(cell).strip()
+
+
+def _require_bounded(path: Path, content: bytes) -> None:
+    if not content.startswith(b"PK"):
+        raise DataError("is not an Excel workbook; if it is text, rename it to end in .csv",
+                        file=path)  # fmt: skip
+    with (
+        parsing(path, "cannot be read as an Excel workbook", advice="save it again, or as CSV"),
+        zipfile.ZipFile(io.BytesIO(content)) as archive,
+    ):
+        unpacked = sum(info.file_size for info in archive.infolist())
+    if unpacked > FREELY + MOST_RATIO * len(content):
+        raise DataError(
+            f"would unpack to {unpacked / 1e6:.0f} MB, more than {MOST_RATIO} times its size; "
+            "check that this is the right file",
+            file=path,
+        )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)

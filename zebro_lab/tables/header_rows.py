@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: MIT
+"""Find the header of a table: names, units, and where the rows of data begin.
+
+Works on rows of texts, whatever file they come from. Above the data there may be titles, one or
+more rows of names, and a row of units or symbols.
+"""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from zebro_lab.tables.cells import bare_unit, is_units_row, kind_of, unit_in_header
+
+Row = Sequence[str]
+
+
+@dataclass(frozen=True)
+class Header:
+    """The header of a table.
+
+    Attributes:
+        names: Header of each column, unique; those of empty cells are "column 1", ….
+        first: Index of the first row of data among the rows that were given.
+        units: Unit that the file states, by header, in a row of units or in brackets.
+        repeated: Headers that several columns have in the file.
+        notes: Notes on rows that were used or not, one line each, without the file's name.
+    """
+
+    names: tuple[str, ...]
+    first: int
+    units: Mapping[str, str] = field(default_factory=dict)
+    repeated: frozenset[str] = frozenset()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class DataRows:
+    """The longest stretch of rows with data.
+
+    Attributes:
+        first: Index of its first row.
+        stop: Index after its last row.
+        width: The usual number of cells, without empty ones at the end.
+        values: Share of values in cells that are not empty.
+        count: Number of values.
+    """
+
+    first: int
+    stop: int
+    width: int
+    values: float
+    count: int
+
+
+class NoHeader(ValueError):
+    """No header was found above the data, or more than one; the text says what to do."""
+
+
+def data_rows(rows: Sequence[Row]) -> DataRows | None:
+    """Find the rows of data: those of which half of the cells or more are numbers or dates.
+
+    Of several stretches of such rows the one with most values is taken, since settings above a
+    table have numbers too, or the first that is alike: then what is between is no header but a row
+    that cannot be read. The first row is a header where it has a text above numbers: `t,1,2,3`.
+
+    Returns None if no row has a number.
+    """
+    kinds = [[kind_of(cell) for cell in row] for row in rows]
+    found = [_described(rows, kinds, first, stop) for first, stop in _stretches(kinds)]
+    if not found:
+        return None
+    best = max(found, key=lambda data: data.values * data.count)
+    return next(
+        data for data in found
+        if data is best or (
+            data.width == best.width and data.values > best.values - 0.1
+            and kinds[data.first][0] == kinds[best.first][0]  # not numbers of groups: ",,1,1"
+        )
+    )  # fmt: skip
+
+
+def find_header(rows: Sequence[Row], data: DataRows) -> Header:
+    """Find names and units in the rows above the data.
+
+    Raises:
+        NoHeader: There is no row of names, or two may be.
+    """
+    above = [row for row in rows[: data.first] if any(cell.strip() for cell in row)]
+    block: list[Row] = []
+    while above and _is_full(above[-1], data.width):
+        block.insert(0, above.pop())
+    if not block:
+        raise NoHeader("has no header" if not above else "has no header of that width")
+    units, symbols = None, 0
+    for i in range(len(block) - 1, 0, -1):  # the top one holds names
+        if is_units_row(block[i]):
+            units, symbols, block = block[i], len(block) - 1 - i, block[:i]
+            break
+    names, above = _names(block, above, has_units=units is not None)
+    width = max(len(names), data.width)
+    names += [""] * (width - len(names))
+    filled = [name.strip() or f"column {i}" for i, name in enumerate(names, start=1)]
+    notes = [f"{len(above)} lines above the header are not read"] * bool(above)
+    notes += ["the row of units below the header is used"] * (units is not None)
+    notes += ["the row between units and numbers is not read"] * bool(symbols)
+    return made_header(filled, data.first, units_row=units, notes=tuple(notes))
+
+
+def made_header(
+    names: Sequence[str], first: int, *, units_row: Row | None = None, notes: tuple[str, ...] = ()
+) -> Header:
+    """Return a header with unique names, and with units of its brackets and of a row of units.
+
+    Args:
+        names: Header of each column, none of them empty.
+        first: Index of the first row of data.
+        units_row: Unit of each column, in the same order; None without such a row.
+        notes: Notes on reading.
+    """
+    unique = unique_names(names)
+    units = {name: unit for name in unique if (unit := unit_in_header(name)) is not None}
+    for name, cell in zip(unique, units_row or (), strict=False):
+        if cell.strip():
+            units[name] = bare_unit(cell)
+    again = frozenset(name for name, count in Counter(names).items() if count > 1)
+    return Header(tuple(unique), first, units, again, notes)
+
+
+def unique_names(names: Sequence[str]) -> list[str]:
+    """Append " (2)", " (3)", … to the second and later occurrences of a name."""
+    unique: dict[str, None] = {}
+    again: Counter[str] = Counter()
+    for name in names:
+        again[name] += 1
+        while (candidate := name if again[name] == 1 else f"{name} ({again[name]})") in unique:
+            again[name] += 1
+        unique[candidate] = None
+    return list(unique)
+
+
+def _stretches(kinds: Sequence[Sequence[str]]) -> list[tuple[int, int]]:
+    found, start = [], None
+    for i, row in enumerate([*kinds, ()]):
+        values, texts = row.count("value"), row.count("text")
+        if values > 0 and values >= texts:
+            start = i if start is None else start
+        elif start is not None:
+            found.append((start, i))
+            start = None
+    if found and found[0][0] == 0 and _names_columns(kinds[0], kinds[1 : found[0][1]]):
+        found[0] = (1, found[0][1])
+    return [(first, stop) for first, stop in found if stop > first]
+
+
+def _described(
+    rows: Sequence[Row], kinds: Sequence[Sequence[str]], first: int, stop: int
+) -> DataRows:
+    widths = Counter(_width(row) for row in rows[first:stop])
+    flat = Counter(kind for row in kinds[first:stop] for kind in row)
+    width = max(widths, key=lambda width: (widths[width], width))
+    share = flat["value"] / (flat["value"] + flat["text"])
+    return DataRows(first, stop, width, share, flat["value"])
+
+
+def _names_columns(first: Sequence[str], below: Sequence[Sequence[str]]) -> bool:
+    """Return whether a text of the first row stands above a column of numbers alone."""
+    return any(
+        kind == "text" and all(len(row) > i and row[i] == "value" for row in below[:5])
+        for i, kind in enumerate(first)
+    )
+
+
+def _width(row: Row) -> int:
+    return max((i for i, cell in enumerate(row, start=1) if cell.strip()), default=0)
+
+
+def _is_full(row: Row, width: int) -> bool:
+    """Return whether a row may belong to the header of data of a width; titles are shorter."""
+    found = sum(bool(cell.strip()) for cell in row)
+    return _width(row) >= width - 1 and found >= min(2, width) and len(row) >= width
+
+
+def _names(block: list[Row], above: list[Row], *, has_units: bool) -> tuple[list[str], list[Row]]:
+    """Return the names of columns, from the lowest row of the header; and the rows above it.
+
+    Where a name occurs twice in it, the names of groups above are put before it.
+    """
+    names = [cell.strip() for cell in block[-1]]
+    if _distinct(names):
+        higher = [cell.strip() for cell in block[-2]] if len(block) > 1 else []
+        named = len(higher) >= len(names) and all(kind_of(cell) == "text" for cell in higher)
+        if not has_units and higher and named and _distinct(higher):
+            raise NoHeader(
+                "has two rows above the numbers that may be the header, "
+                f"'{_start(block[-2])}' and '{_start(block[-1])}'"
+            )
+        return names, [*above, *block[:-1]]
+    left = [*above, *block[:-1]]
+    longer = names
+    while left and _width(left[-1]) > 2:
+        parents = _filled(left.pop(), len(names))
+        longer = [f"{parent} {name}".strip() if name else "" for parent, name
+                  in zip(parents, longer, strict=False)]  # fmt: skip
+        if _distinct(longer):
+            return longer, left
+    return names, [*above, *block[:-1]]
+
+
+def _distinct(names: Sequence[str]) -> bool:
+    found = [name for name in names if name]
+    return len(set(found)) == len(found)
+
+
+def _filled(row: Row, width: int) -> list[str]:
+    """Return a row of group names in which an empty cell belongs to the group on its left."""
+    filled, last = [], ""
+    for cell in [*row, *[""] * width][:width]:
+        last = cell.strip() or last
+        filled.append(last)
+    return filled
+
+
+def _start(row: Row) -> str:
+    return ", ".join(cell.strip() for cell in row)[:40]

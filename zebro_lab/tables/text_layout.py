@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: MIT
+"""Find how the text of a table is laid out: separator, header, decimal sign, where data begin."""
+
+import csv
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from zebro_lab.tables.cells import decimal_sign
+from zebro_lab.tables.header_rows import (
+    DataRows,
+    Header,
+    NoHeader,
+    data_rows,
+    find_header,
+    made_header,
+)
+
+BLANKS: Final = r"\s+"
+SEPARATORS: Final[Mapping[str, str]] = {
+    ",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", BLANKS: "blanks",
+}  # fmt: skip
+"""Name of each separator, in the plural; the keys are those of `pandas.read_csv`."""
+_MARKS: Final = ("#", "%", "//")  # of comments
+_LVM_END: Final = "***End_of_Header***"
+Line = tuple[int, str]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Layout of a text table.
+
+    Attributes:
+        separator: Separator of cells, a key of `SEPARATORS`.
+        header: Names and units.
+        last_line: Number of the line above the first row of data, counted from 1.
+        decimal: Decimal sign of the table where it is known: "," or "."; else None.
+        width: Number of cells in the widest row that was seen, a final separator included.
+    """
+
+    separator: str
+    header: Header
+    last_line: int
+    decimal: str | None
+    width: int
+
+
+class LayoutError(ValueError):
+    """The layout is unclear; the text says what was found and what to do.
+
+    Attributes:
+        row: Row of data that is irregular, counted from 1; None for the whole file.
+        line: Its line.
+    """
+
+    def __init__(self, problem: str, row: int | None = None, line: int | None = None) -> None:
+        super().__init__(problem)
+        self.row = row
+        self.line = line
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """The lines of a file, split at one separator.
+
+    Attributes:
+        separator: A key of `SEPARATORS`.
+        rows: Cells of each line.
+        data: Rows with data; None if there are none.
+        header: The header; None if there is none that fits the data.
+        problem: Why there is no header.
+    """
+
+    separator: str
+    rows: list[list[str]]
+    data: DataRows | None
+    header: Header | None = None
+    problem: str = ""
+
+    @property
+    def rank(self) -> tuple[bool, bool, float]:
+        """Whether it has a header; several columns; the share of values."""
+        data = self.data
+        if data is None:
+            return False, False, 0.0
+        return self.header is not None, data.width > 1, data.values
+
+
+def find_layout(lines: Sequence[Line]) -> Layout:
+    """Find the layout of a table from its first lines.
+
+    Args:
+        lines: Number and text of each line that is not blank.
+
+    Raises:
+        LayoutError: There is no header, or several layouts fit.
+    """
+    body, comments = _without_comments(_after_lvm_header(lines))
+    if not body:
+        raise LayoutError("is empty or all comments (#); expected a header and rows")
+    tried = [_candidate(separator, body, comments) for separator in SEPARATORS]
+    with_data = [candidate for candidate in tried if candidate.data]
+    if not with_data:
+        return _without_numbers(body)
+    best = _only_best(with_data)
+    if best.header is None or best.data is None:
+        raise _no_header(best, body)
+    return _layout(best, best.header, best.data, body)
+
+
+def split_line(line: str, separator: str) -> list[str]:
+    """Split a line into its cells, without blanks around them; quotes hold a cell together.
+
+    >>> split_line('0,5; "a;b" ;3', ";"), split_line("  1  2.5 ", BLANKS)
+    (['0,5', 'a;b', '3'], ['1', '2.5'])
+    """
+    if separator == BLANKS and '"' not in line:
+        return line.split()
+    delimiter = " " if separator == BLANKS else separator
+    text = " ".join(line.split()) if separator == BLANKS else line
+    cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=True), [])
+    return [cell.strip() for cell in cells]
+
+
+def _after_lvm_header(lines: Sequence[Line]) -> Sequence[Line]:
+    """Return the lines below the last header of a LabVIEW measurement file."""
+    ends = [i for i, (_, line) in enumerate(lines) if line.strip().startswith(_LVM_END)]
+    return lines[ends[-1] + 1 :] if ends else lines
+
+
+def _without_comments(lines: Sequence[Line]) -> tuple[list[Line], list[Line]]:
+    """Split lines into those from the first without a comment mark on, and the comments above."""
+    first = next((i for i, (_, line) in enumerate(lines) if not line.startswith(_MARKS)), None)
+    first = len(lines) if first is None else first
+    bare = [(i, line.lstrip("#%/").strip()) for i, line in lines[:first]]
+    return list(lines[first:]), [(i, line) for i, line in bare if line]
+
+
+def _candidate(separator: str, body: Sequence[Line], comments: Sequence[Line]) -> _Candidate:
+    rows = [split_line(line, separator) for _, line in body]
+    data = data_rows(rows)
+    if data is None:
+        return _Candidate(separator, rows, None)
+    above = rows[: data.first]
+    if not above:  # of EuRoC and TUM the header is a comment
+        above = [_comment_cells(line, separator) for _, line in comments]
+    if separator == BLANKS:
+        above = [_joined_words(row, data.width) for row in above]
+    moved = DataRows(len(above), len(above) + 1, data.width, data.values, data.count)
+    try:
+        header = find_header([*above, rows[data.first]], moved)
+    except NoHeader as error:
+        return _Candidate(separator, rows, data, None, str(error))
+    return _Candidate(separator, rows, data, header)
+
+
+def _comment_cells(line: str, separator: str) -> list[str]:
+    cells = split_line(line, separator)
+    return cells if len(cells) > 1 else split_line(line, BLANKS)
+
+
+def _joined_words(words: list[str], width: int) -> list[str]:
+    """Join words of names and units that blanks split: `Time [s]`, `deg C`."""
+    if len(words) <= width:
+        return words
+    joined: list[str] = []
+    for word in words:
+        after_degree = joined and joined[-1].lower() in ("deg", "°") and word in ("C", "F")
+        if joined and (re.fullmatch(r"[\[(].*[\])]", word) or after_degree):
+            joined[-1] = f"{joined[-1]} {word}"
+        else:
+            joined.append(word)
+    return joined if len(joined) == width else words
+
+
+def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
+    """Return the candidate of the highest rank; tabs and blanks both separate the same cells."""
+    best = max(candidates, key=lambda each: each.rank)
+    same = [each for each in candidates if each.rank == best.rank and each is not best]
+    if best.rank[:2] == (True, True):
+        same = [each for each in same if each.separator != BLANKS]
+        if same:
+            names = " or by ".join(SEPARATORS[each.separator] for each in (best, *same))
+            raise LayoutError(
+                f"cells may be separated by {names}; save the file with one of these only"
+            )
+    return best
+
+
+def _no_header(best: _Candidate, body: Sequence[Line]) -> LayoutError:
+    data = best.data
+    if data is None or data.first == 0 or "two rows" in best.problem:
+        if "two rows" in best.problem:
+            return LayoutError(f"{best.problem}; delete one of them, or put # before it")
+        return LayoutError(
+            f"has no header: the first line is '{body[0][1][:60]}'; add a line with column names"
+        )
+    above = best.rows[data.first - 1]
+    advice = "write decimals with a point" if best.separator == "," else "correct it"
+    return LayoutError(
+        f"the row has {data.width} cells, the header has {len(above)}; {advice}",
+        row=1, line=body[data.first][0],
+    )  # fmt: skip
+
+
+def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> Layout:
+    rows = best.rows[data.first : data.stop]
+    widest = max(range(len(rows)), key=lambda i: len(rows[i]))
+    cells = [cell for row in rows for cell in row]
+    _require_fit(best, header, data, body)
+    last = body[data.first - 1][0] if data.first else body[0][0] - 1
+    return Layout(best.separator, header, last, decimal_sign(cells), len(rows[widest]))
+
+
+def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> None:
+    """Raise if a row has more cells than the header, but for an empty one at its end."""
+    for row, cells in enumerate(best.rows[data.first : data.stop], start=1):
+        if any(cells[len(header.names) :]) or len(cells) > len(header.names) + 1:
+            advice = "; write decimals with a point" if best.separator == "," else "; correct it"
+            raise LayoutError(
+                f"the row has {len(cells)} cells, the header has {len(header.names)}{advice}",
+                row=row, line=body[data.first + row - 1][0],
+            )  # fmt: skip
+
+
+def _without_numbers(body: Sequence[Line]) -> Layout:
+    """Return the layout of a table of texts, or without rows: its first line is the header."""
+    split = {s: [split_line(line, s) for _, line in body] for s in SEPARATORS if s != BLANKS}
+    regular = [s for s, rows in split.items() if len(rows[0]) > 1 and len(set(map(len, rows))) == 1]
+    if len(regular) > 1:
+        raise LayoutError(
+            f"cells may be separated by {' or by '.join(SEPARATORS[s] for s in regular)}; save the "
+            "file with one of these only"
+        )
+    separator = regular[0] if regular else max(split, key=lambda s: len(split[s][0]))
+    rows = split[separator]
+    for row, (cells, (line, _)) in enumerate(zip(rows[1:], body[1:], strict=True), start=1):
+        if len(cells) > len(rows[0]):
+            raise LayoutError(
+                f"the row has {len(cells)} cells, the header has {len(rows[0])}; correct it",
+                row, line,
+            )  # fmt: skip
+    names = [name or f"column {i}" for i, name in enumerate(rows[0], start=1)]
+    return Layout(separator, made_header(names, 1), body[0][0], None, len(names))

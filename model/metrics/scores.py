@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.distance import pdist
+from scipy.stats import binom
 
 from model.errors import DomainError
 from model.poses import wrap
@@ -153,3 +154,24 @@ def interval_coverage(
     low, high = np.quantile(draws, (1 - p) / 2, axis=0), np.quantile(draws, (1 + p) / 2, axis=0)
     inside = np.where(np.isnan(observed), np.nan, (low <= observed) & (observed <= high))
     return inside.mean(axis=1), (high - low).mean(axis=1)
+
+
+def coverage_range(level: float, n: int) -> tuple[float, float]:
+    """Compute the central 95 % range of the share of n independent values in an interval.
+
+    Errors of poses of one walk are alike, so that their share lies outside more often than in one
+    case of twenty; `model.metrics.consistency` judges a band with that dependence.
+
+    Args:
+        level: Probability of the interval [-].
+        n: Number of values.
+
+    Returns:
+        Lowest and highest share of the binomial distribution's central 95 % [-].
+
+    >>> low, high = coverage_range(0.9, 14)
+    >>> round(14 * low), round(14 * high)
+    (10, 14)
+    """
+    low, high = binom.interval(0.95, n, level)
+    return float(low) / n, float(high) / n

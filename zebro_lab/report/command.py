@@ -13,7 +13,8 @@ zebro-lab report data/20260101T120000Z_walk_tiles --calibration calibration
 zebro-lab report data --out season.html --title "Tiles, spring"
 
 The page contains all pictures and needs no network. For results that do not exist yet, page and
-command line name the command that creates them.
+command line name the command that creates them. Results that were not made from one another are
+named, and a calibration that no prediction used is no headline.
 """
 
 
@@ -23,8 +24,11 @@ def report(request: ReportRequest) -> None:
     from datetime import UTC, datetime
 
     from zebro_lab.report import stage
+    from zebro_lab.report.belonging import belonging
 
     sources = stage.report(request, made=datetime.now(UTC))
+    for notice in belonging(sources).notices:
+        say(f"does not belong together: {notice}")
     for part in sources.parts:
         if part.missing:
             say(f"missing: {part.name}; create it with: {part.maker}")

@@ -14,8 +14,11 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
+from zebro_lab.files.commit import software_commit
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.shown_text import shown
+from zebro_lab.report.band_coverage import OutOfRange, out_of_range
+from zebro_lab.report.belonging import belonging
 from zebro_lab.report.numbers import number
 from zebro_lab.report.pictures import Picture, embed
 from zebro_lab.report.sources import Part, ReportedRun, Sources
@@ -65,8 +68,8 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
         Self-contained HTML, with pictures and style embedded.
 
     Raises:
-        DataError: A manifest or slip.toml lacks a value that is shown, or a picture is no PNG or
-            too large.
+        DataError: A manifest or slip.toml lacks a value that is shown, or a picture is neither PNG
+            nor SVG, or too large.
     """
     style = (files("zebro_lab.report") / PAGES / STYLE).read_text(encoding="utf-8")
     template = _template()
@@ -79,10 +82,13 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
             title=title,
             made=made.isoformat(timespec="seconds"),
             version=version("zebro-lab"),
+            commit=software_commit(),
+            belonging=belonging(sources),
             simulated=sources.simulated,
             css=Markup(style),  # noqa: S704 - our own file
             policy=_policy(style),
             judged=list(_judged(sources)),
+            coverage_out_of_range=_coverage_out_of_range,
             error_columns=ERROR_COLUMNS,
             number=_number,
             count=_count,
@@ -126,10 +132,22 @@ def _pictures(part: Part) -> list[Picture]:
     return [embed(file, stage=part.name, simulated=simulated) for file in part.pictures]
 
 
-def _judged(sources: Sources) -> Iterator[tuple[ReportedRun, Part, str]]:
-    """Yield run, its own validation, and the walk's name in this, of every walk validated there."""
-    for run in sources.runs:
-        part = run.parts.get("validation")
-        if part is not None and not part.missing:
-            for name in part.manifest["runs"]:
-                yield run, part, name
+def _coverage_out_of_range(part: Part, name: str) -> list[OutOfRange]:
+    return list(out_of_range(part.manifest["runs"][name]["prediction"]))
+
+
+def _judged(sources: Sources) -> Iterator[tuple[str, Part, str]]:
+    """Yield name of the run, validation, and the walk's name in this, of every walk validated.
+
+    A run's own validation comes before one of several runs together.
+    """
+    own = [(run, run.parts["validation"]) for run in sources.runs if "validation" in run.parts]
+    for run, part in own:
+        for name in part.manifest.get("runs", ()):
+            yield run.name, part, name
+    alone = {run.name for run, part in own if not part.missing}
+    together = sources.together
+    if together is not None:
+        for name in together.manifest.get("runs", ()):
+            if name not in alone:
+                yield name, together, name

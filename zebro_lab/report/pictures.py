@@ -2,15 +2,29 @@
 """Pictures of a report, embedded in the page, with captions."""
 
 import base64
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
+
+from PIL import Image, UnidentifiedImageError
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import read_bytes
+from zebro_lab.files.opening import parsing, read_bytes
 
 MOST_PICTURE = 32 << 20
+SUFFIXES: Final = (".png", ".svg")
+"""Endings of the pictures that can be embedded."""
+_MOST_PIXELS: Final = 64 << 20  # of a picture unpacked, 256 MB
+_MOST_SIDE: Final = 16_383  # of WebP [px]
+_AGAIN: Final = "delete it and run again what wrote it"
 _PNG = b"\x89PNG\r\n\x1a\n"
+_QUALITY: Final = 90
+_PHOTOGRAPHIC: Final = 4.0
+"""Ratio of a PNG's size to that at `_QUALITY` from which on no exact copy is tried."""
+_WORTH: Final = 1.5
+"""Ratio of the size of an exact copy to that at `_QUALITY` up to which it is taken."""
 VALIDATION, ERRORS = "validation", ".errors"
 CAPTIONS: Mapping[str, str] = {
     "curves": "Block means of the rig's traction over load, and the fitted slip curve at each load",
@@ -20,6 +34,7 @@ CAPTIONS: Mapping[str, str] = {
     "residuals": "Residuals of the fit",
     "walk_parameters": "Prior and posterior of legs and floor",
     "left_out.": "A walk predicted from a fit of the other walks, and its track",
+    "track residuals": "Observed poses against the smoothed track, with 90 % bands",
     "overlay": "The tracked path over a photograph",
     "map": "The tracked path over the floor as seen from above, with 90 % regions",
     "path": "Predicted path from above, with the body at several times",
@@ -36,7 +51,8 @@ CAPTIONS: Mapping[str, str] = {
     ".imu": "Roll and pitch, predicted and measured by the IMU",
     ".errors": "Predicted paths and the track, and errors over time",
 }
-"""Captions by file name without suffix; with a leading dot by the end of that name (validation)."""
+"""Captions by file name without suffix; with a leading dot by the end of that name (validation);
+with the stage before it where stages have pictures of one name."""
 
 
 @dataclass(frozen=True)
@@ -55,27 +71,70 @@ class Picture:
 
 
 def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
-    """Encode a picture as a `data:` URL, with its caption.
+    """Encode a picture as a `data:` URL, with its caption; a PNG as WebP, which is smaller.
 
     Args:
-        file: A PNG file.
+        file: A PNG or SVG file.
         stage: Name of the stage that drew the picture.
         simulated: Whether to append "(simulated)" to the caption.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not a PNG, cannot be read, or is larger than `MOST_PICTURE`.
+        DataError: The file is neither PNG nor SVG, cannot be read, or is too large.
     """
     data = read_bytes(file, most=MOST_PICTURE)
-    if not data.startswith(_PNG):
-        raise DataError("is not a PNG; delete it and run again what wrote it", file=file)
-    encoded = base64.b64encode(data).decode("ascii")
+    kind, content = ("svg+xml", _svg(data, file)) if file.suffix == ".svg" else _webp(data, file)
+    encoded = base64.b64encode(content).decode("ascii")
     caption = caption_of(file.stem, stage=stage)
     return Picture(
-        f"data:image/png;base64,{encoded}",
+        f"data:image/{kind};base64,{encoded}",
         f"{caption} (simulated)" if simulated else caption,
         file.name,
     )
+
+
+def _svg(data: bytes, file: Path) -> bytes:
+    """Return an SVG as it is; within an `img` element browsers run no script in it."""
+    if b"<svg" not in data[:4096]:
+        raise DataError(f"is not an SVG; {_AGAIN}", file=file)
+    return data
+
+
+def _webp(data: bytes, file: Path) -> tuple[str, bytes]:
+    """Convert a PNG to WebP: exactly where that is small, as for lines, else at high quality.
+
+    A picture with a side too long for WebP is returned as it is.
+    """
+    if not data.startswith(_PNG):
+        raise DataError(f"is not a PNG; {_AGAIN}", file=file)
+    with parsing(file, "cannot be read as PNG", advice=_AGAIN), _opened(data, file) as image:
+        if image.width * image.height > _MOST_PIXELS:
+            raise DataError(
+                f"has {image.width} × {image.height} pixels; expected at most "
+                f"{_MOST_PIXELS / 1e6:.0f} million", file=file,
+            )  # fmt: skip
+        if max(image.size) > _MOST_SIDE:
+            return "png", data
+        plain = image.convert("RGBA")
+        plain = Image.alpha_composite(Image.new("RGBA", plain.size, "white"), plain).convert("RGB")
+        close = _as_webp(plain, quality=_QUALITY, method=4)
+        if len(data) > _PHOTOGRAPHIC * len(close):
+            return "webp", close
+        exact = _as_webp(plain, lossless=True, quality=50, method=2)
+        return "webp", exact if len(exact) <= _WORTH * len(close) else close
+
+
+def _opened(data: bytes, file: Path) -> Image.Image:
+    try:
+        return Image.open(io.BytesIO(data), formats=["PNG"])
+    except UnidentifiedImageError as error:
+        raise DataError(f"is a damaged PNG; {_AGAIN}", file=file) from error
+
+
+def _as_webp(image: Image.Image, **how: int) -> bytes:
+    file = io.BytesIO()
+    image.save(file, "WEBP", **how)
+    return file.getvalue()
 
 
 def lies_in(folder: Path, name: str) -> bool:
@@ -97,12 +156,12 @@ def place_of(name: str) -> tuple[int, str]:
     """Return the sort key of a picture's file name: index in `CAPTIONS` (else last), then name.
 
     A key with a leading dot fits if it is in the name, one with a final dot if the name begins with
-    it, another if it is the name without `.png`.
+    it, another if it is the name without its ending.
 
     >>> sorted(["corner.png", "curves.png", "b.imu.png", "b.png"], key=place_of)
     ['curves.png', 'corner.png', 'b.imu.png', 'b.png']
     """
-    stem = name.removesuffix(".png")
+    stem = Path(name).stem if name.endswith(SUFFIXES) else name
     keys = list(CAPTIONS)
     mine = (i for i, key in enumerate(keys) if _names(key, stem) or (key[0] == "." and key in stem))
     return next(mine, len(keys)), name
@@ -133,5 +192,7 @@ def caption_of(stem: str, *, stage: str) -> str:
     if stage == VALIDATION:
         end = next((end for end in CAPTIONS if end[0] == "." and stem.endswith(end)), ERRORS)
         return CAPTIONS[end]
+    if f"{stage} {stem}" in CAPTIONS:
+        return CAPTIONS[f"{stage} {stem}"]
     words = stem.replace("_", " ").replace("-", " ")
     return next((CAPTIONS[key] for key in CAPTIONS if _names(key, stem)), words)

@@ -15,7 +15,7 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import TRACK
 from zebro_lab.files.opening import parsing, read_text
 from zebro_lab.files.replacement import settle
-from zebro_lab.report.pictures import VALIDATION, lies_in, place_of
+from zebro_lab.report.pictures import SUFFIXES, VALIDATION, lies_in, place_of
 from zebro_lab.runs.folder import find_runs
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.walk.folder import PREDICTION
@@ -45,7 +45,8 @@ class Part:
         name: Name of the result: calibration, walks, track, prediction or validation.
         folder: Folder of the result, which may not exist.
         documents: Content of the manifest and other files read, by file name; empty if missing.
-        pictures: Existing PNG files of the folder that its manifest lists, in the order shown.
+        pictures: Existing PNG and SVG files of the folder that its manifest lists, in the order
+            shown.
         maker: Command that writes the result.
         not_shown: Pictures that the manifest lists with a path outside the folder.
     """
@@ -185,7 +186,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
     listed = documents[MANIFEST].get("outputs", {})
     if not isinstance(listed, dict):
         raise DataError(f"'outputs' is {listed!r}; expected an object", file=folder / MANIFEST)
-    named = [each for each in sorted(listed, key=place_of) if each.endswith(".png")]
+    named = [each for each in sorted(listed, key=place_of) if each.endswith(SUFFIXES)]
     inside = {each: folder / each for each in named if lies_in(folder, each)}
     return Part(
         name, folder, documents, [each for each in inside.values() if each.is_file()], maker,

@@ -9,6 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from model.metrics.consistency import Consistency
+from model.metrics.scores import coverage_range
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
@@ -88,9 +89,16 @@ def _verdict(run: JudgedRun) -> list[str]:
     lines = [
         f"coverage of the {level:.0%} band: "
         + ", ".join(f"{s} {c:.0%}" for s, c in zip(states, cover, strict=True))
+        + _expected(level, row.errors.poses)
         for level, cover in zip(row.scores.levels, row.scores.coverage, strict=True)
     ]
     return [*lines, *map(_consistency, row.consistency)]
+
+
+def _expected(level: float, poses: int) -> str:
+    """Format the range of coverage of independent poses; those of one walk are not quite that."""
+    low, high = coverage_range(level, poses)
+    return f" (of {poses} independent poses {low:.0%} to {high:.0%})"
 
 
 def _consistency(each: Consistency) -> str:

@@ -25,6 +25,7 @@ from zebro_lab.tables.table_files import read_table_file
 SCHEMA = 1
 PREDICTION = "prediction"  # of a run
 KINDS = ("walk", "predict")
+INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 PICTURES = (
     "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
     "paired_traction", "gantt",

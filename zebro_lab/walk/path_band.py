@@ -20,10 +20,10 @@ from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import parsing
-from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS
+from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS, INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs
 from zebro_lab.walk.request import BandRequest
-from zebro_lab.walk.walking import INFORMED_MODEL, Walked
+from zebro_lab.walk.walking import Walked
 
 SAMPLING = 0.1  # s between the poses kept of each draw
 ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand

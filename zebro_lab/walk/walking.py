@@ -17,10 +17,9 @@ from model.walk_models import MODELS, ModelRun, WalkModel
 from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.request import ModelRequest
-
-INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 
 MOST_STEPS: Final = 500_000
 """Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""

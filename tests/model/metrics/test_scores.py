@@ -9,6 +9,7 @@ from model.metrics.bootstrap import bootstrap_mean
 from model.metrics.consistency import consistency, nees
 from model.metrics.scores import (
     LEVELS,
+    coverage_range,
     crps,
     energy_score,
     ensemble_scores,
@@ -56,6 +57,15 @@ def test_a_perfect_ensemble_covers_at_its_levels():
     truths = with_tracker_noise(paths(300, rng), TRACKER, rng=rng)
     coverage = np.mean([interval_coverage(draws, one, LEVELS)[0] for one in truths], axis=0)
     np.testing.assert_allclose(coverage, np.array([[0.5], [0.9], [0.95]]) * np.ones(3), atol=0.05)
+
+
+@pytest.mark.parametrize(("level", "n"), [(0.5, 15), (0.9, 15), (0.9, 200), (0.95, 60)])
+def test_the_range_of_coverage_holds_nineteen_of_twenty_independent_shares(level, n):
+    low, high = coverage_range(level, n)
+    shares = np.random.default_rng(3).binomial(n, level, 20_000) / n
+    assert np.mean((low <= shares) & (shares <= high)) >= 0.945
+    inner = np.mean((low < shares) & (shares < high))  # a smaller range would hold too few
+    assert inner < 0.975
 
 
 def test_a_wrong_speed_is_caught_along_the_track():

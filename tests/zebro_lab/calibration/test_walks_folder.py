@@ -140,7 +140,7 @@ def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs,
     assert "Legs and floor estimated from tracked walks" in text
     assert "Mounted wrong: leg 3" in text
     assert "SIMULATED: sim:dynamics, sim:test" in text
-    assert text.count("data:image/png") >= 1
+    assert text.count("data:image/webp") >= 1
     told = read_stored_walks(calibration / "slip.toml").posterior.contractions()
     silent = next(each.name for each in told if not each.informed)
     assert silent.replace("_", " ") in text

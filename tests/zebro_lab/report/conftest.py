@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A walk with every part of a report, which tests of reports share."""
 
+import hashlib
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,8 @@ def walk(tmp_path) -> Path:
          runs={"run": rows}, imu={"run": imu})  # fmt: skip
     part(run / "track", "track", rng, pictures=["map.png"], photos=16, tracked=15,
          left_out={"p<3>.jpg": "no marker"}, floor_misfit_px=0.02, times="EXIF")  # fmt: skip
-    part(run / "prediction", "predict", rng, pictures=["band.png"],
+    law = hashlib.sha256(SLIP.encode()).hexdigest()
+    part(run / "prediction", "predict", rng, pictures=["band.png"], inputs={"slip.toml": law},
          settings={"model": "dynamics", "slip": {"named": "calibration", "source": "sim:rig"},
                    "leg_angles": "sim:robot", "band": {"draws": 300}})  # fmt: skip
     calibration = tmp_path / "calibration"

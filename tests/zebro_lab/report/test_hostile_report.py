@@ -124,7 +124,7 @@ def test_the_page_forbids_scripts_and_other_addresses_by_a_policy(run):
 def test_pictures_outside_the_folder_are_left_out_and_named(run, secret):
     page = page_of(run)
     assert base64.b64encode(secret).decode() not in page
-    assert page.count("data:image/png") == 1
+    assert page.count("data:image/webp") == 1
     assert "Picture not shown" in page
 
 

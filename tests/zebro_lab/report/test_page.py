@@ -22,6 +22,30 @@ def test_errors_and_bands_of_every_model_are_in_the_tables(walk):
     assert "/imu/run/pitch_rms_unbiased_deg" in keys
 
 
+def test_coverage_out_of_its_range_stands_in_the_headline_with_what_is_expected(walk):
+    file = walk / "validation/manifest.json"
+    manifest = json.loads(file.read_text())
+    row = manifest["runs"]["run"]["prediction"]
+    states = [f"coverage{level}_{state}" for level in (50, 90, 95) for state in ("x", "y", "yaw")]
+    row.update({name: int(name[8:10]) / 100 for name in states}, poses=100.0, nees_p=0.3)
+    file.write_text(json.dumps(manifest))
+    assert "out of range" not in made(walk).text
+    row["coverage90_y"] = 0.7
+    file.write_text(json.dumps(manifest))
+    text = " ".join(made(walk).text.split())
+    assert "the 90 % band holds 70 % of y, expected 84 to 95 %. This range is that of 100" in text
+    assert "the band is consistent with the track (p 0.3)" in text
+
+
+def test_a_walk_that_was_judged_only_with_others_has_its_headline(walk, tmp_path):
+    data = tmp_path / "data"
+    data.mkdir()
+    walk.rename(data / "run")
+    (data / "run" / "validation").rename(data / "validation")
+    page = made(data, calibration=tmp_path / "calibration")
+    assert "run: the predicted path is" in page.text
+
+
 def test_what_operators_write_is_text_and_never_markup(walk):
     page = made(walk, title=HOSTILE)
     assert HOSTILE in page.text

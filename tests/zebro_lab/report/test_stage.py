@@ -15,7 +15,7 @@ def test_the_page_needs_no_other_file_and_no_network(walk):
         attrs[key] for _, attrs in page.tags for key in ("src", "href", "srcset") if key in attrs
     ]
     assert addresses
-    assert all(each.startswith(("data:image/png;base64,", "#")) for each in addresses)
+    assert all(each.startswith(("data:image/webp;base64,", "#")) for each in addresses)
     style = (walk.parent / "report.html").read_text().split("</style>")[0]
     assert "url(" not in style
     assert "@import" not in style

@@ -20,6 +20,7 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
 from zebro_lab.robot.imu_log import ImuLog, imu_of_table
 from zebro_lab.robot.leg_log import LegLog, legs_of_table
+from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
@@ -129,8 +130,11 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
         exit_status=IMPORTED,
         sources=sources,
     )
-    walk = ImportedWalk(manifest, zero, legs, imu, track, robot)
-    parts = [legs.notes, imu.notes if imu else (), track.track.notes if track else ()]
+    suspected = leg_warnings(
+        legs.reference, leg_sign=robot.leg_sign, leg_offset=robot.robot.leg_offset
+    )
+    walk = ImportedWalk(manifest, zero, legs, imu, track, robot, suspected)
+    parts = [legs.notes, suspected, imu.notes if imu else (), track.track.notes if track else ()]
     notes = [*note, *(line for part in parts for line in part)]
     return walk, (*notes, *_apart(t - zero, imu, track, zero))
 

@@ -39,6 +39,7 @@ class ImportedWalk:
             without a file.
         track: Tracked path, in the run's time; None without a file.
         robot: The robot; the thesis's robot without a file.
+        suspected: What is suspected of the leg angles, one line each; kept as events of the log.
     """
 
     manifest: RunManifest
@@ -47,6 +48,7 @@ class ImportedWalk:
     imu: ImuLog | None
     track: ForeignTrack | None
     robot: RobotFile
+    suspected: tuple[str, ...] = ()
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -87,7 +89,8 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
     )
     return write_table_run(
         data_dir, manifest, samples, profiles=profiles,
-        event=f"imported, source {manifest.source}", extra=lambda draft: _write_more(draft, walk),
+        event=f"imported, source {manifest.source}", warnings=walk.suspected,
+        extra=lambda draft: _write_more(draft, walk),
     )  # fmt: skip
 
 

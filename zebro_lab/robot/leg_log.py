@@ -18,6 +18,7 @@ ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
 LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
 _WIDEST_GAP = 5.0  # median sample intervals; interpolation over a longer gap is not valid
 _LONGEST_TURN = 2.5  # rad between samples; from pi on the direction of rotation is ambiguous
+_LONGEST_WRAPPED = np.pi / 2  # the same where a whole turn may have been cut off between samples
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,8 @@ def legs_of_table(
     Raises:
         DataError: A column or value is missing, there are fewer than two rows, time does not
             increase or has a gap over 5 median intervals, or a leg turns by more than 2.5 rad
-            between samples; names the cell.
+            between samples, or by more than pi/2 where angles are wrapped to one turn, or jumps by
+            more than a turn; names the cell.
     """
     t, *angles = (_numbers(table, name, mapping) for name in LEG_UNITS)
     time_column = mapping.mapped["t"].name
@@ -65,7 +67,7 @@ def legs_of_table(
     _require_no_gap(table, time_column, t)
     raw = np.column_stack(angles) * np.asarray(leg_sign, dtype=float)
     theta = np.unwrap(raw, axis=0)
-    _require_unwrapped(table, mapping, theta)
+    _require_unwrapped(table, mapping, raw, theta)
     return LegLog(
         SampledReference(t, theta),
         source=mapping.source or table.source or "unknown",
@@ -97,15 +99,21 @@ def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
         )
 
 
-def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) -> None:
-    turns = np.abs(np.diff(theta, axis=0))
-    if not (turns > _LONGEST_TURN).any():
+def _require_unwrapped(table: RawTable, columns: MappedColumns, raw: Array, theta: Array) -> None:
+    """Check that unwrapping is not ambiguous: short steps, but for jumps by one turn."""
+    jumps, turns = np.abs(np.diff(raw, axis=0)), np.abs(np.diff(theta, axis=0))
+    wrapped = bool((jumps > np.pi).any())
+    most = _LONGEST_WRAPPED if wrapped else _LONGEST_TURN
+    bad = (turns > most) | (jumps > 2 * np.pi + most)
+    if not bad.any():
         return
-    row, leg = (int(i[0]) for i in np.nonzero(turns > _LONGEST_TURN))
+    row, leg = (int(i[0]) for i in np.nonzero(bad))
+    found = jumps[row, leg] if jumps[row, leg] > 2 * np.pi + most else turns[row, leg]
+    turn = ", or a jump by one turn, since these angles are wrapped" if wrapped else ""
     raise table.fault(
-        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad between two samples; expected at most "
-        f"{_LONGEST_TURN:g} rad, since the direction is ambiguous near half a turn; check the unit "
-        "of the angles, or record at a higher rate",
+        f"leg {leg + 1} turns by {found:.3g} rad between two samples; expected at most "
+        f"{most:.3g} rad{turn}; else its direction is ambiguous: check the unit of the angles (are "
+        "they degrees or counts?), or record at a higher rate",
         columns.mapped[ANGLES[leg]].name,
         row + 1,
     )
@@ -116,10 +124,4 @@ def _notes(t: Array, raw: Array, theta: Array) -> list[str]:
     notes = [f"leg log: {len(t)} samples over {t[-1] - t[0]:.4g} s, about {rate:.4g} Hz"]
     if np.any(raw != theta):
         notes.append("leg log: angles were wrapped to one turn and have been unwrapped")
-    backward = [str(leg + 1) for leg in range(N_LEGS) if theta[-1, leg] < theta[0, leg] - np.pi]
-    if backward:
-        notes.append(
-            f"leg log: leg {', '.join(backward)} turns backwards; check the signs (legs.sign in "
-            "robot.toml, or sign in columns.toml)"
-        )
     return notes

@@ -5,7 +5,7 @@ They are stored like raw samples, with profiles that decode them: of the rig and
 scale 1, of legs in degrees.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
@@ -21,6 +21,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.raw_log import raw_topic
+from zebro_lab.mcap.ros_messages import WARNING
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, require_new, run_path
 from zebro_lab.runs.manifest import RIG, TABLE, RunManifest, profile_file, write_manifest
@@ -37,6 +38,7 @@ def write_table_run(
     *,
     profiles: Mapping[str, str],
     event: str = "",
+    warnings: Sequence[str] = (),
     extra: Callable[[Path], object] | None = None,
 ) -> Path:
     """Write samples as a new run folder, atomically.
@@ -49,6 +51,7 @@ def write_table_run(
             the start of the run.
         profiles: TOML text of each profile, by its name in the run folder.
         event: Text of an event to log at time 0; empty for none.
+        warnings: Texts of further events to log at time 0, each as a warning.
         extra: Called with the draft folder, to write more files before the folder gets its name.
 
     Returns:
@@ -67,7 +70,7 @@ def write_table_run(
         for name, text in profiles.items():
             profile_file(draft, name).parent.mkdir(exist_ok=True)
             atomic_write_text(profile_file(draft, name), text)
-        _write_log(draft, manifest, samples, profiles, event)
+        _write_log(draft, manifest, samples, profiles, event, warnings)
         lasted = max(float(columns.host_time[-1]) for columns in samples.values())
         manifest = replace(
             manifest,
@@ -86,6 +89,7 @@ def _write_log(
     samples: Mapping[str, SampleColumns],
     profiles: Mapping[str, str],
     event: str,
+    warnings: Sequence[str],
 ) -> None:
     size = _BLOCKS[manifest.kind]
     blocks = [
@@ -100,6 +104,8 @@ def _write_log(
         )  # fmt: skip
         if event:
             log.event(0.0, event)
+        for text in warnings:
+            log.event(0.0, text, level=WARNING)
         for name, block in sorted(blocks, key=lambda each: each[1].host_time[-1]):
             log.write(name, block)
             log.flush()

@@ -12,6 +12,7 @@ from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
@@ -57,6 +58,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     if is_walk:
         described = _without_offsets(described)
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
+    suspected = leg_warnings(log.reference, leg_offset=described.robot.leg_offset)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
     legs, notes = angles_from(log, start)
     watcher.step("walking", None)
@@ -69,7 +71,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         direction=request.direction,
         logs=log.files,
         angles_are_true=is_walk,
-        notes=(*log.notes, *notes),
+        notes=(*log.notes, *notes, *suspected),
     )
     if request.model.band.draws:
         band = predict_band(

@@ -15,6 +15,7 @@ from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import TRACK, numbered
 from zebro_lab.files.replacement import settle
+from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
 from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_each
 from zebro_lab.runs.legs import read_leg_log
@@ -141,6 +142,7 @@ def read_walk_on_file(
     described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
     log = read_leg_log(log_file, leg_sign=described.leg_sign)
     start = float(log.reference.t[0])
+    suspected = leg_warnings(log.reference, leg_offset=described.robot.leg_offset)
     legs, counted = angles_from(log, start)
     track = shifted(read_track(track_file), -start)
     track = track if clock is None else clock(track, legs, described.robot)
@@ -155,7 +157,7 @@ def read_walk_on_file(
         track=inside,
         source=", ".join(sources),
         files=(*log.files, track.file, *([described.file] if described.file else []), *imu_files),
-        notes=(*log.notes, *counted, *track.notes, *notes, *imu_notes),
+        notes=(*log.notes, *suspected, *counted, *track.notes, *notes, *imu_notes),
         tilt=tilt,
     )
 

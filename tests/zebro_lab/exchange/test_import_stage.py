@@ -8,9 +8,13 @@ import pandas as pd
 import pytest
 
 from support.imported_files import COLUMNS, THETA, YAW, T, everything, taken
+from support.leg_motions import T as T12
+from support.leg_motions import tripod
 from support.watchers import Nobody
 from zebro_lab.exchange.export_stage import export_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.mcap.ros_log import read_messages
+from zebro_lab.mcap.ros_messages import LOG, WARNING
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.track.file import read_track
@@ -42,6 +46,19 @@ def test_a_track_is_what_validate_takes(files, tmp_path, track):
     np.testing.assert_allclose(tracked.covariance[3], expected)
     exact = any("taken as exact" in note for note in tracked.notes)
     assert exact == (track == "path.tum")
+
+
+def test_suspected_leg_angles_are_warned_of_and_kept_with_the_run(tmp_path):
+    theta = tripod().angles(T12) * [1, -1, 1, -1, 1, -1]
+    table = {"t": T12} | {f"theta{leg}": theta[:, leg - 1] for leg in range(1, 7)}
+    pd.DataFrame(table).to_csv(tmp_path / "legs.csv", index=False)
+    imported = taken(tmp_path, legs=tmp_path / "legs.csv")
+    (line,) = [note for note in imported.notes if "legs 2, 4 and 6 turn backwards" in note]
+    events, _ = read_messages(imported.folders[0] / "log.mcap", schema=LOG.name)
+    assert [(each.content.level, each.content.msg) for each in events][1:] == [(WARNING, line)]
+    (tmp_path / "robot.toml").write_text("[legs]\nsign = [1, -1, 1, -1, 1, -1]")
+    right = taken(tmp_path, legs=tmp_path / "legs.csv", robot=tmp_path / "robot.toml", label="x")
+    assert not any("WARNING" in note for note in right.notes)
 
 
 def test_a_run_is_walked_by_the_robot_it_keeps(files, tmp_path):

@@ -40,11 +40,10 @@ def test_angles_wrapped_to_a_turn_are_unwrapped(start):
     np.testing.assert_allclose(theta - theta[0], growth, atol=1e-9)
 
 
-def test_signs_of_the_robots_legs_are_applied_and_backward_legs_noted(tmp_path):
+def test_signs_of_the_robots_legs_are_applied(tmp_path):
     found = read(leg_table(), tmp_path, leg_sign=(1, -1, 1, 1, 1, 1))
     np.testing.assert_allclose(found.reference.theta[:, 1], -leg_table().theta2)
-    assert found.notes[0] == "leg log: 200 samples over 1.99 s, about 100 Hz"
-    assert "leg 2 turns backwards" in found.notes[-1]
+    assert found.notes == ("leg log: 200 samples over 1.99 s, about 100 Hz",)
 
 
 def test_the_source_of_the_table_is_kept_and_unknown_without_one():
@@ -79,3 +78,23 @@ def test_fault_is_one_line_that_names_file_column_and_row(spoil, message, tmp_pa
     assert message in str(caught.value)
     assert str(tmp_path / "legs.csv") in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_wrapped_angles_are_unwrapped_only_where_a_step_is_short(tmp_path):
+    """A step of 3.6 rad forward and one of 2.7 rad back are the same between wrapped angles."""
+    table, angles = leg_table(rate=10.0), list(ANGLES)
+    assert read(table.assign(**4.0 * table[angles]), tmp_path)  # 1.3 rad a sample
+    wrapped = table.assign(**(5.5 * table[angles]) % (2 * np.pi))  # 1.76 rad
+    with pytest.raises(DataError, match=r"at most 1\.57 rad, or a jump by one turn"):
+        read(wrapped, tmp_path)
+    assert read(table.assign(**5.5 * table[angles]), tmp_path)  # not wrapped: up to 2.5 rad
+
+
+def test_angles_that_jump_by_more_than_a_turn_are_in_another_unit(tmp_path):
+    """Degrees wrapped at 360 that are read as radians are refused, not folded."""
+    table, angles = leg_table(rate=1000.0), list(ANGLES)
+    degrees = table.assign(**np.degrees(6.0 * table[angles]) % 360)
+    with pytest.raises(
+        DataError, match=r"leg \d turns by 3[56]\d rad .*are they degrees or counts"
+    ):
+        read(degrees, tmp_path)

@@ -100,6 +100,16 @@ def test_log_of_the_virtual_world_leads_where_its_robot_went(shared, tmp_path):
     assert "simulated leg angles" in walked.title
 
 
+def test_a_wrong_order_of_legs_is_suspected_in_the_notes(tmp_path):
+    log = write_log(tmp_path)
+    table = pd.read_csv(log)
+    swapped = {f"theta{i + 1}": table[f"theta{leg}"] for i, leg in enumerate((1, 3, 5, 2, 4, 6))}
+    table.assign(**swapped).to_csv(log, index=False)
+    model = ModelRequest(model="no-slip-simple")
+    notes = predict(PredictRequest(log, tmp_path / "out", model=model), Nobody()).notes
+    assert any(note.startswith("WARNING: leg log: legs step in the groups") for note in notes)
+
+
 def test_a_band_needs_the_model_that_has_one(tmp_path):
     model = ModelRequest(model="no-slip", band=BandRequest(10))
     with pytest.raises(SettingsError, match="dynamics"):

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""Suspect a wrong sign, zero or order of measured leg angles, from the gait that they show.
+
+The rules hold for every gait of this package, forwards, backwards and on the spot: a leg is slowest
+on the ground, where its angle is about pi/2; the legs of one side turn the same way; and the rules
+of `model.gait.leg_order`. Angles that break one are possible, but a wrong column map is likelier.
+"""
+
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.gait.leg_motion import CLEAR, LegMotion
+from model.gait.leg_order import SIDE, OrderFault, order_fault
+from model.slip.law import Array
+
+_DOWN: Final = np.pi / 2
+_FARTHEST: Final = np.radians(35)  # middle of a stance from straight down
+_QUARTER: Final = np.radians(15)  # from a multiple of 90 degrees
+Legs: TypeAlias = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class SignFault:
+    """Legs that pass straight up where they are slow, and turn backwards.
+
+    Attributes:
+        legs: Numbers of the legs.
+    """
+
+    legs: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class DirectionFault:
+    """Legs that turn against the other legs of their side, once signs are repaired.
+
+    Attributes:
+        legs: Numbers of the legs.
+    """
+
+    legs: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class ZeroFault:
+    """Legs whose angle is not about pi/2 in the middle of their stance.
+
+    Attributes:
+        legs: Numbers of the legs.
+        found: Angle in the middle of their stance, of each of these legs, shape (k,) [rad].
+        offset: What is to be added to their angle, in [-pi, pi), shape (k,) [rad].
+        reversed: Those of the legs whose sign is to be changed before, if they walk forward.
+    """
+
+    legs: tuple[int, ...]
+    found: Array
+    offset: Array
+    reversed: tuple[int, ...] = ()
+
+
+LegFault: TypeAlias = SignFault | DirectionFault | ZeroFault | OrderFault
+
+
+def leg_faults(motion: LegMotion) -> list[LegFault]:
+    """Return what is suspected of the angles of a walk; empty where they agree with all rules.
+
+    Args:
+        motion: How the legs turned, with the signs and zeros that are to be judged.
+    """
+    mirrored = _mirrored(motion)
+    zero = _zero_fault(motion, mirrored)
+    direction = np.where(mirrored, -motion.direction, motion.direction)
+    order = order_fault(motion, direction)
+    against = motion.turning & (direction != 0) & (direction == -_usual_direction(direction))
+    faults: list[LegFault] = [SignFault(_numbers(mirrored))] if mirrored.any() else []
+    faults += [fault for fault in (zero, order) if fault is not None]
+    if against.any() and order is None:
+        faults.append(DirectionFault(_numbers(against)))
+    return faults
+
+
+def _mirrored(motion: LegMotion) -> Legs:
+    """Return which legs have the other sign: they stand straight up and turn backwards.
+
+    Backwards against the legs of their side that stand straight down, if there are such.
+    """
+    up = np.abs(_wrapped(motion.centre + _DOWN)) <= _FARTHEST
+    down = np.abs(_wrapped(motion.centre - _DOWN)) <= _FARTHEST
+    usual = _usual_direction(np.where(_judged(motion) & down, motion.direction, 0))
+    return _judged(motion) & up & (motion.direction == np.where(usual == 0, -1, -usual))
+
+
+def _zero_fault(motion: LegMotion, mirrored: Legs) -> ZeroFault | None:
+    """Return the legs with another zero: with signs of legs that walk forward, or as they are.
+
+    Of the two the one with fewer wrong legs, then with more equal zeros, then the former.
+    """
+    judged = _judged(motion)
+    if not judged.any():
+        return None
+    choices = []
+    for reverse in (mirrored | (motion.direction < 0), mirrored):
+        offset = _wrapped(_DOWN - np.where(reverse, -1, 1) * motion.centre)
+        far = judged & (np.abs(offset) > _FARTHEST)
+        unequal = round(1 - float(np.abs(np.exp(1j * offset[judged]).mean())), 2)
+        choices.append((int(far.sum()), unequal, offset, far, reverse & ~mirrored))
+    _, _, offset, far, reverse = min(choices, key=lambda choice: choice[:2])
+    if not far.any() or _may_be_a_turn(offset, far):
+        return None
+    return ZeroFault(_numbers(far), motion.centre[far], offset[far], _numbers(far & reverse))
+
+
+def _may_be_a_turn(offset: Array, far: Legs) -> bool:
+    """Return whether legs of one side alone are far off, by what is no multiple of 90 degrees.
+
+    In the sharpest turns the outer legs sweep over more than half a turn on the ground, and are
+    slower in flight.
+    """
+    quarter = np.abs((offset[far] + np.pi / 4) % (np.pi / 2) - np.pi / 4)
+    return len(set(SIDE[far])) == 1 and bool((quarter > _QUARTER).any())
+
+
+def _usual_direction(direction: Array) -> Array:
+    """Return for each leg the direction of most legs of its side, 0 without one, shape (6,)."""
+    sums = np.array([direction[side == SIDE].sum() for side in (0, 1)])
+    return np.sign(sums)[SIDE]
+
+
+def _judged(motion: LegMotion) -> Legs:
+    return motion.turning & (motion.weight >= CLEAR)
+
+
+def _numbers(legs: Legs) -> tuple[int, ...]:
+    return tuple(int(leg) + 1 for leg in np.nonzero(legs)[0])
+
+
+def _wrapped(angle: Array) -> Array:
+    return (angle + np.pi) % (2 * np.pi) - np.pi

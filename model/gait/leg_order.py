@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""Suspect a wrong order of measured legs, from the groups in which they step.
+
+The phases of walking legs are a sum of one lag from row to row and one from side to side, as in
+the symmetric gaits of Hildebrand (tripod, tetrapod, waves); the legs of a side do not swing all at
+once while the other side stands; and the legs of one side turn the same way. An order that breaks
+this, where another order of the same legs does not, is probably wrong.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations, permutations
+from typing import Final
+
+import numpy as np
+
+from model.gait.leg_motion import CLEAR, LegMotion
+from model.robot import N_LEGS
+from model.slip.law import Array
+
+ORDERS: Final[dict[tuple[int, ...], str]] = {
+    (1, 3, 5, 2, 4, 6): "the left side from front to rear, then the right side",
+    (2, 4, 6, 1, 3, 5): "the right side from front to rear, then the left side",
+    (1, 2, 4, 6, 5, 3): "clockwise from front left",
+    (1, 3, 5, 6, 4, 2): "counter-clockwise from front left",
+    (2, 4, 6, 5, 3, 1): "clockwise from front right",
+    (2, 1, 3, 5, 6, 4): "counter-clockwise from front right",
+    (5, 3, 1, 6, 4, 2): "the left side from rear to front, then the right side",
+    (6, 4, 2, 5, 3, 1): "the right side from rear to front, then the left side",
+}
+"""Orders in which robots' software lists legs, seen from above: the leg of each place."""
+SIDE: Final = np.arange(N_LEGS) % 2
+"""Side of each leg, 0 left and 1 right."""
+_IRREGULAR, _REGULAR = 0.91, 0.96  # `regularity` of a wrong and of a right order
+_TURN: Final = 0.5  # least `_sides_differ` in a turn
+_TOGETHER: Final = 0.12  # largest difference of phase of legs that step together [cycles]
+_CONSTANT: Final = 0.8  # least coherence of a gait
+_GRID: Final = np.arange(48) / 48
+
+
+@dataclass(frozen=True)
+class OrderFault:
+    """Legs that step together as no walking robot's do.
+
+    Attributes:
+        groups: Numbers of the legs that step together.
+        orders: Orders that would be consistent, the usual ones first: the leg of each place.
+    """
+
+    groups: tuple[tuple[int, ...], ...]
+    orders: tuple[tuple[int, ...], ...]
+
+
+def order_fault(motion: LegMotion, direction: Array) -> OrderFault | None:
+    """Return what is suspected of the order of legs; None without a steady gait of all six.
+
+    Orders that differ by exchanging left and right, or front and rear, look alike.
+
+    Args:
+        motion: How the legs turned.
+        direction: Direction of each leg once wrong signs are repaired, 1, -1 or 0, shape (6,).
+    """
+    together = motion.turning.all() and np.ptp(motion.turns) <= 0.2 * motion.turns.mean() + 0.5
+    if not together or motion.coherence < _CONSTANT or (motion.weight < CLEAR).any():
+        return None
+    if _plausible(motion.phase, direction, _IRREGULAR):
+        return None
+    orders = _consistent_orders(motion, direction)
+    return OrderFault(_groups(motion.phase), orders) if orders else None
+
+
+def regularity(phase: Array) -> float:
+    r"""Return how well phases agree with one lag from row to row and one from side to side.
+
+    .. math::
+        \max_{a, b} \Bigl|\tfrac16 \sum_j e^{2\pi i (\varphi_j - a\,row_j - b\,side_j)}\Bigr|
+
+    Args:
+        phase: Phase of each leg, shape (6,) [cycles].
+
+    Returns:
+        1 for a symmetric gait such as a tripod, else less [-].
+
+    >>> round(regularity(np.array([0, 0.5, 0.5, 0, 0, 0.5])), 6)
+    1.0
+    >>> round(regularity(np.array([0, 0.5, 0, 0.5, 0.5, 0])), 3)
+    0.745
+    """
+    turned = np.exp(2j * np.pi * phase)
+    rows = np.exp(-2j * np.pi * np.outer(_GRID, np.arange(N_LEGS // 2)))
+    # The lag of sides turns the sum over one side onto that over the other.
+    by_side = np.abs(rows @ np.column_stack([turned[side == SIDE] for side in (0, 1)]))
+    return float(by_side.sum(axis=1).max()) / N_LEGS
+
+
+def _consistent_orders(motion: LegMotion, direction: Array) -> tuple[tuple[int, ...], ...]:
+    """Return the usual orders that make the gait plausible, else the one that moves fewest legs."""
+
+    def consistent(order: tuple[int, ...]) -> bool:
+        phase, turned = (_by_leg(order, values) for values in (motion.phase, direction))
+        return _plausible(phase, turned, _REGULAR)
+
+    found = [order for order in ORDERS if consistent(order)]
+    if not found:
+        return tuple(next(([order] for order in _by_moved_legs() if consistent(order)), []))
+    sides = [_sides_differ(_by_leg(order, motion.weight)) for order in found]
+    least = 0.5 * max(sides) if max(sides) >= _TURN else 0.0
+    return tuple(order for order, each in zip(found, sides, strict=True) if each >= least)
+
+
+def _by_moved_legs() -> Iterator[tuple[int, ...]]:
+    legs = range(1, N_LEGS + 1)
+    for first, second in combinations(legs, 2):
+        swap = {first: second, second: first}
+        yield tuple(swap.get(leg, leg) for leg in legs)
+    yield from permutations(legs)
+
+
+def _by_leg(order: tuple[int, ...], values: Array) -> Array:
+    return values[np.argsort(order)]
+
+
+def _sides_differ(weight: Array) -> float:
+    """Return how clearly the sweeps of the two sides differ, as they do in a turn, from 0 to 1.
+
+    The variance of the weights between the sides over that of all.
+    """
+    between = (weight[SIDE == 0].mean() - weight[SIDE == 1].mean()) ** 2 / 4
+    return float(between / max(weight.var(), 1e-4))
+
+
+def _plausible(phase: Array, direction: Array, least: float) -> bool:
+    for side in (0, 1):
+        turned = direction[side == SIDE]
+        if turned.max() > 0 > turned.min():
+            return False
+    return not _sides_alternate(phase) and regularity(phase) >= least
+
+
+def _sides_alternate(phase: Array) -> bool:
+    """Return whether each side steps at once, at another time than the other side."""
+    turned = np.exp(2j * np.pi * phase)
+    means = [turned[side == SIDE].mean() for side in (0, 1)]
+    apart = abs(np.angle(means[0] * np.conj(means[1]))) / (2 * np.pi)
+    return min(map(abs, means)) > np.cos(2 * np.pi * _TOGETHER) and bool(apart > _TOGETHER)
+
+
+def _groups(phase: Array) -> tuple[tuple[int, ...], ...]:
+    groups: list[list[int]] = []
+    for leg, at in enumerate(phase):
+        for group in groups:
+            if abs((at - phase[group[0]] + 0.5) % 1 - 0.5) <= _TOGETHER:
+                group.append(leg)
+                break
+        else:
+            groups.append([leg])
+    return tuple(tuple(leg + 1 for leg in group) for group in groups)

@@ -14,6 +14,10 @@ FEWEST: Final = 10
 """Least number of samples to fit."""
 MOST_BINS: Final = 60
 """Largest number of bins, of which each gives one sample to the regression."""
+FEWEST_BINS: Final = 5
+"""Least number of bins whose scatter is taken for that of the samples."""
+SMALLEST_SD: Final = 1e-9
+"""Least scatter of the samples' times [s]."""
 DRIFT_SD: Final = 2e-3
 """Prior standard deviation of the clock drift: quartz drifts far less, oscillators of bare
 micro-controllers a few times as much [-]."""
@@ -30,11 +34,22 @@ class ClockFit:
         offset: Host time at device time 0, for a sample that is read with the smallest delay [s].
         drift: Host seconds per device second less 1; above 0 where the device's clock is slow [-].
         delay: Median time by which samples are read later than the map gives [s].
+        offset_sd: Standard uncertainty of the offset [s]; most of it is the time by which even the
+            fastest samples are read too late, so that the true offset is rather smaller.
+        drift_sd: Standard uncertainty of the drift [-]; `DRIFT_SD` where the samples are too few to
+            tell it.
     """
 
     offset: float
     drift: float
     delay: float
+    offset_sd: float
+    drift_sd: float
+
+    @property
+    def tells_drift(self) -> bool:
+        """Whether the samples tell more of the drift than was known before."""
+        return self.drift_sd < DRIFT_SD / 2
 
     def to_host(self, device_time: Array) -> Array:
         """Convert device times to host times by the map above, shape (n,) [s]."""
@@ -54,7 +69,8 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
         host_time: Host time at which each sample was read, shape (n,) [s].
 
     Returns:
-        Offset, drift and delay.
+        Offset, drift and delay. The uncertainties are those of the regression with the prior; fewer
+        than `FEWEST_BINS` bins do not show how much samples scatter.
 
     Raises:
         ProtocolError: There are fewer than `FEWEST` samples, or the device time is the same in the
@@ -81,8 +97,16 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
     centre = device_time[least].mean()
     x = device_time[least] - centre
     level, slope = lag[least].mean(), float(x @ lag[least] / (x @ x))
-    scatter = np.var(lag[least] - level - slope * x)
-    drift = slope / (1 + scatter / (DRIFT_SD**2 * (x @ x)))
+    apart = lag[least] - level - slope * x
+    drift = slope / (1 + np.var(apart) / (DRIFT_SD**2 * (x @ x)))
     offset = float(level - drift * centre)
-    late = lag - (offset + drift * device_time)
-    return ClockFit(offset, float(drift), float(np.median(late)))
+    late = float(np.median(lag - (offset + drift * device_time)))
+    if len(least) < FEWEST_BINS:
+        sd, drift_sd = late, DRIFT_SD
+    else:
+        sd = np.sqrt(apart @ apart / (len(least) - 2))
+        drift_sd = 1 / np.hypot(np.sqrt(x @ x) / max(sd, SMALLEST_SD), 1 / DRIFT_SD)
+    return ClockFit(
+        offset, float(drift), late,
+        offset_sd=float(np.hypot(sd, drift_sd * centre)), drift_sd=float(drift_sd),
+    )  # fmt: skip

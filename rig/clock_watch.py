@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Compare a device's clock with the host's during recording, and correct sample times with it."""
 
+import threading
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Final
 
 import numpy as np
@@ -22,7 +24,8 @@ RESTART_JUMP: Final = 1.0
 class ClockWatch:
     """Collects the pair of device and host time with the smallest delay in each `BUCKET`.
 
-    The pairs give offset and drift of the device's clock.
+    The pairs give offset and drift of the device's clock. One thread may add samples while another
+    one asks for the result.
 
     Args:
         start: Host time at which the run began [s].
@@ -32,6 +35,7 @@ class ClockWatch:
         self._start = start
         self._device: list[float] = []
         self._host: list[float] = []
+        self._lock = threading.Lock()
 
     def add(self, samples: Sequence[Sample]) -> None:
         """Keep the times of the last sample of a read where they are the best of their `BUCKET`.
@@ -42,7 +46,10 @@ class ClockWatch:
         latest = samples[-1] if samples else None
         if latest is None or latest.device_time is None:
             return
-        device, host = latest.device_time, latest.host_time - self._start
+        with self._lock:
+            self._keep(latest.device_time, latest.host_time - self._start)
+
+    def _keep(self, device: float, host: float) -> None:
         if self._host and host // BUCKET == self._host[-1] // BUCKET:
             if host - device >= self._host[-1] - self._device[-1]:
                 return
@@ -52,7 +59,7 @@ class ClockWatch:
         self._host.append(host)
 
     def result(self) -> Mapping[str, float] | None:
-        """Fit `offset` [s], `drift` [-] and `delay` [s] of `ClockFit`, host time from `start` on.
+        """Fit the attributes of `ClockFit`, by their names, with host time from `start` on.
 
         After restarts of the device the pairs since the last restart with at least `FEWEST` pairs
         after it are fitted. None where there are fewer pairs, or the device sends no time.
@@ -60,11 +67,12 @@ class ClockWatch:
         Raises:
             ProtocolError: The device's clock stands still.
         """
-        device, host = _last_clock(np.array(self._device), np.array(self._host))
+        with self._lock:
+            device, host = self._device.copy(), self._host.copy()
+        device, host = _last_clock(np.array(device), np.array(host))
         if len(device) < FEWEST:
             return None
-        fit = fit_clock(device, host)
-        return {"offset": fit.offset, "drift": fit.drift, "delay": fit.delay}
+        return asdict(fit_clock(device, host))
 
 
 def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:

@@ -3,7 +3,7 @@
 
 import threading
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from rig.device import Sample
 from rig.sample_columns import SampleColumns
@@ -43,10 +43,7 @@ class SampleQueue:
         """Remove and return all queued samples, in order; as columns if all were columns."""
         with self._lock:
             taken, self._waiting, self._count = self._waiting, [], 0
-        columns = [samples for samples in taken if isinstance(samples, SampleColumns)]
-        if taken and len(columns) == len(taken):
-            return SampleColumns.joined(columns)
-        return [sample for samples in taken for sample in samples]
+        return _joined(taken)
 
 
 class LossyTap:
@@ -73,8 +70,19 @@ class LossyTap:
             while self._count - len(self._newest[0]) >= self._limit:
                 self._count -= len(self._newest.popleft())
 
-    def take(self) -> list[Sample]:
-        """Remove all samples and return the newest of them, at most `limit`, in order."""
+    def take(self) -> Sequence[Sample]:
+        """Remove all samples and return the newest of them, at most `limit`, in order.
+
+        They are columns if all were columns.
+        """
         with self._lock:
             reads, self._newest, self._count = self._newest, deque(), 0
-        return [sample for samples in reads for sample in samples][-self._limit :]
+        return _joined(reads)[-self._limit :]
+
+
+def _joined(reads: Collection[Sequence[Sample]]) -> Sequence[Sample]:
+    """Join the samples of reads in order: to columns if all are columns, else to a list."""
+    columns = [samples for samples in reads if isinstance(samples, SampleColumns)]
+    if reads and len(columns) == len(reads):
+        return SampleColumns.joined(columns)
+    return [sample for samples in reads for sample in samples]

@@ -42,3 +42,33 @@ def test_a_minute_of_samples_tells_any_drift(drift):
     device = np.arange(6000) / 100
     host = 3.0 + (1 + drift) * device + rng.exponential(0.01, 6000)
     assert fit_clock(device, host).drift == pytest.approx(drift, abs=2e-5)
+
+
+@pytest.mark.parametrize("duration", [2.0, 10.0, 60.0])
+def test_offset_and_drift_lie_within_two_standard_uncertainties(duration):
+    rng, inside = np.random.default_rng(2), []
+    for _ in range(200):
+        drift, offset = rng.normal(0, 1e-4), rng.normal()
+        device = np.arange(0, duration, 0.05)
+        host = offset + (1 + drift) * device + rng.exponential(0.003, len(device))
+        fit = fit_clock(device, host)
+        inside.append((abs(fit.drift - drift) < 2 * fit.drift_sd,
+                       abs(fit.offset - offset) < 2 * fit.offset_sd))  # fmt: skip
+    for share in np.mean(inside, axis=0):
+        assert share > 0.87
+
+
+@pytest.mark.parametrize(("samples", "tells"), [(15, False), (40, True), (1200, True)])
+def test_a_moment_of_samples_does_not_tell_a_drift_and_says_so(samples, tells):
+    rng = np.random.default_rng(3)
+    device = np.arange(samples) / 20
+    fit = fit_clock(device, 1 + device + rng.exponential(0.002, samples))
+    assert fit.tells_drift == tells
+
+
+def test_the_uncertainty_of_the_drift_falls_as_samples_come():
+    rng = np.random.default_rng(4)
+    device = np.arange(2400) / 20
+    host = device + rng.exponential(0.002, 2400)
+    sds = [fit_clock(device[:n], host[:n]).drift_sd for n in (40, 200, 2400)]
+    assert sds[0] > 4 * sds[1] > 16 * sds[2]

@@ -43,6 +43,8 @@ def record(request: RecordRequest) -> None:
 
 
 def _report(recorded: "Recorded") -> str:
+    from zebro_lab.recording.clock_text import clock_in_words
+
     manifest = recorded.manifest
     lines = []
     for name, counters in manifest.counters.items():
@@ -53,11 +55,5 @@ def _report(recorded: "Recorded") -> str:
             f"on the way, {rejected} rejected as damaged, repeated, impossible or for another "
             f"device, {counters['dropped']} dropped by a slow disk"
         )
-    for name, clock in manifest.clocks.items():
-        pace = "slower" if clock["drift"] > 0 else "faster"
-        lines.append(
-            f"clock of {name}: runs {1e6 * abs(clock['drift']):.1f} ppm {pace} than this computer's"
-            f", shows 0 s at {clock['offset']:.6f} s of the run; half of the samples arrive more "
-            f"than {1e3 * clock['delay']:.2f} ms later than the fastest ones"
-        )
+    lines += [clock_in_words(name, clock) for name, clock in manifest.clocks.items()]
     return "\n".join([*lines, f"recording {manifest.exit_status}; run folder {recorded.folder}"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Terminal display of a recording's counters, and the signals and keys that end it."""
+"""Live display of a recording on a terminal, and the signals and keys that end it."""
 
 import contextlib
 import errno
@@ -13,20 +13,22 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final
 
-from rich.console import Console, Group
+from rich.console import Console
 from rich.live import Live
-from rich.progress_bar import ProgressBar
-from rich.table import Table
 from rich.text import Text
 
+from zebro_lab.recording.drawing import draw_status, glyphs_of, stream_in_words, time_left
+from zebro_lab.recording.live_values import LiveValues
 from zebro_lab.terminal.last_words import in_time
-from zebro_lab.terminal.messages import plain
 
 if TYPE_CHECKING:
     from zebro_lab.recording.status import RecordStatus
 
 STOP_KEYS: Final = b"qQ\x1b"
 DRAW_EVERY: Final = 0.125
+"""Least interval of drawing on a terminal [s]."""
+LINE_EVERY: Final = 10.0
+"""Interval of lines where there is no terminal [s]."""
 _HANGUP: Final = getattr(signal, "SIGHUP", None)
 
 
@@ -34,40 +36,50 @@ class RecordScreen:
     """Live display that also handles signals and keys; implements the protocol `RecordWatcher`.
 
     Args:
-        live: Display to update; None draws nothing.
+        console: Output.
+        live: Display to update, of a terminal; None writes a line now and then.
         keys: Input file from which keys are read; None without a keyboard.
 
     Attributes:
         signalled: Whether a signal or a lost terminal requested the end of the recording.
     """
 
-    def __init__(self, live: Live | None, keys: Any = None) -> None:
+    def __init__(self, console: Console, live: Live | None = None, keys: Any = None) -> None:
         self.signalled = False
+        self._console = console
+        self._values = LiveValues()
+        self._width = 0
+        self._writing = False
         self._live = live
         self._keys = keys
         self._reason: str | None = None
         self._asked = False
-        self._drawn = float("-inf")
+        self._drawn = float("-inf") if live is not None else time.monotonic()
         # Under `nohup` and the like hangups are ignored, so that the run outlives the terminal.
         self._outlives = _HANGUP is not None and signal.getsignal(_HANGUP) == signal.SIG_IGN
 
     def show(self, status: "RecordStatus") -> None:
-        """Draw the status, at most every `DRAW_EVERY` s; called in a separate thread.
+        """Draw the status, at most every `DRAW_EVERY`; called in a separate thread.
+
+        Without a terminal a line is written every `LINE_EVERY`.
 
         Raises:
             OSError: The terminal cannot be written; a lost terminal also requests a stop, unless
                 hangups are ignored.
         """
-        if self._live is None or time.monotonic() - self._drawn < DRAW_EVERY:
+        if time.monotonic() - self._drawn < (LINE_EVERY if self._live is None else DRAW_EVERY):
             return
+        self._writing = True
         try:
-            if not self._live.is_started:
-                self._live.start()
-            self._live.update(_drawn(status), refresh=True)
+            if self._live is None:
+                self._console.print(_line(status), soft_wrap=True)
+            else:
+                self._draw(self._live, status)
         except OSError as error:
             if error.errno == errno.EIO:
                 self._hang_up()
             raise
+        self._writing = False
         self._drawn = time.monotonic()
 
     def stop_reason(self) -> str | None:
@@ -101,7 +113,19 @@ class RecordScreen:
     def close(self) -> bool:
         """End the display; return whether the terminal accepted its last output in time."""
         live, self._live = self._live, None
-        return live is None or in_time(live.stop)
+        return in_time(live.stop) if live is not None else not self._writing
+
+    def _draw(self, live: Live, status: "RecordStatus") -> None:
+        values = self._values.update(status.folder, status.streams)
+        size = self._console.size
+        if not live.is_started:
+            live.start()
+        elif size.width != self._width:
+            self._console.clear()  # lines that the terminal has wrapped anew cannot be overwritten
+        self._width = size.width
+        glyphs = glyphs_of(self._console.encoding)
+        drawn = draw_status(status, values, width=size.width, height=size.height, glyphs=glyphs)
+        live.update(drawn, refresh=True)
 
     def _typed(self) -> bytes:
         """Read typed bytes without blocking, empty without any.
@@ -136,13 +160,13 @@ def record_screen(console: Console) -> Iterator[RecordScreen]:
     SIGHUP stays ignored if it is. For the main thread only.
 
     Args:
-        console: Output; nothing is drawn and no key is read unless it is a terminal.
+        console: Output; unless it is a terminal, no key is read, and lines are written.
 
     Yields:
         The display, to be passed to the stage as its watcher.
     """
     with contextlib.ExitStack() as stack:
-        screen = RecordScreen(None)
+        screen = RecordScreen(console)
         if console.is_terminal:
             # Drawn by who calls `show` alone: a thread of its own would hold the lock of a terminal
             # that is stopped.
@@ -150,7 +174,7 @@ def record_screen(console: Console) -> Iterator[RecordScreen]:
                 console=console, transient=True, auto_refresh=False, redirect_stdout=False,
                 redirect_stderr=False,
             )  # fmt: skip
-            screen = RecordScreen(live, stack.enter_context(_single_keys()))
+            screen = RecordScreen(console, live, stack.enter_context(_single_keys()))
             stack.callback(screen.close)
         numbers = [signal.SIGINT, signal.SIGTERM]
         if _HANGUP is not None and signal.getsignal(_HANGUP) != signal.SIG_IGN:
@@ -181,25 +205,9 @@ def _single_keys() -> Iterator[Any]:
             termios.tcsetattr(sys.stdin, termios.TCSANOW, before)
 
 
-def _drawn(status: "RecordStatus") -> Group:
-    table = Table(box=None, pad_edge=False)
-    table.add_column("stream")
-    for column in ("rate [Hz]", "received", "lost", "rejected", "dropped"):
-        table.add_column(column, justify="right")
-    for name, stream in status.streams.items():
-        simulated = " SIMULATED" if stream.source.startswith("sim:") else ""
-        table.add_row(
-            plain(name + simulated), f"{stream.rate:.0f}", f"{stream.counters.received}",
-            f"{stream.counters.lost}", f"{stream.counters.rejected}", f"{stream.dropped}",
-        )  # fmt: skip
-    return Group(table, _time(status))
-
-
-def _time(status: "RecordStatus") -> Group:
-    if status.duration is None:
-        return Group(Text(f"{status.elapsed:.0f} s recorded; press q to end the recording"))
-    left = max(status.duration - status.elapsed, 0.0)
-    return Group(
-        ProgressBar(total=status.duration, completed=status.elapsed, width=40),
-        Text(f"{status.elapsed:.0f} of {status.duration:g} s, {left:.0f} s left; press q to end"),
+def _line(status: "RecordStatus") -> Text:
+    """Return the status in one line, without values."""
+    streams = (
+        ", ".join(stream_in_words(name, each).values()) for name, each in status.streams.items()
     )
+    return Text("; ".join((time_left(status), *streams)))

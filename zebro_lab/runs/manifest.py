@@ -84,9 +84,9 @@ class RunManifest:
         sources: Source of each stream, by the stream's name.
         counters: Numbers of samples received, lost, damaged and so on, and of those that the
             recorder dropped, by stream.
-        clocks: Offset [s], drift [-] and delay [s] of each device's clock, by stream, for devices
-            that send their time: time of the run = offset + (1 + drift) device time. Half of the
-            samples arrive later than the fastest by more than the delay.
+        clocks: Attributes of `ClockFit` of each device's clock, by stream, for devices that send
+            their time: time of the run = offset + (1 + drift) device time. In half of the intervals
+            of 50 ms even the quickest sample arrives later than the fastest by more than the delay.
         duration: Requested duration ("asked") and the time of the run from which it counts
             ("from"), when every stream had sent its first sample; empty for a run without a set
             duration [s].

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Read all streams of a run as curves in the units of a picture, with gaps and events."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +13,12 @@ from numpy.typing import NDArray
 from model.slip.law import Array
 from rig.clock_watch import sample_times
 from rig.errors import RigError
-from rig.imu.profile import decode_orientation, load_imu_profile
+from rig.imu.profile import ImuProfile, decode_orientation, load_imu_profile
 from rig.sample_columns import SampleColumns
 from rig.slip_rig.decode import Forces, decode_board, decode_forces
 from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import RigProfile, load_rig_profile
-from rig.zebro.profile import decode_angles, load_leg_profile
+from rig.zebro.profile import LegProfile, decode_angles, load_leg_profile
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
@@ -26,6 +27,8 @@ from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_slip_rig_run, run_sta
 from zebro_lab.runs.manifest import RIG, RunManifest, profile_file, read_manifest
 from zebro_lab.runs.recorded_legs import LEGS
 
+Curves: TypeAlias = Iterator[tuple[str, str, Array, Mapping[str, Array]]]
+"""Quantity, unit, times [s] and curves by name, of one stream after another."""
 GAP_STEPS: Final = 5.0
 GAP_LEAST: Final = 0.05
 """An interval is a gap when longer than `GAP_STEPS` median intervals and `GAP_LEAST` [s]."""
@@ -115,6 +118,31 @@ def read_signals(folder: Path) -> RunSignals:
     return RunSignals(folder.absolute().name, state, manifest.source, tuple(panels), events, notes)
 
 
+def profile_of(folder: Path, name: str) -> Path:
+    """Return the profile in a run folder that describes a stream, from the stream's name."""
+    return profile_file(folder, name if name == LEGS or name.startswith("imu") else RIG)
+
+
+def stream_decoder(name: str, place: Path) -> Callable[[Array, SampleColumns], Curves]:
+    """Return what decodes samples of a stream, with the profile read once.
+
+    It takes the times [s] of samples, shape (n,), and the samples, and yields quantity, unit, times
+    and curves; nothing for a stream of the rig that the profile does not describe.
+
+    Args:
+        name: Name of the stream.
+        place: Profile that describes it.
+
+    Raises:
+        RigError: The profile is missing or invalid.
+    """
+    if name == LEGS:
+        return partial(_legs, load_leg_profile(str(place)))
+    if name.startswith("imu"):
+        return partial(_imu, load_imu_profile(str(place)))
+    return partial(_rig, load_rig_profile(str(place)), name)
+
+
 def find_gaps(t: Array, sequence: NDArray[np.int64] | None = None) -> Array:
     """Find gaps in a stream: long intervals between samples, and missing sequence numbers.
 
@@ -145,33 +173,16 @@ def _panels(
     source = manifest.sources.get(name, manifest.source)
     t = sample_times(stream)
     gaps = find_gaps(t, stream.sequence)
-    place = profile_file(folder, name if name == LEGS or name.startswith("imu") else RIG)
+    place = profile_of(folder, name)
     try:
-        for what, unit, part, lines in _decoded(name, place, t, stream):
+        for what, unit, part, lines in stream_decoder(name, place)(t, stream):
             own = gaps if len(part) == len(t) else find_gaps(part)
             yield Panel(f"{name}: {what}", unit, part, lines, source.startswith("sim:"), own)
     except RigError as error:
         raise DataError(str(error), file=place) from error
 
 
-_Curves = Iterator[tuple[str, str, Array, Mapping[str, Array]]]
-
-
-def _decoded(name: str, place: Path, t: Array, stream: SampleColumns) -> _Curves:
-    """Yield quantity, unit, times [s] and curves of a stream, decoded by the profile at `place`.
-
-    Nothing is yielded for a stream of the rig that its profile does not describe.
-    """
-    if name == LEGS:
-        yield from _legs(place, t, stream)
-    elif name.startswith("imu"):
-        yield from _imu(place, t, stream)
-    else:
-        yield from _rig(load_rig_profile(str(place)), name, t, stream)
-
-
-def _legs(place: Path, t: Array, stream: SampleColumns) -> _Curves:
-    profile = load_leg_profile(str(place))
+def _legs(profile: LegProfile, t: Array, stream: SampleColumns) -> Curves:
     angles = decode_angles(profile, stream)
     counts = {f"leg {leg}": stream.counts[:, i] for i, leg in enumerate(profile.legs)}
     unit = f"1/{profile.counts_per_revolution} turn"
@@ -180,15 +191,15 @@ def _legs(place: Path, t: Array, stream: SampleColumns) -> _Curves:
     yield "angles, unwrapped", "rad", t, theta
 
 
-def _imu(place: Path, t: Array, stream: SampleColumns) -> _Curves:
-    seen = decode_orientation(load_imu_profile(str(place)), stream)
+def _imu(profile: ImuProfile, t: Array, stream: SampleColumns) -> Curves:
+    seen = decode_orientation(profile, stream)
     angles = {"roll": seen.roll, "pitch": seen.pitch, "yaw": seen.yaw}
     yield "orientation", "deg", t, {name: np.degrees(angle) for name, angle in angles.items()}
     yield "angular rate", "rad/s", t, dict(zip("xyz", seen.angular_rate.T, strict=True))
     yield "specific force", "m/s²", t, dict(zip("xyz", seen.specific_force.T, strict=True))
 
 
-def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> _Curves:
+def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> Curves:
     if name == "drives" and profile.drives is not None:
         for disc, drive in (("leg", profile.drives.leg), ("ground", profile.drives.ground)):
             own = stream.channel == drive.node

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Counters on a terminal, silence elsewhere, and keys and signals that end a recording."""
+"""A display on a terminal, lines elsewhere, and keys and signals that end a recording."""
 
 import io
 import os
 import signal
 import threading
+import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
 from rich.live import Live
 
 from rig.device import Counters
+from zebro_lab.recording import screen as module
 from zebro_lab.recording.screen import RecordScreen, record_screen
 from zebro_lab.recording.status import RecordStatus, StreamStatus
 
@@ -34,7 +37,7 @@ def written_on(place):
 def test_a_terminal_sees_counters_time_and_what_is_simulated(duration):
     place = console(terminal=True)
     with Live(console=place) as live:
-        RecordScreen(live).show(RecordStatus(Path("run"), 4.0, duration, STREAMS))
+        RecordScreen(place, live).show(RecordStatus(Path("run"), 4.0, duration, STREAMS))
     text = written_on(place)
     for part in ("legs SIMULATED", "100", "1234", "56", "7", "8"):
         assert part in text
@@ -42,12 +45,51 @@ def test_a_terminal_sees_counters_time_and_what_is_simulated(duration):
     assert ("6 s left" in text) == (duration is not None)
 
 
-def test_nothing_is_drawn_in_a_pipe():
-    place = console(terminal=False)
+def test_a_pipe_gets_a_line_now_and_then(monkeypatch):
+    place, now = console(terminal=False), [0.0]
+    monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     with record_screen(place) as screen:
-        screen.show(RecordStatus(Path("run"), 4.0, None, STREAMS))
+        for now[0] in (1.0, 9.9, 10.1, 15.0, 19.0, 20.2):
+            screen.show(RecordStatus(Path("run"), now[0], 60.0, STREAMS))
         assert screen.stop_reason() is None
-    assert written_on(place) == ""
+        assert screen.close()
+    lines = written_on(place).splitlines()
+    assert [line.split(" s left")[0] for line in lines] == [
+        "10 of 60 s recorded, 50", "20 of 60 s recorded, 40",
+    ]  # fmt: skip
+    assert "legs SIMULATED, 100 Hz, 56 lost, 8 dropped, 7 rejected, 1234 received" in lines[0]
+    assert "\x1b" not in written_on(place)
+
+
+def test_a_pipe_that_takes_no_line_is_told_at_the_end(monkeypatch):
+    free = threading.Event()
+    place = Console(file=SimpleNamespace(write=lambda _: free.wait(20), flush=lambda: None))
+    monkeypatch.setattr(module, "LINE_EVERY", 0.0)
+    with record_screen(place) as screen:
+        status = RecordStatus(Path("run"), 1.0, None, STREAMS)
+        writer = threading.Thread(target=screen.show, args=(status,), daemon=True)
+        writer.start()
+        try:
+            time.sleep(0.1)
+            assert not screen.close()
+        finally:
+            free.set()
+        writer.join(5)
+        assert screen.close()
+
+
+def test_a_terminal_of_another_width_is_cleared():
+    place = console(terminal=True)
+    live = Live(console=place, auto_refresh=False)
+    screen = RecordScreen(place, live)
+    status, clear = RecordStatus(Path("run"), 4.0, None, STREAMS), "\x1b[2J"
+    for width, cleared in ((100, False), (100, False), (60, True)):
+        place.width = width
+        screen._drawn = float("-inf")
+        before = len(written_on(place))
+        screen.show(status)
+        assert (clear in written_on(place)[before:]) == cleared
+    assert screen.close()
 
 
 @pytest.mark.parametrize("number", SIGNALS)
@@ -69,7 +111,7 @@ def test_handlers_are_restored_after_an_exception():
 def test_a_key_is_a_wish_to_stop_and_others_are_not():
     reading, writing = os.pipe()
     with os.fdopen(reading) as keys, os.fdopen(writing, "wb", buffering=0) as typist:
-        screen = RecordScreen(None, keys)
+        screen = RecordScreen(console(terminal=True), None, keys)
         assert screen.stop_reason() is None
         typist.write(b"x")
         assert screen.stop_reason() is None
@@ -82,7 +124,7 @@ def test_a_key_is_a_wish_to_stop_and_others_are_not():
 def test_no_byte_typed_hides_the_key_that_stops(typed):
     reading, writing = os.pipe()
     with os.fdopen(reading) as keys, os.fdopen(writing, "wb", buffering=0) as typist:
-        screen = RecordScreen(None, keys)
+        screen = RecordScreen(console(terminal=True), None, keys)
         typist.write(typed)
         heard = []
         asker = threading.Thread(target=lambda: heard.append(screen.stop_reason()), daemon=True)
@@ -99,7 +141,7 @@ def test_a_keyboard_that_is_gone_is_a_stop():
     reading, writing = os.pipe()
     os.close(writing)
     with os.fdopen(reading) as keys:
-        screen = RecordScreen(None, keys)
+        screen = RecordScreen(console(terminal=True), None, keys)
         assert screen.stop_reason() == "terminal closed"
         assert screen.signalled
 

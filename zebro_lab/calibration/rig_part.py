@@ -96,7 +96,7 @@ def read_part(
     if source.is_run_folder:
         raw, columns, files = _run_folder_table(source.path, columns)
     else:
-        raw, files = read_table_file(source.path), (source.path,)
+        raw, files = read_table_file(source.path, sheet=columns.sheet), (source.path,)
     table = RigTable(raw, columns, kept_rows(raw, columns))
     slip_column = slip(table)
     if wanted is not None:

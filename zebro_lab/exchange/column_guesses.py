@@ -1,36 +1,39 @@
 # SPDX-License-Identifier: MIT
-"""Guess the canonical columns of a table from its header and numbers."""
+"""Guess the canonical columns of a table from its headers and numbers, and say what is unsure."""
 
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
+from typing import Final
 
 import numpy as np
 
 from model.slip.law import Array
-from zebro_lab.files.errors import DataError
-from zebro_lab.files.units import is_unit_of
+from zebro_lab.exchange.column_names import NAMES, WEAK, leg_of, plain_name, split_header
+from zebro_lab.exchange.unit_guesses import UnitGuess, guess_unit
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.robot.imu_log import IMU_UNITS
+from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
+from zebro_lab.tables.column_sections import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.tables.columns import CANONICAL
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.track.foreign import TRACK_UNITS
 
-_NAMES: Mapping[str, str] = MappingProxyType({
-    "t": r"t|et|time|elapsed_time|timestamp|zeit|seconds",
-    "omega_leg": r"(omega|w|speed|rate)_?(l|leg|leg_disc|wheel)",
-    "omega_ground": r"(omega|w|speed|rate)_?(g|ground|ground_disc|table)",
-    "radius_leg": r"(radius|r)_(l|leg)",
-    "radius_ground": r"(radius|r)_(g|ground)",
-    "slip_ratio": r"(kappa|slip)(_?(ratio|inst|long|x))?|sl|sr|longitudinal_slip",
-    "normal_force": r"(avg_|mean_)?(fn|fz|f_n|f_z|load|normal|(normal|vertical)_?(force|load))",
-    "traction_force":
-        r"(avg_|mean_)?(ft|fx|f_t|f_x|(traction|tangential|longitudinal|friction)(_?force)?)",
-    "run": r"run(_?(id|nr|no|number))?",
-    "slip_definition": r"slip_definition",
-})  # fmt: skip
-_BRACKETED = re.compile(r"(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\])]*)[\])]\s*")
-_SUFFIXES = {"_rad_s": "rad/s", "_rpm": "rpm", "_ms": "ms", "_s": "s", "_kn": "kN", "_n": "N",
-             "_mm": "mm", "_m": "m"}  # fmt: skip
+UNITS: Final[Mapping[str, Mapping[str, str | None]]] = {
+    RIG: {name: column.unit for name, column in CANONICAL.items()},
+    LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: TRACK_UNITS,
+}  # fmt: skip
+"""SI unit of each canonical column, None for text, by kind of table."""
+_SHORT: Final = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw"}
+_SIGNED: Final = {
+    "traction_force", "slip_ratio", "roll", "pitch", "yaw", "yaw_rad", "y_m", *ANGLES,
+    *(f"{name}_{axis}" for name in ("rate", "force") for axis in "xyz"),
+}  # fmt: skip
+"""Columns whose sign is a convention that no table shows."""
+_ROS = re.compile(r"(.*[./_])?(orientation|angular_velocity|linear_acceleration)[./_][xyzw]")
+_POSE = re.compile(r"(.*[./_])?(pose\.)?position[./_][xyz]|p_RS_R_[xyz].*|t[xyz]")
 _MOST_SET_POINTS = 200
+_QUATERNION = ("qw", "qx", "qy", "qz")
 
 
 @dataclass(frozen=True)
@@ -39,35 +42,68 @@ class ColumnGuess:
 
     Attributes:
         name: Header in the file.
-        unit: Unit parsed from the header; None without a unit that fits the canonical column.
-        negative: Whether the median of the column's numbers is negative.
-        others: Other headers that match the canonical column, in the table's order.
+        unit: Unit, with what is known of it; None for a column of text.
+        sign: Sign, 1 or -1.
+        name_doubt: Why another column may be meant; "" if that is sure.
+        sign_doubt: Why the sign is not sure; "" if it is.
+        zero_doubt: Why the zero of an angle is not sure; "" if it is.
+        nanoseconds: Header of a column of nanoseconds that belongs to this one; None without.
     """
 
     name: str
-    unit: str | None
-    negative: bool
-    others: tuple[str, ...]
+    unit: UnitGuess | None = None
+    sign: int = 1
+    name_doubt: str = ""
+    sign_doubt: str = ""
+    zero_doubt: str = ""
+    nanoseconds: str | None = None
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What is not sure: "column", "unit", "sign", "zero"."""
+        found = {
+            "column": self.name_doubt, "unit": self.unit.doubt if self.unit else "",
+            "sign": self.sign_doubt, "zero": self.zero_doubt,
+        }  # fmt: skip
+        return tuple(what for what, doubt in found.items() if doubt)
 
 
-def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
-    """Guess which column of a table holds each canonical column, by canonical name.
+def guess_kind(table: RawTable) -> str:
+    """Return the kind of a table, one of `KINDS`, where its headers leave no doubt.
 
-    Columns are matched by their headers, each at most once; the numbers only determine the sign.
-    Of several matches the header that is the canonical name is taken, else the first in the table.
-    Canonical columns without a match are omitted.
+    Raises:
+        SettingsError: They fit no kind or several.
+    """
+    fitting = [kind for kind in KINDS if _is_kind(kind, guess_columns(table, kind))]
+    if len(fitting) == 1:
+        return fitting[0]
+    found = f"may be of the kinds {' or '.join(fitting)}" if fitting else "fits no kind of table"
+    raise SettingsError(
+        f"{table.path} {found}, by its headers {', '.join(list(table.columns)[:8])}; say what it "
+        f"is with one of {', '.join(KINDS)}",
+        key="--kind",
+    )
+
+
+def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
+    """Guess which column of a table holds each canonical column of a kind, by canonical name.
+
+    Columns are matched by their headers, each at most once. Of several matches the header that is
+    the canonical name is taken, else the first in the table. Those without a match are omitted.
+
+    Args:
+        table: The table.
+        kind: One of `KINDS`.
     """
     guesses: dict[str, ColumnGuess] = {}
     taken: set[str] = set()
-    for canonical in CANONICAL:
-        fitting = [n for n in table.columns if n not in taken and _fits(n, canonical)]
-        fitting.sort(key=lambda name: name != canonical)
+    first = min((leg[0] for name in table.columns if (leg := leg_of(name))), default=1)
+    for canonical in UNITS[kind]:
+        fitting = [n for n in table.columns if n not in taken and _fits(n, canonical, kind, first)]
+        fitting.sort(key=lambda name: (not is_canonical(name, canonical), _is_weak(name)))
         if fitting:
-            name, *others = fitting
-            taken.add(name)
-            numbers = numbers_or_none(table, name)
-            negative = numbers is not None and bool(np.nanmedian(numbers) < 0)
-            guesses[canonical] = ColumnGuess(name, _unit(name, canonical), negative, tuple(others))
+            guesses[canonical] = _guess(table, canonical, kind, fitting)
+            taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
     return guesses
 
 
@@ -104,30 +140,88 @@ def numbers_or_none(table: RawTable, name: str) -> Array | None:
     return numbers if np.isfinite(numbers).any() else None
 
 
-def _fits(header: str, canonical: str) -> bool:
-    bare, _ = _without_unit(header)
-    return bare == canonical or re.fullmatch(_NAMES[canonical], bare) is not None
+def is_canonical(header: str, canonical: str) -> bool:
+    """Return whether a header is a canonical name, of a track also the short one."""
+    return header in (canonical, _SHORT.get(canonical))
 
 
-def _unit(header: str, canonical: str) -> str | None:
-    _, unit = _without_unit(header)
-    si_unit = CANONICAL[canonical].unit
-    return unit if unit and si_unit and is_unit_of(unit, si_unit) else None
+def _is_kind(kind: str, found: Mapping[str, ColumnGuess]) -> bool:
+    if kind == RIG:
+        forces = [found[name] for name in ("normal_force", "traction_force") if name in found]
+        return any(not _is_weak(guess.name) for guess in forces)
+    if kind == LEGS:
+        return all(name in found for name in ANGLES)
+    if kind == IMU:
+        tilt = {"roll", "pitch"} <= found.keys() or set(_QUATERNION) <= found.keys()
+        return tilt or {"rate_x", "rate_y", "rate_z"} <= found.keys()
+    return {"x_m", "y_m"} <= found.keys()
 
 
-def _without_unit(header: str) -> tuple[str, str | None]:
-    """Split a header, `FZ [N]` or `t_ms`, into a lower-case name and a unit; None without one.
+def _fits(header: str, canonical: str, kind: str, first: int) -> bool:
+    if is_canonical(header, canonical):
+        return True
+    if canonical in ANGLES:
+        leg = leg_of(header)
+        return leg is not None and leg[0] - min(first, 1) + 1 == int(canonical[-1])
+    pattern = NAMES[kind].get(canonical)
+    if pattern is None:
+        return False
+    names = {split_header(header)[0], plain_name(header)}
+    return any(re.fullmatch(pattern, name) for name in names)
 
-    Blanks, points and hyphens of the name become underscores.
-    """
-    if match := _BRACKETED.fullmatch(header):
-        return _plain(match["name"]), match["unit"].strip()
-    plain = _plain(header)
-    for suffix, unit in _SUFFIXES.items():
-        if plain.endswith(suffix) and plain not in CANONICAL:
-            return plain.removesuffix(suffix), unit
-    return plain, None
+
+def _is_weak(header: str) -> bool:
+    return split_header(header)[0] in WEAK
 
 
-def _plain(name: str) -> str:
-    return re.sub(r"[\s.\-]+", "_", name.strip().casefold())
+def _guess(table: RawTable, canonical: str, kind: str, fitting: list[str]) -> ColumnGuess:
+    name, *others = fitting
+    si_unit = UNITS[kind][canonical]
+    known = is_canonical(name, canonical) or _ROS.fullmatch(name) is not None
+    nanoseconds = _nanoseconds(table, name) if si_unit == "s" else None
+    others = [other for other in others if other != nanoseconds]
+    if canonical == "traction_force" and not others:  # of a wheel the other way may be forward
+        sideways = name.replace("x", "y").replace("X", "Y")
+        others = [sideways] if sideways != name and sideways in table.columns else []
+    doubt = "" if is_canonical(name, canonical) else _name_doubt(name, canonical, others)
+    if si_unit is None:
+        return ColumnGuess(name, name_doubt=doubt)
+    numbers = numbers_or_none(table, name)
+    unit = UnitGuess("s", "") if nanoseconds else guess_unit(table, name, si_unit, si=known)
+    sign, sign_doubt = _sign(canonical, numbers, known=known or _POSE.fullmatch(name) is not None)
+    zero = "90 deg must be where the centre of the leg's arc is straight below the hip"
+    return ColumnGuess(
+        name, unit, sign, doubt, sign_doubt, zero if canonical in ANGLES and not known else "",
+        nanoseconds,
+    )  # fmt: skip
+
+
+def _nanoseconds(table: RawTable, name: str) -> str | None:
+    """Return the header of the nanoseconds beside a ROS stamp's seconds; None without one."""
+    match = re.fullmatch(r"(.*)secs?", name)
+    for ending in ("nanosec", "nsec", "nsecs", "nanosecs") if match else ():
+        if match and match[1] + ending in table.columns:
+            return match[1] + ending
+    return None
+
+
+def _name_doubt(name: str, canonical: str, others: list[str]) -> str:
+    if others:
+        return f"could also be {', '.join(map(repr, others))}"
+    if canonical in ANGLES and not (leg_of(name) or (0, False))[1]:
+        return "the file may number the legs in another order, see docs/conventions.md"
+    return "the name may mean another column" if _is_weak(name) else ""
+
+
+def _sign(canonical: str, numbers: Array | None, *, known: bool) -> tuple[int, str]:
+    if numbers is None:
+        return 1, ""
+    negative = float(np.nanmedian(numbers)) < 0
+    if canonical == "normal_force" or canonical.startswith("omega_"):
+        return (-1, "negative in the file") if negative else (1, "")
+    if canonical not in _SIGNED or known:
+        return 1, ""
+    if canonical in ANGLES:
+        falls = float(np.nanmedian(np.diff(np.unwrap(numbers[np.isfinite(numbers)])))) < 0
+        return (-1, "falls in the file") if falls else (1, "must grow as the robot walks forward")
+    return 1, "the file does not show it"

@@ -6,24 +6,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from rig.nearest_name import nearest
-from zebro_lab.files.documents import read_toml_document
-from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.robot.imu_log import IMU_UNITS
 from zebro_lab.robot.leg_log import LEG_UNITS
+from zebro_lab.tables.column_sections import IMU, LEGS, TRACK, read_section
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns, parse_columns
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.track.foreign import TRACK_UNITS
 
-LEGS, IMU, TRACK, RIG = "legs", "imu", "track", "rig"
 SERIES: Final[Mapping[str, Mapping[str, str]]] = {
     LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: TRACK_UNITS,
 }  # fmt: skip
 """SI unit of each column: by kind of time series, then by the column's canonical name."""
-_SECTIONS: Final = (*SERIES, RIG)
-_PLAIN: Final = (LEGS, RIG)
-"""Kinds whose columns.toml may be without sections, as `predict` and `calibrate-slip` read it."""
 
 
 @dataclass(frozen=True)
@@ -84,20 +78,10 @@ def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumn
     Raises:
         NotFound: The named `columns.toml` does not exist.
         SettingsError: The `columns.toml` cannot be read as TOML, has unknown keys beside its
-            sections, or a section is no table.
+            sections, a section is no table, or it has guesses that nobody has checked.
     """
     beside = table.parent / COLUMNS_FILE
     file = named or (beside if beside.is_file() else None)
     if file is None:
         return ForeignColumns()
-    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
-    source = {"source": document["source"]} if "source" in document else {}
-    if not set(document) & set(_SECTIONS):
-        return ForeignColumns(SettingsTable(document if what in _PLAIN else source, file=file))
-    for key in document:
-        if key not in (known := ("source", *_SECTIONS)):
-            raise SettingsError(f"unknown key; {nearest(key, known)}", file=file, key=key)
-    entries = document.get(what, {})
-    if not isinstance(entries, dict):
-        raise SettingsError(f"found {entries!r}; expected a section [{what}]", file=file, key=what)
-    return ForeignColumns(SettingsTable(source | entries, file=file, path=what))
+    return ForeignColumns(read_section(what, file))

@@ -11,7 +11,7 @@ import numpy as np
 
 from model.progress import Watcher
 from model.slip.law import Array
-from zebro_lab.exchange.import_columns import IMU, LEGS, RIG, TRACK, foreign_columns
+from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
@@ -24,6 +24,7 @@ from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
+from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.track.foreign import (
@@ -143,19 +144,24 @@ def _legs(request: ImportRequest) -> LegLog:
     path = request.legs or Path()
     columns = foreign_columns(LEGS, path, request.columns)
     is_log = path.suffix.lower() == ".mcap"
-    table = read_joint_log(path, topic=columns.topic) if is_log else read_table_file(path)
-    return legs_of_table(table, columns.series(LEGS), files=(path,))
+    topic, series = columns.topic, columns.series(LEGS)
+    if is_log:
+        table = read_joint_log(path, topic=topic)
+    else:
+        table = read_table_file(path, sheet=series.sheet)
+    return legs_of_table(table, series, files=(path,))
 
 
 def _imu(path: Path, named: Path | None) -> ImuLog:
     columns = foreign_columns(IMU, path, named).series(IMU)
-    return imu_of_table(read_table_file(path), columns)
+    return imu_of_table(read_table_file(path, sheet=columns.sheet), columns)
 
 
 def _track(path: Path, named: Path | None, zero: float) -> ForeignTrack:
     columns = foreign_columns(TRACK, path, named).series(TRACK)
     if not is_tum(path):
-        return track_of_foreign_table(read_table_file(path), columns, zero=zero)
+        table = read_table_file(path, sheet=columns.sheet)
+        return track_of_foreign_table(table, columns, zero=zero)
     own = replace(columns, mapped=canonical_columns(TRACK_UNITS).mapped)  # TUM has no headers
     return track_of_foreign_table(read_tum(path), own, zero=zero)
 

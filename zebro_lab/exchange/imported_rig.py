@@ -80,7 +80,7 @@ def rig_runs(
             is no finite number, a radius changes, rows are averages of trials, or time decreases or
             repeats within a run.
     """
-    raw = read_table_file(path)
+    raw = read_table_file(path, sheet=columns.sheet)
     table = RigTable(raw, columns, kept_rows(raw, columns))
     if columns.runs.each_row:
         raise DataError(f"each row is the mean of a trial, not a sample, as {COLUMNS_FILE} states "

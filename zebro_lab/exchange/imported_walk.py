@@ -12,7 +12,6 @@ from model.slip.law import Array
 from rig.device import Counters
 from rig.imu.profile import render_table_profile
 from rig.zebro.profile import LegProfile, render_leg_profile
-from zebro_lab.exchange.import_columns import IMU, LEGS, TRACK
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.robot.imu_log import ImuLog
@@ -20,6 +19,7 @@ from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.runs.table_run import table_samples, write_table_run
+from zebro_lab.tables.column_sections import IMU, LEGS, TRACK
 from zebro_lab.track.folder import track_folder
 from zebro_lab.track.foreign import ForeignTrack
 

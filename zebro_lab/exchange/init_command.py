@@ -2,46 +2,76 @@
 """`zebro-lab init FILE`: write a `columns.toml` template from a table's header."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from zebro_lab.terminal.messages import say
 
+if TYPE_CHECKING:
+    from zebro_lab.exchange.init_stage import WrittenColumns
+
 
 def init(
-    file: Annotated[Path, typer.Argument(help="CSV or Parquet file whose header is read.")],
+    file: Annotated[Path, typer.Argument(help="Table whose header is read.")],
+    kind: Annotated[
+        Literal["rig", "legs", "imu", "track"] | None,
+        typer.Option(help="What the table holds; default: told from its headers."),
+    ] = None,
+    sheet: Annotated[
+        str | None, typer.Option(help="Sheet of a workbook; default: the only one.")
+    ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Replace an existing columns.toml.")
     ] = False,
 ) -> None:
-    """Write a commented columns.toml to the folder of FILE, guessed from its header."""
-    from zebro_lab.exchange.init_stage import write_columns_template
-    from zebro_lab.tables.columns import CANONICAL, read_columns
+    """Write a commented columns.toml to the folder of FILE, guessed from its header.
 
-    target = write_columns_template(file, force=force)
-    columns = read_columns(target)
-    say(f"wrote {target}")
-    for name, mapped in columns.columns.items():
-        sign = ", sign reversed" if mapped.factor < 0 else ""
-        unit = f" in {mapped.unit}" if CANONICAL[name].unit not in (None, "dimensionless") else ""
-        say(f"  {name:<15} from '{mapped.name}'{unit}{sign}")
-    for advice in _to_check(set(columns.columns)):
+    What is not sure ends in "?" there; no command reads the table until somebody deleted it.
+    """
+    from zebro_lab.exchange.init_stage import write_columns_template
+
+    written = write_columns_template(file, kind=kind, sheet=sheet, force=force)
+    for note in written.notes:
+        say(note)
+    say(f"wrote {written.file} for a table of kind {written.kind}")
+    for name, guess in written.guesses.items():
+        sign = ", sign reversed" if guess.sign < 0 else ""
+        unit = f" in {guess.unit.unit}" if guess.unit and guess.unit.unit != "dimensionless" else ""
+        check = f"; CHECK {', '.join(guess.doubts)}" if guess.doubts else ""
+        say(f"  {name:<15} from '{guess.name}'{unit}{sign}{check}")
+    for advice in _to_check(written):
         say(f"please check: {advice}")
 
 
-def _to_check(found: set[str]) -> list[str]:
-    """Return advice on what a header does not show; `found` holds the mapped canonical columns."""
+def _to_check(written: "WrittenColumns") -> list[str]:
+    """Return advice on what a header does not show."""
+    found = set(written.guesses)
+    doubts = sum(len(guess.doubts) for guess in written.guesses.values())
     advice = ["the names, units and signs above; comments in columns.toml explain them"]
+    if doubts:
+        advice = [f'the {doubts} values that end in "?" in columns.toml: correct each and delete '
+                  'its "?"; until then no command reads the table']  # fmt: skip
+    if written.kind != "rig":
+        missing = [name for name in _NEEDED[written.kind] if name not in found]
+        if missing:
+            advice.append(f"no column was found for {', '.join(missing)}")
+        return advice
     missing = [name for name in ("normal_force", "traction_force") if name not in found]
     speeds = {"omega_leg", "omega_ground"} <= found
     if not speeds and "slip_ratio" not in found:
         missing.append("slip_ratio (or omega_leg and omega_ground)")
     if missing:
         advice.append(f"no column was found for {', '.join(missing)}: add [columns.NAME] for each")
-    if "slip_ratio" in found:
+    if "slip_ratio" in found and "slip_definition" not in found:
         advice.append("[columns.slip_ratio] needs definition: material, travel or larger")
     if speeds and not {"radius_leg", "radius_ground"} <= found:
         advice.append("[constants] needs radius_leg and radius_ground, except those in a column")
     advice.append("[runs] must state what separates runs, if neither a column 'run' nor files do")
     return advice
+
+
+_NEEDED = {
+    "legs": ("t", *(f"theta{leg}" for leg in range(1, 7))), "imu": ("t",),
+    "track": ("t_s", "x_m", "y_m"),
+}  # fmt: skip

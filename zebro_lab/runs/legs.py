@@ -8,9 +8,9 @@ from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
-from zebro_lab.files.settings_table import read_settings
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
+from zebro_lab.tables.column_sections import LEGS, read_section
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
@@ -40,7 +40,9 @@ def read_leg_log(
         return legs_of_table(table, _read_columns(None), files=files, leg_sign=leg_sign)
     file = _table_of(path)
     mapping = _read_columns(_columns_file(file, columns))
-    return legs_of_table(read_table_file(file), mapping, files=(file,), leg_sign=leg_sign)
+    return legs_of_table(
+        read_table_file(file, sheet=mapping.sheet), mapping, files=(file,), leg_sign=leg_sign
+    )
 
 
 def _table_of(path: Path) -> Path:
@@ -64,4 +66,4 @@ def _columns_file(table: Path, named: Path | None) -> Path | None:
 def _read_columns(file: Path | None) -> MappedColumns:
     if file is None:
         return canonical_columns(LEG_UNITS)
-    return parse_mapped_columns(read_settings(file, advice=f"expected a {COLUMNS_FILE}"), LEG_UNITS)
+    return parse_mapped_columns(read_section(LEGS, file), LEG_UNITS)

@@ -10,11 +10,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
+from numpy.typing import NDArray
+
 from model.slip.definition import SlipDefinition
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError, UnitError
-from zebro_lab.files.settings_table import SettingsTable, read_settings
+from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
+from zebro_lab.tables.column_sections import RIG, read_section
+from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition, parse_row_condition
 
@@ -72,6 +77,8 @@ class MappedColumn:
         factor: Multiplies the file's numbers to give SI with the canonical sign.
         definition: Slip definition, for `slip_ratio` only; None if not stated.
         unit_stated: Whether the column map states the unit; else that of the file holds, if any.
+        offset: Added to the numbers in SI: where zero is elsewhere than the canonical column's.
+        nanoseconds: Header of a column of nanoseconds to add to a time; None without one.
     """
 
     name: str
@@ -79,6 +86,28 @@ class MappedColumn:
     factor: float = 1.0
     definition: SlipDefinition | None = None
     unit_stated: bool = False
+    offset: float = 0.0
+    nanoseconds: str | None = None
+
+    def in_si(self, table: RawTable) -> NDArray[np.float64]:
+        """Return the column's numbers in SI with the canonical sign, shape (n,); NaN where empty.
+
+        The unit that the file states is taken into account by `in_unit_of`.
+
+        Args:
+            table: The table that the column is read from.
+
+        Raises:
+            DataError: The column is missing or ambiguous, or a cell is not a number (a date, if the
+                unit says so).
+        """
+        if is_date_unit(self.unit):
+            values = self.factor * seconds_of_dates(table, self.name, self.unit)
+        else:
+            values = table.numbers(self.name) * self.factor
+        if self.nanoseconds is not None:
+            values = values + 1e-9 * table.numbers(self.nanoseconds)
+        return values + self.offset if self.offset else values
 
     def in_unit_of(self, table: RawTable, si_unit: str | None) -> "MappedColumn":
         """Return the column with the unit that the file states for it, unless the map states one.
@@ -125,6 +154,7 @@ class Columns:
     Attributes:
         file: The `columns.toml` itself; None without one: headers are canonical names, in SI.
         source: "real", "sim:what", "replay:what" or "unknown"; None if not stated.
+        sheet: Sheet of a workbook to read; None for the only one.
         columns: Mapped columns by canonical name; only those with an entry.
         constants: Given radii of the discs, `radius_leg` and `radius_ground` [m], by name.
         runs: Rule that separates rows into runs.
@@ -135,6 +165,7 @@ class Columns:
 
     file: Path | None = None
     source: str | None = None
+    sheet: str | None = None
     columns: Mapping[str, MappedColumn] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)
     runs: RunRule = RunRule()
@@ -150,7 +181,7 @@ def read_columns(file: Path) -> Columns:
         SettingsError: The file cannot be read as TOML, has an unknown key, unit or value, or more
             than one run rule.
     """
-    return parse_columns(read_settings(file, advice=f"expected a {COLUMNS_FILE}"))
+    return parse_columns(read_section(RIG, file))
 
 
 def parse_columns(table: SettingsTable) -> Columns:
@@ -166,6 +197,7 @@ def parse_columns(table: SettingsTable) -> Columns:
     columns_file = Columns(
         file=Path(table.file),
         source=_source(table),
+        sheet=table.text("sheet") if "sheet" in table else None,
         columns={
             name: parse_mapped_column(columns, name, column.unit)
             for name, column in CANONICAL.items()
@@ -198,13 +230,17 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
         found = {"name": found}
     table = columns.as_table(name, found, expected="a header, or a table with name, unit, sign")
     stated = si_unit is not None and "unit" in table
-    unit, factor = table.factor("unit", si_unit) if si_unit else ("", 1.0)
-    sign = table.sign("sign") if si_unit else 1
+    unit, factor = _unit(table, si_unit) if si_unit else ("", 1.0)
+    sign = _sign(table) if si_unit else 1
+    offset = table.quantity("offset", si_unit) if si_unit and "offset" in table else 0.0
+    is_time = si_unit == "s" and "nanoseconds" in table
+    nanoseconds = table.text("nanoseconds", least=1) if is_time else None
     definition = None
     if name == "slip_ratio" and "definition" in table:
         key = table.dotted("definition") or ""
         definition = parse_definition(table.value("definition"), file=Path(table.file), key=key)
-    return MappedColumn(table.text("name", name), unit, sign * factor, definition, stated)
+    header = table.text("name", name)
+    return MappedColumn(header, unit, sign * factor, definition, stated, offset, nanoseconds)
 
 
 def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
@@ -225,6 +261,26 @@ def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefini
         raise SettingsError(
             f"unknown slip definition '{text}'; {advice}", file=file, key=key
         ) from error
+
+
+def _unit(table: SettingsTable, si_unit: str) -> tuple[str, float]:
+    unit = table.text("unit") if "unit" in table else si_unit
+    if si_unit == "s" and is_date_unit(unit):
+        return unit, 1.0
+    try:
+        return unit, factor_to_si(unit, si_unit)
+    except UnitError as error:
+        raise table.fault(str(error), "unit") from error
+
+
+def _sign(table: SettingsTable) -> int:
+    """Read a sign: a number, or a text as where a question mark was deleted."""
+    if "sign" not in table:
+        return 1
+    found = table.value("sign")
+    if isinstance(found, bool) or found not in (1, -1, "1", "+1", "-1"):
+        raise table.fault(f"found {found!r}; expected 1 or -1", "sign")
+    return int(found)
 
 
 def _source(table: SettingsTable) -> str | None:

@@ -21,6 +21,7 @@ class MappedColumns:
         source: Source as stated in the file; None if not stated.
         file: The `columns.toml`; None without one.
         where: Dotted section in the file, with a final dot; "" for the whole file.
+        sheet: Sheet of a workbook to read; None for the only one.
         units: SI unit of each canonical column.
     """
 
@@ -28,6 +29,7 @@ class MappedColumns:
     source: str | None = None
     file: Path | None = None
     where: str = ""
+    sheet: str | None = None
     units: Mapping[str, str] = field(default_factory=dict)
 
     def has(self, table: RawTable, name: str) -> bool:
@@ -71,7 +73,9 @@ class MappedColumns:
                 mapped.name,
             )
         mapped = mapped.in_unit_of(table, self.units[name])
-        return table.finite(mapped.name, f"a number in {mapped.unit}: {advice}") * mapped.factor
+        values = mapped.in_si(table)
+        table.require_finite(mapped.name, values, f"a number in {mapped.unit}: {advice}")
+        return values
 
 
 def canonical_columns(units: Mapping[str, str]) -> MappedColumns:
@@ -88,7 +92,8 @@ def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> Mapp
     """Parse a column map; columns without an entry keep their canonical name and unit.
 
     Args:
-        table: Table with the keys `source` and `columns`, both optional; no others are allowed.
+        table: Table with the keys `source`, `sheet` and `columns`, all optional; no others are
+            allowed.
         units: SI unit of each column, by canonical name.
 
     Raises:
@@ -101,8 +106,9 @@ def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> Mapp
         if name in columns
     }
     source = table.text("source") if "source" in table else None
+    sheet = table.text("sheet") if "sheet" in table else None
     table.finish()
     where = f"{table.path}." if table.path else ""
     return MappedColumns(
-        {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where, units
+        {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where, sheet, units
     )

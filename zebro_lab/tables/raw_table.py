@@ -15,7 +15,7 @@ from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
-from zebro_lab.tables.cells import may_be_thousands
+from zebro_lab.tables.cells import kind_of, may_be_thousands
 
 _BLOCK = 1 << 16  # cells converted to numbers at a time
 
@@ -101,7 +101,11 @@ class RawTable:
 
         cells = self.column(name)
         if pd.api.types.is_datetime64_any_dtype(cells) or pd.api.types.is_timedelta64_dtype(cells):
-            raise self.fault("holds dates or durations; expected numbers, such as seconds", name)
+            raise self.fault(
+                "holds dates or durations; expected numbers, such as seconds, or of a time column "
+                'unit = "date UTC" in columns.toml',
+                name,
+            )
         with parsing(self.path, f"column '{name}' cannot be read as numbers"):
             empty = cells.isna().to_numpy(dtype=bool)
             values = _as_numbers(cells)
@@ -132,12 +136,33 @@ class RawTable:
                 number, or empty unless that is allowed.
         """
         values = self.numbers(name)
+        self.require_finite(name, values, expected, may_be_empty=may_be_empty)
+        return values
+
+    def require_finite(
+        self,
+        name: str,
+        values: NDArray[np.float64],
+        expected: str = "a finite number",
+        *,
+        may_be_empty: bool = False,
+    ) -> None:
+        """Check that the numbers of a column are finite.
+
+        Args:
+            name: Header of the column.
+            values: Its numbers by row, shape (n,); NaN where the cell is empty.
+            expected: What a cell should hold, and what to do if it does not; for the message.
+            may_be_empty: Whether empty cells are allowed.
+
+        Raises:
+            DataError: A number is infinite, or a cell is empty unless that is allowed.
+        """
         bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
         if bad.any():
             index = int(np.argmax(bad))
             found = "infinite" if np.isinf(values[index]) else "empty"
             raise self.fault(f"is {found}; expected {expected}", name, index)
-        return values
 
     def require_increasing(self, column: str, t: NDArray[np.float64]) -> None:
         """Check that times are strictly increasing.
@@ -190,6 +215,8 @@ class RawTable:
             advice = "; write decimals with a point"
         elif re.fullmatch(r"\s*[-+]?\d{1,3}([ .,'’\u00a0\u202f]\d{3})+([.,]\d+)?\s*", text):
             advice = "; write it without thousands separators"
+        elif kind_of(text) == "value":
+            advice = '; if it is a time, state unit = "date", "date UTC" or "h:m:s" in columns.toml'
         elif index == 0:
             advice = "; if the row holds units, delete it and give them in columns.toml"
         else:

@@ -11,6 +11,7 @@ from model.slip.law import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, Columns, MappedColumn
+from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.raw_table import RawTable
 
 
@@ -67,9 +68,9 @@ class RigTable:
                 of a kept row is empty or infinite.
         """
         source = self.required(name)
-        values = self.raw.numbers(source.name)[self.rows]
+        values = source.in_si(self.raw)[self.rows]
         self._require_finite(name, source.name, values)
-        return values * source.factor
+        return values
 
     def texts(self, name: str) -> NDArray[np.object_]:
         """Return the kept rows of a canonical column as in the file, not converted, shape (n,).
@@ -132,10 +133,12 @@ class RigTable:
             problem: Formats the message, given the cell's value with its unit.
         """
         source, row = self.required(name), int(self.rows[index])
-        value = float(self.raw.numbers(source.name)[row])
-        unit = "" if source.unit == "dimensionless" else source.unit
+        si = is_date_unit(source.unit) or source.offset or source.nanoseconds
+        value = float((source.in_si(self.raw) if si else self.raw.numbers(source.name))[row])
+        unit = CANONICAL[name].unit or "" if si else source.unit
+        unit = "" if unit == "dimensionless" else unit
         text = problem(f"{value:g} {unit}".rstrip())
-        return self.raw.fault(text, source.name, row, value=value, unit=source.unit)
+        return self.raw.fault(text, source.name, row, value=value, unit=unit or source.unit)
 
     def _require_finite(self, name: str, header: str, values: Array) -> None:
         good = np.isfinite(values)

@@ -95,7 +95,7 @@ def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
     if source is None:
         problem = "is missing, but [runs] gap needs times; map them in columns.toml: [columns.t]"
         raise table.raw.fault(problem, "t")
-    time = table.raw.numbers(source.name) * source.factor
+    time = source.in_si(table.raw)
     known = np.flatnonzero(np.isfinite(time))  # a row without time belongs to the run before it
     starts = np.zeros(len(time), dtype=bool)
     starts[known[1:][np.diff(time[known]) > gap]] = True

@@ -7,8 +7,94 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from zebro_lab.exchange.column_guesses import guess_columns, guess_set_points, numbers_or_none
+from zebro_lab.exchange.column_guesses import (
+    guess_columns,
+    guess_kind,
+    guess_set_points,
+    numbers_or_none,
+)
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.tables.cells import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
+
+
+def one(*headers: str, cells=(1.0, 2.0)) -> RawTable:
+    units = {name: unit for name in headers if (unit := unit_in_header(name))}
+    columns = {name: pd.Series(cells) for name in headers}
+    return RawTable(Path("a.csv"), columns, units=units)
+
+
+@pytest.mark.parametrize(
+    ("kind", "headers"),
+    [
+        ("rig", "ET V FX FY FZ SL"), ("rig", "Zeit Schlupf Normalkraft Zugkraft"),
+        ("legs", "t theta1 theta2 theta3 theta4 theta5 theta6"),
+        ("legs", "time leg_0 leg_1 leg_2 leg_3 leg_4 leg_5"),
+        ("imu", "header.stamp.sec orientation.x orientation.y orientation.z orientation.w"),
+        ("imu", "Time Gyro_X Gyro_Y Gyro_Z Acc_X Acc_Y Acc_Z"),
+        ("imu", "Zeit Rollwinkel Nickwinkel"),
+        ("track", "t x y"), ("track", "time pose.position.x pose.position.y"),
+    ],
+)  # fmt: skip
+def test_headers_tell_the_kind_of_a_table(kind, headers):
+    assert guess_kind(one(*headers.split())) == kind
+
+
+@pytest.mark.parametrize("headers", ["a b", "t x y roll pitch", "t x y FZ"])
+def test_a_kind_that_headers_leave_open_is_asked_for(headers):
+    with pytest.raises(SettingsError, match=r"--kind: a\.csv (may be|fits no kind)"):
+        guess_kind(one(*headers.split()))
+
+
+def test_legs_by_place_are_sure_and_numbers_of_other_programs_are_not():
+    places = [
+        "front_left",
+        "front right",
+        "Bein_mitte_links",
+        "mid-right",
+        "rear left",
+        "hinten rechts",
+    ]
+    guesses = guess_columns(one("t", *places), "legs")
+    assert [guesses[f"theta{leg}"].name for leg in range(1, 7)] == places
+    assert not any(guess.name_doubt for guess in guesses.values())
+    numbered = guess_columns(one("t", *(f"position[{i}]" for i in range(6))), "legs")
+    assert numbered["theta1"].name == "position[0]"
+    assert {"column", "unit", "sign", "zero"} == set(numbered["theta6"].doubts)
+
+
+def test_seconds_and_nanoseconds_of_a_ros_stamp_belong_together():
+    guess = guess_columns(one("header.stamp.sec", "header.stamp.nanosec", "FZ"))["t"]
+    assert (guess.name, guess.nanoseconds, guess.doubts) == (
+        "header.stamp.sec", "header.stamp.nanosec", (),
+    )  # fmt: skip
+
+
+def test_ros_fields_are_in_si_and_others_are_to_check():
+    ros = guess_columns(one("orientation.x", "orientation.w", "angular_velocity.z"), "imu")
+    assert not any(guess.doubts for guess in ros.values())
+    other = guess_columns(one("Gyro_Z", "Roll"), "imu")
+    assert {guess.doubts for guess in other.values()} == {("unit", "sign")}
+
+
+@pytest.mark.parametrize(
+    ("cell", "unit"),
+    [
+        ("2026-03-04T05:06:07Z", "date"), ("2026-03-04 05:06:07.5+01:00", "date"),
+        ("04.03.2026 05:06:07", "date UTC?"), ("05:06:07.5", "h:m:s"),
+    ],
+)  # fmt: skip
+def test_dates_of_a_time_column_are_recognised(cell, unit):
+    guess = guess_columns(one("Zeit", cells=[cell, cell]))["t"]
+    assert guess.unit.unit + "?" * bool(guess.unit.doubt) == unit
+
+
+@pytest.mark.parametrize(
+    ("largest", "unit"), [(1.7e18, "ns"), (1.7e15, "us"), (1.7e12, "ms"), (1.7e9, "s")]
+)
+def test_the_size_of_unix_times_suggests_their_unit(largest, unit):
+    guess = guess_columns(one("timestamp", cells=[largest, largest]))["t"].unit
+    assert (guess.unit, bool(guess.doubt)) == (unit, True)
 
 
 def test_canonical_header_is_recognised_whole():
@@ -33,14 +119,19 @@ def test_set_point_is_what_changes_seldom():
     ("header", "canonical", "unit"),
     [
         ("FZ [N]", "normal_force", "N"), ("Fn (kN)", "normal_force", "kN"),
-        ("t_ms", "t", "ms"), ("Time", "t", None), ("omega_l_rpm", "omega_leg", "rpm"),
-        ("Slip Ratio", "slip_ratio", None), ("FX [mm]", "traction_force", None),
+        ("t_ms", "t", "ms"), ("Time", "t", "s?"), ("omega_l_rpm", "omega_leg", "rpm"),
+        ("Slip Ratio", "slip_ratio", "%?"), ("FX [mm]", "traction_force", "N?"),
+        ("Normalkraft / kN", "normal_force", "kN"), ("Zeit in ms", "t", "ms"),
+        ("Schlupf [%]", "slip_ratio", "%"), ("slip_percent", "slip_ratio", "%"),
+        ("Drehzahl Bein", "omega_leg", "rpm?"), ("Drehzahl Boden [1/min]", "omega_ground", "rpm?"),
+        ("Längskraft (N)", "traction_force", "N"), ("ω_leg [rad/s]", "omega_leg", "rad/s"),
+        ("FZ [lbs]", "normal_force", "lbf?"), ("Zugkraft_kN", "traction_force", "kN"),
     ],
 )  # fmt: skip
-def test_a_header_gives_name_and_unit(header, canonical, unit):
-    table = RawTable(Path("a.csv"), {header: pd.Series([1.0, 2.0])})
-    (found,) = guess_columns(table).items()
-    assert (found[0], found[1].name, found[1].unit) == (canonical, header, unit)
+def test_a_header_gives_name_and_unit_and_what_is_not_stated_is_in_doubt(header, canonical, unit):
+    (found,) = guess_columns(one(header)).items()
+    said = found[1].unit.unit + "?" * bool(found[1].unit.doubt)
+    assert (found[0], found[1].name, said) == (canonical, header, unit)
 
 
 def test_the_canonical_name_wins_and_other_matches_and_signs_are_kept():
@@ -50,7 +141,11 @@ def test_the_canonical_name_wins_and_other_matches_and_signs_are_kept():
         "colour": pd.Series(["r"]),
     }
     (guess,) = guess_columns(RawTable(Path("a.csv"), columns)).values()
-    assert (guess.name, guess.others, guess.negative) == ("normal_force", ("FZ",), True)
+    assert (guess.name, guess.sign, guess.doubts) == ("normal_force", -1, ("sign",))
+    del columns["normal_force"]
+    columns["Fn"] = columns["FZ"]
+    (guess,) = guess_columns(RawTable(Path("a.csv"), columns)).values()
+    assert (guess.name, guess.name_doubt) == ("FZ", "could also be 'Fn'")
 
 
 def test_numbers_are_none_for_texts_and_empty_columns():

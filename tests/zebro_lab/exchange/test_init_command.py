@@ -15,17 +15,19 @@ app.command()(init)
 
 def test_init_says_what_it_guessed_and_what_to_check(tmp_path):
     file = tmp_path / "rig.csv"
-    file.write_text("t,FZ,FX,omega_l,omega_g\n0,-5,1,12,3\n0.1,-5,1,12,3\n")
+    file.write_text("t,FZ [N],FX,omega_l,omega_g\n0,-5,1,12,3\n0.1,-5,1,12,3\n")
     result = CliRunner().invoke(app, [str(file)])
     assert result.exit_code == 0, result.output
     assert f"wrote {tmp_path / 'columns.toml'}" in result.output
-    assert "normal_force    from 'FZ' in N, sign reversed" in result.output
+    assert "normal_force    from 'FZ [N]' in N, sign reversed; CHECK sign" in result.output
+    assert "traction_force  from 'FX' in N; CHECK unit, sign" in result.output
+    assert 'the 5 values that end in "?"' in result.output
     assert "check: [constants] needs radius_leg and radius_ground" in result.output
 
 
 def test_init_names_what_it_could_not_find(tmp_path):
     (tmp_path / "rig.csv").write_text("a,b\n1,2\n")
-    result = CliRunner().invoke(app, [str(tmp_path / "rig.csv")])
+    result = CliRunner().invoke(app, [str(tmp_path / "rig.csv"), "--kind", "rig"])
     assert "no column was found for normal_force, traction_force, slip_ratio" in result.output
 
 

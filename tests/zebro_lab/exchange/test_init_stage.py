@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The column map that is guessed from a header."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.exchange.init_stage import render_template, write_columns_template
-from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.exchange.column_guesses import guess_columns
+from zebro_lab.exchange.columns_template import render_columns
+from zebro_lab.exchange.init_stage import write_columns_template
+from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
+from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.tables.columns import Columns, read_columns
 from zebro_lab.tables.raw_table import RawTable
 
@@ -35,8 +39,10 @@ def rig() -> pd.DataFrame:
 
 def template(folder: Path, table: pd.DataFrame) -> tuple[str, Columns]:
     table.to_csv(folder / "rig.csv", index=False)
-    path = write_columns_template(folder / "rig.csv")
-    return path.read_text(), read_columns(path)
+    path = write_columns_template(folder / "rig.csv").file
+    text = path.read_text()
+    (folder / "checked.toml").write_text(text.replace('= "?"', '= "travel"').replace('?"', '"'))
+    return text, read_columns(folder / "checked.toml")
 
 
 def test_tyre_bench_header_is_recognised(tmp_path):
@@ -44,7 +50,8 @@ def test_tyre_bench_header_is_recognised(tmp_path):
     names = {canonical: mapped.name for canonical, mapped in columns.columns.items()}
     assert names == {"t": "ET", "slip_ratio": "SL", "normal_force": "FZ", "traction_force": "FX"}
     assert columns.columns["normal_force"].factor == -1
-    assert 'name = "SL"  # first -0.1, from -0.1 to 0.1; CHECK: could also be "SR"' in text
+    assert """name = "SL?"  # first -0.1, from -0.1 to 0.1; CHECK: could also be 'SR'""" in text
+    assert 'sign = "-1?"  # CHECK: negative in the file' in text
     assert '#   "V": first 40, from 40 to 40' in text
 
 
@@ -64,10 +71,61 @@ def test_restarting_time_activates_the_set_points_as_runs(tmp_path):
     assert "CHECK: time restarts" in text
 
 
+def test_a_template_is_refused_until_its_guesses_are_checked(tmp_path):
+    text, _ = template(tmp_path, tyre())
+    with pytest.raises(
+        SettingsError, match="10 values are guesses that nobody has checked"
+    ) as all_:
+        read_rig_data([tmp_path])
+    assert str(all_.value).count('?"') == 10 + 1  # and the advice to delete it
+    one = text.replace('?"', '"').replace('unit = "s"', 'unit = "s?"')
+    (tmp_path / "columns.toml").write_text(one)
+    with pytest.raises(SettingsError, match=r'a value is a guess .* columns\.t\.unit = "s\?"'):
+        read_rig_data([tmp_path])
+
+
+def test_a_row_of_units_is_used_and_not_dropped(tmp_path):
+    units = {"ET": "ms", "FX": "kN", "FZ": "N", "SL": "%"}
+    tyre().rename(columns={}).to_csv(tmp_path / "a.csv", index=False)
+    head, *rows = (tmp_path / "a.csv").read_text().splitlines()
+    row = ",".join(units.get(name, "-") for name in head.split(","))
+    (tmp_path / "a.csv").write_text("\n".join([head, row, *rows]))
+    text = write_columns_template(tmp_path / "a.csv").file.read_text()
+    assert [line for line in text.splitlines() if line.startswith("unit")] == [
+        'unit = "ms"', 'unit = "%"', 'unit = "N"', 'unit = "kN"',
+    ]  # fmt: skip
+    assert 'sign = "-1?"' in text
+
+
+def test_tables_of_several_kinds_share_one_file(tmp_path):
+    pd.DataFrame({"t": [0, 1], "x": [0, 1], "y": [0, 1]}).to_csv(tmp_path / "a.csv", index=False)
+    names = ["t", *(f"theta{leg}" for leg in range(1, 7))]
+    pd.DataFrame({name: np.linspace(0, 1, 5) for name in names}).to_csv(
+        tmp_path / "legs.csv", index=False
+    )
+    write_columns_template(tmp_path / "a.csv")
+    written = write_columns_template(tmp_path / "legs.csv")
+    assert (written.kind, list(tomllib.loads(written.file.read_text()))) == (
+        "legs", ["track", "legs"],
+    )  # fmt: skip
+    assert len(read_leg_log(tmp_path / "legs.csv").reference.t) == 5
+    with pytest.raises(AlreadyExists):
+        write_columns_template(tmp_path / "legs.csv")
+
+
+def test_the_sheet_that_was_chosen_is_written(tmp_path):
+    pytest.importorskip("openpyxl")
+    with pd.ExcelWriter(tmp_path / "a.xlsx") as book:
+        for sheet in ("A", "B"):
+            rig().to_excel(book, sheet_name=sheet, index=False)
+    written = write_columns_template(tmp_path / "a.xlsx", kind="rig", sheet="B")
+    assert tomllib.loads(written.file.read_text())["sheet"] == "B"
+
+
 def test_template_reads_its_data_once_the_gaps_are_filled(tmp_path):
-    template(tmp_path, rig())
+    text, _ = template(tmp_path, rig())
     file = tmp_path / "columns.toml"
-    text = file.read_text()
+    text = text.replace('?"', '"')
     for comment in ('# radius_leg = "35 mm" ', '# radius_ground = "120 mm"', '# source = "real"'):
         assert comment in text
         text = text.replace(comment, comment[2:])
@@ -76,12 +134,17 @@ def test_template_reads_its_data_once_the_gaps_are_filled(tmp_path):
     assert (len(data.samples), data.samples.n_runs, data.source) == (N, 2, "real")
 
 
-@given(st.lists(st.text(min_size=1), min_size=1, max_size=6, unique=True))
-def test_any_header_gives_a_template_that_parses(tmp_path_factory, names):
+@given(
+    st.lists(st.text(min_size=1), min_size=1, max_size=6, unique=True),
+    st.sampled_from(["rig", "legs", "imu", "track"]),
+)
+def test_any_header_gives_a_template_that_parses(names, kind):
     table = RawTable(Path("a.csv"), {name: pd.Series([1.0, 2.0]) for name in names})
-    file = tmp_path_factory.mktemp("t") / "columns.toml"
-    file.write_text(render_template(table), encoding="utf-8")
-    assert {mapped.name for mapped in read_columns(file).columns.values()} <= set(names)
+    text = render_columns(table, kind, guess_columns(table, kind), sectioned=kind != "rig")
+    read = tomllib.loads(text).get(kind, tomllib.loads(text)).get("columns", {})
+    assert {each["name"].removesuffix("?") for each in read.values()} <= {
+        name.removesuffix("?") for name in names
+    }
 
 
 def test_existing_file_is_kept_unless_forced(tmp_path):

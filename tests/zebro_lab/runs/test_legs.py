@@ -59,7 +59,8 @@ def test_walked_path_is_a_leg_log(walked, tmp_path):
 
 SETTINGS = {
     "no TOML": ("[columns", "cannot be read as TOML"),
-    "unknown table": ("[legs]\n", "legs: unknown key"),
+    "unknown table": ("[leg]\n", "leg: unknown key"),
+    "a guess": ('[columns.t]\nunit = "ms?"', 'columns.t.unit = "ms?"; correct each'),
     "unknown column": ('[columns]\ntheta7 = "x"', "columns.theta7: unknown key; did you mean 'the"),
     "unknown key": ('[columns.t]\nnam = "x"', "columns.t.nam: unknown key; did you mean 'name'"),
     "frequency": ('[columns.theta1]\nunit = "Hz"', "columns.theta1.unit: unit 'Hz' cannot be conv"),

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""Names that columns have in other programs' tables, in English and German, by kind of table."""
+
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+from zebro_lab.tables.cells import unit_in_header
+from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
+
+_TIME = (
+    r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|time_?stamp|seconds|"
+    r"zeit(stempel|punkt|achse)?|messzeit|sekunden|uhrzeit|datum(_?(und_?)?(uhr)?zeit)?|"
+    r"date(_?(and_?)?time)?|x_value|(field_)?header_stamp(_secs?)?|time_seconds|rosbagtimestamp"
+)
+_SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschwindigkeit|angular_(speed|velocity))"
+_LEG_DISC = r"(l|leg|leg_?disc|wheel|bein|beinscheibe|rad)"
+_GROUND = r"(g|ground|ground_?disc|table|boden|bodenscheibe|teller|tisch|belt|road|fahrbahn)"
+_ORIENTATION = r"(.*_)?(orientation|quat(ernion)?|imu_orientation|q)_?"
+_RATE = r"(.*_)?(angular_velocity|gyro(scope)?|gyr|omega|drehrate|rate)_?"
+_FORCE = (
+    r"(.*_)?(linear_acceleration|acceleration|accel(erometer)?|acc|a|beschleunigung|"
+    r"specific_force|force)_?"
+)
+_POSITION = r"((.*_)?(pos(ition)?|translation|p|global_position)_?"
+
+
+def _position(axis: str, others: str) -> str:
+    return (
+        rf"{axis}|{_POSITION}{axis})|(.*_)?{axis}(_axis)?(_global)?_?(pos(ition)?|koordinate)|"
+        rf"t{axis}|p_rs_r_{axis}|{others}"
+    )
+
+
+NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
+    RIG: {
+        "t": _TIME,
+        "omega_leg": rf"{_SPEED}_?{_LEG_DISC}|{_LEG_DISC}_?{_SPEED}|drehzahl",
+        "omega_ground": rf"{_SPEED}_?{_GROUND}|{_GROUND}_?{_SPEED}",
+        "radius_leg": r"(radius|r)_(l|leg|bein)",
+        "radius_ground": r"(radius|r)_(g|ground|boden)",
+        "slip_ratio":
+            r"(kappa|slip|l(ae|ä)ngsschlupf|schlupf)(_?(ratio|inst|long|x|percent|pct|prozent|wert)"
+            r")?|sl|sr|(longitudinal|wheel)_slip(_ratio)?",
+        "normal_force":
+            r"((avg|mean)_)?(fn|fz|f_n|f_z|load|normal|(normal|vertical)_?(force|load)|normalkraft|"
+            r"aufstandskraft|radlast|vertikalkraft|anpresskraft|last|kraft_?(z|n|normal)|"
+            r"force_?(z|n))|kraft|force",
+        "traction_force":
+            r"((avg|mean)_)?(ft|fx|f_t|f_x|(traction|tangential|longitudinal|friction|drive|driving)"
+            r"(_?force)?|zugkraft|traktionskraft|tangentialkraft|l(ä|ae)ngskraft|umfangskraft|"
+            r"reibkraft|kraft_?(x|t|tangential)|force_?(x|t))",
+        "run": r"run(_?(id|nr|no|number))?|versuch(s?_?(nr|nummer))?|lauf(_?nr)?",
+        "slip_definition": r"slip_definition",
+    },
+    LEGS: {"t": _TIME},
+    IMU: {
+        "t": _TIME,
+        **{f"q{a}": rf"{_ORIENTATION}{a}|q_rs_{a}" for a in "wxyz"},
+        "roll": r"(.*_)?(roll|phi|(roll|wank)winkel)(_angle)?",
+        "pitch": r"(.*_)?(pitch|(pitch|nick)winkel)(_angle)?",
+        "yaw": r"(.*_)?(yaw|psi|gierwinkel|heading)(_angle)?",
+        **{f"rate_{a}": rf"{_RATE}{a}|w_rs_s_{a}" for a in "xyz"},
+        **{f"force_{a}": rf"{_FORCE}{a}|a_rs_s_{a}" for a in "xyz"},
+    },
+    TRACK: {
+        "t_s": rf"{_TIME}|t_s",
+        "x_m": _position("x", "east(ing)?|rechtswert"),
+        "y_m": _position("y", "north(ing)?|hochwert"),
+        "yaw_rad": r"(.*_)?(yaw|heading|psi|gierwinkel|kurs(winkel)?)(_angle)?|angle|winkel",
+        "z_m": _position("z", "height|h(ö|oe)he"),
+    },
+})  # fmt: skip
+"""Names of each canonical column: a regular expression of `plain_name`, by kind of table."""
+
+WEAK: Final = frozenset({"kraft", "force", "drehzahl", "angle", "winkel", "last", "load"})
+"""Names that may well be another column: always a guess to check."""
+
+_SIDES = {"left": 0, "links": 0, "l": 0, "right": 1, "rechts": 1, "r": 1}
+_ENDS = {
+    "front": 0, "fore": 0, "vorn": 0, "vorne": 0, "f": 0, "v": 0, "middle": 1, "mid": 1, "mitte": 1,
+    "m": 1, "rear": 2, "back": 2, "hind": 2, "hinten": 2, "b": 2, "h": 2,
+}  # fmt: skip
+_NUMBERED = re.compile(
+    r"(?:.*_)?(?:th|theta|leg|bein|angle|winkel|phi|q|joint|motor|position|pos|hip)_?(\d)"
+    r"(?:_(?:angle|position|pos|joint|winkel|theta))?|(\d)|l(\d)"
+)
+_SUFFIXES: Final = {
+    "_rad_s": "rad/s", "_deg_s": "deg/s", "_m_s2": "m/s^2", "_rpm": "rpm", "_deg": "deg",
+    "_rad": "rad", "_percent": "%", "_pct": "%", "_prozent": "%", "_us": "us", "_ns": "ns",
+    "_ms": "ms", "_s": "s", "_kn": "kN", "_n": "N", "_mm": "mm", "_cm": "cm", "_m": "m",
+}  # fmt: skip
+_GREEK: Final = str.maketrans({
+    "θ": "theta", "ϑ": "theta", "φ": "phi", "ψ": "psi", "ω": "omega", "κ": "kappa", "μ": "mu",
+})  # fmt: skip
+
+
+def leg_of(header: str) -> tuple[int, bool] | None:
+    """Return the leg that a header names, 1 to 6, and whether it names it by its place.
+
+    None if it names none. A number is that of the program that wrote the file, whose order of legs
+    may be another; one from 0 on is returned as it is.
+
+    >>> leg_of("leg_front_left_joint"), leg_of("Winkel Bein 3 [°]"), leg_of("position[0]")
+    ((1, True), (3, False), (0, False))
+    """
+    plain = split_header(header)[0]
+    words = plain.split("_")
+    sides = {_SIDES[w] for w in words if w in _SIDES and len(w) > 1}
+    ends = {_ENDS[w] for w in words if w in _ENDS and len(w) > 1}
+    if len(sides) == len(ends) == 1:
+        return 2 * ends.pop() + sides.pop() + 1, True
+    if match := _NUMBERED.fullmatch(plain):
+        return int(next(group for group in match.groups() if group is not None)), False
+    return None
+
+
+def split_header(header: str) -> tuple[str, str | None]:
+    """Split a header, `FZ [N]`, `Zeit / ms` or `t_ms`, into a plain name and a unit, if any.
+
+    The name is in lower case with "_" for blanks and marks.
+
+    >>> split_header("Avg. Force [kN]"), split_header("t_ms"), split_header("position[0]")
+    (('avg_force', 'kN'), ('t', 'ms'), ('position_0', None))
+    """
+    unit = unit_in_header(header)
+    if unit is not None:
+        before = header.rstrip("])> }").removesuffix(unit).rstrip()
+        return _plain(re.sub(r"([\[(<{/,]|\bin)$", "", before.rstrip())), unit
+    plain = _plain(header)
+    for suffix, suffix_unit in _SUFFIXES.items():
+        if plain.endswith(suffix) and len(plain) > len(suffix):
+            return plain.removesuffix(suffix), suffix_unit
+    return plain, None
+
+
+def plain_name(header: str) -> str:
+    """Return a header in lower case with "_" for blanks and marks, its unit included."""
+    return _plain(header)
+
+
+def _plain(name: str) -> str:
+    text = name.strip().casefold().translate(_GREEK)
+    begins = "__" if text.startswith("__") else ""  # __time
+    return begins + re.sub(r"[\s.,;:\-\[\](){}/]+", "_", text).strip("_")

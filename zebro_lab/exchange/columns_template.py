@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""Format guessed columns as a commented `columns.toml`; each guess to check ends in "?"."""
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from zebro_lab.exchange.column_guesses import (
+    UNITS,
+    ColumnGuess,
+    guess_set_points,
+    numbers_or_none,
+)
+from zebro_lab.tables.column_sections import DOUBT, IMU, LEGS, RIG, TRACK
+from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE
+from zebro_lab.tables.raw_table import RawTable
+
+_READS: Final = {
+    RIG: "calibrate-slip and import --rig read", LEGS: "predict and import --legs read",
+    IMU: "import --imu reads", TRACK: "import --track reads",
+}  # fmt: skip
+_TOP: Final = """\
+# How the columns of {file} map to those that {reads}.
+# A value that ends in "?" is a guess: compare it with the table, correct it where it is wrong, and
+# delete the "?". Until then no command reads the table. docs/formats.md explains every key.
+# It applies to all tables of this kind in this folder and in subfolders without a {columns_file}.
+"""
+_SOURCE: Final = """
+# Where the data come from: "real", or "sim:WHAT" for simulated data.
+# source = "real"
+"""
+_CONSTANTS: Final = """
+[{at}constants]  # numbers in SI, or texts with a unit
+# radius_leg = "35 mm"    # needed for slip from the disc speeds
+# radius_ground = "120 mm"
+"""
+_ROWS: Final = """
+[{at}rows]  # only rows that meet all of these are read; names with < > = ! stand in backticks
+# keep = ["{column} > 0"]
+"""
+_LOAD_CELL: Final = """
+[{at}load_cell]  # standard deviations, from the certificate or a check with known weights
+# zero_stability = "0.15 N"  # of the zero between runs
+# gain_sd = 0.005
+# bias_sd = "0.05 N"
+# crosstalk_sd = 0.005
+"""
+_MEANINGS: Final = {
+    "t": "time, increasing", "t_s": "time, increasing", "x_m": "position in the floor frame",
+    "y_m": "position, to the left of x", "z_m": "height", "yaw_rad": "positive to the left",
+    "roll": "positive with the left side up", "pitch": "positive with the nose down",
+    "yaw": "positive to the left",
+}  # fmt: skip
+
+
+def render_columns(
+    table: RawTable,
+    kind: str,
+    guesses: Mapping[str, ColumnGuess],
+    *,
+    sheet: str | None = None,
+    sectioned: bool = False,
+    appended: bool = False,
+) -> str:
+    """Format the guessed column map of a table as commented TOML, with a summary of each column.
+
+    Args:
+        table: The table.
+        kind: Kind of the table.
+        guesses: Guessed columns by canonical name.
+        sheet: Sheet of the workbook; None for other tables.
+        sectioned: Whether the entries are in a section [KIND].
+        appended: Whether the text follows other sections.
+    """
+    at = f"{kind}." if sectioned else ""
+    used = {guess.name for guess in guesses.values()}
+    others = [name for name in table.columns if name not in used]
+    head = _TOP.format(file=table.path.name, reads=_READS[kind], columns_file=COLUMNS_FILE)
+    text = head + ("" if appended else _SOURCE)
+    text += f"\n[{kind}]\n" if sectioned else ""
+    text += f"\nsheet = {_quoted(sheet)}\n" if sheet is not None else ""
+    text += "".join(_column(table, name, kind, guesses, at) for name in UNITS[kind])
+    if kind == RIG:
+        column = _bare(next(iter(table.columns)))
+        text += _CONSTANTS.format(at=at) + _runs(table, guesses, at)
+        text += _ROWS.format(at=at, column=column) + _LOAD_CELL.format(at=at)
+    listed = "".join(f"#   {_quoted(name)}: {_summary(table, name)}\n" for name in others)
+    return text + ("\n# Columns not used:\n" + listed if others else "")
+
+
+def _column(
+    table: RawTable, name: str, kind: str, guesses: Mapping[str, ColumnGuess], at: str
+) -> str:
+    guess, meaning = guesses.get(name), _meaning(name, kind)
+    if guess is None:
+        missing = kind == RIG or name in _MEANINGS or name.startswith("theta")
+        return f'\n# [{at}columns.{name}]  # {meaning}\n# name = ""\n' if missing else ""
+    lines = [
+        f"[{at}columns.{name}]  # {meaning}",
+        _line("name", guess.name, guess.name_doubt, _summary(table, guess.name)),
+    ]
+    if guess.nanoseconds is not None:
+        lines.append(f"nanoseconds = {_quoted(guess.nanoseconds)}")
+    if guess.unit is not None:
+        lines.append(_line("unit", guess.unit.unit, guess.unit.doubt))
+    if guess.sign_doubt:
+        lines.append(_line("sign", str(guess.sign), guess.sign_doubt))
+    if guess.zero_doubt:
+        lines.append(_line("offset", "0 deg", guess.zero_doubt))
+    if name == "slip_ratio":
+        lines = _slip_lines(lines, guesses)
+    return "\n" + "\n".join(lines) + "\n"
+
+
+def _slip_lines(lines: list[str], guesses: Mapping[str, ColumnGuess]) -> list[str]:
+    if "slip_definition" not in guesses:
+        lines = [*lines, f'definition = "{DOUBT}"  # NEEDED: material, travel or larger']
+    if {"omega_leg", "omega_ground"} <= guesses.keys():
+        note = "# Slip comes from the disc speeds; to use this column, uncomment:"
+        return [note, *(f"# {line}" for line in lines)]
+    return lines
+
+
+def _line(key: str, value: str, doubt: str, more: str = "") -> str:
+    comment = "; ".join(text for text in (more, f"CHECK: {doubt}" if doubt else "") if text)
+    return f"{key} = {_quoted(value + DOUBT * bool(doubt))}" + (f"  # {comment}" if comment else "")
+
+
+def _meaning(name: str, kind: str) -> str:
+    if kind == RIG:
+        return CANONICAL[name].meaning
+    if kind == LEGS and name != "t":
+        return f"angle of leg {name[-1]}, growing as the robot walks forward"
+    return _MEANINGS.get(name, "of the body, in its frame" if kind == IMU else "covariance")
+
+
+def _runs(table: RawTable, guesses: Mapping[str, ColumnGuess], at: str) -> str:
+    restarts = "t" in guesses and _runs_backwards(table, guesses["t"].name)
+    doubt = DOUBT * restarts
+    by = ", ".join(_quoted(name + doubt) for name in guess_set_points(table))
+    # Without a rule such a file cannot be read at all, so a guess is better than a comment.
+    active = "" if restarts and by else "# "
+    by = by or _quoted("SET_POINT")
+    check = "  # CHECK: time restarts in the file" if restarts else ""
+    return (
+        f"\n[{at}runs]  # what separates runs, one of these; default: a column 'run', else files\n"
+        f"{active}by = [{by}]{check}\n"
+        '# gap = "1 s"      # a pause longer than this starts a run\n'
+        "# each_row = true  # every row is the mean of a trial\n"
+    )
+
+
+def _runs_backwards(table: RawTable, name: str) -> bool:
+    time = numbers_or_none(table, name)
+    return time is not None and bool((np.diff(time) < 0).any())
+
+
+def _summary(table: RawTable, name: str) -> str:
+    numbers = numbers_or_none(table, name)
+    if numbers is None:
+        return f"first {_quoted(str(table.columns[name].iloc[0])[:40])}"
+    low, high = np.nanmin(numbers), np.nanmax(numbers)
+    return f"first {numbers[0]:.10g}, from {low:.10g} to {high:.10g}"
+
+
+def _bare(name: str) -> str:
+    quoted = _quoted(f"`{name}`")
+    return quoted[1:-1]
+
+
+def _quoted(text: str) -> str:
+    import tomlkit
+
+    return tomlkit.string(text).as_string()

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""Convert dates and times of day in a column to seconds."""
+
+import re
+from datetime import datetime
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zebro_lab.tables.raw_table import RawTable
+
+CLOCK: Final = "h:m:s"
+"""Unit of times of day or durations such as 12:00:00.5."""
+_DATE = re.compile(r"date(?: (?P<zone>UTC|[+-]\d\d:\d\d))?")
+_ZONE = r"(?:Z|[+-]\d\d:?\d\d)$"
+EXAMPLE: Final = "2026-03-04T05:06:07.5+01:00"
+
+
+def is_date_unit(unit: str) -> bool:
+    """Return whether a unit of `columns.toml` says that cells are dates or times of day.
+
+    >>> [is_date_unit(unit) for unit in ("date", "date UTC", "date +01:00", "h:m:s", "s")]
+    [True, True, True, True, False]
+    """
+    return unit == CLOCK or _DATE.fullmatch(unit) is not None
+
+
+def seconds_of_dates(table: RawTable, name: str, unit: str) -> NDArray[np.float64]:
+    """Return a column of dates or times of day as seconds, NaN for empty cells, shape (n,).
+
+    Dates become seconds since 1970 (UTC). They are as ISO 8601 has them, or day.month.year.
+
+    Args:
+        table: Table with the column.
+        name: Header of the column.
+        unit: "date" for cells that state their time zone, "date ZONE" (UTC or +01:00) for cells
+            that do not, "h:m:s" for times of day.
+
+    Raises:
+        DataError: The column is missing, or a cell is no such date; names the cell.
+    """
+    import pandas as pd
+
+    cells = table.column(name)
+    if pd.api.types.is_numeric_dtype(cells) and not cells.isna().all():
+        raise table.fault(f'holds numbers; expected dates, as unit = "{unit}" states', name)
+    empty = cells.isna().to_numpy(dtype=bool)
+    texts = cells.map(lambda cell: cell if isinstance(cell, str) else _iso(cell)).str.strip()
+    texts = texts.mask(empty)
+    if unit == CLOCK:
+        found = pd.to_timedelta(texts.str.replace(",", ".", regex=False), errors="coerce")
+        seconds = found.dt.total_seconds().to_numpy(dtype=float)
+        _require_read(table, name, np.isnan(seconds) & ~empty, "12:00:00.5")
+        return seconds
+    zone = unit.removeprefix("date").strip() or None
+    zoned = texts.str.contains(_ZONE, na=False).to_numpy(dtype=bool)
+    _require_zone(table, name, zoned | empty if zone is None else ~zoned, zone)
+    texts = texts.str.replace(r"^(\d\d?)\.(\d\d?)\.(\d{4})", r"\3-\2-\1", regex=True)
+    texts = texts.str.replace(r"^(\d{4})/(\d\d?)/(\d\d?)", r"\1-\2-\3", regex=True)
+    texts = texts.str.replace(",", ".", regex=False)
+    texts = texts.str.replace(r"-(\d)(?=[-T ]|$)", r"-0\1", regex=True)
+    found = pd.to_datetime(texts, format="ISO8601", utc=True, errors="coerce")
+    since = (found - pd.Timestamp(0, tz="UTC")).dt.total_seconds().to_numpy(dtype=float)
+    _require_read(table, name, np.isnan(since) & ~empty, EXAMPLE)
+    return since - _offset(zone)
+
+
+def _iso(cell: object) -> object:
+    return cell.isoformat() if hasattr(cell, "isoformat") else str(cell)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def _offset(zone: str | None) -> float:
+    if zone in (None, "UTC"):
+        return 0.0
+    shift = datetime.fromisoformat(f"2000-01-01T00:00:00{zone}").utcoffset()
+    return shift.total_seconds() if shift else 0.0
+
+
+def _require_zone(table: RawTable, name: str, good: NDArray[np.bool_], zone: str | None) -> None:
+    if not good.all():
+        index = int(np.argmin(good))
+        text = table.column(name).iloc[index]
+        problem = (
+            f"'{text}' has no time zone; state it in columns.toml: unit = \"date UTC\" or "
+            '"date +01:00"'
+            if zone is None
+            else f"'{text}' has a time zone of its own; state unit = \"date\" in columns.toml"
+        )
+        raise table.fault(problem, name, index)
+
+
+def _require_read(table: RawTable, name: str, bad: NDArray[np.bool_], example: str) -> None:
+    if bad.any():
+        index = int(np.argmax(bad))
+        text = table.column(name).iloc[index]
+        raise table.fault(f"'{text}' is not read as a date or time; write {example}", name, index)

@@ -9,6 +9,7 @@ import numpy as np
 from model.errors import DomainError
 from model.poses import Poses, moved_onto
 from model.slip.law import Array
+from model.told_apart import told_apart
 from model.walk.path import WalkPath
 
 LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
@@ -76,9 +77,8 @@ def anchored(
         DomainError: The time of the pose lies outside the paths' times, or the pose is not finite.
     """
     if not paths.t[0] <= at <= paths.t[-1]:
-        raise DomainError(
-            f"the known pose is of {at:g} s, but paths run from {paths.t[0]:g} to {paths.t[-1]:g} s"
-        )
+        known, start, end = told_apart(at, paths.t[0], paths.t[-1])
+        raise DomainError(f"the known pose is of {known} s, but paths run from {start} to {end} s")
     here = states_at(paths, np.array([at]))[:, 0]
     wanted = pose
     if covariance is not None:

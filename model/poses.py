@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from model.errors import DomainError, InsufficientData
 from model.slip.law import Array
+from model.told_apart import told_apart
 
 STANDING = 1e-6  # m: between poses closer than this there is no direction of travel
 
@@ -53,8 +54,9 @@ class Poses:
             )
         if not np.all(np.diff(self.t) > 0):
             worst = int(np.argmin(np.diff(self.t) > 0))
+            before, after = told_apart(*self.t[worst : worst + 2])
             raise DomainError(
-                f"time goes from {self.t[worst]:g} to {self.t[worst + 1]:g} s after pose "
+                f"time goes from {before} to {after} s after pose "
                 f"{worst + 1} (the first is 1); expected increasing times"
             )
         if not (np.isfinite(self.t).all() and np.isfinite(self.position).all()):
@@ -144,9 +146,10 @@ class Poses:
         """
         at = np.asarray(t, dtype=float)
         if len(at) and (at.min() < self.t[0] or at.max() > self.t[-1]):
+            first, last, start, end = told_apart(at.min(), at.max(), self.t[0], self.t[-1])
             raise DomainError(
-                f"poses are asked for from {at.min():g} to {at.max():g} s, but the path runs from "
-                f"{self.t[0]:g} to {self.t[-1]:g} s"
+                f"poses are asked for from {first} to {last} s, but the path runs from {start} to "
+                f"{end} s"
             )
         x, y, yaw = (np.interp(at, self.t, a) for a in (*self.position.T, self.yaw))
         return Poses(at, np.column_stack([x, y]), yaw)
@@ -178,10 +181,10 @@ def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
     """
     inside = (first.t >= second.t[0]) & (first.t <= second.t[-1])
     if inside.sum() < 2:
+        begin, end, low, high = told_apart(*first.t[[0, -1]], *second.t[[0, -1]])
         raise InsufficientData(
-            f"{inside.sum()} of {len(first)} poses from {first.t[0]:g} to {first.t[-1]:g} s lie "
-            f"within the other path's {second.t[0]:g} to {second.t[-1]:g} s; two are needed: do "
-            "both keep the same clock?"
+            f"{inside.sum()} of {len(first)} poses from {begin} to {end} s lie within the other "
+            f"path's {low} to {high} s; two are needed: do both keep the same clock?"
         )
     return inside
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from model.progress import Watcher
 from model.slip.law import Array
+from model.told_apart import told_apart
 from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
@@ -47,7 +48,7 @@ class Imported:
 
     Attributes:
         folders: The written run folders, the walk first.
-        notes: Notes on start time, damage, left-out rows and overlap in time, one line each.
+        notes: Notes on start time, damage and left-out rows, one line each.
     """
 
     folders: tuple[Path, ...]
@@ -71,8 +72,8 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
         SettingsError: An option, a `columns.toml` or the robot's file is invalid, or neither leg
             angles nor a rig's table are given.
         NotFound: A file is missing.
-        DataError: A file has invalid content, with file, column and row where there are such; or
-            two runs have the same name and start.
+        DataError: A file has invalid content, with file, column and row where there are such; IMU
+            or track share no time with the legs; or two runs have the same name and start.
         AlreadyExists: The folder of one of the runs exists.
         OSError: A folder cannot be written.
     """
@@ -137,7 +138,8 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     walk = ImportedWalk(manifest, zero, legs, imu, track, robot, suspected)
     parts = [legs.notes, suspected, imu.notes if imu else (), track.track.notes if track else ()]
     notes = [*note, *(line for part in parts for line in part)]
-    return walk, (*notes, *_apart(t - zero, imu, track, zero))
+    _require_shared_time(t - zero, imu, track, zero)
+    return walk, tuple(notes)
 
 
 def _legs(request: ImportRequest) -> LegLog:
@@ -202,24 +204,28 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
     return now, 0.0, (f"{note} (give the date with --start)",)
 
 
-def _apart(
+def _require_shared_time(
     t: Array, imu: ImuLog | None, track: ForeignTrack | None, zero: float
-) -> tuple[str, ...]:
-    """Return a note for IMU and track each if no time of it lies in the leg log's range.
+) -> None:
+    """Raise `DataError` if IMU or track has no time in the leg log's range.
 
     `t` and the track have times of the run, the IMU log times of the files, which are later by
-    `zero` [s].
+    `zero` [s]; the message has those of the files.
     """
     others = {
-        IMU: None if imu is None else imu.t - zero,
-        TRACK: None if track is None else track.track.poses.t,
+        IMU: None if imu is None else (imu.t - zero, imu.files[0]),
+        TRACK: None if track is None else (track.track.poses.t, track.track.file),
     }
-    return tuple(
-        f"{name}: the times of the run, {other[0]:g} to {other[-1]:g} s, do not overlap those of "
-        f"the legs, {t[0]:g} to {t[-1]:g} s; check that both files use the same clock"
-        for name, other in others.items()
-        if other is not None and not np.any((other >= t[0]) & (other <= t[-1]))
-    )
+    for name, other in others.items():
+        if other is None or np.any((other[0] >= t[0]) & (other[0] <= t[-1])):
+            continue
+        times, file = other
+        first, last, start, end = told_apart(*(times[[0, -1]] + zero), *(t[[0, -1]] + zero))
+        raise DataError(
+            f"times of the {name} go from {first} to {last} s, those of the legs from {start} to "
+            f"{end} s: no second is shared; bring both files to one clock",
+            file=file,
+        )
 
 
 def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -> None:

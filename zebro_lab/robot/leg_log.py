@@ -10,6 +10,7 @@ import numpy as np
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
 from model.slip.law import Array
+from model.told_apart import told_apart
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
@@ -91,8 +92,9 @@ def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
     wide = steps > _WIDEST_GAP * usual
     if wide.any():
         index = int(np.argmax(wide)) + 1
+        before, now = told_apart(t[index - 1], t[index])
         raise table.fault(
-            f"time jumps from {t[index - 1]:g} to {t[index]:g} s; expected at most {_WIDEST_GAP:g} "
+            f"time jumps from {before} to {now} s; expected at most {_WIDEST_GAP:g} "
             f"times the usual {usual:.4g} s: split the file before this row, use each part alone",
             column,
             index,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from model.told_apart import told_apart
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
@@ -178,8 +179,9 @@ class RawTable:
         if later.all():
             return
         index = int(np.argmin(later)) + 1
+        before, now = told_apart(t[index - 1], t[index])
         raise self.fault(
-            f"time goes from {t[index - 1]:g} to {t[index]:g} s; expected increasing times: "
+            f"time goes from {before} to {now} s; expected increasing times: "
             "sort the rows by time and delete repeated ones",
             column,
             index,

@@ -29,7 +29,8 @@ class PredictedWalk:
         track: The track, in its own time base.
         tilt: Roll and pitch measured by the run's IMU; None without an IMU or run folder.
         photos: Photographs of the track; None if they cannot be shown.
-        duplicates: Note on walks that were given twice, on the first walk only; else empty.
+        duplicates: Notes on what was left out, such as walks that were given twice, on the first
+            walk only; else empty.
         not_shown: Note on why photographs cannot be shown; empty if they can.
     """
 
@@ -75,11 +76,14 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
     return prediction, track
 
 
-def read_predicted_walks(pairs: Sequence[tuple[Path, Path]]) -> list[PredictedWalk]:
+def read_predicted_walks(
+    pairs: Sequence[tuple[Path, Path]], *, notes: tuple[str, ...] = ()
+) -> list[PredictedWalk]:
     """Read predictions and tracks of walks; of pairs with equal content the first alone.
 
     Args:
         pairs: Paths of prediction and track of each walk.
+        notes: Notes on what was left out before, for the first walk.
 
     Raises:
         ZebroLabError: A file is missing or damaged; a missing or changed photograph is only a note.
@@ -88,7 +92,7 @@ def read_predicted_walks(pairs: Sequence[tuple[Path, Path]]) -> list[PredictedWa
     duplicates = duplicates_note("walks", [(one[0], other[0]) for one, other in repeated])
     names = numbered([_name(predicted) for predicted, _ in pairs])
     return [
-        _read(name, *pair, () if i else duplicates)
+        _read(name, *pair, () if i else (*notes, *duplicates))
         for i, (name, pair) in enumerate(zip(names, pairs, strict=True))
     ]
 

@@ -11,10 +11,11 @@ from model.progress import Watcher
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.validation.chosen_runs import pairs_of_runs
 from zebro_lab.validation.folder import VALIDATION, Summary, summarise_runs, write_validation
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.validation.pictures import ShownRun
-from zebro_lab.validation.predicted_walks import PredictedWalk, pairs_of_run, read_predicted_walks
+from zebro_lab.validation.predicted_walks import PredictedWalk, read_predicted_walks
 from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.shared_clock import estimated_clock, shifted
 
@@ -51,13 +52,14 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         ValueError: There are not as many tracks as predictions.
     """
     given = zip(request.predicted, request.track, strict=True)
-    asked = (*map(pairs_of_run, request.runs), *given)
+    chosen, left_out = pairs_of_runs(request.runs)
+    asked = (*chosen, *given)
     if not asked:
         raise SettingsError("missing: give run folders or both", key="--predicted, --track")
     inputs = [path for pair in asked for path in pair]
     require_replaceable(request.folder, VALIDATION, inputs=inputs)
     watcher.step("reading", None)
-    walks = read_predicted_walks(asked)
+    walks = read_predicted_walks(asked, notes=left_out)
     rng = np.random.default_rng(request.seed)
     shown = []
     for i, walk in enumerate(walks):

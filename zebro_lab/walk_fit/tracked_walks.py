@@ -11,6 +11,7 @@ from model.bayes.walks.misfit import FEWEST_POSES, TrackedWalk
 from model.bayes.walks.tilt import FEWEST, TIME, MeasuredTilt
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
+from model.told_apart import told_apart
 from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import TRACK, numbered
@@ -202,9 +203,10 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
     t = track.poses.t
     keep = (t >= 0) & (t <= end)
     if keep.sum() < FEWEST_POSES:
+        first, last, until = told_apart(t[0], t[-1], end)
         raise DataError(
-            f"{keep.sum()} of {len(t)} poses, from {t[0]:g} to {t[-1]:g} s after the leg log's "
-            f"first sample, lie within its {end:g} s; expected {FEWEST_POSES} or more: do both "
+            f"{keep.sum()} of {len(t)} poses, from {first} to {last} s after the leg log's "
+            f"first sample, lie within its {until} s; expected {FEWEST_POSES} or more: do both "
             "keep the same clock? If not, --estimate-offset may find how far they are apart",
             file=track.file,
         )

@@ -21,6 +21,7 @@ from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
 from model.slip.law import Array
+from model.told_apart import told_apart
 
 # Standard deviation of an IMU's means [rad]. The model errs by 0.02 degrees where a tripod carries,
 # by 0.5 where four legs do.
@@ -75,8 +76,9 @@ class TiltMisfit:
         path, imu = _means(t, k), _means(seen.t, k)
         shared = path.any(axis=1) & imu.any(axis=1)
         if shared.sum() < FEWEST:
+            first, last, start, end = told_apart(*seen.t[[0, -1]], *t[[0, -1]])
             raise InsufficientData(
-                f"IMU, {seen.t[0]:g} to {seen.t[-1]:g} s, and walk, {t[0]:g} to {t[-1]:g} s, share "
+                f"IMU, {first} to {last} s, and walk, {start} to {end} s, share "
                 f"samples in {shared.sum()} intervals of {TIME:g} s; expected {FEWEST} or more"
             )
         measured = imu[shared] @ seen.angles

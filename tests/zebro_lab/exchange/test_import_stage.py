@@ -91,12 +91,14 @@ def test_times_since_1970_tell_when_a_run_began(files, tmp_path):
         taken(tmp_path, legs=files / "legs.csv", start=datetime(2026, 3, 4, tzinfo=UTC))
 
 
-def test_files_that_share_no_time_are_told_of(files, tmp_path):
-    table = pd.read_csv(files / "imu.csv")
-    table["t"] += 100
-    table.to_csv(files / "imu.csv", index=False)
-    _, notes = everything(files, tmp_path)
-    assert any("the same clock" in note for note in notes)
+@pytest.mark.parametrize("name", ["imu.csv", "track.csv"])
+def test_files_that_share_no_time_are_not_imported(name, files, tmp_path):
+    table = pd.read_csv(files / name)
+    table[table.columns[0]] += 1e9
+    table.to_csv(files / name, index=False)
+    with pytest.raises(DataError, match=r"go from 100000000\d.* s, those of the legs from 0 to"):
+        everything(files, tmp_path)
+    assert not (tmp_path / "data").exists()
 
 
 def change(name, **changes):

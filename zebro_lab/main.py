@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Typer applications of `zebro-lab COMMAND`, with all commands, and of `calibrate-slip`."""
 
-from typing import Annotated
-
-import typer
-
 from zebro_lab.exchange import export_command, import_command, init_command
 from zebro_lab.experiment import command as rig
 from zebro_lab.recording import check_command, simulate_command
@@ -13,7 +9,9 @@ from zebro_lab.recording.doctor import command as doctor
 from zebro_lab.report import command as report
 from zebro_lab.runs import command as runs
 from zebro_lab.runs import plot_command
+from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.ending import run
+from zebro_lab.terminal.version import Version
 from zebro_lab.track import annotate_command
 from zebro_lab.track import command as track
 from zebro_lab.track.camera import command as camera
@@ -23,12 +21,7 @@ from zebro_lab.walk import command as walk
 from zebro_lab.walk import predict_command
 from zebro_lab.walk_fit import command as calibrate
 
-app = typer.Typer(
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    no_args_is_help=True,
-)
+app = Application(no_args_is_help=True)
 app.command(epilog=calibrate.EPILOG)(calibrate.calibrate)
 app.command()(init_command.init)
 app.command(epilog=walk.EPILOG)(walk.walk)
@@ -50,27 +43,12 @@ app.add_typer(rig.app, name="rig")
 app.add_typer(simulate_command.app, name="sim")
 app.add_typer(check_command.app, name="zebro")
 
-slip_app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+slip_app = Application()
 slip_app.command(epilog=calibrate.EPILOG)(calibrate.calibrate)
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version
-
-        typer.echo(f"zebro-lab {version('zebro-lab')}")
-        raise typer.Exit
-
-
 @app.callback()
-def zebro_lab(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
-        ),
-    ] = False,
-) -> None:
+def zebro_lab(version: Version = False) -> None:
     """Measure how a six-legged robot's feet slip and predict where it will walk."""
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab` lists every command, and each of them explains itself."""
 
-from importlib.metadata import version
-
 import pytest
 from typer.main import get_command
 
@@ -28,10 +26,6 @@ def test_every_command_is_there_and_listed(run_command):
 @pytest.mark.parametrize("name", sorted(COMMANDS))
 def test_every_command_says_what_it_does(name):
     assert get_command(app).commands[name].help
-
-
-def test_the_version_is_that_of_the_package(run_command):
-    assert run_command("--version").out == f"zebro-lab {version('zebro-lab')}\n"
 
 
 def test_no_command_is_help_and_another_is_wrong_usage(run_command):

@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Options of a calibration."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal, TypeAlias
 
 from typer import Argument, Option
+
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.terminal.limits import Limits
+
+LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck"]
+DefinitionName: TypeAlias = Literal["material", "travel", "larger"]
 
 
 @dataclass(frozen=True)
@@ -13,27 +20,27 @@ class CalibrationRequest:
     """Options of `calibrate-slip` for the fit of a slip law to rig data."""
 
     data: Annotated[
-        tuple[Path, ...], Argument(help="Run folders, or files or folders of CSV or Parquet.")
+        tuple[Path, ...],
+        Argument(metavar="DATA", help="Run folders, or files or folders of CSV or Parquet."),
     ] = ()
-    out: Annotated[Path, Option(help="Calibration folder to write.")] = Path("calibration")
+    out: Annotated[Path, Option(metavar="DIR", help="Calibration folder to write.")] = Path(
+        "calibration"
+    )
     columns: Annotated[
-        Path | None, Option(help="columns.toml to use instead of those beside the tables.")
+        Path | None,
+        Option(metavar="FILE", help="columns.toml to use instead of those beside the tables."),
     ] = None
     slip_definition: Annotated[
-        str | None,
-        Option(
-            help="Definition of the slip ratio to fit in: material, travel or larger; default: "
-            "that of the data."
-        ),
+        DefinitionName | None,
+        Option(help="Definition of the slip ratio to fit in; default: that of the data."),
     ] = None
-    law: Annotated[str, Option(help="Slip law: magic-formula, brush or coulomb-stribeck.")] = (
-        "magic-formula"
-    )
+    law: Annotated[LawName, Option(help="Slip law.")] = "magic-formula"
     curvature: Annotated[
         str,
         Option(
+            metavar="auto|peak|constant|E",
             help="Curvature E of the Magic Formula: auto (compares peak and constant); peak (the "
-            "slip of the peak grows with load); constant; or a fixed number below 1."
+            "slip of the peak grows with load); constant; or a fixed number below 1.",
         ),
     ] = "auto"
     load_sensitivity: Annotated[
@@ -43,13 +50,22 @@ class CalibrationRequest:
         int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
     ] = None
     zero_stability: Annotated[
-        float | None, Option(min=0.0, help="Prior scale of the zero offsets' spread [N]; default: "
-            "columns.toml's, else 0.15, or 0.5 % of the largest traction if that is more.")
-    ] = None  # fmt: skip
+        float | None,
+        Option(
+            metavar="NEWTON",
+            help="Prior scale of the zero offsets' spread [N]; default: columns.toml's, else 0.15, "
+            "or 0.5 % of the largest traction if that is more.",
+        ),
+        Limits(above=0.0),
+    ] = None
     gain_sd: Annotated[
-        float | None, Option(min=0.0, help="Relative gain error (sd) of the load cell [-]; default"
-            ": columns.toml's, else 0.005.")
-    ] = None  # fmt: skip
+        float | None,
+        Option(
+            help="Relative gain error (sd) of the load cell [-]; default: columns.toml's, else "
+            "0.005."
+        ),
+        Limits(above=0.0, most=1.0),
+    ] = None
     ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
     max_steps: Annotated[
         int,
@@ -57,9 +73,19 @@ class CalibrationRequest:
             min=1, help="Largest number of sampler moves; a fit that has not converged ends then."
         ),
     ] = 30_000
-    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1
+    seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
     threads: Annotated[int, Option(min=1, help="Ensembles advanced in parallel.")] = 2
     resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for a curvature, or a choice with it, that no law has."""
+        require_curvature(self.curvature)
+        if self.law != "magic-formula" and (self.curvature != "auto" or self.load_sensitivity):
+            raise SettingsError(
+                f"--curvature and --load-sensitivity belong to the Magic Formula, not to "
+                f"'{self.law}'; leave them out",
+                key="--law",
+            )
 
     @property
     def load_cell(self) -> dict[str, float]:
@@ -88,3 +114,25 @@ class CalibrationRequest:
             "ensembles": self.ensembles,
             "seed": self.seed,
         }
+
+
+def require_curvature(text: str) -> Literal["auto", "peak", "constant"] | float:
+    """Return the curvature E of the Magic Formula that a text names: a word or a number.
+
+    Raises:
+        SettingsError: It is another word, or a number that is not finite or not below 1.
+
+    >>> require_curvature("peak"), require_curvature("-0.5")
+    ('peak', -0.5)
+    """
+    if text == "auto" or text == "peak" or text == "constant":
+        return text
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not -math.inf < number < 1:  # at 1 and above the curve has no peak, or changes its sign
+        raise SettingsError(
+            f"is '{text}'; expected auto, peak, constant or a number below 1", key="--curvature"
+        )
+    return number

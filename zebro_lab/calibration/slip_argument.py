@@ -4,19 +4,17 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from model.slip.definition import SlipDefinition
 from model.slip.thesis import thesis_curve
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb
+from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.calibration.folder import SLIP_TOML, read_slip_file
 from zebro_lab.calibration.walks_folder import StoredWalks, read_stored_walks
-from zebro_lab.files.errors import NotFound, SettingsError
+from zebro_lab.files.errors import NotFound
 from zebro_lab.files.replacement import settle
 
 THESIS = "thesis"
-COULOMB = "coulomb"
 EXPECTED_SLIP = f"a {SLIP_TOML}, the folder that holds it, coulomb:MU[:V] or thesis"
 
 
@@ -56,7 +54,8 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
 
     Raises:
         NotFound: `text` is no file, folder or law, or `draws.npz` of `walks/` is missing.
-        SettingsError: Numbers of `coulomb` are missing, too many, not positive, not finite.
+        SettingsError: Numbers of `coulomb` are missing, too many, not positive, not
+            finite, or the friction is above 2.
         DataError: The calibration, or its `walks/` if wanted, cannot be read.
 
     >>> parse_slip("coulomb:0.38").law
@@ -64,28 +63,13 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
     """
     if text == THESIS:
         return NamedSlip(thesis_curve(), THESIS, text)
-    name, *numbers = text.split(":")
-    if name == COULOMB:
-        return NamedSlip(_coulomb(text, numbers), "assumed", text)
+    numbers = coulomb_numbers(text)
+    if numbers is not None:
+        return NamedSlip(VelocityCoulomb(*numbers), "assumed", text)
     path = settle(Path(text))
     if not path.exists():
         raise NotFound(f"--slip: '{text}' is not a file or folder; expected {EXPECTED_SLIP}")
     return _calibrated(text, path, with_walks=with_walks)
-
-
-def _coulomb(text: str, numbers: list[str]) -> VelocityCoulomb:
-    expected = "coulomb:MU[:V], such as coulomb:0.38 or coulomb:0.38:0.001 (V in m/s)"
-    try:
-        values = [float(number) for number in numbers]
-    except ValueError as error:
-        raise SettingsError(
-            f"'{text}' has a part that is no number; expected {expected}", key="--slip"
-        ) from error
-    if not 1 <= len(values) <= 2 or not all(0 < value < np.inf for value in values):
-        raise SettingsError(
-            f"'{text}' is no friction law; expected {expected}, finite, above 0", key="--slip"
-        )
-    return VelocityCoulomb(*values)
 
 
 def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:

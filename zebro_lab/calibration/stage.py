@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Stage of `calibrate-slip`: read rig data, sample the posterior, write the calibration folder."""
 
-import math
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -25,9 +24,9 @@ from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
 from zebro_lab.calibration.checkpoint import load_checkpoint, save_checkpoint
 from zebro_lab.calibration.folder import CALIBRATION, write_tables
 from zebro_lab.calibration.pictures import draw_calibration
-from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.request import CalibrationRequest, require_curvature
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
-from zebro_lab.files.errors import SettingsError, ZebroLabError
+from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes, fingerprint
 from zebro_lab.files.result_folder import require_replaceable, result_folder
 
@@ -132,37 +131,19 @@ def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, 
     They are two for the Magic Formula with `--curvature auto` and data at several loads, else one.
     """
     if request.law != MagicFormula.name:
-        if request.curvature != "auto" or request.load_sensitivity:
-            raise SettingsError(
-                f"--curvature and --load-sensitivity belong to the Magic Formula, not to "
-                f"'{request.law}'; leave them out",
-            )
         return {request.law: slip_law(request.law)}
     middle_load = float(np.median(samples.normal_force))
 
     def formula(curvature: Literal["peak", "constant"] | float) -> MagicFormula:
         return MagicFormula(curvature, request.load_sensitivity, middle_load)
 
-    if request.curvature != "auto":
-        return {request.law: formula(_curvature(request.curvature))}
+    curvature = require_curvature(request.curvature)
+    if curvature != "auto":
+        return {request.law: formula(curvature)}
     laws: dict[str, SlipLaw] = {"one curvature E at every load": formula("constant")}
     if len(load_levels(block_means(samples, 10))) > 1:  # at one load the two are the same
         laws["peak slip grows with load"] = formula("peak")
     return laws
-
-
-def _curvature(text: str) -> Literal["peak", "constant"] | float:
-    if text == "peak" or text == "constant":
-        return text
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not -math.inf < number < 1:  # at 1 and above the curve has no peak, or changes its sign
-        raise SettingsError(
-            f"--curvature is '{text}'; expected auto, peak, constant or a number below 1"
-        )
-    return number
 
 
 def _write(request: CalibrationRequest, calibration: Calibration, inputs: dict[str, str]) -> None:

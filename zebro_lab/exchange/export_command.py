@@ -7,6 +7,7 @@ from typing import Annotated, Literal, TypeAlias
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 ExportFormat: TypeAlias = Literal["csv", "parquet", "mcap"]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
@@ -20,6 +21,7 @@ Out = Annotated[
 ]
 
 
+@request_command()
 def export(run: RunFolder, out: Out, to: To = "csv") -> None:
     """Export a run as tables of its samples, or its track and prediction as one MCAP file."""
     if to == "mcap":

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from zebro_lab.exchange.init_stage import WrittenColumns
 
 
+@request_command()
 def init(
-    file: Annotated[Path, typer.Argument(help="Table whose header is read.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Table whose header is read.")],
     kind: Annotated[
         Literal["rig", "legs", "imu", "track"] | None,
         typer.Option(help="What the table holds; default: told from its headers."),

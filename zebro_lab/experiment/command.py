@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from zebro_lab.experiment.request import Data, RigRunRequest, WeighRequest
+from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.request_command import request_command
 
@@ -18,10 +19,9 @@ if TYPE_CHECKING:
 STOPPED = 130
 REFUSED = 3
 
-app = typer.Typer(
+app = Application(
     help="Run experiments on the slip rig. Not a safety device: keep an emergency stop at hand.",
     no_args_is_help=True,
-    rich_markup_mode=None,
 )
 
 EPILOG = """
@@ -35,9 +35,12 @@ Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 
 
 
 @app.command()
+@request_command()
 def plan(
     file: Annotated[Path, typer.Argument(metavar="PLAN", help="Plan file (TOML).")],
-    rig: Annotated[str, typer.Option(help="Profile of the rig; sim: rig-board-serial.")] = "sim",
+    rig: Annotated[
+        str, typer.Option(metavar="PROFILE", help="Profile of the rig; sim: rig-board-serial.")
+    ] = "sim",
     steps: Annotated[bool, typer.Option("--steps", help="List every step of the plan.")] = False,
 ) -> None:
     """Check a plan by its own limits and the rig's; print duration and number of points."""
@@ -94,11 +97,17 @@ def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
 
 
 @app.command("say")
+@request_command()
 def command(
-    words: Annotated[list[str], typer.Argument(help="pause, resume, confirm, note TEXT, status, "
-                                               "or a stop: soft, safe or emergency.")],
+    words: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="WORDS",
+            help="pause, resume, confirm, note TEXT, status, or a stop: soft, safe or emergency.",
+        ),
+    ],
     data: Data = Path("experiment"),
-) -> None:  # fmt: skip
+) -> None:
     """Send a command to the running experiment that records to DIR."""
     from zebro_lab.experiment.stage import command_run
 
@@ -136,13 +145,19 @@ def weigh(request: WeighRequest) -> None:
 
 
 @app.command()
+@request_command()
 def check(
-    data: Annotated[list[Path], typer.Argument(help="New runs or tables, or folders of them.")],
+    data: Annotated[
+        list[Path], typer.Argument(metavar="DATA", help="New runs or tables, or folders of them.")
+    ],
     slip: Annotated[Path, typer.Option(help="The calibration: slip.toml or its folder.")] = Path(
         "calibration"
     ),
     zero_sd: Annotated[
-        float, typer.Option(min=0.0, help="Sd of the load cell's zero between runs [N].")
+        float,
+        typer.Option(
+            min=0.0, metavar="NEWTON", help="Sd of the load cell's zero between runs [N]."
+        ),
     ] = 0.1,
 ) -> None:
     """Compare the traction of new runs with a calibration to detect drift of the rig."""

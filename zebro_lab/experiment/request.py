@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Options of experiments of the slip rig."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,23 +9,31 @@ from typing import Annotated, Final, TypeAlias
 
 from typer import Argument, BadParameter, Option
 
+from zebro_lab.recording.address_argument import require_address
+from zebro_lab.terminal.limits import Limits
+
 STANDARD_GRAVITY: Final = 9.80665
 
-Rig: TypeAlias = Annotated[str, Option(help="PROFILE@PORT or PROFILE@sim; sim: rig-board-serial")]
+Rig: TypeAlias = Annotated[
+    str, Option(metavar="PROFILE@PORT", help="Rig; PROFILE@sim or sim to simulate one.")
+]
 Data: TypeAlias = Annotated[Path, Option(metavar="DIR", help="Folder of the experiment.")]
 Fast: TypeAlias = Annotated[
     bool, Option("--fast", help="Run a simulated rig with a board faster than real time.")
 ]
 Seed: TypeAlias = Annotated[
-    int, Option(help="Seed of a simulated rig: load cell errors, noise, slip wander.")
+    int, Option(min=0, help="Seed of a simulated rig: load cell errors, noise, slip wander.")
 ]
 
 
 def _masses(text: str) -> tuple[float, ...]:
     try:
-        return tuple(float(mass) for mass in text.split(","))
-    except ValueError as error:
-        raise BadParameter(f"found '{text}'; expected masses in kg like 0.2,0.5,1") from error
+        masses = tuple(float(mass) for mass in text.split(","))
+    except ValueError:
+        masses = ()
+    if not masses or not all(0 < mass < math.inf for mass in masses):
+        raise BadParameter(f"found '{text}'; expected masses in kg, above 0, like 0.2,0.5,1")
+    return masses
 
 
 @dataclass(frozen=True)
@@ -43,6 +52,10 @@ class RigRunRequest:
     fast: Fast = False
     seed: Seed = 0
 
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for an address of another form."""
+        require_address(self.rig, key="--rig")
+
 
 @dataclass(frozen=True)
 class WeighRequest:
@@ -57,8 +70,14 @@ class WeighRequest:
         Path | None, Option(metavar="DIR", help="Folder for columns.toml with gain_sd and bias_sd.")
     ] = None
     weight_sd: Annotated[
-        float, Option(min=0.0, help="Sd of the relative error common to all masses [-].")
+        float, Option(min=0.0, max=1.0, help="Sd of the relative error common to all masses [-].")
     ] = 1e-3
-    gravity: Annotated[float, Option(help="Gravity at the rig [m/s²].")] = STANDARD_GRAVITY
+    gravity: Annotated[
+        float, Option(help="Gravity at the rig [m/s²]."), Limits(above=0.0, most=30.0)
+    ] = STANDARD_GRAVITY
     fast: Fast = False
     seed: Seed = 0
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for an address of another form."""
+        require_address(self.rig, key="--rig")

@@ -7,7 +7,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING
 
-from zebro_lab.files.errors import UnitError
+from zebro_lab.files.errors import SettingsError, UnitError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -114,6 +114,23 @@ def quantity_to_si(quantity: str | float, si_unit: str) -> float:
     if not math.isfinite(number):
         raise UnitError(f"{quantity} is infinite or NaN; expected a finite number", unit=si_unit)
     return number * factor
+
+
+def option_to_si(text: str, si_unit: str, *, key: str) -> float:
+    """Convert the value of an option, such as "35 mm", to a number in SI.
+
+    Args:
+        text: Number with a unit, or without one in SI.
+        si_unit: SI unit of the result.
+        key: The option, for the error.
+
+    Raises:
+        SettingsError: The value cannot be converted, as in `quantity_to_si`.
+    """
+    try:
+        return quantity_to_si(text, si_unit)
+    except UnitError as error:
+        raise SettingsError(str(error), key=key) from error
 
 
 def is_unit_of(unit: str, si_unit: str) -> bool:

@@ -12,7 +12,7 @@ from model.progress import Watcher
 from model.slip.curve import SlipCurve
 from zebro_lab.calibration import folder as calibration_folder
 from zebro_lab.calibration import stage as calibration_stage
-from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.request import CalibrationRequest, DefinitionName, LawName
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.calibration.rig_data import read_rig_data as read_rig_files
 from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
@@ -86,8 +86,8 @@ def calibrate(
     *data: PathLike,
     out: PathLike | None = None,
     columns: PathLike | None = None,
-    slip_definition: str | None = None,
-    law: str = "magic-formula",
+    slip_definition: DefinitionName | None = None,
+    law: LawName = "magic-formula",
     ensembles: int = 4,
     max_steps: int = 30_000,
     seed: int = 1,

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 import typer
 
 from zebro_lab.recording.request import CheckRequest
+from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from rig.zebro.check import MovedLeg
 
-app = typer.Typer(no_args_is_help=True)
+app = Application(no_args_is_help=True)
 _LEGS = "1 to 6: left 1, 3, 5 and right 2, 4, 6, from the front"
 
 

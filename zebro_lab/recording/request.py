@@ -7,13 +7,16 @@ from typing import Annotated, TypeAlias
 
 from typer import Argument, Option
 
+from zebro_lab.recording.address_argument import require_address, require_can
+from zebro_lab.terminal.limits import Limits
+
 _ADDRESS = "PROFILE@PORT|sim|replay:RUN"
 _DURATION = (
-    "Longest duration, from when every device has sent a sample, more than 0 [s]; q, Ctrl-C and "
+    "Longest duration, from when every device has sent a sample [s]; q, Ctrl-C and "
     "the end of --play or of the longest replayed run end it earlier; default: no limit."
 )
 _FOR = (
-    "Also find the lift-off angle with the hip height of this touchdown angle, which is below 90; "
+    "Also find the lift-off angle with the hip height of this touchdown angle; "
     "0 is ahead, 90 down [deg]."
 )
 
@@ -36,11 +39,21 @@ class RecordRequest:
         Option("--imu", metavar=_ADDRESS, help="Inertial measurement unit to record; repeatable."),
     ] = ()
     rig: Annotated[str | None, Option(metavar=_ADDRESS, help="Slip rig to record.")] = None
-    duration: Annotated[float | None, Option(help=_DURATION)] = None
+    duration: Annotated[
+        float | None, Option(metavar="SECONDS", help=_DURATION), Limits(above=0)
+    ] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the operator.")] = "unknown"
     robot: Annotated[str | None, Option(help="Name of the robot, noted in run.json.")] = None
     seed: Annotated[int, Option(min=0, help="Seed of simulated devices.")] = 0
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for an address of another form."""
+        addresses = {"--zebro": (self.zebro,), "--imu": self.imus, "--rig": (self.rig,)}
+        for key, given in addresses.items():
+            for address in given:
+                if address is not None:
+                    require_address(address, key=key, replay=True)
 
 
 @dataclass(frozen=True)
@@ -51,12 +64,16 @@ class CheckRequest:
         str, Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim to simulate one.")
     ]
     save: Annotated[Path, Option(metavar="FILE", help="New profile to write.")] = Path("zebro.toml")
-    touchdown_deg: Annotated[float | None, Option("--lift-off-for", metavar="DEG", help=_FOR)] = (
-        None
-    )
+    touchdown_deg: Annotated[
+        float | None,
+        Option("--lift-off-for", metavar="DEG", help=_FOR),
+        Limits(above=0, below=90),
+    ] = None
 
 
-Profile: TypeAlias = Annotated[str, Argument(help="Name of a shipped profile, or a profile file.")]
+Profile: TypeAlias = Annotated[
+    str, Argument(metavar="PROFILE", help="Name of a shipped profile, or a profile file.")
+]
 Can: TypeAlias = Annotated[
     str | None,
     Option(
@@ -91,11 +108,17 @@ class ZebroTwinRequest:
     flip: Flip = 0.0
     drop: Drop = 0.0
     garbage: Garbage = 0.0
-    jitter: Annotated[float, Option(min=0.0, help="Spread (sd) of the sampling times [s].")] = 0.0
+    jitter: Annotated[
+        float, Option(min=0.0, metavar="SECONDS", help="Spread (sd) of the sampling times [s].")
+    ] = 0.0
     pause: Annotated[
         float, Option(min=0.0, max=1.0, help="Probability that a leg pauses before its flight.")
     ] = 0.0
     seed: Seed = 0
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for a CAN bus of another form."""
+        require_can(self.can)
 
 
 @dataclass(frozen=True)
@@ -126,3 +149,7 @@ class RigTwinRequest:
     as_socket: Socket = False
     drop: Drop = 0.0
     seed: Seed = 0
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for a CAN bus of another form."""
+        require_can(self.can)

@@ -7,18 +7,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
+from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from zebro_lab.recording.simulate_stage import Served
 
-app = typer.Typer(
+app = Application(
     no_args_is_help=True, help="Run a simulated device and print the port to connect to."
 )
 
 Duration = Annotated[
-    float | None, typer.Option(min=0.0, help="Duration [s]; default: until Ctrl-C.")
+    float | None,
+    typer.Option(min=0.0, metavar="SECONDS", help="Duration [s]; default: until Ctrl-C."),
 ]
 
 

@@ -19,6 +19,8 @@ class ReportRequest:
             help="Run folder, or folder with track, prediction or validation, or folder of these.",
         ),
     ]
-    calibration: Annotated[Path, Option(help="Calibration folder.")] = Path("calibration")
-    out: Annotated[Path, Option(help="HTML file to write.")] = Path("report.html")
+    calibration: Annotated[Path, Option(metavar="DIR", help="Calibration folder.")] = Path(
+        "calibration"
+    )
+    out: Annotated[Path, Option(metavar="FILE", help="HTML file to write.")] = Path("report.html")
     title: Annotated[str | None, Option(help="Title; default: Report on RUN.")] = None

@@ -6,12 +6,14 @@ from typing import Annotated, Literal, TypeAlias
 
 from typer import Option
 
+from zebro_lab.terminal.limits import Limits
+
 GaitName: TypeAlias = Literal["tripod", "suriana", "maxplus", "tetrapod", "buehler"]
 Side: TypeAlias = Literal["left", "right"]
 _PAIR = "INNER[,OUTER]"
 _STEERING = (
-    "Stance angle of the outer legs by that of the inner legs, for tripod, more than 0; default: "
-    "1, which is straight."
+    "Stance angle of the outer legs by that of the inner legs, for tripod; default: 1, "
+    " which is straight."
 )
 _SIDE = "Side to turn to, for tripod, suriana and maxplus; default: left."
 _TOUCHDOWN = (
@@ -39,14 +41,18 @@ class GaitRequest:
     """Parameters of a gait; None for the gait's default."""
 
     name: Annotated[GaitName, Option("--gait", help="Gait: pattern of leg motion.")] = "tripod"
-    steering: Annotated[float | None, Option(help=_STEERING)] = None
+    steering: Annotated[float | None, Option(help=_STEERING), Limits(above=0)] = None
     direction: Annotated[Side | None, Option(help=_SIDE)] = None
     touchdown_deg: Annotated[str | None, Option(metavar=_PAIR, help=_TOUCHDOWN)] = None
     liftoff_deg: Annotated[str | None, Option(metavar=_PAIR, help=_LIFTOFF)] = None
-    cycle: Annotated[float | None, Option(help=_CYCLE)] = None
-    tau_ground: Annotated[float | None, Option(help=_GROUND)] = None
-    tau_flight: Annotated[float | None, Option(help=_FLIGHT)] = None
-    tau_turn: Annotated[float | None, Option(help=_TURN)] = None
+    cycle: Annotated[float | None, Option(metavar="SECONDS", help=_CYCLE), Limits(above=0)] = None
+    tau_ground: Annotated[
+        float | None, Option(metavar="SECONDS", help=_GROUND), Limits(above=0)
+    ] = None
+    tau_flight: Annotated[
+        float | None, Option(metavar="SECONDS", help=_FLIGHT), Limits(above=0)
+    ] = None
+    tau_turn: Annotated[float | None, Option(min=0.0, metavar="SECONDS", help=_TURN)] = None
 
     def given(self) -> dict[str, object]:
         """Return the options that are not None by name, except the name of the gait."""

@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.units import quantity_to_si
+from zebro_lab.files.units import option_to_si
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ def parse_marker(text: str) -> MarkerPrint:
     """Parse a marker written as "DICTIONARY:NUMBER:SIDE"; a side without a unit is in m.
 
     Raises:
-        SettingsError: The string has another form, or NUMBER is not a whole number.
-        UnitError: The side is not a length.
+        SettingsError: The string has another form, NUMBER is not a whole number, or the side is not
+            a length above 0.
 
     >>> parse_marker("apriltag_36h11:4:10cm")
     MarkerPrint(dictionary='apriltag_36h11', number=4, side=0.1)
@@ -51,4 +51,7 @@ def parse_marker(text: str) -> MarkerPrint:
             f"found '{text}'; expected DICTIONARY:NUMBER:SIDE such as {KIT_PRINT.text}",
             key="--marker",
         )
-    return MarkerPrint(parts[0], int(parts[1]), quantity_to_si(parts[2], "m"))
+    side = option_to_si(parts[2], "m", key="--marker")
+    if side <= 0:
+        raise SettingsError(f"found '{text}'; expected a side above 0", key="--marker")
+    return MarkerPrint(parts[0], int(parts[1]), side)

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder to search for run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
@@ -14,6 +15,7 @@ Why = Annotated[str | None, typer.Option(help="Reason, kept in run.json; require
 Undo = Annotated[bool, typer.Option("--undo", help="Undo the exclusion of the run.")]
 
 
+@request_command()
 def runs(data: DataDir) -> None:
     """List recorded runs with their state, duration, samples and source."""
     from zebro_lab.runs.stage import list_runs
@@ -27,6 +29,7 @@ def runs(data: DataDir) -> None:
     say(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
 
 
+@request_command()
 def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
     """Exclude a run from every later calibration, or undo that; its data stay."""
     from zebro_lab.runs.exclusion import exclude_run, take_in_again

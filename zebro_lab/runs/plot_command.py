@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 EPILOG = """
 Examples:
@@ -22,6 +23,7 @@ Out = Annotated[
 ]
 
 
+@request_command()
 def plot(run: Run, out: Out = None) -> None:
     """Plot all recorded streams of a run over time in one picture; mark gaps and events."""
     from zebro_lab.runs.plot_stage import plot_run

@@ -5,19 +5,22 @@ import os
 import sys
 import warnings
 from collections.abc import Callable
+from typing import Final
 
-import typer
+ERROR: Final = 1
+WRONG_USAGE: Final = 2
 
 
-def run(app: typer.Typer) -> None:
+def run(app: Callable[[], object]) -> None:
     """Run a Typer app, which ends with `SystemExit`; known errors are one line and exit code 1.
 
     Known errors are those of the project, and operating system errors that name a file; the line is
-    on stderr. Other exceptions pass unchanged, with a traceback.
+    on stderr. A wrong value of an option (a `SettingsError` about one) has exit code 2, as wrong
+    usage has that Typer finds. Other exceptions pass unchanged, with a traceback.
     """
     # ArviZ warns developers about its next version once a day; this does not concern users.
     warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)
-    _guard(lambda: app())
+    _guard(app)
 
 
 def _guard(command: Callable[[], object]) -> None:
@@ -30,9 +33,10 @@ def _guard(command: Callable[[], object]) -> None:
         from zebro_lab.files.shown_text import shortened, shown
         from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
+        code = WRONG_USAGE if _is_about_option(error) else ERROR
         if not say_in_time(f"error: {shortened(shown(message))}", err=True):
-            leave_at_once(1)
-        raise SystemExit(1) from None
+            leave_at_once(code)
+        raise SystemExit(code) from None
 
 
 def _of_a_file(error: Exception) -> str | None:
@@ -41,6 +45,12 @@ def _of_a_file(error: Exception) -> str | None:
         return None
     name = error.filename if isinstance(error.filename, int) else os.fsdecode(error.filename)
     return f"{name}: {error.strerror or error}"
+
+
+def _is_about_option(error: Exception) -> bool:
+    """Return whether an error is a `SettingsError` about the value of an option."""
+    key = getattr(error, "key", None)
+    return getattr(error, "file", None) is None and isinstance(key, str) and key.startswith("--")
 
 
 def _is_known(error: Exception) -> bool:

@@ -8,6 +8,8 @@ from functools import wraps
 from inspect import Parameter
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
+from zebro_lab.terminal.option_display import completed
+
 Command = Callable[..., None]
 
 
@@ -17,6 +19,7 @@ def request_command(*, first: tuple[str, ...] = ()) -> Callable[[Command], Comma
     Each field is annotated with its `typer.Option` or `typer.Argument`. A field that is itself a
     dataclass is replaced by its own fields; `tuple[X, ...]` is an option that may be repeated.
     Parameters of other types stay as they are. The decorated function takes all of them by name.
+    Metavars, limits and their help are completed by `zebro_lab.terminal.option_display`.
 
     Args:
         first: Names of parameters that the help lists first, in this order; then come the others
@@ -52,7 +55,7 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[Parameter]:
         of, *metadata = get_args(hint)
         optional = list[get_args(of)[0]] | None
         hint, default = Annotated[optional, *metadata], (None if default == () else default)
-    yield Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=hint)
+    yield Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=completed(hint))
 
 
 def _value(name: str, hint: Any, given: Mapping[str, Any]) -> Any:

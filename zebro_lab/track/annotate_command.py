@@ -45,6 +45,8 @@ def annotate(
     from zebro_lab.track import annotate_stage
 
     if grid is None:
+        if around is not None:
+            raise typer.BadParameter("applies only with --grid", param_hint="'--around'")
         _annotate(request)
         return
     if request.photo is None:

@@ -12,8 +12,12 @@ from typer import Argument, Option
 class AnnotateRequest:
     """Options of `zebro-lab annotate`: the annotations to write."""
 
-    photos: Annotated[Path, Argument(help="Folder, video or picture, as given to track.")]
-    out: Annotated[Path, Option(help="File to create or to add to.")] = Path("annotations.toml")
+    photos: Annotated[
+        Path, Argument(metavar="PHOTOS", help="Folder, video or picture, as given to track.")
+    ]
+    out: Annotated[Path, Option(metavar="FILE", help="File to create or to add to.")] = Path(
+        "annotations.toml"
+    )
     photo: Annotated[
         str | None, Option(metavar="NAME", help="Photograph for --corners or --grid.")
     ] = None
@@ -32,7 +36,9 @@ class AnnotateRequest:
     margin: Annotated[
         str, Option(metavar="LENGTH", help="Width around the top that is also compared.")
     ] = "20mm"
-    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
+    robot: Annotated[
+        Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
+    ] = None
     clicks: Annotated[
         tuple[str, ...],
         Option("--click", metavar="PHOTO:NAME=U,V", help="Pixel of floor point NAME; repeatable."),

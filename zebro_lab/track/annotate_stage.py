@@ -8,7 +8,7 @@ grid, which any viewer shows on any machine.
 import difflib
 from collections.abc import Mapping, Sequence
 from io import BytesIO
-from math import radians
+from math import isfinite, radians
 from pathlib import Path
 
 from tracking.body import TopPlate
@@ -18,7 +18,7 @@ from tracking.photos.scene import Click, MarkedTop
 from zebro_lab.files.atomic import atomic_write_bytes, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
 from zebro_lab.files.own_file import picture, require_own
-from zebro_lab.files.units import quantity_to_si
+from zebro_lab.files.units import option_to_si
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.track.annotate_request import AnnotateRequest
 from zebro_lab.track.annotations import (
@@ -47,8 +47,8 @@ def annotate(request: AnnotateRequest) -> Annotations:
     """
     if request.added is not None and request.out.exists() and request.out.samefile(request.added):
         raise AlreadyExists(f"{request.out} is the file given as --from; choose another with --out")
-    names = photo_names(request.photos)
     new = Annotations(_template(request), _clicks(request), _corrections(request))
+    names = photo_names(request.photos)
     if request.added is not None:
         new = new.merged(read_annotations(request.added))
     _require_photos(new, names)
@@ -91,6 +91,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     from zebro_lab.plots import save
     from zebro_lab.plots.pixel_grid import pixel_grid
 
+    middle = None if around is None else _pair(around, "--around")
     _require_photo(photo, photo_names(origin))
     path = origin / photo if origin.is_dir() else origin
     target = require_own(file, GRID, inputs=(path,))
@@ -99,7 +100,6 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
             f"{file} would lie among the photographs and be tracked as one of them; choose another "
             "file with --grid"
         )
-    middle = None if around is None else _pair(around, "--around")
     drawn = BytesIO()
     figure = pixel_grid(read_pixels(path), title=photo, around=middle, reach=reach)
     save(figure, drawn, command=GRID.command)
@@ -109,8 +109,6 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
 def _template(request: AnnotateRequest) -> MarkedTop | None:
     if request.corners is None:
         return None
-    if request.photo is None:
-        raise SettingsError("missing: name the photograph of --corners", key="--photo")
     corners = tuple(_pair(text, "--corners") for text in request.corners.split())
     if len(corners) != 4:
         raise SettingsError(
@@ -118,23 +116,27 @@ def _template(request: AnnotateRequest) -> MarkedTop | None:
             "rear right, rear left",
             key="--corners",
         )
+    if request.photo is None:
+        raise SettingsError("missing: name the photograph of --corners", key="--photo")
     return MarkedTop(request.photo, corners, _plate(request))
 
 
 def _plate(request: AnnotateRequest) -> TopPlate:
-    margin = quantity_to_si(request.margin, "m")
+    margin = option_to_si(request.margin, "m", key="--margin")
     if request.plate is None:
         described = RobotFile() if request.robot is None else read_robot_file(request.robot)
         length, width, height = described.robot.body_size
         return TopPlate(length, width, height / 2, margin=margin, front_margin=margin)
     sides, _, height = request.plate.partition("@")
     length, _, width = sides.partition("x")
-    if not (length and width and height):
+    parts = (length, width, height)
+    sizes = [option_to_si(text, "m", key="--plate") for text in parts if text]
+    if len(sizes) != len(parts) or min(sizes[:2]) <= 0:
         raise SettingsError(
-            f"'{request.plate}' is not LENGTHxWIDTH@HEIGHT, such as 194mmx251mm@35mm",
+            f"'{request.plate}' is not LENGTHxWIDTH@HEIGHT with sides above 0, such as "
+            "194mmx251mm@35mm",
             key="--plate",
         )
-    sizes = [quantity_to_si(text, "m") for text in (length, width, height)]
     return TopPlate(*sizes, margin=margin, front_margin=margin)
 
 
@@ -153,8 +155,15 @@ def _corrections(request: AnnotateRequest) -> tuple[Correction, ...]:
     moves = [_move(text) for text in request.moves]
     flips = [Flip(photo) for photo in request.flips]
     deletes = [Delete(photo) for photo in request.deletes]
-    order = [Order(tuple(request.order.split(",")))] if request.order else []
+    order = [_order(request.order)] if request.order else []
     return (*moves, *flips, *deletes, *order)
+
+
+def _order(text: str) -> Order:
+    photos = tuple(text.split(","))
+    if len(photos) < 2 or not all(photos):
+        raise SettingsError(f"'{text}' is not PHOTO,PHOTO,…, two or more", key="--order")
+    return Order(photos)
 
 
 def _move(text: str) -> Move:
@@ -174,9 +183,12 @@ def _pair(text: str, key: str) -> Click:
 
 def _numbers(text: str, key: str) -> list[float]:
     try:
-        return [float(part) for part in text.split(",")]
+        numbers = [float(part) for part in text.split(",")]
     except ValueError as error:
         raise SettingsError(f"'{text}' is not a list of numbers with commas", key=key) from error
+    if not all(map(isfinite, numbers)):
+        raise SettingsError(f"'{text}' has a number that is not finite", key=key)
+    return numbers
 
 
 def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Options of a track."""
 
+import re
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -9,7 +10,9 @@ from typing import Annotated, Literal, TypeAlias
 from typer import Argument, BadParameter, Option
 
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.units import quantity_to_si
+from zebro_lab.files.units import option_to_si
+from zebro_lab.robot.marker_print import parse_marker
+from zebro_lab.terminal.limits import Limits
 
 MergedAs: TypeAlias = Literal["pasted", "darkest", "mean"]
 KIND = "track"
@@ -42,7 +45,11 @@ class TimeRequest:
 
     interval: Annotated[
         float | None,
-        Option(help="Interval of the camera's timer or of exposures, instead of EXIF times [s]."),
+        Option(
+            metavar="SECONDS",
+            help="Interval of the camera's timer or of exposures, instead of EXIF times [s].",
+        ),
+        Limits(above=0),
     ] = None
     table: Annotated[
         Path | None,
@@ -55,7 +62,9 @@ class TimeRequest:
     every: Annotated[
         float | None,
         Option(
-            min=0.0, help="Least time between frames of a video [s]; default: 0.5; 0 takes all."
+            min=0.0,
+            metavar="SECONDS",
+            help="Least time between frames of a video [s]; default: 0.5; 0 takes all.",
         ),
     ] = None
     clock: Annotated[
@@ -77,16 +86,24 @@ class TrackRequest:
     """Options of `zebro-lab track`.
 
     Raises:
-        SettingsError: `merged` is given, and `photos` is a folder or a video.
+        SettingsError: `merged` is given, and `photos` is a folder or a video; or a length, the
+            marker or the source has another form.
     """
 
     photos: Annotated[
-        Path, Argument(help="Folder of photographs, a video, or one composite picture.")
+        Path,
+        Argument(
+            metavar="PHOTOS", help="Folder of photographs, a video, or one composite picture."
+        ),
     ]
-    camera: Annotated[Path, Option(help="camera.toml, the lens.")]
-    floor: Annotated[Path, Option(help="floor.toml, the marks on the floor.")]
-    robot: Annotated[Path | None, Option(help="robot.toml; default: thesis's, no marker.")] = None
-    out: Annotated[Path | None, Option(help="Folder to write; default: RUN/track.")] = None
+    camera: Annotated[Path, Option(metavar="FILE", help="camera.toml, the lens.")]
+    floor: Annotated[Path, Option(metavar="FILE", help="floor.toml, the marks on the floor.")]
+    robot: Annotated[
+        Path | None, Option(metavar="FILE", help="robot.toml; default: thesis's, no marker.")
+    ] = None
+    out: Annotated[
+        Path | None, Option(metavar="DIR", help="Folder to write; default: RUN/track.")
+    ] = None
     run: Annotated[Path | None, Option(metavar="RUN", help="Run of the photographed walk.")] = None
     times: TimeRequest = field(default_factory=TimeRequest)
     start: Annotated[
@@ -112,7 +129,9 @@ class TrackRequest:
     merged: Annotated[
         MergedAs | None, Option(help="How the exposures of a composite picture were merged.")
     ] = None
-    annotations: Annotated[Path | None, Option(help="annotations.toml to apply.")] = None
+    annotations: Annotated[
+        Path | None, Option(metavar="FILE", help="annotations.toml to apply.")
+    ] = None
     body_height: Annotated[
         str | None,
         Option(
@@ -126,20 +145,28 @@ class TrackRequest:
     gap: Annotated[
         float | None,
         Option(
+            metavar="SECONDS",
             help="Longest time between two poses of an uninterrupted path [s]; default: 3.5 median "
-            "intervals."
+            "intervals.",
         ),
+        Limits(above=0),
     ] = None
     source: Annotated[
         str | None,
         Option(
+            metavar="real|sim:WHAT",
             help="Source of the photographs: real or sim:WHAT; default: that of the files or of "
-            "the run."
+            "the run.",
         ),
     ] = None
     workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2
 
     def __post_init__(self) -> None:
+        _ = self.standing_height, self.walking_height_sd
+        if self.marker is not None:
+            parse_marker(self.marker)
+        if self.source is not None and not re.fullmatch("real|sim:.+", self.source):
+            raise SettingsError(f"found '{self.source}'; expected real or sim:WHAT", key="--source")
         is_picture = self.photos.is_file() and self.photos.suffix.lower() not in VIDEOS
         if self.merged is not None and self.photos.exists() and not is_picture:
             raise SettingsError("applies only to one composite picture", key="--merged")
@@ -159,21 +186,14 @@ class TrackRequest:
 
     @property
     def standing_height(self) -> float | None:
-        """Height of the body's centre while the robot stands [m]; None: from the marker's.
-
-        Raises:
-            UnitError: The given height is not a length.
-        """
-        return None if self.body_height is None else quantity_to_si(self.body_height, "m")
+        """Height of the body's centre while the robot stands [m]; None: from the marker's."""
+        given = self.body_height
+        return None if given is None else option_to_si(given, "m", key="--body-height")
 
     @property
     def walking_height_sd(self) -> float:
-        """Standard deviation of the height of the body's centre over a walk [m].
-
-        Raises:
-            UnitError: It is not a length.
-        """
-        return quantity_to_si(self.height_sd, "m")
+        """Standard deviation of the height of the body's centre over a walk [m]."""
+        return option_to_si(self.height_sd, "m", key="--height-sd")
 
     @property
     def named(self) -> tuple[Path, ...]:

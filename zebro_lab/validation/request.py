@@ -13,7 +13,7 @@ class ValidateRequest:
     """Options of `zebro-lab validate`."""
 
     runs: Annotated[
-        tuple[Path, ...], Argument(help="Run folders with prediction/ and track/.")
+        tuple[Path, ...], Argument(metavar="RUN", help="Run folders with prediction/ and track/.")
     ] = ()
     predicted: Annotated[
         tuple[Path, ...],
@@ -25,7 +25,9 @@ class ValidateRequest:
     out: Annotated[
         Path | None,
         Option(
-            help="Validation folder to write; default: RUN/validation for one run, else validation."
+            metavar="DIR",
+            help="Validation folder to write; default: RUN/validation for one run, else "
+            "validation.",
         ),
     ] = None
     anchor: Annotated[
@@ -36,7 +38,11 @@ class ValidateRequest:
         ),
     ] = True
     time_offset: Annotated[
-        float, Option(help="Time by which the track's clock is behind, added to its times [s].")
+        float,
+        Option(
+            metavar="SECONDS",
+            help="Time by which the track's clock is behind, added to its times [s].",
+        ),
     ] = 0.0
     estimate_offset: Annotated[
         bool,
@@ -46,7 +52,7 @@ class ValidateRequest:
             "have starts, stops or turns.",
         ),
     ] = False
-    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1
+    seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
 
     @property
     def folder(self) -> Path:

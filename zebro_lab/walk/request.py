@@ -7,8 +7,10 @@ from typing import Annotated, Literal, TypeAlias
 
 from typer import Argument, BadParameter, Option
 
+from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
+from zebro_lab.terminal.limits import Limits
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
 ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
@@ -24,18 +26,23 @@ class BandRequest:
             min=0, help="Draws for the band (draws.npz, band.csv, band.png), 2 or more; 0 for none."
         ),
     ] = 0
-    seed: Annotated[int, Option(help="Seed of the band's draws.")] = 1
+    seed: Annotated[int, Option(min=0, help="Seed of the band's draws.")] = 1
     offset_sd_deg: Annotated[
         float | None,
         Option(
             min=0.0,
+            metavar="DEG",
             help="Standard deviation of the unknown leg offsets [deg]; default: encoder step / "
             "sqrt(12), or 0.3 for angles that are not in encoder steps.",
         ),
     ] = None
     start_sd: Annotated[
         tuple[float, float, float],
-        Option(help="Standard deviation of the start pose: x y [m] yaw [deg].", metavar="X Y YAW"),
+        Option(
+            help="Standard deviation of the start pose: x y [m] yaw [deg].",
+            metavar="X Y YAW",
+            min=0.0,
+        ),
     ] = (0.0, 0.0, 0.0)
     threads: Annotated[int, Option(min=1, help="Draws computed in parallel.")] = 2
 
@@ -71,12 +78,18 @@ class ModelRequest:
     toe: Annotated[
         ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
     ] = "saturated"
-    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
+    robot: Annotated[
+        Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
+    ] = None
     arc_deg: Annotated[
-        float | None, Option(help="Arc of the legs, 90 to below 360 [deg]; default: the robot's.")
+        float | None,
+        Option(metavar="DEG", help="Arc of the legs [deg]; default: the robot's."),
+        Limits(least=90, below=360),
     ] = None
     dt: Annotated[
-        float | None, Option(min=0.0, help="Time step, above 0 [s]; default: the model's.")
+        float | None,
+        Option(metavar="SECONDS", help="Time step [s]; default: the model's."),
+        Limits(above=0),
     ] = None
     band: BandRequest = field(default_factory=BandRequest)
     figures: Annotated[
@@ -91,6 +104,11 @@ class ModelRequest:
         """Given `--slip` (not `thesis`, but also `coulomb:…`) and `--robot` as paths."""
         slip = () if self.slip in (None, "thesis") else (Path(self.slip),)
         return (*slip, *((self.robot,) if self.robot is not None else ()))
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for a `coulomb:…` that is no friction law."""
+        if self.slip is not None:
+            coulomb_numbers(self.slip)
 
     def require_slip(self) -> None:
         """Check that `--slip` is given if the model needs it.
@@ -111,8 +129,12 @@ class WalkRequest:
     """Options of `zebro-lab walk`."""
 
     gait: GaitRequest = field(default_factory=GaitRequest)
-    duration: Annotated[float | None, Option(help="Duration of the walk [s].")] = None
-    out: Annotated[Path, Option(help="Walk folder to write.")] = Path("walk")
+    duration: Annotated[
+        float | None,
+        Option(metavar="SECONDS", help="Duration of the walk, required [s]."),
+        Limits(above=0),
+    ] = None
+    out: Annotated[Path, Option(metavar="DIR", help="Walk folder to write.")] = Path("walk")
     model: ModelRequest = field(default_factory=ModelRequest)
 
 
@@ -129,10 +151,14 @@ class PredictRequest:
     ]
     out: Annotated[
         Path | None,
-        Option(help="Walk folder to write; default: RUN/prediction for a run, else prediction."),
+        Option(
+            metavar="DIR",
+            help="Walk folder to write; default: RUN/prediction for a run, else prediction.",
+        ),
     ] = None
     columns: Annotated[
-        Path | None, Option(help="columns.toml to use instead of the one beside LEGLOG.")
+        Path | None,
+        Option(metavar="FILE", help="columns.toml to use instead of the one beside LEGLOG."),
     ] = None
     direction: Annotated[
         Side,

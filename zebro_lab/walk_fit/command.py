@@ -7,6 +7,7 @@ from zebro_lab.calibration.command import fit_and_report
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.terminal.messages import wide_console
 from zebro_lab.terminal.request_command import request_command
+from zebro_lab.terminal.version import Version
 from zebro_lab.walk_fit.request import WalksRequest
 
 NOT_CONVERGED = 3
@@ -33,7 +34,7 @@ and marked), 130 stopped (a checkpoint is kept for --resume).
 
 
 @request_command()
-def calibrate(request: CalibrationRequest, tracked: WalksRequest) -> None:
+def calibrate(request: CalibrationRequest, tracked: WalksRequest, version: Version = False) -> None:
     """Fit a slip curve to rig data by Bayesian inference and report whether to trust it."""
     if not (request.data or tracked.walks):
         raise typer.BadParameter(

@@ -14,10 +14,14 @@ class WalksRequest:
 
     walks: Annotated[
         tuple[Path, ...],
-        Option(help="Run folder of a tracked walk, to fit legs and floor to; repeatable."),
+        Option(
+            metavar="RUN",
+            help="Run folder of a tracked walk, to fit legs and floor to; repeatable.",
+        ),
     ] = ()
     robot: Annotated[
-        Path | None, Option(help="robot.toml of the walks, instead of those in their folders.")
+        Path | None,
+        Option(metavar="FILE", help="robot.toml of the walks, instead of those in their folders."),
     ] = None
     estimate_offset: Annotated[
         bool,

@@ -308,9 +308,6 @@ def test_bad_input_ends_the_process_with_1_and_no_traceback(sweep, tmp_path, fau
 @pytest.mark.parametrize(
     ("options", "problem"),
     [
-        (("--law", "magic-formular"), "did you mean 'magic-formula'"),
-        (("--curvature", "sharp"), "--curvature is 'sharp'"),
-        (("--slip-definition", "materiel"), "did you mean 'material'"),
         (("--columns", "absent.toml"), "absent.toml"),
         (("--resume",), "checkpoint.npz: no stopped fit to resume; run without --resume"),
     ],

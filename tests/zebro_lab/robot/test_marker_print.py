@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zebro_lab.files.errors import SettingsError, UnitError
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_print import KIT_PRINT, MarkerPrint, parse_marker
 
 
@@ -20,5 +20,9 @@ def test_a_marker_comes_back_as_it_is_written(dictionary, number, side):
 def test_text_of_another_form_says_how_to_write_a_marker(text):
     with pytest.raises(SettingsError, match=f"--marker: .*such as {KIT_PRINT.text}"):
         parse_marker(text)
-    with pytest.raises(UnitError):
-        parse_marker("4x4_50:0:1kg")
+
+
+@pytest.mark.parametrize(("side", "problem"), [("1kg", "unit 'kg'"), ("0mm", "above 0")])
+def test_a_side_that_is_no_length_names_the_option(side, problem):
+    with pytest.raises(SettingsError, match=f"--marker: .*{problem}"):
+        parse_marker(f"4x4_50:0:{side}")

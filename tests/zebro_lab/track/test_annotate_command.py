@@ -30,17 +30,31 @@ def test_annotations_are_added_to_those_before(run_command, tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--flip", "simulated_2.jpg"), "did you mean 'simulated_"),
         (("--photo", "simulated_01.jpg", "--corners", "1,2 3,4"), "2 corners; expected four"),
         (("--corners", "1,2 3,4 5,6 7,8"), "--photo: missing"),
         (("--click", "simulated_01.jpg:door=1"), "is not a pixel U,V"),
         (("--click", "door=1,2"), "is not PHOTO:NAME=U,V"),
         (("--move", "simulated_01.jpg:1,2"), "is not PHOTO:X,Y,YAW"),
         (("--move", "simulated_01.jpg:a,b,c"), "not a list of numbers"),
-        (("--from", "nothing.toml"), "nothing.toml: no such file"),
     ],
 )
 def test_what_cannot_be_understood_is_one_line(options, message, run_command, tmp_path):
+    file = tmp_path / "said.toml"
+    code, _, err = run_command("annotate", PHOTOS, "--out", file, *options)
+    assert code == 2
+    assert message in err
+    assert err.count("\n") == 1
+    assert not file.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--flip", "simulated_2.jpg"), "did you mean 'simulated_"),
+        (("--from", "nothing.toml"), "nothing.toml: no such file"),
+    ],
+)
+def test_what_does_not_exist_is_one_line_and_exit_1(options, message, run_command, tmp_path):
     file = tmp_path / "said.toml"
     code, _, err = run_command("annotate", PHOTOS, "--out", file, *options)
     assert code == 1

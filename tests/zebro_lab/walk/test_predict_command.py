@@ -49,7 +49,7 @@ def test_a_band_without_a_model_of_slip_and_a_missing_law_are_named(run_command,
     log = write_log(tmp_path)
     given = ("predict", log, "--out", tmp_path / "out")
     ended = run_command(*given, "--model", "no-slip-simple", "--draws", 5)
-    assert ended.code == 1
+    assert ended.code == 2
     assert "--draws: a band is predicted by the model 'dynamics' only" in ended.err
     assert run_command(*given).code == 2
     assert not (tmp_path / "out").exists()

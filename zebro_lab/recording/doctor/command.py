@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 EPILOG = """
 Examples:
@@ -21,6 +22,7 @@ Exit code 1 if anything is BROKEN. A note concerns only users of the device or p
 Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings are written to.")]
 
 
+@request_command()
 def doctor(data: Data = Path()) -> None:
     """Check versions, packages, serial ports, CAN interfaces, disk and optional programs."""
     from zebro_lab.recording.doctor.finding import Grade

@@ -5,7 +5,7 @@ from tracking.camera import Board, CharucoBoard, Checkerboard
 from tracking.errors import TrackingError
 from tracking.markers import dictionary_named
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.units import quantity_to_si
+from zebro_lab.files.units import option_to_si
 
 _EXPECTED = (
     "expected kit, checkerboard:COLUMNSxROWS:SQUARE (inner corners) such as "
@@ -20,9 +20,8 @@ def parse_board(text: str) -> Board:
     A ChArUco board is `charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY`.
 
     Raises:
-        SettingsError: The form, a number, a length (above 0, below 1 m) or the dictionary is
-            invalid, or markers are not smaller than squares.
-        UnitError: A length has no valid number or unit.
+        SettingsError: The form, a number, a length (above 0, below 1 m), its unit or the dictionary
+            is invalid, or markers are not smaller than squares.
 
     >>> parse_board("checkerboard:9x6:25mm")
     Checkerboard(columns=9, rows=6, square=0.025)
@@ -56,7 +55,7 @@ def _grid(text: str, part: str) -> tuple[int, int]:
 
 
 def _length(text: str, part: str) -> float:
-    length = quantity_to_si(part, "m")
+    length = option_to_si(part, "m", key="--board")
     if not 0 < length < 1:
         raise _error(text, f"'{part}' is not above 0 and below 1 m; give a unit, as in 25mm")
     return length

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 import typer
 
+from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.camera.request import CameraRequest
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 Paper: TypeAlias = Literal["a4", "letter"]
 
-app = typer.Typer(
+app = Application(
     no_args_is_help=True, help="Print the tracking kit, calibrate the camera, show its clock code."
 )
 
@@ -29,8 +30,11 @@ zebro-lab camera calibrate board-photos --board checkerboard:9x6:25mm --out came
 
 
 @app.command()
+@request_command()
 def kit(
-    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("tracking-kit"),
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder to write.")] = Path(
+        "tracking-kit"
+    ),
     paper: Annotated[Paper, typer.Option(help="Size of the paper.")] = "a4",
 ) -> None:
     """Write a true-scale PDF of markers, board and ruler, and a floor.toml to edit."""
@@ -82,9 +86,13 @@ def calibration_lines(result: "CameraResult") -> list[str]:
 
 
 @app.command()
+@request_command()
 def clock(
     duration: Annotated[
-        float | None, typer.Option(min=0.0, help="Time to show it [s]; default: until Ctrl-C.")
+        float | None,
+        typer.Option(
+            min=0.0, metavar="SECONDS", help="Time to show it [s]; default: until Ctrl-C."
+        ),
     ] = None,
 ) -> None:
     """Show the computer's time as a QR code to photograph; give the photograph to track --clock."""

@@ -14,7 +14,7 @@ LensModel: TypeAlias = Literal["auto", "none", "k1", "k1-k2", "full"]
 class CameraRequest:
     """Options of `zebro-lab camera calibrate`."""
 
-    photos: Annotated[Path, Argument(help="Folder of photographs of the board.")]
+    photos: Annotated[Path, Argument(metavar="DIR", help="Folder of photographs of the board.")]
     board: Annotated[
         str,
         Option(
@@ -23,7 +23,7 @@ class CameraRequest:
             "charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY (squares).",
         ),
     ] = "kit"
-    out: Annotated[Path, Option(help="File to write.")] = Path("camera.toml")
+    out: Annotated[Path, Option(metavar="FILE", help="File to write.")] = Path("camera.toml")
     lens: Annotated[
         LensModel,
         Option(
@@ -31,3 +31,9 @@ class CameraRequest:
         ),
     ] = "auto"
     workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for a board that does not exist."""
+        from zebro_lab.track.camera.board_argument import parse_board
+
+        parse_board(self.board)

@@ -14,5 +14,5 @@ class CompareRequest:
 
     first: Annotated[Path, Argument(metavar="A", help="Calibration folder or run folder.")]
     second: Annotated[Path, Argument(metavar="B", help="Second folder, of the same kind as A.")]
-    out: Annotated[Path, Option(help="Folder to write.")] = Path("comparison")
-    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1
+    out: Annotated[Path, Option(metavar="DIR", help="Folder to write.")] = Path("comparison")
+    seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1

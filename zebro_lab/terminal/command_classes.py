@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""Commands and groups of commands: `-h`, whole summaries in the help, no option given twice."""
+
+import inspect
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+SETTINGS: Final = {"help_option_names": ["-h", "--help"]}
+
+
+class Command(TyperCommand):
+    """Command that refuses an option given twice and shows plain metavars in its help."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse arguments as Typer does, after a check that no option is given twice.
+
+        Raises:
+            BadParameter: An option that takes one value is given more than once.
+        """
+        _require_single(self, ctx, args)
+        return super().parse_args(ctx, args)
+
+    def get_short_help_str(self, limit: int = 45) -> str:
+        """Return the first sentence of the help, not shortened to `limit` characters."""
+        return _summary(self.help)
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return the parts of the usage line, without braces around required arguments."""
+        return [re.sub(r"[{}]", "", piece) for piece in super().collect_usage_pieces(ctx)]
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the help of arguments, then of options, with their metavars."""
+        arguments, options = [], []
+        for param in self.get_params(ctx):
+            record = param.get_help_record(ctx)
+            if record is None:
+                continue
+            if param.param_type_name == "argument":
+                name = param.metavar or param.name
+                arguments.append((name + "..." * (param.nargs != 1), record[1]))
+            else:
+                options.append(record)
+        for title, rows in (("Arguments", arguments), ("Options", options)):
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+
+class Group(TyperGroup):
+    """Group of commands that lists them with whole summaries."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse arguments as Typer does, after a check that no option is given twice.
+
+        Raises:
+            BadParameter: An option that takes one value is given more than once.
+        """
+        _require_single(self, ctx, args)
+        return super().parse_args(ctx, args)
+
+    def get_short_help_str(self, limit: int = 45) -> str:
+        """Return the first sentence of the help, not shortened to `limit` characters."""
+        return _summary(self.help)
+
+
+class Application(typer.Typer):
+    """Typer application whose commands and groups are those of this module.
+
+    Args:
+        settings: Settings of `typer.Typer`, which override those of all our applications.
+    """
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(
+            **{
+                "cls": Group,
+                "context_settings": SETTINGS,
+                "rich_markup_mode": None,
+                "pretty_exceptions_enable": False,
+                **settings,
+            }
+        )
+
+    def command(self, name: str | None = None, **settings: Any) -> Callable[..., Any]:
+        """Return the decorator that adds a function as a command, as `typer.Typer.command`."""
+        return super().command(name, **{"cls": Command, "context_settings": SETTINGS, **settings})
+
+
+def _require_single(command: Any, ctx: Any, args: Sequence[str]) -> None:
+    _, _, given = command.make_parser(ctx).parse_args(args=list(args))
+    for param, times in Counter(given).items():
+        is_plain_flag = getattr(param, "is_flag", False) and not param.secondary_opts
+        if param.param_type_name == "argument" or param.multiple or is_plain_flag or times < 2:
+            continue
+        raise typer.BadParameter("given twice; give it once", ctx=ctx, param=param)
+
+
+def _summary(text: str | None) -> str:
+    """Return the first paragraph of a help text in one line, up to its first full stop."""
+    paragraph = " ".join(inspect.cleandoc(text or "").split("\n\n")[0].split())
+    return paragraph.split(". ")[0].rstrip(".")

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+"""The option `--version`: version and commit of the software."""
+
+from typing import Annotated, TypeAlias
+
+import typer
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        from zebro_lab.files.commit import software_commit
+
+        typer.echo(f"zebro-lab {version('zebro-lab')}, commit {software_commit()}")
+        raise typer.Exit
+
+
+Version: TypeAlias = Annotated[
+    bool,
+    typer.Option(
+        "--version",
+        callback=_print_version,
+        is_eager=True,
+        help="Print version and commit of the software, and exit.",
+    ),
+]

@@ -1,13 +1,39 @@
 # SPDX-License-Identifier: MIT
-"""The installed command, started as a process of its own."""
+"""The installed command, started as a process of its own or run within this one."""
 
 import contextlib
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from zebro_lab.main import app
+from zebro_lab.terminal.ending import run
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
+
+
+class Ended(NamedTuple):
+    """How a command ended: exit code, and what it printed."""
+
+    code: int
+    out: str
+    err: str
+
+
+def within_process(monkeypatch, capsys) -> Callable[..., Ended]:
+    """Return what runs `zebro-lab` with arguments in this process, which saves its start."""
+
+    def run_with(*arguments: object) -> Ended:
+        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            run(app)
+        return Ended(int(ended.value.code or 0), *capsys.readouterr())
+
+    return run_with
 
 
 @contextlib.contextmanager

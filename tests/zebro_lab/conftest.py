@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What tests of stages and commands share: running a command, a simulated sweep, a walked path."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -14,9 +12,7 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from model.walk.path import WalkPath
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
-from support.commands import COMMAND
-from zebro_lab.main import app
-from zebro_lab.terminal.ending import run
+from support.commands import Ended, within_process
 
 COLUMNS = """
 source = "sim:rig-sweep"
@@ -25,25 +21,10 @@ load_cell.zero_stability = "0.1 N"
 """
 
 
-class Ended(NamedTuple):
-    """How a command ended: exit code, and what it printed."""
-
-    code: int
-    out: str
-    err: str
-
-
 @pytest.fixture
 def run_command(monkeypatch, capsys) -> Callable[..., Ended]:
     """Return what runs `zebro-lab` with arguments in this process."""
-
-    def run_with(*arguments: object) -> Ended:
-        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            run(app)
-        return Ended(int(ended.value.code or 0), *capsys.readouterr())
-
-    return run_with
+    return within_process(monkeypatch, capsys)
 
 
 @pytest.fixture(scope="session")

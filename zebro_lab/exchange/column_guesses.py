@@ -3,7 +3,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -30,8 +30,13 @@ _SIGNED: Final = {
     *(f"{name}_{axis}" for name in ("rate", "force") for axis in "xyz"),
 }  # fmt: skip
 """Columns whose sign is a convention that no table shows."""
-_ROS = re.compile(r"(.*[./_])?(orientation|angular_velocity|linear_acceleration)[./_][xyzw]")
-_POSE = re.compile(r"(.*[./_])?(pose\.)?position[./_][xyz]|p_RS_R_[xyz].*|t[xyz]")
+_ROS = re.compile(
+    r"(.*[./_])?(orientation|angular_velocity|linear_acceleration)[./_][xyzw]"
+    r"|(.*[./])?position[./][xyz]"
+)
+_UPRIGHT = re.compile(r"p_RS_R_[xyz].*|t[xyz]")
+"""Positions with z up and y to the left of x, beside those of ROS: of EuRoC and TUM."""
+_AXES = ("x_m", "y_m", "z_m")
 _MOST_SET_POINTS = 200
 _QUATERNION = ("qw", "qx", "qy", "qz")
 
@@ -104,7 +109,39 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
         if fitting:
             guesses[canonical] = _guess(table, canonical, kind, fitting)
             taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
-    return guesses
+    return _of_one_mind(_with_axes(guesses))
+
+
+def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
+    """Return the guesses with a doubt of the axes of a path in space: y may be up."""
+    if "z_m" not in guesses:
+        return guesses
+    doubt = "the file does not say which axis is up"
+    return {
+        canonical: replace(guess, name_doubt=guess.name_doubt or doubt)
+        if canonical in _AXES and not _is_upright(guess.name, canonical) else guess
+        for canonical, guess in guesses.items()
+    }  # fmt: skip
+
+
+def _is_upright(name: str, canonical: str) -> bool:
+    return is_canonical(name, canonical) or any(
+        pattern.fullmatch(name) is not None for pattern in (_ROS, _UPRIGHT)
+    )
+
+
+def _of_one_mind(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
+    """Return the guesses with degrees for all angles whose unit is in doubt, if one has degrees."""
+    angles = {
+        canonical: guess for canonical, guess in guesses.items()
+        if guess.unit and guess.unit.doubt and guess.unit.unit in ("rad", "deg")
+    }  # fmt: skip
+    if not any(guess.unit and guess.unit.unit == "deg" for guess in angles.values()):
+        return guesses
+    return guesses | {
+        canonical: replace(guess, unit=replace(guess.unit, unit="deg"))
+        for canonical, guess in angles.items() if guess.unit
+    }  # fmt: skip
 
 
 def guess_set_points(table: RawTable) -> list[str]:
@@ -188,7 +225,7 @@ def _guess(table: RawTable, canonical: str, kind: str, fitting: list[str]) -> Co
         return ColumnGuess(name, name_doubt=doubt)
     numbers = numbers_or_none(table, name)
     unit = UnitGuess("s", "") if nanoseconds else guess_unit(table, name, si_unit, si=known)
-    sign, sign_doubt = _sign(canonical, numbers, known=known or _POSE.fullmatch(name) is not None)
+    sign, sign_doubt = _sign(canonical, numbers, known=known or bool(_UPRIGHT.fullmatch(name)))
     zero = "90 deg must be where the centre of the leg's arc is straight below the hip"
     return ColumnGuess(
         name, unit, sign, doubt, sign_doubt, zero if canonical in ANGLES and not known else "",

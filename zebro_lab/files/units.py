@@ -20,7 +20,8 @@ _NO_UNIT = {"", "-", "1", "–", "none", "ratio", "unitless"}  # how headers wri
 _MISREAD = {"Grad": "deg", "Grad/s": "deg/s", "U/min": "rpm", "Upm": "rpm", "RPM": "rpm"}
 """Spellings in which pint would see another unit: gigarad for the German degree."""
 _SPELLINGS = {
-    "sec": "s", "secs": "s", "sek": "s", "sekunde": "s", "sekunden": "s", "sek.": "s", "msec": "ms",
+    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "sek": "s",
+    "sekunde": "s", "sekunden": "s", "sek.": "s", "msec": "ms",
     "usec": "us", "nsec": "ns", "kph": "km/h", "kmh": "km/h", "km/hr": "km/h", "mps": "m/s",
     "fps": "ft/s", "°": "deg", "rev/min": "rpm", "rad/sec": "rad/s",
     "deg/sec": "deg/s", "°/s": "deg/s", "newton": "N", "newtons": "N", "lbs": "lbf",
@@ -29,7 +30,7 @@ _SPELLINGS = {
 }  # fmt: skip
 """What strangers write for units that pint does not know, in lower case."""
 _BASES = (
-    r"s|sec|secs|seconds?|sek|Sekunden|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs|m|mm|cm|km|um|in|inch"
+    r"s|[Ss]ecs?|[Ss]econds?|[Ss]ek|Sekunden|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs|m|mm|cm|km|um|in|inch"
     r"|ft|N|kN|mN|lbf?|lbs|kgf?|kp|g|rad|mrad|deg|degrees?|[Gg]rad|°|rev|turns?|rpm|RPM|Hz|kHz|mV|V"
     r"|mA|A|W|kW|J|K|°C|degC|deg ?[CF]|°F|C|F|Pa|kPa|hPa|MPa|bar|mbar|psi|%|percent|Nm|N-m|N\*m|N m"
     r"|pix|px|pixels?|ticks|counts?|digits?|kph|mph|kmh|mps|U|G|T|uT|µT|mT|dB|ohm|Ohm|Ω|N/mm|raw"

@@ -125,8 +125,8 @@ class MappedColumn:
         try:
             factor = factor_to_si(unit, si_unit)
         except UnitError as error:
-            problem = f"the file states an {error}; state unit = ... of this column in "
-            raise table.fault(f"{problem}{COLUMNS_FILE}", self.name) from error
+            problem = f"the file states its unit: {error}; state another in {COLUMNS_FILE}"
+            raise table.fault(problem, self.name) from error
         return replace(self, unit=unit, factor=math.copysign(factor, self.factor))
 
 

@@ -100,7 +100,8 @@ def find_header(rows: Sequence[Row], data: DataRows) -> Header:
     width = max(len(names), data.width)
     names += [""] * (width - len(names))
     filled = [name.strip() or f"column {i}" for i, name in enumerate(names, start=1)]
-    notes = [f"{len(above)} lines above the header are not read"] * bool(above)
+    titles = f"{len(above)} lines are" if len(above) > 1 else "a line is"
+    notes = [f"{titles} above the header and not read"] * bool(above)
     notes += ["the row of units below the header is used"] * (units is not None)
     notes += ["the row between units and numbers is not read"] * bool(symbols)
     return made_header(filled, data.first, units_row=units, notes=tuple(notes))

@@ -12,6 +12,7 @@ from model.poses import Poses
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.replacement import settle
+from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.folder import MANIFEST, TRACK_CSV, read_track_manifest
@@ -121,10 +122,14 @@ def tum_lines(poses: Poses) -> str:
 
 
 def _poses(table: RawTable, file: Path) -> Poses:
-    t, x, y = (_numbers(table, _present(table, names)) for names in _NAMES)
+    si_units = ("s", "m", "m")
+    t, x, y = (
+        _numbers(table, _present(table, names), unit)
+        for names, unit in zip(_NAMES, si_units, strict=True)
+    )
     table.require_increasing(_present(table, _NAMES[0]), t)
     yaw_name = next((name for name in _YAW if name in table.columns), None)
-    yaw = np.full(len(t), np.nan) if yaw_name is None else _numbers(table, yaw_name)
+    yaw = np.full(len(t), np.nan) if yaw_name is None else _numbers(table, yaw_name, "rad")
     try:
         return Poses(t, np.column_stack([x, y]), np.unwrap(yaw))
     except DomainError as error:
@@ -139,12 +144,18 @@ def _present(table: RawTable, names: Sequence[str]) -> str:
     raise table.fault(f"missing; expected {names[0]} or {names[1]}, found {columns}", names[0])
 
 
-def _numbers(table: RawTable, name: str) -> Array:
-    return table.finite(name, "a finite number: leave such poses out")
+def _numbers(table: RawTable, name: str, si_unit: str) -> Array:
+    """Return a column in SI, from the unit that the file states for it, if it states one."""
+    values = MappedColumn(name, si_unit).in_unit_of(table, si_unit).in_si(table)
+    table.require_finite(name, values, "a finite number: leave such poses out")
+    return values
 
 
 def _covariance(table: RawTable) -> Array:
-    upper = np.column_stack([_numbers(table, name) for name in _COVARIANCE])
+    units = ("m^2", "m^2", "m rad", "m^2", "m rad", "rad^2")
+    upper = np.column_stack(
+        [_numbers(table, name, unit) for name, unit in zip(_COVARIANCE, units, strict=True)]
+    )
     covariance = np.empty((len(upper), 3, 3))
     for k, (i, j) in enumerate(zip(*np.triu_indices(3), strict=True)):
         covariance[:, i, j] = covariance[:, j, i] = upper[:, k]

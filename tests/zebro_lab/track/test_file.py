@@ -32,6 +32,18 @@ def test_a_stranger_s_track_without_headings_is_read_and_says_so(tmp_path):
     assert "no column yaw_rad" in " ".join(track.notes)
 
 
+def test_units_that_the_table_states_are_used(tmp_path):
+    file = tmp_path / "track.csv"
+    file.write_text("t,x,y,yaw\nms,mm,cm,deg\n0,10,1,0\n500,20,2,90\n1000,30,3,180\n")
+    poses = read_track(file).poses
+    np.testing.assert_allclose(poses.t, [0, 0.5, 1])
+    np.testing.assert_allclose(poses.position, [[0.01, 0.01], [0.02, 0.02], [0.03, 0.03]])
+    np.testing.assert_allclose(poses.yaw, [0, np.pi / 2, np.pi])
+    file.write_text("t,x,y\ns,N,m\n0,10,1\n500,20,2\n1000,30,3\n")
+    with pytest.raises(DataError, match="column 'x': the file states its unit: unit 'N'"):
+        read_track(file)
+
+
 def test_headings_are_unwrapped(tmp_path):
     track = read_track(write(tmp_path, "t,x,y,yaw\n0,0,0,3.1\n1,1,0,-3.1\n2,2,0,-3.0\n"))
     assert track.poses.yaw[1] > 3.1

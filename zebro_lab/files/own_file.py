@@ -9,14 +9,19 @@ from typing import Final
 
 from zebro_lab.files.errors import AlreadyExists, NotFound, ZebroLabError
 from zebro_lab.files.folder_manifest import read_json_object
+from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.result_folder import MANIFEST
 
-_HEAD: Final = 1 << 16
-"""Number of leading bytes that are searched for the mark of a command."""
+_SEARCHED: Final = 1 << 16
+"""Number of leading, and of trailing, bytes that are searched for the mark of a command."""
 _PNG: Final = b"\x89PNG\r\n\x1a\n"
+_PDF: Final = b"%PDF-"
+_XML: Final = b"<?xml"
 SOFTWARE: Final = "zebro-lab"
 COMMENT: Final = "Comment"
 """PNG keyword under which a picture names the command that drew it."""
+_DRAWN_BY: Final = "drawn by zebro-lab "
+"""Begins the description of an SVG, and the subject of a PDF, that names its command."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +30,11 @@ class OwnFile:
 
     Attributes:
         command: The command, as shown in messages.
-        is_ours: Returns whether the command wrote a file, given the first 64 KiB of the file.
+        is_ours: Returns whether the command wrote a file, given its first and its last 64 KiB.
     """
 
     command: str
-    is_ours: Callable[[bytes], bool]
+    is_ours: Callable[[bytes, bytes], bool]
 
 
 def html_page(command: str) -> OwnFile:
@@ -37,21 +42,41 @@ def html_page(command: str) -> OwnFile:
 
     The tag does not name the command, so pages by other commands are recognised as well.
     """
-    return OwnFile(command, lambda head: b'<meta name="generator" content="zebro-lab ' in head)
+    mark = b'<meta name="generator" content="zebro-lab '
+    return OwnFile(command, lambda head, _: mark in head)
 
 
 def picture(command: str) -> OwnFile:
-    """Return the kind of a PNG picture by `command`, recognised by two of its texts.
+    """Return the kind of a picture by `command`, recognised by its `picture_metadata`.
 
-    `Software` must be "zebro-lab", and `Comment` name the command; pictures without `Comment`, of
-    an earlier version, count as drawn by any command.
+    PNG pictures without `Comment`, of an earlier version, count as drawn by any command.
     """
+    mark = f"{_DRAWN_BY}{command}"
 
-    def is_ours(head: bytes) -> bool:
+    def is_ours(head: bytes, tail: bytes) -> bool:
+        if head.startswith(_PDF):
+            return f"/Subject ({mark})".encode() in tail
+        if head.lstrip().startswith(_XML):
+            return f"<dc:description>{mark}</dc:description>".encode() in head
         texts = dict(_png_texts(head))
         return texts.get("Software") == SOFTWARE and texts.get(COMMENT, command) == command
 
     return OwnFile(command, is_ours)
+
+
+def picture_metadata(form: PictureFormat, command: str | None) -> dict[str, str | None]:
+    """Return the metadata of a picture, as matplotlib takes it, without time and version.
+
+    Args:
+        form: Format of the picture.
+        command: Command that draws it; None to name none.
+    """
+    if form == "png":
+        return {"Software": SOFTWARE, **({} if command is None else {COMMENT: command})}
+    drawn = None if command is None else f"{_DRAWN_BY}{command}"
+    if form == "svg":
+        return {"Creator": SOFTWARE, "Date": None, "Description": drawn}
+    return {"Creator": SOFTWARE, "Producer": SOFTWARE, "CreationDate": None, "Subject": drawn}
 
 
 def text_file(command: str, heading: str) -> OwnFile:
@@ -61,7 +86,7 @@ def text_file(command: str, heading: str) -> OwnFile:
         command: The command that writes the file.
         heading: Text that the file begins with.
     """
-    return OwnFile(command, lambda head: head.startswith(heading.encode()))
+    return OwnFile(command, lambda head, _: head.startswith(heading.encode()))
 
 
 def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Path:
@@ -97,8 +122,10 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
     if not file.is_file():
         raise AlreadyExists(f"{out} is not a regular file; choose another file with --out")
     with file.open("rb") as opened:
-        head = opened.read(_HEAD)
-    if head and not kind.is_ours(head):  # an empty file may be overwritten
+        head = opened.read(_SEARCHED)
+        opened.seek(max(file.stat().st_size - _SEARCHED, 0))
+        tail = opened.read(_SEARCHED)
+    if head and not kind.is_ours(head, tail):  # an empty file may be overwritten
         raise AlreadyExists(
             f"{out} was not made by {kind.command}; move it away, or choose another --out"
         )

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Shared style of all figures: colours, size, title, legend, labels, and writing PNG files.
+"""Shared style of all figures: colours, size, title, legend, labels, and writing the files.
 
 Colours are Okabe and Ito's and viridis: colour-blind readers and grey prints can distinguish them.
 """
 
 import math
 import re
+import textwrap
 from collections.abc import Sequence
-from os import PathLike
+from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
@@ -15,15 +16,19 @@ from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from pint import Unit
 
 from model.poses import Poses
 from model.slip.law import Array, Parameter
-from zebro_lab.files.own_file import COMMENT, SOFTWARE
+from zebro_lab.files.own_file import picture_metadata
+from zebro_lab.files.picture_format import PictureFormat, format_of
 
 BLUE, RED = "#0072B2", "#D55E00"
 CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
 _SHOWN_DRAWS = 60
+_TITLE = 11.0  # letters of a title in each inch of a figure's width
+_HANDLE, _LETTER = 0.6, 0.08  # inches of a legend's entry: its symbol, and each letter
 NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn in an additional panel
 
 # A decorator. The user's matplotlibrc neither affects the figures nor is changed by them.
@@ -37,6 +42,9 @@ styled = style.context(
             "legend.frameon": False,
             "axes.spines.top": False,
             "axes.spines.right": False,
+            "pdf.fonttype": 42,  # TrueType, embedded; publishers refuse matplotlib's default
+            "svg.fonttype": "path",  # letters as outlines: they look alike without the font
+            "svg.hashsalt": "zebro-lab",  # the same figure gives the same bytes
         },
     ]
 )
@@ -66,15 +74,20 @@ def new_figure(title: str, simulated: bool, *, width: float, height: float) -> F
     """
     figure = Figure(figsize=(width, height), dpi=150, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
-    figure.suptitle(f"{title} (simulated)" if simulated else title)
+    text = f"{title} (simulated)" if simulated else title
+    figure.suptitle(textwrap.fill(text, int(_TITLE * width)), parse_math=False)
     return figure
 
 
 @styled
 def save(
-    figure: Figure, path: str | PathLike[str] | IO[bytes], *, command: str | None = None
+    figure: Figure,
+    path: Path | IO[bytes],
+    *,
+    command: str | None = None,
+    form: PictureFormat | None = None,
 ) -> None:
-    """Write a figure as PNG at its own resolution, whatever the path's suffix.
+    """Write a figure as PNG, at its own resolution, or as SVG or PDF with its fonts inside.
 
     The file is reproducible: it has no time stamp and no library version.
 
@@ -83,9 +96,10 @@ def save(
         path: File to write, in an existing folder, or an open file.
         command: Command that draws the picture, stored as metadata, by which the command recognises
             a picture of its own; None for a picture in a result folder.
+        form: Format of the file; None for that of the path's suffix, PNG for an open file.
     """
-    metadata = {"Software": SOFTWARE, **({} if command is None else {COMMENT: command})}
-    figure.savefig(path, format="png", dpi="figure", metadata=metadata)
+    form = form or (format_of(path) if isinstance(path, Path) else "png")
+    figure.savefig(path, format=form, dpi="figure", metadata=picture_metadata(form, command))
 
 
 def legend_below(figure: Figure, *, columns: int) -> None:
@@ -93,14 +107,26 @@ def legend_below(figure: Figure, *, columns: int) -> None:
 
     Args:
         figure: Figure to add the legend to.
-        columns: Number of columns of the legend.
+        columns: Largest number of columns of the legend; fewer are used in a narrow figure.
     """
     entries = {
         label: handle
         for axes in figure.axes
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
     }
-    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=columns)
+    if not entries:
+        return
+    widest = max(map(len, entries), default=0)
+    fitting = int(figure.get_figwidth() / (_HANDLE + _LETTER * widest))
+    figure.legend(
+        entries.values(), entries.keys(), loc="outside lower center",
+        ncols=max(1, min(columns, fitting)),
+    )  # fmt: skip
+
+
+def few_ticks(most: int) -> MaxNLocator:
+    """Return a tick locator: up to `most` intervals of 1, 2, 2.5 or 5 times a power of ten."""
+    return MaxNLocator(most, steps=(1, 2, 2.5, 5, 10))
 
 
 def map_axes(axes: Axes) -> None:
@@ -159,6 +185,19 @@ def slip_label(definition: str) -> str:
 def point_alpha(count: int) -> float:
     """Compute the opacity of n scatter points, 12 / sqrt(n) limited to 0.15 to 0.8 [-]."""
     return float(np.clip(12 / math.sqrt(max(count, 1)), 0.15, 0.8))
+
+
+def time_texts(t: Array) -> list[str]:
+    """Format times [s] with the fewest decimals, at most three, that rounding does not show.
+
+    It shows where a time moves by more than a fiftieth of the least difference between two times.
+
+    >>> time_texts(np.array([0.002, 6.0, 12.04])), time_texts(np.array([0.5, 1.25]))
+    (['0', '6', '12'], ['0.50', '1.25'])
+    """
+    least = float(np.diff(np.unique(t)).min()) if np.ptp(t) > 0 else 1.0
+    digits = next((n for n in range(3) if np.abs(t - t.round(n)).max() <= 0.02 * least), 3)
+    return [f"{each + 0.0:.{digits}f}" for each in t.round(digits)]
 
 
 def plain(value: float) -> str:

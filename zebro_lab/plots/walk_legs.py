@@ -6,17 +6,20 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from model.robot import LEFT, N_LEGS
 from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.thesis.traction import paired_sum
-from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
+from zebro_lab.plots.sheet import BLUE, RED, few_ticks, legend_below, new_figure, plain, styled
 
 _NAMES = ("left front", "right front", "left middle", "right middle", "left rear", "right rear")
 _STANCE = "0.93"
+_PALE_BLUE = "#56B4E9"
+_HALF = 0.05  # s, before and after a sample, over which a leg's speed is taken
+_AT_REST = np.radians(3.0)  # rad/s; a slower leg rests, and its slip ratio is 0/0
 
 
 @styled
@@ -29,13 +32,15 @@ def slip_ratios(path: WalkPath, *, title: str) -> Figure:
 
     Returns:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded. A leg in the
-        air, or on its toe, which does not roll, may have no ratio. The limits leave out 3 % of the
-        ratios in contact at either end: a leg dragged while it hardly turns has very large ones.
+        air, or on its toe, which does not roll, may have no ratio, and one at rest has none that
+        means anything. The limits leave out 3 % of the ratios in contact at either end, marked: a
+        leg dragged while it hardly turns has very large ones.
     """
-    limits = _limits(path.slip_ratio[path.contact], least=0.02, cut=0.03)
-    lines = {"slip ratio": path.slip_ratio}
+    ratio = np.where(_turning(path.t, path.theta), path.slip_ratio, np.nan)
+    limits = _limits(ratio[path.contact], least=0.02, cut=0.03)
+    lines = {"slip ratio; none on the toe and at rest": ratio}
     return _leg_panels(
-        path.t, path.contact, lines, limits, label="slip ratio of the model [-]", title=title
+        path.t, path.contact, lines, limits, label="slip ratio of the model", unit="-", title=title
     )
 
 
@@ -49,11 +54,13 @@ def normal_forces(path: WalkPath, *, title: str) -> Figure:
 
     Returns:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded. The largest
-        1 % may lie beyond the limits.
+        1 % may lie beyond the limits, which is marked.
     """
     limits = 0.0, _limits(path.normal_force[path.contact], least=1.0)[1]
     lines = {"normal force": path.normal_force}
-    return _leg_panels(path.t, path.contact, lines, limits, label="normal force [N]", title=title)
+    return _leg_panels(
+        path.t, path.contact, lines, limits, label="normal force", unit="N", title=title
+    )
 
 
 @styled
@@ -66,7 +73,8 @@ def traction_forces(path: WalkPath, *, title: str) -> Figure:
 
     Returns:
         The figure: a panel for each leg, arranged as on the robot, with the components forward and
-        to the left of the heading; contact is shaded. 1 % at either end may exceed the limits.
+        to the left of the heading; contact is shaded. 1 % at either end may exceed the limits,
+        which is marked.
     """
     return _draw_traction(path.t, path.traction_force, path.contact, title)
 
@@ -106,8 +114,10 @@ def gantt(path: WalkPath, *, title: str) -> Figure:
     axes = figure.add_subplot()
     for leg in range(N_LEGS):
         bars = [(start, end - start) for start, end in stances(path.t, path.contact[:, leg])]
-        colour = BLUE if leg in LEFT else "#56B4E9"
-        axes.broken_barh(bars, (leg + 0.6, 0.8), facecolors=colour, lw=0)
+        colour, side = (BLUE, "left") if leg in LEFT else (_PALE_BLUE, "right")
+        axes.broken_barh(
+            bars, (leg + 0.6, 0.8), facecolors=colour, lw=0, label=f"{side} leg on the ground"
+        )
     axes.set(
         xlabel="time [s]", xlim=(path.t[0], path.t[-1]), ylim=(N_LEGS + 0.7, 0.3),
         yticks=range(1, N_LEGS + 1),
@@ -116,6 +126,7 @@ def gantt(path: WalkPath, *, title: str) -> Figure:
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="x", color="0.9", lw=0.6)
     axes.set_axisbelow(True)
+    legend_below(figure, columns=2)
     return figure
 
 
@@ -141,52 +152,74 @@ def stances(t: Array, contact: NDArray[np.bool_]) -> list[tuple[float, float]]:
     ]
 
 
+def _turning(t: Array, theta: Array) -> NDArray[np.bool_]:
+    """Return whether each leg turns both before and after each sample, shape (n, 6).
+
+    Args:
+        t: Times, shape (n,) [s].
+        theta: Leg angles, shape (n, 6) [rad].
+    """
+    turns = np.ones(theta.shape, dtype=bool)
+    for half in (-_HALF, _HALF):
+        there = np.clip(t + half, t[0], t[-1])
+        moved = np.column_stack([np.interp(there, t, each) for each in theta.T]) - theta
+        whole = np.abs(there - t) > 0.5 * _HALF  # else the walk begins or ends here
+        turns &= (np.abs(moved) >= _AT_REST * np.abs(there - t)[:, None]) | ~whole[:, None]
+    return turns
+
+
 def _draw_traction(t: Array, force: Array, contact: NDArray[np.bool_], title: str) -> Figure:
     lines = {"forward": force[..., 0], "to the left": force[..., 1]}
     limits = _limits(force[contact], least=0.5)
-    return _leg_panels(t, contact, lines, limits, label="traction force [N]", title=title)
+    return _leg_panels(t, contact, lines, limits, label="traction force", unit="N", title=title)
 
 
 def _leg_panels(
     t: Array, contact: NDArray[np.bool_], lines: Mapping[str, Array],
-    limits: tuple[float, float], *, label: str, title: str,
+    limits: tuple[float, float], *, label: str, unit: str, title: str,
 ) -> Figure:  # fmt: skip
     """Draw one or two `lines`, arrays (n, 6) by label, over time, in a panel per leg from above.
 
-    Contact is shaded; `limits` are those of the vertical axes, `label` is theirs.
+    Contact is shaded; `limits` are those of the vertical axes, `label` and `unit` are theirs.
     """
-    figure = new_figure(title, True, width=8.0, height=6.2)
+    figure = new_figure(title, True, width=8.0, height=6.4)
+    beyond = f"beyond the axes; furthest {_furthest(lines, limits)} {unit}".removesuffix(" -")
     for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
-        axes.yaxis.set_major_locator(MaxNLocator(5))
+        axes.yaxis.set_major_locator(few_ticks(5))
         _shade(axes, t, contact[:, leg])
         for (name, values), colour in zip(lines.items(), (BLUE, RED), strict=False):
             axes.plot(t, values[:, leg], color=colour, lw=0.9, label=name)
-        axes.set_ylim(limits)
-    _label(figure, label, computed=any(np.isfinite(each).any() for each in lines.values()))
-    if len(lines) > 1:
-        legend_below(figure, columns=2)
+            mark_beyond(axes, t, values[:, leg], limits, label=beyond)
+    computed = any(np.isfinite(each).any() for each in lines.values())
+    _label(figure, f"{label} [{unit}]", computed=computed)
+    legend_below(figure, columns=4)
     return figure
 
 
+def _furthest(lines: Mapping[str, Array], limits: tuple[float, float]) -> str:
+    """Format the value that lies furthest beyond the limits; "0" if none does."""
+    values = np.concatenate([each.ravel() for each in lines.values()])
+    outside = values[(values < limits[0]) | (values > limits[1])]
+    return plain(float(outside[np.abs(outside).argmax()])) if len(outside) else "0"
+
+
 def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
-    for start, end in stances(t, contact):
-        axes.axvspan(start, end, color=_STANCE, lw=0, zorder=0)
+    spans = [(start, end - start) for start, end in stances(t, contact)]
+    axes.broken_barh(
+        spans, (0, 1), transform=axes.get_xaxis_transform(), facecolors=_STANCE, lw=0, zorder=0,
+        label="leg on the ground",
+    )  # fmt: skip
     axes.axhline(0, color="0.6", lw=0.5, zorder=1)
     axes.set_xlim(t[0], t[-1])
 
 
 def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
-    """Compute axis limits that hold zero and all finite values but a share `cut` at either end.
-
-    Impacts of a few samples would flatten all else. The margin is a tenth of the range, at least of
-    `least`; without finite values the limits are this margin around zero.
-    """
-    finite = values[np.isfinite(values)]
-    low, high = np.quantile(finite, (cut, 1 - cut)) if len(finite) else (0.0, 0.0)
-    low, high = min(float(low), 0.0), max(float(high), 0.0)
-    margin = 0.1 * max(high - low, least)
-    return low - margin, high + margin
+    """Compute axis limits that hold zero and all finite values but a share `cut` at either end."""
+    low, high = limits_without_tips(values, cut=cut, margin=0.0, least=0.0)
+    return limits_without_tips(
+        np.array([min(low, 0.0), max(high, 0.0)]), cut=0.0, margin=0.1, least=1.2 * least
+    )
 
 
 def _label(figure: Figure, what: str, *, computed: bool) -> None:
@@ -194,7 +227,7 @@ def _label(figure: Figure, what: str, *, computed: bool) -> None:
     figure.supylabel(what, fontsize=9.0)
     for axes in figure.axes[-2:]:
         axes.set_xlabel("time [s]")
-        axes.xaxis.set_major_locator(MaxNLocator(5))
+        axes.xaxis.set_major_locator(few_ticks(6))
     for axes in () if computed else figure.axes:
         axes.text(
             0.5, 0.7, "this model computes none", ha="center", color="0.4",

@@ -18,6 +18,7 @@ from model.walk.path import WalkPath
 from zebro_lab.files.errors import NotFound
 from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.tables.table_files import read_table_file
@@ -31,9 +32,9 @@ PICTURES = (
     "paired_traction", "gantt",
 )  # fmt: skip
 ANIMATIONS = ("animation.mp4", "animation.gif")
-DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band.png"
-BAND = (DRAWS, BAND_CSV, BAND_PICTURE)
-FILES = (PATH_CSV, *(f"{name}.png" for name in PICTURES), *ANIMATIONS, *BAND)
+DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band"
+BAND = (DRAWS, BAND_CSV, *in_every_format(BAND_PICTURE))
+FILES = (PATH_CSV, *in_every_format(*PICTURES), *ANIMATIONS, *BAND)
 WALKED = {kind: ResultKind(kind, kind, FILES, SCHEMA) for kind in KINDS}
 """Kinds of folders that `walk` and `predict` write."""
 

@@ -63,16 +63,16 @@ def write_walk(
     ) as folder:
         _draw(request, walked, folder, watcher)
         if walked.band is not None:
-            write_band(folder, walked.band, title=walked.title)
+            write_band(folder, walked.band, title=walked.title, form=request.pictures.form)
 
 
 def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
     robot, title = walked.described.robot, walked.title
     _raise_if_stopped(watcher)
-    if request.figures:
+    if request.pictures.figures:
         watcher.step("drawing", None)
-        draw_walk(folder, walked.path, robot, title=title, period=walked.reference.period)
-    if request.animate:
+        draw_walk(folder, walked.path, robot, title=title, asked=request.pictures)
+    if request.pictures.animate:
         from zebro_lab.plots.animation import animate  # matplotlib takes most of a second
 
         def follow(fraction: float) -> None:

@@ -20,6 +20,7 @@ from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import parsing
+from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS, INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs
 from zebro_lab.walk.request import BandRequest
@@ -126,13 +127,14 @@ def _offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> f
     return ASSUMED_OFFSET_DEG
 
 
-def write_band(folder: Path, paths: Poses, *, title: str) -> None:
-    """Write `draws.npz`, the quantiles `band.csv` and the picture `band.png` into a walk folder.
+def write_band(folder: Path, paths: Poses, *, title: str, form: PictureFormat = "png") -> None:
+    """Write `draws.npz`, the quantiles `band.csv` and the picture `band` into a walk folder.
 
     Args:
         folder: Folder to write into.
         paths: The paths, in the time base of the walk folder.
         title: Gait and model, for the title of the picture.
+        form: Format of the picture.
     """
     import pandas as pd
 
@@ -148,7 +150,7 @@ def write_band(folder: Path, paths: Poses, *, title: str) -> None:
         folder / BAND_CSV, index=False, float_format="%.8g", lineterminator="\n"
     )
     figure = path_band.path_band(paths, title=f"Predicted path: {title}")
-    save(figure, folder / BAND_PICTURE)
+    save(figure, folder / f"{BAND_PICTURE}.{form}")
 
 
 def read_draws(folder: Path) -> Poses:

@@ -21,6 +21,7 @@ from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.request import PredictRequest
+from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, robot_of, walk_with
 
 
@@ -60,6 +61,8 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
     suspected = leg_warnings(log.reference, leg_offset=described.robot.leg_offset)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
+    pictures = request.model.pictures
+    require_shown_times(pictures.snapshots, pictures.window, start, end)
     legs, notes = angles_from(log, start)
     watcher.step("walking", None)
     walked = walk_with(

@@ -11,6 +11,13 @@ from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
 from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.picture_options import (
+    FormatOption,
+    Instants,
+    Window,
+    parse_instants,
+    parse_window,
+)
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
 ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
@@ -57,6 +64,48 @@ class BandRequest:
 
 
 @dataclass(frozen=True)
+class PictureRequest:
+    """Options of the pictures of a walk: which, in what format, at what times."""
+
+    figures: Annotated[
+        bool, Option("--figures", help="Draw figures of path, motion, forces and contacts.")
+    ] = False
+    at: Annotated[
+        Instants | None,
+        Option(
+            parser=parse_instants, metavar="T1,T2,...",
+            help="With --figures: times of the snapshots on the path [s]; default: six, evenly "
+            "spaced.",
+        ),
+    ] = None  # fmt: skip
+    window: Annotated[
+        Window | None,
+        Option(
+            parser=parse_window, metavar="BEGIN:END",
+            help="With --figures: time that motion, forces and contacts are drawn of [s]; default: "
+            "the last two cycles of walking, motion whole.",
+        ),
+    ] = None  # fmt: skip
+    form: FormatOption = "png"
+    animate: Annotated[
+        bool, Option("--animate", help="Write an animation: mp4, or gif without ffmpeg.")
+    ] = False
+
+    def __post_init__(self) -> None:
+        """Raise `BadParameter` for times to draw without figures."""
+        for name in ("at", "window"):
+            if getattr(self, name) is not None and not self.figures:
+                raise BadParameter(
+                    "says what figures show; give --figures too", param_hint=f"'--{name}'"
+                )
+
+    @property
+    def snapshots(self) -> tuple[float, ...]:
+        """Times of `--at`, none if it was not given [s]."""
+        return () if self.at is None else self.at.t
+
+
+@dataclass(frozen=True)
 class ModelRequest:
     """Options of model, slip law, robot, band and pictures, shared by `walk` and `predict`."""
 
@@ -92,12 +141,7 @@ class ModelRequest:
         Limits(above=0),
     ] = None
     band: BandRequest = field(default_factory=BandRequest)
-    figures: Annotated[
-        bool, Option("--figures", help="Draw figures of path, motion, forces and contacts.")
-    ] = False
-    animate: Annotated[
-        bool, Option("--animate", help="Write an animation: mp4, or gif without ffmpeg.")
-    ] = False
+    pictures: PictureRequest = field(default_factory=PictureRequest)
 
     @property
     def inputs(self) -> tuple[Path, ...]:

@@ -14,6 +14,7 @@ from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.request import ModelRequest, WalkRequest
+from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, robot_of, walk_with
 
 
@@ -38,7 +39,8 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
     described = robot_of(request.model)
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
     watcher.step("walking", None)
-    duration = request.duration
+    duration, pictures = request.duration, request.model.pictures
+    require_shown_times(pictures.snapshots, pictures.window, 0.0, duration)
     walked = walk_with(
         request.model, described, gait.reference,
         duration=duration, what=gait.what, direction=gait.direction,

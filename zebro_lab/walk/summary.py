@@ -7,6 +7,7 @@ import numpy as np
 
 from model.slip.law import Array
 from model.walk.path import WalkPath
+from zebro_lab.walk.shown_time import leg_turns
 
 _STRAIGHT = 0.05  # rad/m: a radius above 20 m is not visible as a curve on a lab floor
 
@@ -94,8 +95,7 @@ def stride_poses(path: WalkPath) -> tuple[Array, int]:
         Columns t, x, y, yaw [s, m, m, rad], shape (m, 4), m >= 2, and the number of strides
         m - 1; the first and last sample and 0 if the legs do not complete a turn.
     """
-    turned = path.theta.mean(axis=1)
-    turns = (np.maximum.accumulate(turned) - turned[0]) / (2 * np.pi)
+    turns = leg_turns(path)
     # A stride may end with the walk, within rounding.
     whole = int(np.floor(turns[-1] + 1e-6))
     columns = np.column_stack([path.t, path.position[:, :2], path.yaw])

@@ -23,7 +23,7 @@ def texts(figure: Figure) -> str:
 
 @pytest.mark.parametrize("picture", PICTURES)
 def test_every_picture_ends_as_a_png_of_page_size(rig, tmp_path, picture):
-    path = tmp_path / f"{picture}.partial"
+    path = tmp_path / f"{picture}.png"
     save(rig.picture(picture), path)
     with Image.open(path) as image:
         assert image.format == "PNG"

@@ -10,11 +10,12 @@ from matplotlib import pyplot as plt
 from PIL import Image
 
 from model.slip import MagicFormula
+from zebro_lab.files.picture_format import FORMATS
 from zebro_lab.plots import (
     parameter_labels,
     save,
 )
-from zebro_lab.plots.sheet import legend_below, new_figure, slip_grid
+from zebro_lab.plots.sheet import legend_below, new_figure, slip_grid, time_texts
 
 
 def test_no_figure_is_left_with_pyplot(one_load, tmp_path):
@@ -63,7 +64,48 @@ def test_the_legend_has_every_label_of_all_panels_once():
 
 @pytest.mark.parametrize("command", [None, "plot"])
 def test_a_picture_names_the_command_that_draws_it(command, tmp_path):
-    save(new_figure("", simulated=False, width=2.0, height=1.0), tmp_path / "a", command=command)
-    with Image.open(tmp_path / "a") as image:
+    file = tmp_path / "a.png"
+    save(new_figure("", simulated=False, width=2.0, height=1.0), file, command=command)
+    with Image.open(file) as image:
         assert (image.format, image.size) == ("PNG", (300, 150))
         assert image.text.get("Comment") == command
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_a_picture_has_the_format_of_its_suffix_and_always_the_same_bytes(form, tmp_path):
+    files = [tmp_path / f"{name}.{form}" for name in ("a", "b")]
+    for file in files:
+        figure = new_figure("Two µm", simulated=True, width=3.0, height=2.0)
+        figure.add_subplot().plot([0, 1], [1, 0])
+        save(figure, file, command="plot")
+    one, other = (file.read_bytes() for file in files)
+    assert one == other
+    assert one.lstrip().startswith({"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[form])
+    assert b"atplotlib v" not in one
+
+
+def test_a_pdf_has_its_fonts_inside_as_truetype(tmp_path):
+    figure = new_figure("Fonts", simulated=False, width=3.0, height=2.0)
+    save(figure, tmp_path / "a.pdf")
+    content = (tmp_path / "a.pdf").read_bytes()
+    assert b"/FontFile2" in content
+    assert b"/Type3" not in content
+
+
+def test_an_svg_needs_no_font(tmp_path):
+    save(new_figure("Fonts", simulated=False, width=3.0, height=2.0), tmp_path / "a.svg")
+    assert "<text" not in (tmp_path / "a.svg").read_text()
+
+
+def test_a_long_title_is_wrapped_to_the_figure():
+    figure = new_figure("a walk of many words " * 8, simulated=True, width=4.0, height=3.0)
+    figure.draw_without_rendering()
+    assert figure._suptitle.get_window_extent().width <= figure.bbox.width
+
+
+def test_times_are_told_apart_with_the_fewest_decimals():
+    assert time_texts(np.array([0.00201, 6.0, 12.0])) == ["0", "6", "12"]
+    assert time_texts(np.array([0.5, 1.25])) == ["0.50", "1.25"]
+    assert time_texts(np.array([-0.0001, 1.0])) == ["0", "1"]
+    assert time_texts(np.array([0.0, 2.4, 4.8])) == ["0.0", "2.4", "4.8"]
+    assert time_texts(np.array([1.0, 1.0])) == ["1", "1"]

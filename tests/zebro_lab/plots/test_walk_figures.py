@@ -49,9 +49,9 @@ def test_every_axis_has_a_unit(draw, walked):
 
 @draws_all
 def test_same_walk_is_drawn_to_the_same_bytes(draw, walked, tmp_path):
-    for name in ("a", "b"):
+    for name in ("a.png", "b.png"):
         save(draw(walked, title="A walk"), tmp_path / name)
-    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
 @draws_all

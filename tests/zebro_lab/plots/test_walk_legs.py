@@ -12,6 +12,7 @@ from zebro_lab.plots.walk_legs import (
     gantt,
     normal_forces,
     paired_traction,
+    slip_ratios,
     stances,
 )
 
@@ -46,6 +47,8 @@ def test_paired_traction_leaves_nothing_of_what_alternates(walked):
 def test_bars_of_contact_are_the_stances_of_each_leg(walked):
     (axes,) = gantt(walked, title="A walk").axes
     assert len(axes.collections) == 6
+    labels = axes.get_legend_handles_labels()[1]
+    assert set(labels) == {"left leg on the ground", "right leg on the ground"}
     for leg, bars in enumerate(axes.collections):
         boxes = [path.get_extents() for path in bars.get_paths()]
         drawn = [(box.x0, box.x1) for box in boxes]
@@ -56,3 +59,28 @@ def test_bars_of_contact_are_the_stances_of_each_leg(walked):
     names = [label.get_text() for label in axes.get_yticklabels()]
     assert names[0] == "1  left front"
     assert (axes.get_xlabel(), axes.get_xlim()) == ("time [s]", (walked.t[0], walked.t[-1]))
+
+
+def test_a_leg_at_rest_has_no_slip_ratio_whatever_the_solver_leaves_of_it(walked):
+    n, half = len(walked.t), len(walked.t) // 2
+    theta = walked.theta.copy()
+    theta[half:] = theta[half]
+    still = replace(walked, theta=theta, slip_ratio=np.full((n, 6), 0.01))
+    for axes in slip_ratios(still, title="").axes:
+        drawn = axes.lines[1].get_ydata()
+        assert np.all(np.isnan(drawn[half:]))
+        assert np.isfinite(drawn[: half - 10]).mean() > 0.9
+
+
+def test_an_impact_beyond_the_axes_is_marked_with_the_largest_force(walked):
+    force = walked.normal_force.copy()
+    force[120, 3] = 777.0
+    figure = normal_forces(replace(walked, normal_force=force), title="")
+    labels = figure.axes[3].get_legend_handles_labels()[1]
+    assert "beyond the axes; furthest 777 N" in labels
+    assert figure.axes[3].get_ylim()[1] < 100
+
+
+def test_what_is_shaded_and_drawn_has_a_key(walked):
+    texts = [text.get_text() for text in paired_traction(walked, title="").legends[0].get_texts()]
+    assert texts[:3] == ["leg on the ground", "forward", "to the left"]

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The body is drawn where and when it was there."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from model.robot import Robot
@@ -33,3 +35,31 @@ def test_angles_are_drawn_in_degrees(walked):
     for column, axes in enumerate(panels[0]):
         shown = axes.lines[0].get_ydata()
         np.testing.assert_allclose(shown, np.degrees(walked.orientation[:, column]))
+
+
+def test_snapshots_are_where_they_are_asked_for(walked):
+    at = (0.5, 1.25)
+    figure = path_with_snapshots(walked, Robot(), title="A walk", at=at)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["t = 0.50 s", "t = 1.25 s", "body's centre", "whole seconds"]
+    for patch, t in zip(figure.axes[0].patches, at, strict=True):
+        body = patch.get_path().vertices
+        middle = (body.min(axis=0) + body.max(axis=0)) / 2
+        there = walked.position[np.abs(walked.t - t).argmin(), :2]
+        np.testing.assert_allclose(middle, there, atol=0.03)
+
+
+def test_a_legend_stays_within_a_narrow_figure(walked):
+    straight_up = replace(walked, position=walked.position[:, [1, 0, 2]] * [0.01, 20.0, 1.0])
+    figure = path_with_snapshots(straight_up, Robot(), title="A walk")
+    figure.draw_without_rendering()
+    box = figure.legends[0].get_window_extent()
+    assert figure.bbox.x0 <= box.x0
+    assert box.x1 <= figure.bbox.x1
+
+
+def test_rounding_errors_of_a_straight_walk_are_drawn_as_zero(walked):
+    still = np.zeros_like(walked.position)
+    still[:, 1] = 1e-6 * np.sin(40 * walked.t)
+    panels = np.reshape(motion(replace(walked, position=still), title="").axes, (3, 3))
+    assert np.ptp(panels[0, 1].get_ylim()) >= 0.002

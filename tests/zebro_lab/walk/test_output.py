@@ -17,7 +17,7 @@ from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
 from zebro_lab.walk.output import WalkStopped, write_walk
 from zebro_lab.walk.path_band import read_draws
-from zebro_lab.walk.request import BandRequest, ModelRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PictureRequest
 from zebro_lab.walk.walking import Walked
 
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0, direction="left")
@@ -86,7 +86,7 @@ def test_pictures_and_film_come_only_when_asked_for(finished, tmp_path, monkeypa
     assert not saved
     assert not filmed
     watcher = Nobody()
-    write(tmp_path / "all", finished, watcher, figures=True, animate=True)
+    write(tmp_path / "all", finished, watcher, pictures=PictureRequest(figures=True, animate=True))
     assert set(saved) == {f"{name}.png" for name in PICTURES}
     assert filmed == ["tripod"]
     assert watcher.seen == [("drawing", None), ("filming", 0.5)]
@@ -94,5 +94,5 @@ def test_pictures_and_film_come_only_when_asked_for(finished, tmp_path, monkeypa
 
 def test_a_stopped_walk_leaves_nothing(finished, tmp_path):
     with pytest.raises(WalkStopped, match="nothing was written"):
-        write(tmp_path / "out", finished, Impatient(), figures=True)
+        write(tmp_path / "out", finished, Impatient(), pictures=PictureRequest(figures=True))
     assert not (tmp_path / "out").exists()

@@ -15,7 +15,7 @@ from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.path_band import read_draws
-from zebro_lab.walk.request import BandRequest, ModelRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PictureRequest
 from zebro_lab.walk.stage import walk, write_robot
 from zebro_lab.walk.summary import summarise
 
@@ -60,7 +60,7 @@ def test_arc_is_that_asked_for(tmp_path):
 
 def test_pictures_come_when_asked_for_and_say_simulated(tmp_path):
     watcher = Nobody()
-    walk(request(tmp_path / "out", figures=True), watcher)
+    walk(request(tmp_path / "out", pictures=PictureRequest(figures=True)), watcher)
     names = {f"{name}.png" for name in PICTURES}
     assert {p.name for p in (tmp_path / "out").iterdir()} == names | {"path.csv", "manifest.json"}
     assert [what for what, _ in watcher.seen] == ["walking", "drawing"]
@@ -68,14 +68,17 @@ def test_pictures_come_when_asked_for_and_say_simulated(tmp_path):
 
 def test_film_comes_when_asked_for(tmp_path):
     watcher = Nobody()
-    walk(replace(request(tmp_path / "out", animate=True), duration=0.2), watcher)
+    walk(
+        replace(request(tmp_path / "out", pictures=PictureRequest(animate=True)), duration=0.2),
+        watcher,
+    )
     assert len(list((tmp_path / "out").glob("animation.*"))) == 1
     assert watcher.seen[-1] == ("filming", 1.0)
 
 
 def test_stopped_walk_leaves_nothing_behind(tmp_path):
     with pytest.raises(WalkStopped, match="nothing was written"):
-        walk(request(tmp_path / "out", figures=True), Impatient())
+        walk(request(tmp_path / "out", pictures=PictureRequest(figures=True)), Impatient())
     assert list(tmp_path.iterdir()) == []
 
 

@@ -73,7 +73,7 @@ class PictureRequest:
     at: Annotated[
         Instants | None,
         Option(
-            parser=parse_instants, metavar="T1,T2,...",
+            parser=parse_instants, metavar="T1,T2,…",
             help="With --figures: times of the snapshots on the path [s]; default: six, evenly "
             "spaced.",
         ),

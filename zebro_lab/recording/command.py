@@ -32,9 +32,10 @@ def record(request: RecordRequest) -> None:
 
     from zebro_lab.recording import stage
     from zebro_lab.recording.screen import record_screen
+    from zebro_lab.terminal.compiling import announcing_compilation
     from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
-    with record_screen(Console(stderr=True)) as screen:
+    with record_screen(Console(stderr=True)) as screen, announcing_compilation():
         recorded = stage.record(request, screen)
         code = STOPPED if screen.signalled else 0
         if not (screen.close() and say_in_time(_report(recorded))):

@@ -101,8 +101,10 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
     rng = np.random.default_rng(request.seed)
     opened = OpenDevices()
     with ExitStack() as stack:
+        # Loops are compiled, if they are, before a device is opened or served
+        if request.play is not None:
+            request.play.angles(0.0)
         twin = _simulated_robot(request, rng)
-        # Before anything is served: creating a body may compile loops for a while
         bodies = [at_rest if twin is None else SimulatedBody(twin) for _ in request.imus]
         if request.zebro is not None:
             _add_legs(opened, stack, request, twin, rng)
@@ -154,6 +156,7 @@ def _simulated_robot(request: DevicesRequest, rng: np.random.Generator) -> Simul
     if port != SIMULATED:
         return None
     gait = request.play or default_gait()
+    gait.angles(0.0)  # compiles, see `open_devices`
     return SimulatedLegs(gait, profile=load_leg_profile(name), rng=rng)
 
 

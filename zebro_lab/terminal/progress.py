@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.progress import TimeRemainingColumn as TimeLeftColumn
 
+from zebro_lab.terminal.compiling import announcing_compilation
+
 
 class ProgressBar:
     """A watcher that draws a progress bar; its `request_stop` handles SIGINT and SIGTERM."""
@@ -82,6 +84,7 @@ def progress_bar(console: Console | None = None) -> Iterator[ProgressBar]:
     with ExitStack() as stack:
         if console.is_terminal:  # rich before 14.3 ends a disabled display with an empty line
             stack.enter_context(progress)
+        stack.enter_context(announcing_compilation())
         bar = ProgressBar(progress)
         earlier = {s: signal.signal(s, bar.request_stop) for s in (signal.SIGINT, signal.SIGTERM)}
         try:

@@ -101,9 +101,7 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
     rng = np.random.default_rng(request.seed)
     opened = OpenDevices()
     with ExitStack() as stack:
-        # Loops are compiled, if they are, before a device is opened or served
-        if request.play is not None:
-            request.play.angles(0.0)
+        # Loops that have to be compiled are compiled here, before a device is opened or served
         twin = _simulated_robot(request, rng)
         bodies = [at_rest if twin is None else SimulatedBody(twin) for _ in request.imus]
         if request.zebro is not None:

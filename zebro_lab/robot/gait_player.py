@@ -29,6 +29,7 @@ class GaitPlayer:
     def __init__(self, legs: LegCommands, gait: LegReference, profile: LegProfile) -> None:
         self._legs = legs
         self._gait = gait
+        gait.angles(0.0)  # loops are compiled, if they are not yet, before the robot moves
         self._start: float | None = None
         self._due = 0.0
         # At most at the robot's report rate. Without that limit twice per horizon, so that the last

@@ -13,7 +13,7 @@ zebro-lab import --legs legs.csv --robot robot.toml --data data
 zebro-lab import --legs legs.csv --track path.tum --imu imu.csv --robot robot.toml --label circle
 --start 2026-03-04T05:06:07+00:00 --data data
 
-zebro-lab import --legs bag.mcap --track path.tum --robot robot.toml --data data
+zebro-lab import --legs bag --track bag --imu bag --topic /odom --robot robot.toml --data data
 
 zebro-lab import --rig sweep.csv --material "POM on steel" --data data
 

@@ -8,6 +8,8 @@ from typing import Annotated
 
 from typer import BadParameter, Option
 
+from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
+
 _LABEL = "Name of the run, first part of it if a rig table has several; default: name of the file."
 _START = (
     "Date, time and time zone at which the files' time is 0, such as 2026-03-04T05:06:07+00:00; "
@@ -30,14 +32,14 @@ class ImportRequest:
     data: Annotated[Path, Option(metavar="DIR", help="Folder in which to create run folders.")]
     legs: Annotated[
         Path | None,
-        Option(metavar="FILE", help="Leg angles: CSV, Parquet, or a ROS 2 log in MCAP."),
+        Option(metavar="FILE", help="Leg angles: a table, or a ROS log (MCAP, db3, bag)."),
     ] = None
     track: Annotated[
         Path | None,
-        Option(metavar="FILE", help="The robot's path: CSV, Parquet or TUM (.tum, .txt)."),
+        Option(metavar="FILE", help="The robot's path: a table, TUM (.tum, .txt) or a ROS log."),
     ] = None
     imu: Annotated[
-        Path | None, Option(metavar="FILE", help="Orientation of the body: CSV or Parquet.")
+        Path | None, Option(metavar="FILE", help="Orientation of the body: a table or a ROS log.")
     ] = None
     rig: Annotated[
         Path | None, Option(metavar="FILE", help="Table of a slip rig: CSV or Parquet.")
@@ -48,7 +50,13 @@ class ImportRequest:
     columns: Annotated[
         Path | None, Option(metavar="FILE", help="columns.toml instead of those beside the files.")
     ] = None
+    joints: Annotated[str | None, Option(metavar="A,B,C,D,E,F", help=JOINTS)] = None
+    topic: Annotated[tuple[str, ...], Option(metavar="NAME", help=TOPIC)] = ()
     label: Annotated[str | None, Option(help=_LABEL)] = None
     start: Annotated[datetime | None, Option(metavar="TIME", parser=_moment, help=_START)] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the person who recorded.")] = "unknown"
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for `--joints` that are not six different names."""
+        joint_names(self.joints)

@@ -16,18 +16,23 @@ from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
-from zebro_lab.exchange.joint_log import read_joint_log
+from zebro_lab.exchange.imu_messages import read_imu_messages
+from zebro_lab.exchange.pose_log import read_pose_log
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
+from zebro_lab.mcap.ros_bags import bag_files
+from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.robot.imu_log import ImuLog, imu_of_table
-from zebro_lab.robot.leg_log import LegLog, legs_of_table
+from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import require_new, run_path
+from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
+from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import (
     TRACK_UNITS,
     ForeignTrack,
@@ -113,15 +118,18 @@ def _require_something(request: ImportRequest) -> None:
 
 def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     robot = RobotFile() if request.robot is None else read_robot_file(request.robot)
-    legs = _legs(request)
+    legs, legs_topic = _legs(request)
     t = legs.reference.t
     start, zero, note = _start(request.start, float(t[0]))
-    imu = None if request.imu is None else _imu(request.imu, request.columns)
-    track = None if request.track is None else _track(request.track, request.columns, zero)
-    first = legs.files[0]
+    imu, imu_topic = (None, None) if request.imu is None else _imu(request.imu, request)
+    track, track_topic = (
+        (None, None) if request.track is None else _track(request.track, request, zero)
+    )
+    require_used(request.topic, (legs_topic, imu_topic, track_topic))
+    first = request.legs or Path()
     sources = {LEGS: stated_source(legs.source, first)}
     if imu is not None:
-        sources[IMU] = stated_source(imu.source, imu.files[0])
+        sources[IMU] = stated_source(imu.source, request.imu or Path())
     manifest = RunManifest(
         kind="walk",
         label=request.label or table_stem(first) or first.stem,
@@ -142,30 +150,37 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     return walk, tuple(notes)
 
 
-def _legs(request: ImportRequest) -> LegLog:
+def _legs(request: ImportRequest) -> tuple[LegLog, str | None]:
+    """Read the leg log; return it, and the topic that was read of a ROS log. So do the others."""
     path = request.legs or Path()
     columns = foreign_columns(LEGS, path, request.columns)
-    is_log = path.suffix.lower() == ".mcap"
-    topic, series = columns.topic, columns.series(LEGS)
-    if is_log:
-        table = read_joint_log(path, topic=topic)
-    else:
-        table = read_table_file(path, sheet=series.sheet)
-    return legs_of_table(table, series, files=(path,))
+    names = LegNames(joint_names(request.joints), request.topic, columns.topic)
+    return legs_of_file(path, columns.series(LEGS), names=names)
 
 
-def _imu(path: Path, named: Path | None) -> ImuLog:
-    columns = foreign_columns(IMU, path, named).series(IMU)
-    return imu_of_table(read_table_file(path, sheet=columns.sheet), columns)
+def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
+    columns = foreign_columns(IMU, path, request.columns)
+    series = columns.series(IMU)
+    if not is_ros_log(path):
+        return imu_of_table(read_table_file(path, sheet=series.sheet), series), None
+    found = read_imu_messages(path, topic=columns.topic, topics=request.topic)
+    imu = imu_of_table(found.table, series)
+    return replace(imu, files=(*bag_files(path), *imu.files[1:])), found.topic
 
 
-def _track(path: Path, named: Path | None, zero: float) -> ForeignTrack:
-    columns = foreign_columns(TRACK, path, named).series(TRACK)
-    if not is_tum(path):
-        table = read_table_file(path, sheet=columns.sheet)
-        return track_of_foreign_table(table, columns, zero=zero)
-    own = replace(columns, mapped=canonical_columns(TRACK_UNITS).mapped)  # TUM has no headers
-    return track_of_foreign_table(read_tum(path), own, zero=zero)
+def _track(path: Path, request: ImportRequest, zero: float) -> tuple[ForeignTrack, str | None]:
+    columns = foreign_columns(TRACK, path, request.columns)
+    series = columns.series(TRACK)
+    own = replace(series, mapped=canonical_columns(TRACK_UNITS).mapped)  # without headers
+    if is_ros_log(path):
+        found = read_pose_log(path, topic=columns.topic, topics=request.topic)
+        track = track_of_foreign_table(found.table, own, zero=zero)
+        return replace(track, files=(*bag_files(path), *track.files[1:])), found.topic
+    if is_tum(path):
+        return track_of_foreign_table(read_tum(path), own, zero=zero), None
+    return track_of_foreign_table(
+        read_table_file(path, sheet=series.sheet), series, zero=zero
+    ), None
 
 
 def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:

@@ -1,52 +1,60 @@
 # SPDX-License-Identifier: MIT
-"""Read messages of one type from a ROS 2 log, up to the first damage."""
+"""Read messages of some types from a ROS log, up to the first damage."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager, redirect_stdout
 from io import StringIO
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from zebro_lab.mcap.log_records import read_records
+from zebro_lab.mcap.logged_message import LoggedMessage
+from zebro_lab.mcap.ros_bags import is_bag, read_bag
 
 
-class LoggedMessage(NamedTuple):
-    """Decoded ROS 2 message of a log.
-
-    Attributes:
-        topic: Topic of the message.
-        log_time: Time of logging since the Unix epoch [ns].
-        content: The decoded message, an object with the message's fields as attributes.
-    """
-
-    topic: str
-    log_time: int
-    content: Any
+def is_ros_log(path: Path) -> bool:
+    """Return whether a path is a ROS log by its name: .mcap, .db3, .bag, or the folder of a bag."""
+    return path.suffix.lower() == ".mcap" or is_bag(path)
 
 
 def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:
-    """Read all ROS 2 messages of one type from an MCAP log, up to the first damage.
+    """Read all messages of one type from a ROS log; see `read_typed_messages`."""
+    return read_typed_messages(path, (schema,))
 
-    A message or a definition of the type that cannot be decoded counts as damage.
+
+def read_typed_messages(
+    path: Path, types: Collection[str]
+) -> tuple[list[LoggedMessage], str | None]:
+    """Read all messages of some types from a ROS log, up to the first damage.
+
+    A message or a definition of a type that cannot be decoded counts as damage.
 
     Args:
-        path: The log, in MCAP.
-        schema: Name of the type, such as `sensor_msgs/msg/JointState`.
+        path: The log: MCAP of ROS 2, or a bag.
+        types: Names of the types, such as `sensor_msgs/msg/JointState`.
 
     Returns:
         The messages in the order of the log, and why reading stopped before the log's end; None
         for a log read to its end.
 
     Raises:
-        NotFound: The file does not exist.
-        DataError: The file is not regular, cannot be opened, or is not MCAP.
+        NotFound: The file does not exist, or the package `rosbags` for a bag.
+        DataError: The file is not regular, cannot be opened, or is not MCAP or a bag.
     """
+    if path.is_dir() and (parts := sorted(path.glob("*.mcap"))):
+        read = [_read_mcap(part, types) for part in parts]
+        messages = sorted((m for found, _ in read for m in found), key=lambda m: m.log_time)
+        return messages, next((damage for _, damage in read if damage is not None), None)
+    return read_bag(path, types) if is_bag(path) else _read_mcap(path, types)
+
+
+def _read_mcap(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
     from mcap.records import Channel, McapRecord, Message, Schema
     from mcap_ros2.decoder import DecoderFactory
 
     factory = DecoderFactory()
     schemas: dict[int, Schema] = {}
-    decoders: dict[int, tuple[str, Any]] = {}
+    decoders: dict[int, tuple[str, str, Any]] = {}
     messages: list[LoggedMessage] = []
 
     def take(record: McapRecord) -> None:
@@ -54,16 +62,16 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
             schemas[record.id] = record
         elif isinstance(record, Channel):
             found = schemas.get(record.schema_id)
-            if found is not None and found.name == schema:
-                with _damage_of(f"the log's description of {schema}"):
+            if found is not None and found.name in types:
+                with _damage_of(f"the log's description of {found.name}"):
                     decode = factory.decoder_for(record.message_encoding, found)
                 if decode is not None:
-                    decoders[record.id] = (record.topic, decode)
+                    decoders[record.id] = (record.topic, found.name, decode)
         elif isinstance(record, Message) and record.channel_id in decoders:
-            topic, decode = decoders[record.channel_id]
+            topic, type_name, decode = decoders[record.channel_id]
             with _damage_of(f"a message of {topic}"):
                 content = decode(record.data)
-            messages.append(LoggedMessage(topic, record.log_time, content))
+            messages.append(LoggedMessage(topic, record.log_time, content, type_name))
 
     damage = read_records(path, take)
     return messages, damage

@@ -12,10 +12,12 @@ from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
-from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.legs import LegNames, read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.walk.folder import PREDICTION, WALKED
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk.output import write_walk
@@ -58,7 +60,10 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     described, is_walk = robot_of(request.model), _is_walk(request.log)
     if is_walk:
         described = _without_offsets(described)
-    log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
+    log = read_leg_log(
+        request.log, columns=request.columns, leg_sign=described.leg_sign,
+        names=LegNames(joint_names(request.joints), request.topic),
+    )  # fmt: skip
     suspected = leg_warnings(log.reference, leg_offset=described.robot.leg_offset)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
     pictures = request.model.pictures
@@ -99,7 +104,7 @@ def _with_own_robot(request: PredictRequest) -> PredictRequest:
 
 def _is_walk(log: Path) -> bool:
     """Return whether leg angles are read from a walk folder: a folder or `path.csv`, no run."""
-    return (log.is_dir() or log.name == PATH_CSV) and not is_recorded(log)
+    return (log.is_dir() or log.name == PATH_CSV) and not (is_recorded(log) or is_ros_log(log))
 
 
 def _without_offsets(described: RobotFile) -> RobotFile:

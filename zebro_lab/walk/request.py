@@ -10,6 +10,7 @@ from typer import Argument, BadParameter, Option
 from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
+from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import (
     FormatOption,
@@ -190,7 +191,7 @@ class PredictRequest:
         Path,
         Argument(
             metavar="LEGLOG",
-            help="Leg angles over time: CSV, Parquet, a recorded run or a walk folder.",
+            help="Leg angles over time: a table, a ROS log, a recorded run or a walk folder.",
         ),
     ]
     out: Annotated[
@@ -204,11 +205,17 @@ class PredictRequest:
         Path | None,
         Option(metavar="FILE", help="columns.toml to use instead of the one beside LEGLOG."),
     ] = None
+    joints: Annotated[str | None, Option(metavar="A,B,C,D,E,F", help=JOINTS)] = None
+    topic: Annotated[tuple[str, ...], Option(metavar="NAME", help=TOPIC)] = ()
     direction: Annotated[
         Side,
         Option(help="Side the gait turns to, for --model thesis and the baseline of validate."),
     ] = "left"
     model: ModelRequest = field(default_factory=ModelRequest)
+
+    def __post_init__(self) -> None:
+        """Raise `SettingsError` for `--joints` that are not six different names."""
+        joint_names(self.joints)
 
     @property
     def inputs(self) -> tuple[Path, ...]:

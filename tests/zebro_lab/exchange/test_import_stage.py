@@ -11,6 +11,7 @@ from support.imported_files import COLUMNS, THETA, YAW, T, everything, taken
 from support.leg_motions import T as T12
 from support.leg_motions import tripod
 from support.watchers import Nobody
+from support.written_bags import JOINTS, imu, joints, odometry, transforms, write_bag
 from zebro_lab.exchange.export_stage import export_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.mcap.ros_log import read_messages
@@ -181,3 +182,91 @@ def test_half_a_request_is_refused(files, tmp_path, changes, message):
 def test_a_start_that_no_log_can_hold_is_refused(files, tmp_path, start):
     with pytest.raises(SettingsError, match=r"^--start: found .* expected .* 1970 .* 2261$"):
         taken(tmp_path, legs=files / "legs.csv", start=datetime.fromisoformat(start))
+
+
+def test_a_ros_log_of_joint_states_is_a_leg_log(files, tmp_path):
+    folder, _ = everything(files, tmp_path)
+    imported = taken(tmp_path, legs=folder / "log.mcap", label="again")
+    again = read_manifest(imported.folders[0])
+    assert again.start == "2026-03-04T05:06:07+00:00"  # its stamps are seconds since 1970
+    assert again.source == "import:log.mcap"
+    ours, theirs = (read_leg_log(f).reference for f in (folder, imported.folders[0]))
+    np.testing.assert_allclose(theirs.t, ours.t - ours.t[0], atol=1e-6)
+    np.testing.assert_allclose(theirs.theta, ours.theta, atol=1e-9)
+
+
+def test_a_log_without_leg_angles_is_refused(files, tmp_path):
+    (files / "noise.mcap").write_bytes(b"\x00" * 500)
+    with pytest.raises(DataError, match="not an MCAP"):
+        taken(tmp_path, legs=files / "noise.mcap")
+    folder, _ = everything(files, tmp_path)
+    (files / "named.toml").write_text('[legs]\ntopic = "/joints"')
+    with pytest.raises(DataError, match="/legs/joint_states"):
+        taken(tmp_path, legs=folder / "log.mcap", columns=files / "named.toml")
+
+
+WALKED = tripod(1.2).angles(T12)
+SEEN = T12[::10]
+PATH = np.column_stack([0.05 * SEEN, 0.01 * SEEN**2, 0.2 * SEEN])
+ORDER = [4, 0, 2, 5, 1, 3]  # of the joints in the messages
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory):
+    return write_bag(
+        tmp_path_factory.mktemp("bags") / "walk",
+        joints(T12, WALKED[:, ORDER], names=[JOINTS[leg] for leg in ORDER]),
+        odometry(SEEN, PATH, covariance=1e-4 * np.eye(6)),
+        transforms(SEEN, {"base_link": PATH}), imu(T12),
+    )  # fmt: skip
+
+
+def test_legs_imu_and_track_come_from_one_bag(bag, tmp_path):
+    imported = taken(tmp_path, legs=bag, imu=bag, track=bag, topic=("/odom",))
+    (folder,) = imported.folders
+    manifest = read_manifest(folder)
+    assert manifest.source == "import:walk"
+    assert manifest.start == "2023-11-14T22:13:20+00:00"
+    assert set(manifest.streams) == {"/legs/raw", "/imu/raw"}
+    assert {name.rpartition("/")[2] for name in manifest.inputs} == {"metadata.yaml", "walk.db3"}
+    log = read_leg_log(folder).reference
+    np.testing.assert_allclose(log.theta - log.theta[0], WALKED - WALKED[0], atol=1e-9)
+    track = read_track(folder / "track")
+    np.testing.assert_allclose(track.poses.position, PATH[:, :2], atol=1e-9)
+    np.testing.assert_allclose(track.covariance[0], 1e-4 * np.eye(3))
+    assert not any("WARNING" in note for note in imported.notes)
+    assert any(
+        "poses are taken from topic /odom, not from /tf:base_link" in n for n in imported.notes
+    )
+
+
+def test_a_choice_among_topics_is_asked_for_and_must_be_one(bag, tmp_path):
+    with pytest.raises(DataError, match=r"poses on the topics /odom, /tf:base_link; choose one"):
+        taken(tmp_path, legs=bag, track=bag)
+    with pytest.raises(SettingsError, match=r"--topic: found /o, but nothing is read from it"):
+        taken(tmp_path, legs=bag, topic=("/o",))
+    assert not (tmp_path / "data").exists()
+
+
+def test_joints_are_named_in_an_option(bag, tmp_path):
+    names = [f"m{number}" for number in range(6)]
+    other = write_bag(tmp_path / "other", joints(T12, WALKED[:, ORDER], names=names))
+    with pytest.raises(DataError, match=r"has the joints m0, m1, m2, m3, m4, m5 on topic /j"):
+        read_leg_log(other)
+    listed = ",".join(f"m{ORDER.index(leg)}" for leg in range(6))
+    (folder,) = taken(tmp_path, legs=other, joints=listed).folders
+    log = read_leg_log(folder).reference
+    np.testing.assert_allclose(log.theta - log.theta[0], WALKED - WALKED[0], atol=1e-9)
+    with pytest.raises(SettingsError, match=r"--joints: found 5 different names"):
+        taken(tmp_path, legs=other, joints="m0,m1,m2,m3,m4")
+
+
+def test_degrees_in_a_bag_are_told_by_columns_toml_and_suspected_without(tmp_path):
+    bag = write_bag(tmp_path / "degrees", joints(T12 / 4, np.degrees(WALKED / 8)))
+    suspected = taken(tmp_path, legs=bag, label="a").notes
+    assert any("are the angles in degrees?" in note for note in suspected)
+    units = "".join(f'theta{leg} = {{unit = "deg"}}\n' for leg in range(1, 7))
+    (tmp_path / "columns.toml").write_text(f"[legs.columns]\n{units}")
+    (folder,) = taken(tmp_path, legs=bag, label="b").folders
+    log = read_leg_log(folder).reference
+    np.testing.assert_allclose(log.theta - log.theta[0], (WALKED - WALKED[0]) / 8, atol=1e-9)

@@ -82,7 +82,7 @@ def test_named_columns_file_must_exist(read, tmp_path):
 
 
 def test_empty_folder_is_no_leg_log(tmp_path):
-    with pytest.raises(DataError, match=r"is a folder without path\.csv"):
+    with pytest.raises(DataError, match=r"is a folder without path\.csv, run\.json or metadata"):
         read_leg_log(tmp_path)
 
 

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""Joint states of a ROS log are leg angles, by the names of the joints."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.message_log import MessageLog
+from zebro_lab.mcap.ros_messages import JOINT_STATE, joint_state
+from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
+from zebro_lab.runs.joint_log import joint_table, read_joint_log
+from zebro_lab.tables.mapped_columns import canonical_columns
+
+Stamped = tuple[str, float, float, dict[str, float]]
+
+
+def write(file: Path, *states: Stamped) -> Path:
+    """Write joint states: topic, stamp [s], log time [s], position of each joint [rad]."""
+    with file.open("wb") as out:
+        log = MessageLog(out)
+        for topic in dict.fromkeys(state[0] for state in states):
+            log.register(topic, JOINT_STATE)
+        for topic, stamp, log_time, joints in states:
+            message = joint_state(round(1e9 * stamp), [*joints], position=[*joints.values()])
+            log.add(topic, round(1e9 * log_time), message)
+        log.finish()
+    return file
+
+
+def test_joints_are_columns_by_their_stamps_and_names(tmp_path):
+    first = ("/joints", 5.0, 9.0, {"leg_1": 0.1, "arm": 1.0, "t": 2.0})
+    second = ("/joints", 5.5, 9.5, {"leg_1": 0.2})
+    log = read_joint_log(write(tmp_path / "bag.mcap", first, second))
+    assert list(log.table.columns) == ["t", "leg_1", "arm", "joint t"]
+    np.testing.assert_allclose(log.table.numbers("t"), [5.0, 5.5])
+    np.testing.assert_array_equal(log.table.numbers("leg_1"), [0.1, 0.2])
+    np.testing.assert_array_equal(log.table.numbers("arm"), [1.0, np.nan])
+    assert (log.legs, log.topic, log.table.notes) == ({"leg_1": 1}, "/joints", ())
+
+
+def test_messages_without_a_stamp_have_the_time_of_the_log(tmp_path):
+    log = read_joint_log(write(tmp_path / "bag.mcap", ("/joints", 0.0, 9.25, {"leg_1": 0.1})))
+    np.testing.assert_allclose(log.table.numbers("t"), [9.25])
+
+
+def test_one_topic_of_several_is_named(tmp_path):
+    states = [(topic, 1.0, 1.0, {"leg_1": theta}) for topic, theta in (("/a", 0.1), ("/b", 0.2))]
+    bag = write(tmp_path / "bag.mcap", *states, ("/empty", 1.0, 1.0, {}))
+    with pytest.raises(DataError, match=r"joint positions on the topics /a, /b; choose one with"):
+        read_joint_log(bag)
+    table = read_joint_log(bag, topic="/b").table
+    np.testing.assert_array_equal(table.numbers("leg_1"), [0.2])
+    with pytest.raises(
+        DataError, match=r"has no joint positions on topic /empty; known: '/a', '/b'"
+    ):
+        read_joint_log(bag, topic="/empty")
+
+
+def test_a_log_without_positions_says_what_is_expected(tmp_path):
+    bag = write(tmp_path / "bag.mcap", ("/joints", 1.0, 1.0, {}))
+    with pytest.raises(
+        DataError, match=r"holds no joint positions; expected .* of type sensor_msgs/msg"
+    ):
+        read_joint_log(bag)
+
+
+def test_names_that_state_their_legs_are_columns_of_legs_and_told(tmp_path):
+    joints = {"rr": 6.0, "lf": 1.0, "rf": 2.0, "lm": 3.0, "rm": 4.0, "lr": 5.0}
+    log = read_joint_log(write(tmp_path / "bag.mcap", ("/joints", 1.0, 1.0, joints)))
+    table = joint_table(log, canonical_columns(LEG_UNITS))
+    assert [table.numbers(name)[0] for name in ANGLES] == [1, 2, 3, 4, 5, 6]
+    (note,) = table.notes
+    assert note == "leg log: legs and their joints by name: 1 lf, 2 rf, 3 lm, 4 rm, 5 lr, 6 rr"
+
+
+def test_joints_are_never_legs_by_their_place_in_the_message(tmp_path):
+    joints = {f"motor_{number}": 0.1 * number for number in range(6)}
+    log = read_joint_log(write(tmp_path / "bag.mcap", ("/joints", 1.0, 1.0, joints)))
+    columns = canonical_columns(LEG_UNITS)
+    with pytest.raises(DataError, match=r"has the joints motor_0, .* --joints A,B,C,D,E,F"):
+        joint_table(log, columns)
+    for leg, name in enumerate(ANGLES):
+        columns = columns.called(name, f"motor_{5 - leg}")
+    assert joint_table(log, columns).notes == ()

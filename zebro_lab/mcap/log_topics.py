@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""Choose one topic of a ROS log among those of some types, and date its messages."""
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from rig.nearest_name import nearest
+from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.logged_message import LoggedMessage
+from zebro_lab.mcap.ros_log import read_typed_messages
+
+NANOSECOND: Final = 1e-9
+_TOLD: Final = '--topic NAME, or topic = "NAME" in the file\'s section of a columns.toml'
+
+Parts = Iterable[tuple[str, Any, Any]]
+
+
+@dataclass(frozen=True)
+class TopicRows:
+    """Messages of one topic.
+
+    Attributes:
+        topic: The topic.
+        type: Type of its messages.
+        t: Stamp of each message, or its log time where it has none [s].
+        contents: What each message holds.
+        notes: Notes, one line each.
+    """
+
+    topic: str
+    type: str
+    t: tuple[float, ...]
+    contents: tuple[Any, ...]
+    notes: tuple[str, ...]
+
+
+def whole(message: LoggedMessage) -> Parts:
+    """Return a message as one part: its topic, header and content."""
+    yield message.topic, message.content.header, message.content
+
+
+def read_topic(
+    path: Path,
+    types: Collection[str],
+    *,
+    what: str,
+    topic: str | None = None,
+    topics: Collection[str] = (),
+    parts: Callable[[LoggedMessage], Parts] = whole,
+) -> TopicRows:
+    """Read the messages of one topic of a ROS log, up to the first damage.
+
+    Args:
+        path: The log.
+        types: Types of messages that are wanted.
+        what: What is looked for, such as "joint positions", for messages.
+        topic: The topic to read; None for one of `topics`, else for the only one.
+        topics: Topics to prefer; those of other types are ignored.
+        parts: Splits a message into parts: topic, header and content of each; none to skip it.
+
+    Raises:
+        NotFound: The log does not exist, or the package that reads it.
+        DataError: It cannot be read, or has no such message, or several topics and none is asked
+            for, or not the one that is.
+    """
+    messages, damage = read_typed_messages(path, types)
+    found: dict[str, list[tuple[float, str, Any]]] = {}
+    for name, stamp, kind, content in _stamped(messages, parts):
+        found.setdefault(name, []).append((stamp, kind, content))
+    chosen = _chosen(path, found, topic, topics, types, what)
+    t, kinds, contents = zip(*found[chosen], strict=True)
+    notes = [] if damage is None else [f"{path.name} is incomplete ({damage})"]
+    if len(found) > 1:
+        others = ", ".join(sorted(set(found) - {chosen}))
+        notes.append(f"{path.name}: {what} are taken from topic {chosen}, not from {others}")
+    return TopicRows(chosen, kinds[0], t, contents, tuple(notes))
+
+
+def _stamped(
+    messages: Iterable[LoggedMessage], parts: Callable[[LoggedMessage], Parts]
+) -> Iterator[tuple[str, float, str, Any]]:
+    for message in messages:
+        for topic, header, content in parts(message):
+            stamp = header.stamp.sec + NANOSECOND * header.stamp.nanosec
+            yield topic, stamp or NANOSECOND * message.log_time, message.type, content
+
+
+def _chosen(
+    path: Path,
+    found: Collection[str],
+    topic: str | None,
+    topics: Collection[str],
+    types: Collection[str],
+    what: str,
+) -> str:
+    if not found:
+        raise DataError(
+            f"holds no {what}; expected messages of type {', '.join(sorted(types))}", file=path
+        )
+    if topic is not None:
+        if topic not in found:
+            raise DataError(f"has no {what} on topic {topic}; {nearest(topic, found)}", file=path)
+        return topic
+    fitting = [each for each in found if each in topics] or list(found)
+    if len(fitting) > 1:
+        listed = ", ".join(sorted(fitting))
+        raise DataError(f"has {what} on the topics {listed}; choose one with {_TOLD}", file=path)
+    return fitting[0]

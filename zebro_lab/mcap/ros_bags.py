@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""Read messages of bags that are not MCAP: ROS 2 in SQLite (.db3, or its folder), ROS 1 (.bag)."""
+
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from zebro_lab.files.errors import NotFound
+from zebro_lab.files.opening import open_file, parsing
+from zebro_lab.mcap.logged_message import LoggedMessage
+
+if TYPE_CHECKING:
+    from rosbags.highlevel import AnyReader
+
+BAG_SUFFIXES = (".db3", ".bag")
+METADATA = "metadata.yaml"
+
+
+def is_bag(path: Path) -> bool:
+    """Return whether a path is a bag by its name: .db3, .bag, or a folder with metadata.yaml."""
+    return path.suffix.lower() in BAG_SUFFIXES or (path / METADATA).is_file()
+
+
+def bag_files(path: Path) -> tuple[Path, ...]:
+    """Return the files of a bag: itself, or those in its folder by name.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: One of them is not a regular file or cannot be opened.
+    """
+    files = (path,)
+    if path.is_dir():
+        logs = (f for f in sorted(path.iterdir()) if f.suffix.lower() in (".db3", ".mcap", ".zstd"))
+        files = (path / METADATA, *logs)
+    for file in files:
+        with open_file(file):
+            pass
+    return files
+
+
+def read_bag(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
+    """Read all messages of some types from a bag, by the package `rosbags`.
+
+    Args:
+        path: The bag.
+        types: Names of the types, such as `sensor_msgs/msg/JointState`, also for ROS 1.
+
+    Returns:
+        The messages by the time of their logging, and why reading stopped before the end, or None.
+
+    Raises:
+        NotFound: The bag, or the package, is missing.
+        DataError: The bag cannot be opened.
+    """
+    bag_files(path)
+    messages: list[LoggedMessage] = []
+    problem = "cannot be read as a ROS bag"
+    with parsing(path, problem, advice="record or copy it again"), _reader(path) as reader:
+        try:
+            messages.extend(_messages(reader, types))
+        except Exception as error:  # damage is answered with whatever went wrong inside
+            return messages, f"{type(error).__name__}: {error}"
+    return messages, None
+
+
+def _messages(reader: "AnyReader", types: Collection[str]) -> Iterator[LoggedMessage]:
+    wanted = [each for each in reader.connections if each.msgtype in types]
+    for connection, time, data in reader.messages(wanted) if wanted else ():
+        content: Any = reader.deserialize(data, connection.msgtype)
+        yield LoggedMessage(connection.topic, time, content, connection.msgtype)
+
+
+def _reader(path: Path) -> "AnyReader":
+    try:
+        from rosbags.highlevel import AnyReader
+        from rosbags.typesys import Stores, get_typestore
+    except ImportError as error:
+        raise NotFound(
+            f"{path}: reading bags other than MCAP needs the package rosbags; install it with "
+            "pip install 'zebro-lab[rosbags]', or convert the bag: ros2 bag convert, or the "
+            "command mcap convert"
+        ) from error
+    # Bags of ROS 2 before Iron do not hold the definitions of their messages.
+    return AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE))

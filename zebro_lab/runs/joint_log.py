@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""Read joint angles from a ROS log to a table of leg angles."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.log_topics import Parts, read_topic
+from zebro_lab.mcap.logged_message import LoggedMessage
+from zebro_lab.mcap.ros_messages import JOINT_STATE
+from zebro_lab.robot.joint_names import legs_of_joints
+from zebro_lab.robot.leg_log import ANGLES
+from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.raw_table import RawTable
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_ORDER = "front left, front right, middle left, middle right, rear left, rear right"
+
+
+@dataclass(frozen=True)
+class JointLog:
+    """Joint states of a ROS log.
+
+    Attributes:
+        table: A row per message: `t`, its stamp, or log time without one [s], and the position of
+            each joint [rad], NaN where missing, by its name, and by `thetaN` where its name states
+            that it is leg N's.
+        legs: Leg of each joint whose name states it.
+        topic: Topic that was read.
+    """
+
+    table: RawTable
+    legs: Mapping[str, int]
+    topic: str
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of all joints."""
+        return tuple(name for name in self.table.columns if name not in ("t", *ANGLES))
+
+
+def read_joint_log(
+    path: Path, *, topic: str | None = None, topics: Collection[str] = ()
+) -> JointLog:
+    """Read the joint states of a ROS log as a table, up to the first damage.
+
+    Args:
+        path: The log: MCAP or a bag.
+        topic: Topic to read; None for one of `topics`, else the only one with joint positions.
+        topics: Topics to prefer, also such of other messages.
+
+    Raises:
+        NotFound: The file does not exist, or the package that reads bags.
+        DataError: No ROS log, no joint positions (on `topic`), or several topics and none chosen.
+    """
+    found = read_topic(
+        path, (JOINT_STATE.name,), what="joint positions", topic=topic, topics=topics,
+        parts=_with_positions,
+    )  # fmt: skip
+    rows = [dict(zip(state.name, state.position, strict=False)) for state in found.contents]
+    table = RawTable(path, _columns(found.t, rows), notes=found.notes)
+    return JointLog(table, legs_of_joints(table.columns), found.topic)
+
+
+def joint_table(log: JointLog, columns: MappedColumns) -> RawTable:
+    """Return the table of a log in which every leg has a column, with a note on the joints' names.
+
+    Args:
+        log: The log.
+        columns: Column map; a header `thetaN` stands for the joint whose name states leg N.
+
+    Raises:
+        DataError: A leg has no joint; names the joints there are.
+    """
+    import pandas as pd
+
+    aliases: dict[str, pd.Series] = {
+        f"theta{leg}": log.table.columns[name]
+        for name, leg in log.legs.items()
+        if f"theta{leg}" not in log.table.columns
+    }
+    table = replace(log.table, columns={**log.table.columns, **aliases})
+    missing = [name for name in ANGLES if not columns.has(table, name)]
+    if missing:
+        raise DataError(
+            f"has the joints {', '.join(log.joints)} on topic {log.topic}, and which of them is "
+            f"leg {', '.join(name[-1] for name in missing)} is not to be told from their names; "
+            f"name those of legs 1 to 6 ({_ORDER}) with --joints A,B,C,D,E,F, or in a columns.toml",
+            file=log.table.path,
+        )
+    used = {columns.mapped[name].name for name in ANGLES}
+    told = {name: leg for name, leg in log.legs.items() if f"theta{leg}" in used & set(aliases)}
+    return replace(table, notes=(*table.notes, *_told(told)))
+
+
+def _with_positions(message: LoggedMessage) -> Parts:
+    if len(message.content.position):
+        yield message.topic, message.content.header, message.content
+
+
+def _columns(
+    t: Collection[float], rows: Collection[Mapping[str, float]]
+) -> "Mapping[str, pd.Series]":
+    import pandas as pd
+
+    columns = {"t": pd.Series(t, dtype=float)}
+    for name in dict.fromkeys(name for row in rows for name in row):
+        header = "joint t" if name == "t" else name
+        columns[header] = pd.Series([row.get(name, np.nan) for row in rows], dtype=float)
+    return columns
+
+
+def _told(legs: Mapping[str, int]) -> tuple[str, ...]:
+    if all(name == f"leg_{leg}" for name, leg in legs.items()):
+        return ()
+    listed = ", ".join(f"{leg} {name}" for name, leg in sorted(legs.items(), key=lambda x: x[1]))
+    return (f"leg log: legs and their joints by name: {listed}",)

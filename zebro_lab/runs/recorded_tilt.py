@@ -14,9 +14,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import profile_file
-
-IMUS = ("imu", "imu1", "imu2")
-"""Names of IMU streams; the first that has a profile in the run folder is used."""
+from zebro_lab.runs.profile_views import IMU
 
 
 @dataclass(frozen=True)
@@ -27,28 +25,33 @@ class Tilt:
         t: Time since the start of the run, increasing, shape (n,) [s].
         angles: Roll and pitch, columns in this order, shape (n, 2) [rad].
         files: Files read: log and profile.
+        notes: Of a run with several IMUs a note on which one this is.
     """
 
     t: Array
     angles: Array
     files: tuple[Path, ...]
+    notes: tuple[str, ...] = ()
 
 
 def read_recorded_tilt(folder: Path) -> Tilt | None:
-    """Read roll and pitch of a run; None without log, IMU profile or samples of that IMU.
+    """Read roll and pitch of a run; None without log, IMU profile or samples of an IMU.
 
-    Samples whose time does not increase are dropped; a damaged log is read up to the damage.
+    Of several IMUs (`imu1`, `imu2`, ...) the first that has a profile and samples is read. Samples
+    whose time does not increase are dropped; a damaged log is read up to the damage.
 
     Raises:
         DataError: The log cannot be opened or is not MCAP, or the IMU's profile is invalid.
     """
     log = folder / LOG_FILE
-    name = next((name for name in IMUS if profile_file(folder, name).is_file()), None)
-    if name is None or not log.is_file():
+    names = sorted(file.stem for file in profile_file(folder, IMU).parent.glob(f"{IMU}*.toml"))
+    if not names or not log.is_file():
         return None
-    stream = read_raw_log(log).streams.get(raw_topic(name))
-    if stream is None:
+    streams = read_raw_log(log).streams
+    name = next((name for name in names if raw_topic(name) in streams), None)
+    if name is None:
         return None
+    stream = streams[raw_topic(name)]
     profile = profile_file(folder, name)
     try:
         decoded = decode_orientation(load_imu_profile(str(profile)), stream)
@@ -57,4 +60,6 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
     t = sample_times(stream)
     later = np.r_[True, np.diff(np.maximum.accumulate(t)) > 0]
     angles = np.column_stack([decoded.roll, decoded.pitch])
-    return Tilt(t[later], angles[later], (log, profile))
+    others = ", ".join(other for other in names if other != name)
+    notes = (f"roll and pitch are those of {name}; not used: {others}",) if others else ()
+    return Tilt(t[later], angles[later], (log, profile), notes)

@@ -94,6 +94,7 @@ def _judge(walk: PredictedWalk, request: ValidateRequest, rng: np.random.Generat
     if walk.tilt is not None and prediction.walk is not None:
         try:
             tilt = judge_tilt(prediction.walk.path, walk.tilt.t, walk.tilt.angles)
+            notes.extend(walk.tilt.notes)
         except InsufficientData as error:
             notes.append(f"roll and pitch are not compared: {error}")
     judged = replace(judged, tilt=tilt, notes=(*notes, *walk.not_shown))

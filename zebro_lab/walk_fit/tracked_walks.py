@@ -178,7 +178,8 @@ def _tilt(
         note = f"roll and pitch are not used: under 1 s of IMU data at {start:g} to {end:g} s"
         return None, (), (note,)
     seen = MeasuredTilt(measured.t[inside] - start, measured.angles[inside])
-    return seen, measured.files, ("roll and pitch of the IMU inform which leg is mounted wrong",)
+    note = "roll and pitch of the IMU inform which leg is mounted wrong"
+    return seen, measured.files, (note, *measured.notes)
 
 
 def _legs_of(folder: Path) -> Path:

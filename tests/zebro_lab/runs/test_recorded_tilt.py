@@ -34,3 +34,22 @@ def test_a_damaged_profile_is_named(recorded, tmp_path):
     (folder / "profiles" / "imu.toml").write_text("schema = 99")
     with pytest.raises(DataError, match=r"imu\.toml"):
         read_recorded_tilt(folder)
+
+
+def with_a_second(recorded, folder, profile="imu2"):
+    """Copy a run so that its IMU is one of two."""
+    shutil.copytree(recorded, folder)
+    shutil.copy(folder / "profiles" / "imu.toml", folder / "profiles" / f"{profile}.toml")
+    return folder
+
+
+def test_of_two_imus_the_one_that_is_used_and_the_other_are_named(recorded, tmp_path):
+    tilt = read_recorded_tilt(with_a_second(recorded, tmp_path / "two"))
+    assert tilt.notes == ("roll and pitch are those of imu; not used: imu2",)
+    assert read_recorded_tilt(recorded).notes == ()
+
+
+def test_an_imu_that_sent_nothing_is_passed_over(recorded, tmp_path):
+    tilt = read_recorded_tilt(with_a_second(recorded, tmp_path / "two", "imu0"))
+    assert [file.name for file in tilt.files] == ["log.mcap", "imu.toml"]
+    assert tilt.notes == ("roll and pitch are those of imu; not used: imu0",)

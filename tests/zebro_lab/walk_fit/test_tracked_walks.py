@@ -110,6 +110,13 @@ def test_roll_and_pitch_of_a_run_s_imu_come_with_the_walk(tmp_path):
     assert any("IMU inform" in note for note in walk.notes)
 
 
+def test_of_two_imus_the_one_that_informs_is_named(tmp_path):
+    run, _ = imported_walk(tmp_path)
+    shutil.copy(run / "profiles" / "imu.toml", run / "profiles" / "imu2.toml")
+    notes = read_walk_on_file(run).notes
+    assert "roll and pitch are those of imu; not used: imu2" in notes
+
+
 def test_walks_of_one_name_are_told_apart(tmp_path):
     folders = [
         write_walk(tmp_path / day / "walk", every=every)

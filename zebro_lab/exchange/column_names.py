@@ -18,7 +18,7 @@ _SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschwindigkeit|angular_(speed
 _LEG_DISC = r"(l|leg|leg_?disc|wheel|bein|beinscheibe|rad)"
 _GROUND = r"(g|ground|ground_?disc|table|boden|bodenscheibe|teller|tisch|belt|road|fahrbahn)"
 _ORIENTATION = r"(.*_)?(orientation|quat(ernion)?|imu_orientation|q)_?"
-_RATE = r"(.*_)?(angular_velocity|gyro(scope)?|gyr|omega|drehrate|rate)_?"
+_RATE = r"(.*_)?(angular_velocity|gyro(scope)?|gyr|g|w|omega|drehrate|rate)_?"
 _FORCE = (
     r"(.*_)?(linear_acceleration|acceleration|accel(erometer)?|acc|a|beschleunigung|"
     r"specific_force|force)_?"
@@ -59,7 +59,7 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
         "t": _TIME,
         **{f"q{a}": rf"{_ORIENTATION}{a}|q_rs_{a}" for a in "wxyz"},
         "roll": r"(.*_)?(roll|phi|(roll|wank)winkel)(_angle)?",
-        "pitch": r"(.*_)?(pitch|(pitch|nick)winkel)(_angle)?",
+        "pitch": r"(.*_)?(pitch|theta|(pitch|nick)winkel)(_angle)?",
         "yaw": r"(.*_)?(yaw|psi|gierwinkel|heading)(_angle)?",
         **{f"rate_{a}": rf"{_RATE}{a}|w_rs_s_{a}" for a in "xyz"},
         **{f"force_{a}": rf"{_FORCE}{a}|a_rs_s_{a}" for a in "xyz"},

@@ -30,10 +30,11 @@ _SPELLINGS = {
 }  # fmt: skip
 """What strangers write for units that pint does not know, in lower case."""
 _BASES = (
-    r"s|[Ss]ecs?|[Ss]econds?|[Ss]ek|Sekunden|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs|m|mm|cm|km|um|in|inch"
-    r"|ft|N|kN|mN|lbf?|lbs|kgf?|kp|g|rad|mrad|deg|degrees?|[Gg]rad|°|rev|turns?|rpm|RPM|Hz|kHz|mV|V"
-    r"|mA|A|W|kW|J|K|°C|degC|deg ?[CF]|°F|C|F|Pa|kPa|hPa|MPa|bar|mbar|psi|%|percent|Nm|N-m|N\*m|N m"
-    r"|pix|px|pixels?|ticks|counts?|digits?|kph|mph|kmh|mps|U|G|T|uT|µT|mT|dB|ohm|Ohm|Ω|N/mm|raw"
+    r"s|[Ss]ecs?|[Ss]econds?|[Ss]ek|Sekunden|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs"
+    r"|m|mm|cm|km|um|in|inch|ft|[Mm]et(?:er|re)s?|N|kN|mN|lbf?|lbs|kgf?|kp|g|[Nn]ewtons?"
+    r"|rad|mrad|deg|degrees?|[Gg]rad|°|rev|turns?|rpm|RPM|Hz|kHz|mV|V|mA|A|W|kW|J|K"
+    r"|°C|degC|deg ?[CF]|°F|C|F|Pa|kPa|hPa|MPa|bar|mbar|psi|%|percent|[Pp]rozent|Nm|N-m|N\*m|N m"
+    r"|pix|px|pixels?|ticks|counts?|digits?|kph|mph|kmh|mps|U|G|T|uT|µT|mT|dB|ohm|Ohm|Ω|raw"
 )
 _POWER = r"(?:\^?-?[1-4]|[²³]|\*\*-?[1-4])?"
 _UNIT_TEXT = re.compile(rf"(?:1|{_BASES}){_POWER}(?:[/*·. ](?:{_BASES}){_POWER})*")

@@ -12,16 +12,24 @@ from typing import TYPE_CHECKING, Final
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
-from zebro_lab.tables.cells import NO_VALUE, kind_of
+from zebro_lab.tables.cells import NO_VALUE
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.row_checks import require_full_rows, require_no_footer
 from zebro_lab.tables.text_encoding import WINDOWS, decoded, possible_encodings
-from zebro_lab.tables.text_layout import SEPARATORS, Layout, LayoutError, Line, find_layout
+from zebro_lab.tables.text_layout import (
+    BLANKS,
+    SEPARATORS,
+    Layout,
+    LayoutError,
+    Line,
+    find_layout,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
 
 _HEAD_BYTES: Final = 1 << 16  # enough to see the layout, little enough to decode twice
-_HEAD_LINES: Final = 150
+_HEAD_LINES: Final = 400
 MOST_COLUMNS: Final = 2000
 _SURPLUS: Final = "\0"  # name of the empty column after a final separator
 _MAGIC: Final = {
@@ -30,12 +38,6 @@ _MAGIC: Final = {
     b"\xd0\xcf\x11\xe0": "a spreadsheet of old Excel (.xls); save it as .xlsx or CSV",
     b"\x1f\x8b": "a gzip file; rename it to end in .csv.gz",
 }
-_FOOTER = re.compile(
-    r"(?:mean|average|avg|std|sd|stdev|sum|total|minimum|min|maximum|max|median|count|end|eof|"
-    r"mittel\w*|summe|stabw|standardabweichung|anzahl|ende)\b.*",
-    re.IGNORECASE,
-)
-_FOOTER_ROWS: Final = 10
 
 
 def read_csv_file(path: Path) -> RawTable:
@@ -63,7 +65,9 @@ def read_csv_file(path: Path) -> RawTable:
         encoding = encodings[1]
         frame = _frame(path, layout, encoding)
     table = _table(path, layout, frame, encoding)
-    _require_no_footer(table)
+    if layout.separator == BLANKS:
+        require_full_rows(table)
+    require_no_footer(table)
     return table
 
 
@@ -181,15 +185,3 @@ def _without_empty_ends(
         filled = frame.notna().any(axis=1).to_numpy().nonzero()[0]
         frame = frame.iloc[: int(filled.max(initial=-1)) + 1]
     return {str(name): cells for name, cells in frame.items()}
-
-
-def _require_no_footer(table: RawTable) -> None:
-    """Raise if a column of numbers ends with a word such as "Mean": its row is no sample."""
-    for name, cells in table.columns.items():
-        if cells.dtype.kind in "ifb" or len(cells) < 2:
-            continue
-        for index in range(max(1, len(cells) - _FOOTER_ROWS), len(cells)):
-            text = str(cells.iloc[index])
-            if _FOOTER.fullmatch(text.strip()) and kind_of(str(cells.iloc[0])) == "value":
-                problem = f"'{text}' stands below numbers; delete the lines below the table"
-                raise table.fault(problem, name, index)

@@ -42,7 +42,10 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
         name, cells, first_row = _sheet(path, content, sheet)
         header = _header(path, name, cells)
         _require_values(path, content, name, cells, first_row)
+        percent = _in_percent(path, content, name, first_row + header.first)
     notes = (f"sheet '{name}'", *header.notes)
+    ratios = {header.names[i]: "dimensionless" for i in percent if i < len(header.names)}
+    notes += tuple(f"'{each}' is shown in percent and stored as a ratio" for each in ratios)
     return RawTable(
         path,
         _columns(cells, header),
@@ -51,7 +54,7 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
         decimal=decimal_sign([c for row in cells[:_HEAD_ROWS] for c in row if isinstance(c, str)]),
         notes=tuple(f"{path.name}: {note}" for note in notes),
         rows_from=first_row + header.first,
-        units=header.units,
+        units={**header.units, **ratios},
     )
 
 
@@ -141,6 +144,16 @@ def _require_values(path: Path, content: bytes, name: str, cells: Cells, first: 
                     "stored value; open the file in Excel or LibreOffice and save it again",
                     file=path,
                 )
+
+
+def _in_percent(path: Path, content: bytes, name: str, row: int) -> list[int]:
+    """Return the columns whose number in a row is shown in percent: 0.02 as 2 %."""
+    book = _open(path, content, values=True)
+    try:
+        cells = next(book[name].iter_rows(min_row=row, max_row=row), ())
+        return [i for i, cell in enumerate(cells) if "%" in str(cell.number_format)]
+    finally:
+        book.close()
 
 
 def _columns(cells: Cells, header: Header) -> "dict[str, pd.Series]":

@@ -18,6 +18,7 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 from zebro_lab.tables.cells import kind_of, may_be_thousands
 
+_MINUS = "\u2212"  # as typesetters write it
 _BLOCK = 1 << 16  # cells converted to numbers at a time
 
 if TYPE_CHECKING:
@@ -217,6 +218,8 @@ class RawTable:
             advice = "; write decimals with a point"
         elif re.fullmatch(r"\s*[-+]?\d{1,3}([ .,'’\u00a0\u202f]\d{3})+([.,]\d+)?\s*", text):
             advice = "; write it without thousands separators"
+        elif re.fullmatch(r"[-+]?[\d.,]+ ?[^\d\s.,:/-][^\d]*", text.strip()):
+            advice = "; write the number alone, and its unit in the header or in columns.toml"
         elif kind_of(text) == "value":
             advice = '; if it is a time, state unit = "date", "date UTC" or "h:m:s" in columns.toml'
         elif index == 0:
@@ -236,6 +239,7 @@ def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
 
     if pd.api.types.is_numeric_dtype(cells):
         return np.asarray(cells, dtype=float)
+    cells = cells.map(lambda cell: cell.replace(_MINUS, "-") if isinstance(cell, str) else cell)
     values = np.full(len(cells), np.nan)
     for start in range(0, len(cells), _BLOCK):
         block = cells.iloc[start : start + _BLOCK]

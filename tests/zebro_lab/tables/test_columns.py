@@ -3,11 +3,14 @@
 
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from model.slip.definition import SlipDefinition
-from zebro_lab.files.errors import NotFound, SettingsError
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.tables.columns import Columns, MappedColumn, RunRule, read_columns
+from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition
 
 WHOLE = """
@@ -112,3 +115,37 @@ def test_fault_is_one_line_that_names_file_and_key(tmp_path, text, message):
 def test_missing_file_is_named(tmp_path):
     with pytest.raises(NotFound, match=r"absent\.toml: no such file"):
         read_columns(tmp_path / "absent.toml")
+
+
+def table(units: dict[str, str], **columns) -> RawTable:
+    return RawTable(Path("a.csv"), {n: pd.Series(c) for n, c in columns.items()}, units=units)
+
+
+def test_the_unit_of_the_file_holds_where_the_map_states_none():
+    raw = table({"F": "kN"}, F=[1.0, 2.0])
+    column = MappedColumn("F", "N", -1.0)
+    assert column.in_unit_of(raw, "N") == MappedColumn("F", "kN", -1e3)
+    np.testing.assert_array_equal(column.in_unit_of(raw, "N").in_si(raw), [-1e3, -2e3])
+    stated = MappedColumn("F", "N", 1.0, unit_stated=True)
+    assert stated.in_unit_of(raw, "N") is stated
+    with pytest.raises(DataError, match=r"column 'F': the file states its unit: .*'kN' cannot be"):
+        column.in_unit_of(raw, "s")
+
+
+def test_offset_and_nanoseconds_are_added_in_si(tmp_path):
+    columns = read(
+        tmp_path,
+        '[columns.t]\nname = "s"\nnanoseconds = "ns"\n'
+        '[columns.normal_force]\nname = "F"\nunit = "kN"\nsign = "-1"\noffset = "5 N"\n',
+    ).columns
+    raw = table({}, s=[10, 11], ns=[500_000_000, 0], F=[1.0, 2.0])
+    np.testing.assert_array_equal(columns["t"].in_si(raw), [10.5, 11])
+    np.testing.assert_array_equal(columns["normal_force"].in_si(raw), [-995, -1995])
+
+
+def test_dates_of_a_time_become_unix_time(tmp_path):
+    columns = read(tmp_path, '[columns]\nt = {name = "when", unit = "date"}\n').columns
+    raw = table({}, when=["1970-01-01T00:00:01.5Z", "1970-01-01T01:00:02+01:00"])
+    np.testing.assert_array_equal(columns["t"].in_si(raw), [1.5, 2])
+    with pytest.raises(SettingsError, match="unknown unit 'date'"):
+        read(tmp_path, '[columns]\nnormal_force = {name = "when", unit = "date"}\n')

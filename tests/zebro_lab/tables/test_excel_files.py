@@ -93,3 +93,14 @@ def test_a_sheet_without_numbers_or_header_is_refused(tmp_path):
         read_table_file, book(tmp_path / "b.xlsx", A=[[1, 2], [3, 4]])
     )
     assert "is empty" in refusal(read_table_file, book(tmp_path / "c.xlsx", A=[]))
+
+
+def test_a_ratio_that_is_shown_in_percent_is_a_ratio(tmp_path):
+    made = openpyxl.Workbook()
+    for row in (["t [s]", "slip [%]"], [0, 0.025], [1, 0.05]):
+        made.active.append(row)
+    made.active["B2"].number_format = made.active["B3"].number_format = "0.0%"
+    made.save(tmp_path / "a.xlsx")
+    table = read_table_file(tmp_path / "a.xlsx")
+    assert table.units["slip [%]"] == "dimensionless"
+    assert "'slip [%]' is shown in percent and stored as a ratio" in table.notes[-1]

@@ -80,3 +80,34 @@ def test_times_that_do_not_increase_are_named_by_their_row(times):
     with pytest.raises(DataError, match="expected increasing times") as raised:
         table(t=times).require_increasing("t", np.array(times, dtype=float))
     assert (raised.value.column, raised.value.row) == ("t", first + 1)
+
+
+@pytest.mark.parametrize(
+    ("cells", "decimal", "numbers"),
+    [
+        (["1,234", "2,345"], ",", [1.234, 2.345]), (["1.234", "0.5"], ",", [1.234, 0.5]),
+        (["−5,25", "1"], ",", [-5.25, 1]), (["1,25", "2,345"], None, [1.25, 2.345]),
+    ],
+)  # fmt: skip
+def test_a_decimal_sign_is_understood_where_it_is_sure(cells, decimal, numbers):
+    raw = RawTable(Path("a.csv"), {"x": pd.Series(cells)}, decimal_comma=True, decimal=decimal)
+    np.testing.assert_array_equal(raw.numbers("x"), numbers)
+
+
+@pytest.mark.parametrize(
+    ("cells", "decimal", "problem"),
+    [
+        (["1,234", "2,345"], None, "'1,234' has a decimal sign or a thousands separator"),
+        (["1.234", "2.345"], ",", "'1.234' has a decimal sign or a thousands separator"),
+        (["1.234,5"], ",", "without thousands separators"),
+        (["1 234,5"], ",", "without thousands separators"),
+        (["1'234.5"], ".", "without thousands separators"),
+        (["5.2 N"], ".", "write the number alone, and its unit in the header"),
+        (["2,5%"], ",", "write the number alone"),
+        (["2026-03-04"], ".", 'if it is a time, state unit = "date"'),
+    ],
+)
+def test_a_number_that_is_not_clear_is_refused(cells, decimal, problem):
+    raw = RawTable(Path("a.csv"), {"x": pd.Series(cells)}, decimal_comma=True, decimal=decimal)
+    with pytest.raises(DataError, match=f"row 1: .*{problem}"):
+        raw.numbers("x")

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""Guesses are written with a question mark and the reason beside it."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from zebro_lab.exchange.column_guesses import guess_columns
+from zebro_lab.exchange.columns_template import render_columns
+from zebro_lab.tables.raw_table import RawTable
+
+
+def rendered(kind, columns, **how) -> str:
+    table = RawTable(Path("a.csv"), {name: pd.Series(cells) for name, cells in columns.items()})
+    return render_columns(table, kind, guess_columns(table, kind), **how)
+
+
+def test_a_section_holds_all_entries_of_its_kind():
+    columns = {"t": [0.0, 1.0], "FZ": [-5.0, -6.0], "set": [1.0, 1.0]}
+    text = rendered("rig", columns, sectioned=True, appended=True, sheet="A")
+    read = tomllib.loads(text)
+    assert set(read) == {"rig"}
+    assert set(read["rig"]) == {"sheet", "columns", "constants", "runs", "rows", "load_cell"}
+    assert read["rig"]["columns"]["normal_force"]["sign"] == "-1?"
+    assert '#   "set": first 1, from 1 to 1' in text
+
+
+def test_runs_of_times_that_restart_are_a_guess_to_check():
+    columns = {"t": np.tile(np.arange(30.0), 2), "load": np.repeat([1.0, 2.0], 30)}
+    assert tomllib.loads(rendered("rig", columns))["runs"] == {"by": ["load?"]}
+
+
+def test_zero_and_order_of_leg_angles_are_to_check():
+    columns = {"t": [0.0, 1.0], **{f"leg{i}": [0.0, 1.0] for i in range(1, 7)}}
+    read = tomllib.loads(rendered("legs", columns, sectioned=True))["legs"]["columns"]
+    assert read["t"] == {"name": "t", "unit": "s"}
+    assert read["theta6"] == {
+        "name": "leg6?", "unit": "rad?", "sign": "1?", "offset": "0 deg?",
+    }  # fmt: skip

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""Dates and times of day become seconds."""
+
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.date_cells import seconds_of_dates
+from zebro_lab.tables.raw_table import RawTable
+
+MOMENTS = st.datetimes(datetime(1971, 1, 1), datetime(2200, 1, 1))
+
+
+def seconds(*cells, unit="date"):
+    table = RawTable(Path("a.csv"), {"t": pd.Series(list(cells), dtype=object)})
+    return seconds_of_dates(table, "t", unit)
+
+
+@given(MOMENTS, st.integers(-12, 14))
+def test_dates_with_a_zone_are_unix_time(moment, hours):
+    zoned = moment.replace(tzinfo=timezone(timedelta(hours=hours)))
+    assert seconds(zoned.isoformat())[0] == pytest.approx(zoned.timestamp(), abs=1e-5)
+
+
+@given(MOMENTS)
+def test_dates_without_a_zone_are_in_the_one_that_is_stated(moment):
+    utc = moment.replace(tzinfo=UTC).timestamp()
+    text = moment.strftime("%d.%m.") + f"{moment.year:04d} " + moment.time().isoformat()
+    for cell in (moment.isoformat(" "), moment.isoformat().replace(".", ","), text, moment):
+        assert seconds(cell, unit="date UTC")[0] == pytest.approx(utc, abs=1e-5)
+        assert seconds(cell, unit="date +01:30")[0] == pytest.approx(utc - 5400, abs=1e-5)
+
+
+def test_times_of_day_count_from_midnight_and_empty_cells_are_nan():
+    found = seconds("01:02:03,5", None, "00:00:00", unit="h:m:s")
+    np.testing.assert_array_equal(found, [3723.5, np.nan, 0])
+
+
+@pytest.mark.parametrize(
+    ("cell", "unit", "problem"),
+    [
+        ("2026-03-04 05:06:07", "date", "has no time zone; state it in columns.toml"),
+        ("2026-03-04T05:06:07Z", "date UTC", "has a time zone of its own"),
+        ("03/04/2026 05:06", "date UTC", "is not read as a date or time; write 2026-03-04T"),
+        ("2026-13-04 05:06", "date UTC", "is not read as a date"),
+        ("noon", "h:m:s", "is not read as a date or time; write 12:00:00.5"),
+    ],
+)
+def test_what_is_no_date_is_named(cell, unit, problem):
+    with pytest.raises(DataError, match=f"column 't', row 1.*{problem}"):
+        seconds(cell, unit=unit)
+
+
+def test_numbers_are_no_dates():
+    with pytest.raises(DataError, match="holds numbers; expected dates"):
+        seconds_of_dates(RawTable(Path("a.csv"), {"t": pd.Series([1.0])}), "t", "date")

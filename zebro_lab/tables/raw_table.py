@@ -239,10 +239,10 @@ def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
 
     if pd.api.types.is_numeric_dtype(cells):
         return np.asarray(cells, dtype=float)
-    cells = cells.map(lambda cell: cell.replace(_MINUS, "-") if isinstance(cell, str) else cell)
     values = np.full(len(cells), np.nan)
     for start in range(0, len(cells), _BLOCK):
         block = cells.iloc[start : start + _BLOCK]
+        block = block.map(lambda cell: cell.replace(_MINUS, "-") if isinstance(cell, str) else cell)
         found = np.asarray(pd.to_numeric(block, errors="coerce"), dtype=float)
         values[start : start + _BLOCK] = found
         if np.any(np.isnan(found) & ~block.isna().to_numpy(dtype=bool)):

@@ -242,7 +242,8 @@ def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
     values = np.full(len(cells), np.nan)
     for start in range(0, len(cells), _BLOCK):
         block = cells.iloc[start : start + _BLOCK]
-        block = block.map(lambda cell: cell.replace(_MINUS, "-") if isinstance(cell, str) else cell)
+        if any(isinstance(cell, str) and _MINUS in cell for cell in block):
+            block = block.str.replace(_MINUS, "-", regex=False)
         found = np.asarray(pd.to_numeric(block, errors="coerce"), dtype=float)
         values[start : start + _BLOCK] = found
         if np.any(np.isnan(found) & ~block.isna().to_numpy(dtype=bool)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rigid alignment of one planar path to another."""
+"""Alignment of one path to another, in the plane or in space."""
 
 from typing import NamedTuple
 
@@ -21,6 +21,51 @@ class RigidMotion(NamedTuple):
     translation: Array
 
 
+class Similarity(NamedTuple):
+    """A similarity: scale and rotation about the origin, then translation.
+
+    Attributes:
+        scale: Factor on lengths [-].
+        rotation: Rotation matrix, shape (d, d).
+        translation: Shift, shape (d,) [m].
+    """
+
+    scale: float
+    rotation: Array
+    translation: Array
+
+    def apply(self, position: Array) -> Array:
+        """Move positions, shape (n, d) [m]."""
+        return self.scale * position @ self.rotation.T + self.translation
+
+
+def umeyama(x: Array, y: Array, *, with_scale: bool = False) -> Similarity:
+    r"""Compute the similarity that brings points closest to others.
+
+    .. math::
+        \min_{s, R, p} \sum_i |s R x_i + p - y_i|^2
+
+    Least squares over SE(d), or Sim(d) with scale; R is a proper rotation, never a mirror image.
+    Umeyama (1991), Eqs. (34) to (43).
+
+    Args:
+        x: Points to move, shape (n, d) [m].
+        y: The points to come close to, shape (n, d) [m].
+        with_scale: Whether the scale is fitted; else it is 1, as where all x are one point.
+
+    Returns:
+        Scale, rotation and translation; of the rotations that are equally good, any.
+    """
+    a, b = x - x.mean(axis=0), y - y.mean(axis=0)
+    u, d, vt = np.linalg.svd(b.T @ a)
+    sign = np.ones_like(d)
+    sign[-1] = np.sign(np.linalg.det(u) * np.linalg.det(vt))
+    rotation = (u * sign) @ vt
+    spread = float(np.sum(a**2))
+    scale = float(d @ sign) / spread if with_scale and spread > 0 else 1.0
+    return Similarity(scale, rotation, y.mean(axis=0) - scale * rotation @ x.mean(axis=0))
+
+
 def align(predicted: Poses, tracked: Poses) -> RigidMotion:
     r"""Compute the rigid motion that brings predicted positions closest to tracked ones.
 
@@ -38,8 +83,6 @@ def align(predicted: Poses, tracked: Poses) -> RigidMotion:
         Rotation R by an angle within [-pi, pi], 0 if either path stays in one place, and
         translation p.
     """
-    x, y = predicted.position, tracked.position
-    a, b = x - x.mean(axis=0), y - y.mean(axis=0)
-    rotation = float(np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum()))
-    c, s = np.cos(rotation), np.sin(rotation)
-    return RigidMotion(rotation, y.mean(axis=0) - np.array([[c, -s], [s, c]]) @ x.mean(axis=0))
+    motion = umeyama(predicted.position, tracked.position)
+    rotation = float(np.arctan2(motion.rotation[1, 0], motion.rotation[0, 0]))
+    return RigidMotion(rotation, motion.translation)

@@ -2,19 +2,17 @@
 """Errors of a predicted path against a tracked one, pose by pose and in summary."""
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from model.metrics.alignment import align
+from model.metrics.rigid_errors import motion_errors, pairs_by_distance
 from model.metrics.turning import fitted_radius, mean_yaw_rate
-from model.poses import Poses, overlap, relative, travel_direction, wrap
+from model.poses import Poses, overlap, travel_direction, wrap
+from model.rigid_path import RigidPath
 from model.slip.law import Array
 
 DISTANCES = (0.25, 0.5, 1.0)  # distances travelled over which relative errors are computed [m]
-Indices: TypeAlias = NDArray[np.intp]
-CLOSE = 0.1  # share of such a distance by which a pair of poses may miss it
 
 
 @dataclass(frozen=True)
@@ -186,28 +184,9 @@ def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> Rela
     start, end = pairs_by_distance(tracked.travelled, distance)
     if len(start) == 0 or not (predicted.has_yaw and tracked.has_yaw):
         return RelativeError(distance, len(start), float("nan"), float("nan"))
-    moves = (relative(poses.states[end], poses.states[start]) for poses in (predicted, tracked))
-    shift, turn = np.split(np.subtract(*moves), [2], axis=1)
-    error = np.linalg.norm(shift, axis=1)  # a rotation of the frame does not change the norm
-    return RelativeError(distance, len(start), _rms(error), _rms(wrap(turn)))
-
-
-def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indices]:
-    """Find for each pose the later pose whose distance travelled from there is nearest to a value.
-
-    Args:
-        travelled: Distance travelled up to each pose, shape (n,) [m].
-        distance: Distance wanted [m]; pairs that miss it by more than a tenth are left out.
-
-    Returns:
-        Indices of the first and of the second pose of each pair, each of shape (pairs,), possibly
-        empty.
-    """
-    gap = np.abs(travelled[None, :] - travelled[:, None] - distance)
-    gap[np.tril_indices(len(travelled))] = np.inf
-    end = gap.argmin(axis=1)
-    start = np.flatnonzero(gap[np.arange(len(travelled)), end] <= CLOSE * distance)
-    return start, end[start]
+    paths = (RigidPath.of_poses(poses) for poses in (predicted, tracked))
+    error, turn = motion_errors(*paths, start, end)
+    return RelativeError(distance, len(start), _rms(error), _rms(turn))
 
 
 def _rms(values: Array) -> float:

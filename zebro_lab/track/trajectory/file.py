@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""Read a trajectory of another program: a TUM, KITTI or EuRoC file, or a table."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from model.poses import Poses
+from model.rigid_path import RigidPath
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.table_files import is_table_file
+from zebro_lab.track.trajectory.layouts import OrderedNumbers, ordered
+from zebro_lab.track.trajectory.numbers import NumberLines, read_number_lines
+from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
+from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
+from zebro_lab.track.trajectory.table import read_table_trajectory
+
+_TILTED = np.radians(5.0)  # a body that leaves the plane by more is told of
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Trajectory of another program.
+
+    Attributes:
+        file: The file.
+        layout: Its layout.
+        path: Poses in space; z is 0 where it is not known, and times are row numbers without times.
+        timed: Whether it has times.
+        in_space: Whether z is known.
+        plane: Axes that span the floor.
+        forward: Axis of the body that points ahead.
+        source: Where the poses come from, as stated; else "unknown".
+        notes: Notes on how the file was read, one line each.
+        files: Every file read.
+    """
+
+    file: Path
+    layout: Layout
+    path: RigidPath
+    timed: bool
+    in_space: bool
+    plane: Plane
+    forward: Axis
+    source: str = "unknown"
+    notes: tuple[str, ...] = ()
+    files: tuple[Path, ...] = ()
+
+    @property
+    def poses(self) -> Poses:
+        """Poses in the plane."""
+        return self.path.in_plane(self.plane, forward=self.forward)
+
+    @property
+    def height(self) -> Array:
+        """Coordinate along the plane's normal, upwards where the plane is seen from above [m]."""
+        first, second = ("xyz".index(axis) for axis in self.plane)
+        normal = np.cross(np.eye(3)[first], np.eye(3)[second])
+        return self.path.position @ normal
+
+
+def read_trajectory(
+    path: Path,
+    request: TrajectoryRequest,
+    *,
+    mapping: MappedColumns | None = None,
+    which: int = 0,
+) -> Trajectory:
+    """Read a trajectory; its layout is found by its content where the request does not state it.
+
+    Args:
+        path: The file.
+        request: How to read it.
+        mapping: Headers and units of the columns of a table.
+        which: 0 for the first file of a command, 1 for the second.
+
+    Raises:
+        NotFound: A file is missing.
+        DataError: The file is damaged or its layout is not known; a stamp is repeated with another
+            pose, or earlier than the one before.
+        SettingsError: An option does not fit the file.
+    """
+    stated = request.layout_of(which)
+    numbers = None if _is_table(path, stated) else read_number_lines(path)
+    if numbers is None:
+        if stated not in (None, Layout.TABLE):
+            raise DataError(f"has a line of words; expected lines of numbers ({stated})", file=path)
+        return _of_table(path, request, mapping)
+    plane, forward = _frame(request, is_kitti=_has_matrices(numbers, stated))
+    read = ordered(numbers, stated, plane=plane)
+    t, notes, files = _times(read, numbers, request.times)
+    kept, more = kept_stamps(t, read.poses, fault=numbers.fault)
+    trajectory = Trajectory(
+        file=path,
+        layout=read.layout,
+        path=RigidPath(t, read.position, read.rotation).part(kept),
+        timed=read.t is not None or request.times is not None,
+        in_space=True,
+        plane=plane,
+        forward=forward,
+        notes=_named(path, (*notes, *more)),
+        files=(path, *files),
+    )
+    return _with_doubts(trajectory)
+
+
+def _is_table(path: Path, stated: Layout | None) -> bool:
+    text = path.name.lower().endswith((".csv", ".tsv", ".dat"))
+    return stated is Layout.TABLE or (is_table_file(path) and not text)
+
+
+def _has_matrices(numbers: NumberLines, stated: Layout | None) -> bool:
+    return stated is Layout.KITTI or (stated is None and numbers.values.shape[1] == 12)
+
+
+def _frame(request: TrajectoryRequest, *, is_kitti: bool) -> tuple[Plane, Axis]:
+    plane = request.plane or (Plane.XZ if is_kitti else Plane.XY)
+    return plane, request.forward or (Axis.Z if "z" in plane else Axis.X)
+
+
+def _times(
+    read: OrderedNumbers, numbers: NumberLines, file: Path | None
+) -> tuple[Array, tuple[str, ...], Sequence[Path]]:
+    """Return times [s], from the file of times or row numbers where there are none, and notes."""
+    if read.t is not None:
+        factor, notes = stamp_factor(read.t, read.time_unit, fault=numbers.fault)
+        return read.t * factor, notes, ()
+    count = len(read.position)
+    if file is None:
+        return np.arange(count, dtype=float), (), ()
+    times = read_number_lines(file)
+    if times is None or times.values.shape[1] != 1:
+        raise SettingsError(f"{file} is not a file of one number a line", key="--times")
+    if len(times.values) != count:
+        raise SettingsError(
+            f"{file} has {len(times.values)} times, {numbers.file} has {count} poses; expected as "
+            "many of both",
+            key="--times",
+        )
+    t = times.values[:, 0]
+    factor, notes = stamp_factor(t, "s", fault=times.fault)
+    kept_stamps(t, np.arange(count)[:, None], fault=times.fault)  # times that do not increase
+    return t * factor, notes, (file,)
+
+
+def _of_table(
+    path: Path, request: TrajectoryRequest, mapping: MappedColumns | None
+) -> Trajectory:
+    table = read_table_trajectory(path, mapping)
+    plane, forward = _frame(request, is_kitti=False)
+    if not table.in_space and plane is not Plane.XY:
+        raise SettingsError(f"{path} has no column z; leave --plane out", key="--plane")
+    trajectory = Trajectory(
+        path, Layout.TABLE, table.path, True, table.in_space, plane, forward, table.source,
+        _named(path, table.notes), table.files,
+    )  # fmt: skip
+    return _with_doubts(trajectory)
+
+
+def _with_doubts(trajectory: Trajectory) -> Trajectory:
+    """Add notes where rotations leave the plane, and where the path extends across it."""
+    path, plane, notes = trajectory.path, trajectory.plane, []
+    tilt = float(path.tilt(plane).max())
+    if tilt > _TILTED:
+        notes.append(
+            f"rotations leave the plane {plane} by up to {np.degrees(tilt):.1f} deg; the heading is "
+            f"the direction of the {trajectory.forward} axis in the plane"
+        )
+    first, second = np.ptp(trajectory.poses.position, axis=0)
+    across = float(np.ptp(trajectory.height))
+    if across > min(first, second) and across > 0.1 * max(first, second):
+        notes.append(
+            f"the path extends {across:.3g} m across the plane {plane} and {first:.3g} m by "
+            f"{second:.3g} m in it; is another --plane meant?"
+        )
+    return replace(trajectory, notes=(*trajectory.notes, *_named(trajectory.file, notes)))
+
+
+def _named(path: Path, notes: Sequence[str]) -> tuple[str, ...]:
+    return tuple(note if note.startswith(path.name) else f"{path.name}: {note}" for note in notes)

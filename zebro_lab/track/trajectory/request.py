@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""Options that say how the trajectory of another program is read."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+from typer import Option
+
+
+class Layout(StrEnum):
+    """Order of the numbers in a line of a trajectory."""
+
+    TUM = "tum"
+    KITTI = "kitti"
+    EUROC = "euroc"
+    TABLE = "table"
+
+
+class Plane(StrEnum):
+    """Two axes of a trajectory's frame: the first and the one to its left, seen from above."""
+
+    XY = "xy"
+    YX = "yx"
+    XZ = "xz"
+    ZX = "zx"
+    YZ = "yz"
+    ZY = "zy"
+
+
+class Axis(StrEnum):
+    """Axis of a body's frame."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+
+
+@dataclass(frozen=True)
+class TrajectoryRequest:
+    """Options of every command that reads trajectories of other programs."""
+
+    layout: Annotated[
+        tuple[Layout, ...],
+        Option(
+            help="Layout of the trajectory, where its content leaves it open: tum (time, position, "
+            "quaternion with w last), euroc (the same with w first), kitti (matrices), table; "
+            "given twice, of the first and of the second file."
+        ),
+    ] = ()
+    plane: Annotated[
+        Plane | None,
+        Option(
+            help="Axes of the trajectory that span the floor, the second to the left of the first "
+            "seen from above; default: xz for kitti (camera: x right, y down, z forward), else xy."
+        ),
+    ] = None
+    forward: Annotated[
+        Axis | None,
+        Option(
+            help="Axis of the body, or camera, that points ahead; default: z where the plane "
+            "contains z, else x."
+        ),
+    ] = None
+    times: Annotated[
+        Path | None,
+        Option(metavar="FILE", help="Times of a trajectory without times, one a line [s]."),
+    ] = None
+
+    def layout_of(self, which: int) -> Layout | None:
+        """Return the layout stated for the first (0) or second (1) file; None if not stated."""
+        return self.layout[min(which, len(self.layout) - 1)] if self.layout else None

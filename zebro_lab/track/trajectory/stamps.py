@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Time stamps of trajectories: their unit, repeated and unsorted ones."""
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+
+Fault = Callable[[str, int], DataError]
+UNITS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_SINCE_1970: Final = (6.3e8, 4.2e9)
+"""Seconds since 1970 of the years 1990 to 2102: no other unit has such numbers for these years."""
+_MOST_REPEATED: Final = 0.01
+"""Largest share of rows that repeat a stamp with another pose; beyond, stamps are too coarse."""
+_LONGEST_GAP: Final = 1e4
+"""Median time between poses from which the unit cannot be right [s]."""
+
+
+def stamp_factor(t: Array, unit: str, *, fault: Fault) -> tuple[float, tuple[str, ...]]:
+    """Return the factor that converts stamps to seconds, and a note if it is not the unit expected.
+
+    Stamps that are times since 1970 in one of `UNITS` say so by their size.
+
+    Args:
+        t: Stamps, shape (n,).
+        unit: Unit that header or layout state, a key of `UNITS`.
+        fault: Makes an error that names a row, counted from 0.
+
+    Raises:
+        DataError: Poses are hours apart, so that the unit must be another.
+    """
+    low, high = _SINCE_1970
+    for name, factor in UNITS.items():
+        if low <= float(np.abs(t).max()) * factor <= high:
+            note = f"stamps are read as times since 1970 in {name}"
+            return factor, () if name == unit else (note,)
+    gap = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
+    if abs(gap) * UNITS[unit] > _LONGEST_GAP:
+        raise fault(
+            f"stamps are {gap:g} {unit} apart; expected {unit}: divide them, or give a table whose "
+            "header has the unit, such as 'timestamp [ns]'",
+            0,
+        )
+    return UNITS[unit], ()
+
+
+def kept_stamps(
+    t: Array, poses: Array, *, fault: Fault
+) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+    """Return the rows to keep, the first of each stamp, and notes on those that are left out.
+
+    Args:
+        t: Stamps, shape (n,) [s].
+        poses: Numbers of each pose, shape (n, columns).
+        fault: Makes an error that names a row, counted from 0.
+
+    Raises:
+        DataError: A stamp is earlier than the one before, or more than one in a hundred rows repeat
+            a stamp with another pose; names both rows and their stamps.
+    """
+    step = np.diff(t)
+    if np.any(step < 0):
+        at = int(np.argmax(step < 0)) + 1
+        before, now = told_apart(t[at - 1], t[at])
+        raise fault(
+            f"the stamp {now} s is earlier than {before} s of row {at}; expected increasing "
+            "stamps: sort the rows by time",
+            at,
+        )
+    same = np.concatenate([[False], step == 0])
+    differing = np.concatenate([[False], np.any(np.diff(poses, axis=0) != 0, axis=1)])
+    equal, other = same & ~differing, np.flatnonzero(same & differing)
+    if len(other) > _MOST_REPEATED * len(t) + 1:
+        raise fault(
+            f"{_repeated(t, poses, other[0])}, as in {len(other)} rows; expected increasing stamps: "
+            "write them with more digits",
+            int(other[0]),
+        )
+    notes = (f"{equal.sum()} rows repeat the row before and are left out",) if equal.any() else ()
+    named = [f"row {at + 1}: {_repeated(t, poses, at)}; row {at} is kept" for at in other[:3]]
+    more = len(other) - len(named)
+    return np.flatnonzero(~same), (*notes, *named, *([f"more rows with such stamps: {more}"] if more else []))
+
+
+def _repeated(t: Array, poses: Array, at: int) -> str:
+    """Say how a row, counted from 0, differs from the one before, which has the same stamp."""
+    column = int(np.argmax(poses[at] != poses[at - 1]))
+    before, now = told_apart(poses[at - 1, column], poses[at, column])
+    return (
+        f"the stamp {float(t[at])!r} s is that of row {at}, with another pose (number {column + 2} "
+        f"is {now}, there {before})"
+    )
+
+
+def told_apart(one: float, other: float) -> tuple[str, str]:
+    """Format two numbers with the fewest digits, six or more, that show the difference.
+
+    >>> told_apart(1403715524.907143, 1403715524.907144)
+    ('1403715524.907143', '1403715524.907144')
+    """
+    for digits in range(6, 18):
+        texts = f"{one:.{digits}g}", f"{other:.{digits}g}"
+        if texts[0] != texts[1]:
+            return texts
+    return texts

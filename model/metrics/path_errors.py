@@ -184,8 +184,8 @@ def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> Rela
     start, end = pairs_by_distance(tracked.travelled, distance)
     if len(start) == 0 or not (predicted.has_yaw and tracked.has_yaw):
         return RelativeError(distance, len(start), float("nan"), float("nan"))
-    paths = (RigidPath.of_poses(poses) for poses in (predicted, tracked))
-    error, turn = motion_errors(*paths, start, end)
+    estimate, reference = RigidPath.of_poses(predicted), RigidPath.of_poses(tracked)
+    error, turn = motion_errors(estimate, reference, start, end)
     return RelativeError(distance, len(start), _rms(error), _rms(turn))
 
 

@@ -37,7 +37,7 @@ class MotionError(NamedTuple):
     """Relative pose error: error of the motion from one pose to another.
 
     Attributes:
-        distance: Distance travelled between the two poses of a pair [m]; None for consecutive poses.
+        distance: Distance travelled between two poses [m]; None for consecutive poses.
         pairs: Number of pairs.
         position: Root mean square error of the displacement, in the first pose's frame [m]; NaN
             without pairs or rotations.
@@ -180,7 +180,9 @@ def round_distances(length: float) -> tuple[float, ...]:
         return ()
     power = math.floor(math.log10(length / 4))
     candidates = [
-        float(f"{digit}e{exponent}") for exponent in range(power - 1, power + 1) for digit in (1, 2, 5)
+        float(f"{digit}e{exponent}")
+        for exponent in range(power - 1, power + 1)
+        for digit in (1, 2, 5)
     ]
     return tuple(each for each in candidates if each <= length / 4)[-3:]
 

@@ -18,9 +18,21 @@ zebro-lab validate --predicted a/prediction --track a/track --predicted b/predic
 
 zebro-lab validate data/RUN --estimate-offset
 
+zebro-lab validate groundtruth.txt slam.txt --max-difference 0.02
+
+zebro-lab validate KITTI_00_gt.txt KITTI_00_ORB.txt --plane xz --times times.txt
+
+Folders are runs, files are trajectories (TUM, KITTI, EuRoC, tables), of which the reference comes
+first. Their errors are those of the program evo, in the plane and in space.
+
 Unaligned errors come first: alignment hides a wrong start and a wrong heading. Every path starts
 from the first tracked pose, which is not scored.
 """
+
+
+_ONLY_PAIRS = ("layout", "plane", "forward", "times", "columns", "max_difference", "distance",
+               "correct_scale")  # fmt: skip
+_ONLY_RUNS = ("predicted", "track", "anchor", "estimate_offset")
 
 
 @request_command()
@@ -30,6 +42,10 @@ def validate(request: ValidateRequest) -> None:
     from zebro_lab.validation import stage
     from zebro_lab.validation.screen import print_validated
 
+    if request.is_pair:
+        _validate_pair(request)
+        return
+    _require_no_options(request, _ONLY_PAIRS, "belongs to two trajectories; give their files")
     n_predicted, n_tracks = len(request.predicted), len(request.track)
     if n_predicted != n_tracks or not (request.runs or n_predicted):
         raise typer.BadParameter(
@@ -41,3 +57,33 @@ def validate(request: ValidateRequest) -> None:
     with progress_bar() as watcher:
         validated = stage.validate(request, watcher)
     print_validated(wide_console(), validated, request.folder)
+
+
+def _validate_pair(request: ValidateRequest) -> None:
+    from zebro_lab.terminal.progress import progress_bar
+    from zebro_lab.validation.trajectories.screen import print_pair
+    from zebro_lab.validation.trajectories.stage import validate_trajectories
+
+    folders = [path for path in request.runs if path.is_dir()]
+    if folders or len(request.runs) != 2:
+        found = f", of which {folders[0]} is a folder" if folders else ""
+        raise typer.BadParameter(
+            f"{len(request.runs)} paths{found}; give run folders, or two files of trajectories: "
+            "REFERENCE ESTIMATE"
+        )
+    _require_no_options(request, _ONLY_RUNS, "belongs to predicted walks, not to trajectories")
+    with progress_bar() as watcher:
+        judged = validate_trajectories(request, watcher)
+    print_pair(wide_console(), judged, request.folder)
+
+
+def _require_no_options(request: ValidateRequest, names: tuple[str, ...], problem: str) -> None:
+    """Raise for the first of these options that differs from its default."""
+    default = ValidateRequest()
+    for name in names:
+        given, usual = (
+            getattr(each.trajectory if hasattr(each.trajectory, name) else each, name)
+            for each in (request, default)
+        )
+        if given != usual:
+            raise typer.BadParameter(problem, param_hint=f"--{name.replace('_', '-')}")

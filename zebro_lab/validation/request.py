@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Options of a validation."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
 from typer import Argument, Option
+
+from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 
 @dataclass(frozen=True)
@@ -13,7 +15,12 @@ class ValidateRequest:
     """Options of `zebro-lab validate`."""
 
     runs: Annotated[
-        tuple[Path, ...], Argument(metavar="RUN", help="Run folders with prediction/ and track/.")
+        tuple[Path, ...],
+        Argument(
+            metavar="[RUN]... | REFERENCE ESTIMATE",
+            help="Run folders with prediction/ and track/; or two files with trajectories, the "
+            "reference first: TUM, KITTI, EuRoC or a table.",
+        ),
     ] = ()
     predicted: Annotated[
         tuple[Path, ...],
@@ -26,8 +33,8 @@ class ValidateRequest:
         Path | None,
         Option(
             metavar="DIR",
-            help="Validation folder to write; default: RUN/validation for one run, else "
-            "validation.",
+            help="Folder to write; default: RUN/validation for one run, trajectories for two "
+            "trajectories, else validation.",
         ),
     ] = None
     anchor: Annotated[
@@ -41,7 +48,8 @@ class ValidateRequest:
         float,
         Option(
             metavar="SECONDS",
-            help="Time by which the track's clock is behind, added to its times [s].",
+            help="Time by which the clock of the track (of REFERENCE) is behind, added to its "
+            "times [s].",
         ),
     ] = 0.0
     estimate_offset: Annotated[
@@ -53,11 +61,45 @@ class ValidateRequest:
         ),
     ] = False
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
+    trajectory: TrajectoryRequest = field(default_factory=TrajectoryRequest)
+    columns: Annotated[
+        Path | None,
+        Option(
+            metavar="FILE",
+            help="columns.toml of trajectories in tables, instead of those beside them.",
+        ),
+    ] = None
+    max_difference: Annotated[
+        float,
+        Option(min=0.0, help="Largest difference of the times of two matched poses [s]."),
+    ] = 0.01
+    distance: Annotated[
+        tuple[float, ...],
+        Option(
+            help="Distance of a relative error of trajectories [m]; repeatable; default: three "
+            "round ones up to a quarter of the reference."
+        ),
+    ] = ()
+    correct_scale: Annotated[
+        bool,
+        Option(
+            "--correct-scale",
+            help="Multiply ESTIMATE by the scale that fits best, as of one camera, which sees no "
+            "scale.",
+        ),
+    ] = False
+
+    @property
+    def is_pair(self) -> bool:
+        """Whether trajectories are given: something other than a folder is among `runs`."""
+        return any(path.exists() and not path.is_dir() for path in self.runs)
 
     @property
     def folder(self) -> Path:
-        """`--out` if given, else RUN/validation for a single run, else `validation`."""
+        """`--out` if given, else by what is validated, see its help."""
         if self.out is not None:
             return self.out
+        if self.is_pair:
+            return Path("trajectories")
         alone = len(self.runs) == 1 and not self.predicted
         return self.runs[0] / "validation" if alone else Path("validation")

@@ -85,7 +85,7 @@ def read_trajectory(
         SettingsError: An option does not fit the file.
     """
     stated = request.layout_of(which)
-    numbers = None if _is_table(path, stated) else read_number_lines(path)
+    numbers = _numbers_of(path, stated)
     if numbers is None:
         if stated not in (None, Layout.TABLE):
             raise DataError(f"has a line of words; expected lines of numbers ({stated})", file=path)
@@ -108,9 +108,16 @@ def read_trajectory(
     return _with_doubts(trajectory)
 
 
-def _is_table(path: Path, stated: Layout | None) -> bool:
-    text = path.name.lower().endswith((".csv", ".tsv", ".dat"))
-    return stated is Layout.TABLE or (is_table_file(path) and not text)
+def _numbers_of(path: Path, stated: Layout | None) -> NumberLines | None:
+    """Read lines of numbers; None for a table, which may be binary or in another encoding."""
+    if stated is Layout.TABLE or path.suffix.lower() in (".parquet", ".xlsx", ".gz"):
+        return None
+    try:
+        return read_number_lines(path)
+    except DataError as error:
+        if is_table_file(path) and isinstance(error.__cause__, UnicodeDecodeError):
+            return None
+        raise
 
 
 def _has_matrices(numbers: NumberLines, stated: Layout | None) -> bool:
@@ -143,13 +150,13 @@ def _times(
         )
     t = times.values[:, 0]
     factor, notes = stamp_factor(t, "s", fault=times.fault)
-    kept_stamps(t, np.arange(count)[:, None], fault=times.fault)  # times that do not increase
+    kept_stamps(
+        t, np.arange(count, dtype=float)[:, None], fault=times.fault
+    )  # times that do not increase
     return t * factor, notes, (file,)
 
 
-def _of_table(
-    path: Path, request: TrajectoryRequest, mapping: MappedColumns | None
-) -> Trajectory:
+def _of_table(path: Path, request: TrajectoryRequest, mapping: MappedColumns | None) -> Trajectory:
     table = read_table_trajectory(path, mapping)
     plane, forward = _frame(request, is_kitti=False)
     if not table.in_space and plane is not Plane.XY:
@@ -167,8 +174,8 @@ def _with_doubts(trajectory: Trajectory) -> Trajectory:
     tilt = float(path.tilt(plane).max())
     if tilt > _TILTED:
         notes.append(
-            f"rotations leave the plane {plane} by up to {np.degrees(tilt):.1f} deg; the heading is "
-            f"the direction of the {trajectory.forward} axis in the plane"
+            f"rotations leave the plane {plane} by up to {np.degrees(tilt):.1f} deg; the heading "
+            f"is the direction of the {trajectory.forward} axis in the plane"
         )
     first, second = np.ptp(trajectory.poses.position, axis=0)
     across = float(np.ptp(trajectory.height))

@@ -88,9 +88,7 @@ def _matrices(numbers: NumberLines) -> OrderedNumbers:
             "trajectory, the first three rows of a 4x4 matrix",
             int(np.argmax(wrong)),
         )
-    return OrderedNumbers(
-        Layout.KITTI, None, "s", matrix[:, :, 3], rotation, numbers.values
-    )
+    return OrderedNumbers(Layout.KITTI, None, "s", matrix[:, :, 3], rotation, numbers.values)
 
 
 def _quaternions(
@@ -104,16 +102,17 @@ def _quaternions(
     if wrong.any():
         index = int(np.argmax(wrong))
         raise numbers.fault(
-            f"quaternion length {length[index]:.4g}; expected {1 - _TOLERANCE} to {1 + _TOLERANCE}: "
-            "check that the order of the columns is that of the layout",
+            f"quaternion length {length[index]:.4g}; expected {1 - _TOLERANCE} to "
+            f"{1 + _TOLERANCE}: check that the order of the columns is that of the layout",
             index,
         )
+    whole = bool(np.all(t == np.round(t)))  # as nanoseconds are
     time_unit, *lengths = units or [None] * 4
     factors = [_factor(numbers, unit) for unit in lengths]
     return OrderedNumbers(
         layout=layout,
         t=t,
-        time_unit=time_unit or ("ns" if layout is Layout.EUROC else "s"),
+        time_unit=time_unit or ("ns" if layout is Layout.EUROC and whole else "s"),
         position=np.column_stack(position) * factors,
         rotation=rotations_of_quaternions(quaternion),
         poses=numbers.values[:, order[1:]],
@@ -152,7 +151,7 @@ def _unknown(numbers: NumberLines, stated: Layout | None) -> DataError:
         Layout.EUROC: "8 or more (time, position, quaternion)",
         Layout.KITTI: "12 (three rows of a matrix)",
     }
-    what = expected[stated] if stated in expected else "8 (TUM) or 12 (KITTI)"
+    what = "8 (TUM) or 12 (KITTI)" if stated is None else expected[stated]
     return DataError(
         f"has {count} numbers a line; expected {what}, or a table with a header line (t, x, y, "
         "perhaps yaw, or z and qx, qy, qz, qw)",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read a trajectory from a table with headers."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -9,9 +9,7 @@ import numpy as np
 
 from model.rigid_path import RigidPath, rotations_of_quaternions
 from model.slip.law import Array
-from zebro_lab.files.errors import DataError, UnitError
-from zebro_lab.files.units import factor_to_si
-from zebro_lab.tables.columns import MappedColumn
+from zebro_lab.files.errors import DataError
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
@@ -59,7 +57,9 @@ def read_table_trajectory(path: Path, mapping: MappedColumns | None) -> TableTra
     """
     table = read_table_file(path)
     mapping = recognised(table, mapping or canonical_columns(TABLE_UNITS))
-    names = [name for name in TABLE_UNITS if name in ("t_s", "x_m", "y_m") or mapping.has(table, name)]
+    names = [
+        name for name in TABLE_UNITS if name in ("t_s", "x_m", "y_m") or mapping.has(table, name)
+    ]
     columns = {name: _column(table, mapping, name) for name in names}
     t = columns.pop("t_s")
     header = mapping.mapped["t_s"].name
@@ -68,7 +68,7 @@ def read_table_trajectory(path: Path, mapping: MappedColumns | None) -> TableTra
         return table.fault(problem, header, index)
 
     notes: tuple[str, ...] = ()
-    if mapping.mapped["t_s"].unit == "s":
+    if header not in table.units and mapping.mapped["t_s"].unit == "s":
         factor, notes = stamp_factor(t, "s", fault=fault)
         t = t * factor
     poses = np.column_stack(list(columns.values()))
@@ -86,25 +86,12 @@ def read_table_trajectory(path: Path, mapping: MappedColumns | None) -> TableTra
 
 
 def recognised(table: RawTable, mapping: MappedColumns) -> MappedColumns:
-    """Map columns that are at their canonical names and missing to headers that are recognised.
-
-    A unit in brackets behind the header counts.
-
-    Raises:
-        DataError: Such a unit is unknown or measures another quantity.
-    """
-    found = named_columns(list(table.columns))
-    mapped = dict(mapping.mapped)
-    for name, seen in found.items():
-        if name not in mapped or mapping.has(table, name) or mapped[name].name != name:
-            continue
-        unit = seen.unit or TABLE_UNITS[name]
-        try:
-            factor = factor_to_si(unit, TABLE_UNITS[name])
-        except UnitError as error:
-            raise table.fault(f"{error}; correct the header", seen.header) from error
-        mapped[name] = MappedColumn(seen.header, unit, factor)
-    return replace(mapping, mapped=mapped)
+    """Map columns that are missing and not mapped in a file to headers that are recognised."""
+    for name, seen in named_columns(list(table.columns)).items():
+        free = name in mapping.mapped and mapping.mapped[name].name == name
+        if free and not mapping.has(table, name):
+            mapping = mapping.called(name, seen.header)
+    return mapping
 
 
 def _column(table: RawTable, mapping: MappedColumns, name: str) -> Array:

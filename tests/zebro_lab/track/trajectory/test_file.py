@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: MIT
+"""Trajectories as other programs write them are read right, or refused in one line."""
+
+import gzip
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.spatial.transform import Rotation
+
+from support.foreign_trajectories import HEADER, drive, euroc, kitti, tum, written
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.track.trajectory.file import read_trajectory
+from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
+
+UNIX = 1_400_000_000.0
+T, POSITION, ROTATION = drive()
+FLAT = Rotation.from_euler("Z", (0.05 + 0.1 * T)[:, None])
+
+
+def read(file, **options):
+    return read_trajectory(file, TrajectoryRequest(**options))
+
+
+def same(trajectory, t=T):
+    np.testing.assert_allclose(trajectory.path.t, t, atol=5e-7)
+    np.testing.assert_allclose(trajectory.path.position, POSITION, atol=1e-9)
+    np.testing.assert_allclose(trajectory.path.rotation, ROTATION.as_matrix(), atol=1e-9)
+    return trajectory
+
+
+@pytest.mark.parametrize("name", ["a.txt", "a.tum", "a.csv", "a"])
+@pytest.mark.parametrize("separator", [" ", "\t", "  "])
+def test_tum_is_known_by_its_content_whatever_the_name(tmp_path, name, separator):
+    file = written(tmp_path / name, "# a comment\n\n" + tum(T, POSITION, ROTATION, separator))
+    assert same(read(file)).layout is Layout.TUM
+
+
+def test_commas_are_read_where_the_header_names_the_quaternion(tmp_path):
+    text = tum(T, POSITION, ROTATION, ",")
+    last = "# timestamp,tx,ty,tz,qx,qy,qz,qw\n"
+    same(read(written(tmp_path / "a.csv", last + text)))
+    same(read(written(tmp_path / "b.csv", last[2:] + text)))  # a table
+    with pytest.raises(DataError, match=r"8 numbers .*--layout tum .w last. or --layout euroc"):
+        read(written(tmp_path / "c.csv", text))
+    same(read(tmp_path / "c.csv", layout=(Layout.TUM,)))
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
+def test_unix_stamps_say_their_unit(tmp_path, unit):
+    stamps = (UNIX + T) / {"s": 1, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[unit]
+    trajectory = same(read(written(tmp_path / "a.txt", tum(stamps, POSITION, ROTATION))), UNIX + T)
+    assert any("since 1970" in note for note in trajectory.notes) == (unit != "s")
+
+
+def test_nanoseconds_from_zero_are_not_taken_for_seconds(tmp_path):
+    file = written(tmp_path / "a.txt", tum(1e9 * T, POSITION, ROTATION))
+    with pytest.raises(DataError, match=r"row 1 .*1e\+08 s apart, if they are in s"):
+        read(file)
+
+
+@pytest.mark.parametrize("t", [T, UNIX + T])
+@pytest.mark.parametrize("header", [HEADER, HEADER.replace(" [ns]", "").replace(",", ", ")])
+def test_euroc_has_w_first_and_nanoseconds(tmp_path, t, header):
+    trajectory = same(read(written(tmp_path / "data.csv", euroc(t, POSITION, ROTATION, header))), t)
+    assert trajectory.layout is Layout.EUROC
+
+
+def test_euroc_with_speeds_and_biases_is_read(tmp_path):
+    lines = euroc(T, POSITION, ROTATION).splitlines()
+    more = ["," + ",".join(f"v{i} [m s^-1]" for i in range(9)), *[",0" * 9] * (len(lines) - 1)]
+    text = "\n".join(map("".join, zip(lines, more, strict=True)))
+    same(read(written(tmp_path / "data.csv", text)))
+    bare = written(tmp_path / "bare.csv", "\n".join(text.splitlines()[1:]))
+    with pytest.raises(DataError, match=r"17 numbers .*--layout euroc"):
+        read(bare)
+    same(read(bare, layout=(Layout.EUROC,)))
+
+
+def test_millimetres_in_a_header_are_converted(tmp_path):
+    text = "# t [s], x [mm], y [mm], z [mm], qx, qy, qz, qw\n" + tum(
+        T, 1000 * POSITION, ROTATION, ","
+    )
+    same(read(written(tmp_path / "a.csv", text)))
+
+
+def test_a_quaternion_with_w_first_is_not_read_as_one_with_w_last(tmp_path):
+    swapped = np.column_stack([T, POSITION, np.roll(FLAT.as_quat(), 1, axis=1)])
+    file = tmp_path / "a.txt"
+    np.savetxt(file, swapped)
+    with pytest.raises(DataError, match=r"upright if their first number is w.*--layout euroc"):
+        read(file)
+    trajectory = read(file, layout=(Layout.EUROC,))
+    np.testing.assert_allclose(trajectory.poses.yaw, 0.05 + 0.1 * T, atol=1e-9)
+    np.testing.assert_allclose(trajectory.path.t, T)
+
+
+def test_kitti_has_no_times_but_those_of_another_file(tmp_path):
+    file = written(tmp_path / "00.txt", kitti(POSITION, ROTATION))
+    trajectory = same(read(file), np.arange(len(T)))
+    assert (trajectory.layout, trajectory.timed) == (Layout.KITTI, False)
+    assert (trajectory.plane, trajectory.forward) == (Plane.XZ, Axis.Z)
+    times = tmp_path / "times.txt"
+    np.savetxt(times, T)
+    assert same(read(file, times=times)).timed
+    np.savetxt(times, T[:-1])
+    with pytest.raises(SettingsError, match=r"59 times, .* has 60 poses"):
+        read(file, times=times)
+    np.savetxt(times, T[::-1], fmt="%.1f")
+    with pytest.raises(DataError, match=r"times.txt, row 2 .*5.8 s is earlier than 5.9 s"):
+        read(file, times=times)
+
+
+def test_a_path_across_the_plane_is_told_of(tmp_path):
+    file = written(tmp_path / "00.txt", kitti(POSITION, ROTATION))
+    assert any("across the plane xz" in note for note in read(file).notes)
+    assert not any("across" in note for note in read(file, plane=Plane.XY).notes)
+
+
+def test_a_rotation_out_of_the_plane_is_told_of(tmp_path):
+    file = written(tmp_path / "a.txt", tum(T, POSITION, FLAT))
+    assert not read(file).notes
+    tilted = Rotation.from_euler("x", (0.3 * T / T[-1])[:, None]) * FLAT
+    file = written(tmp_path / "a.txt", tum(T, POSITION, tilted))
+    assert any("by up to 17.2 deg; the heading is the direction of the x axis" in note
+               for note in read(file).notes)  # fmt: skip
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".csv.gz"])
+def test_a_table_is_read_by_its_headers(tmp_path, suffix):
+    names = ["time", "pos_x", "pos_y", "pos_z", "q_x", "q_y", "q_z", "q_w"]
+    frame = pd.DataFrame(np.column_stack([T, POSITION, ROTATION.as_quat()]), columns=names)
+    file = tmp_path / f"a{suffix}"
+    if suffix == ".parquet":
+        frame.to_parquet(file)
+    elif suffix == ".csv":
+        frame.to_csv(file, index=False)
+    else:
+        file.write_bytes(gzip.compress(frame.to_csv(index=False).encode()))
+    assert same(read(file)).layout is Layout.TABLE
+
+
+def test_a_flat_table_has_no_place_in_space(tmp_path):
+    file = written(tmp_path / "a.csv", "t,x,y,yaw\n0,0,0,0\n1,1,0,0.1\n2,2,0.1,0.2\n")
+    trajectory = read(file)
+    assert not trajectory.in_space
+    np.testing.assert_allclose(trajectory.poses.yaw, [0, 0.1, 0.2], atol=1e-12)
+    with pytest.raises(SettingsError, match=r"--plane: .*no column z"):
+        read(file, plane=Plane.XZ)
+
+
+LINES = tum(UNIX + T, POSITION, ROTATION).splitlines()
+
+
+def test_a_repeated_row_is_left_out_with_a_note(tmp_path):
+    trajectory = same(read(written(tmp_path / "a.txt", "\n".join([*LINES, LINES[-1]]))), UNIX + T)
+    assert trajectory.notes[0] == "a.txt: 1 rows repeat the row before and are left out"
+
+
+def test_a_stamp_with_two_poses_is_named_with_both_rows(tmp_path):
+    other = LINES[-1].split()
+    other[2] = f"{float(other[2]) + 1e-8:.17g}"
+    trajectory = same(
+        read(written(tmp_path / "a.txt", "\n".join([*LINES, " ".join(other)]))), UNIX + T
+    )
+    note = trajectory.notes[0]
+    assert "row 61: the stamp 1400000005.9 s is that of row 60" in note
+    found = re.search(r"number 3 is (\S+), there (\S+)\)", note)
+    assert found
+    assert float(found[1]) - float(found[2]) == pytest.approx(1e-8, rel=0.5)
+
+
+def test_stamps_cut_to_whole_seconds_are_refused(tmp_path):
+    file = written(tmp_path / "a.txt", tum(np.floor(UNIX + T), POSITION, ROTATION))
+    with pytest.raises(DataError, match=r"row 2 .line 2.: .*is that of row 1.*in 54 rows.*digits"):
+        read(file)
+
+
+def test_an_unsorted_stamp_is_named_in_digits_that_differ(tmp_path):
+    lines = [*LINES[:5], LINES[6], LINES[5], *LINES[7:]]
+    with pytest.raises(
+        DataError,
+        match=r"row 7 .line 8.: .* 1400000000.5 s is earlier than 1400000000.6 s of row 6",
+    ):
+        read(written(tmp_path / "a.txt", "\n".join(["# c", *lines])))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "has no pose"),
+        ("# only a comment\n", "has no pose"),
+        ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.: found 3 numbers; expected 8"),
+        ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.: quaternion length 2"),
+        ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 zero 1\n", r"row 2 .line 2.: found 8 words, not all"),
+        ("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n", r"row 2 .line 2.: a number is not finite"),
+        ("0 1 2 3\n", r"4 numbers a line; expected 8 .TUM. or 12 .KITTI."),
+        ("1 2 3 4 5 6 7 8 9 10 11 12\n", r"row 1 .line 1.: .*no rotation matrix"),
+        ("1 0 0 0 0 1 0 0 0 0 -1 0\n", r"row 1 .line 1.: .*no rotation matrix"),
+    ],
+)
+def test_what_is_no_trajectory_is_refused_by_its_line(tmp_path, text, message):
+    with pytest.raises(DataError, match=message):
+        read(written(tmp_path / "a.txt", text))
+
+
+def test_a_layout_that_does_not_fit_is_refused(tmp_path):
+    with pytest.raises(DataError, match=r"8 numbers a line; expected 12"):
+        read(written(tmp_path / "a.txt", tum(T, POSITION, ROTATION)), layout=(Layout.KITTI,))
+    with pytest.raises(DataError, match="12 numbers a line; expected 8"):
+        read(written(tmp_path / "b.txt", kitti(POSITION, ROTATION)), layout=(Layout.TUM,))
+    with pytest.raises(DataError, match="line of words"):
+        read(written(tmp_path / "c.csv", "t,x,y\n0,0,0\n"), layout=(Layout.TUM,))
+    with pytest.raises(NotFound):
+        read(tmp_path / "missing.txt")
+
+
+def test_a_unit_that_cannot_be_one_of_time_is_refused(tmp_path):
+    text = tum(T, POSITION, ROTATION, ",")
+    with pytest.raises(DataError, match=r"'mm' cannot be converted to s.*correct the header"):
+        read(written(tmp_path / "a.csv", "# t [mm], x, y, z, qx, qy, qz, qw\n" + text))
+    with pytest.raises(DataError, match=r"'s' cannot be converted to m.*correct the header"):
+        read(written(tmp_path / "b.csv", "# t, x [s], y, z, qx, qy, qz, qw\n" + text))
+    seconds = np.column_stack([np.arange(60), POSITION, np.roll(FLAT.as_quat(), 1, axis=1)])
+    np.savetxt(tmp_path / "c.txt", seconds)
+    with pytest.raises(DataError, match="1 ns apart, if they are in ns"):
+        read(tmp_path / "c.txt", layout=(Layout.EUROC,))

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""`validate REFERENCE ESTIMATE` writes a folder, prints a table, and refuses what does not fit."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from support.foreign_trajectories import drive, kitti, tum, written
+
+T, POSITION, ROTATION = drive()
+
+
+@pytest.fixture
+def files(tmp_path):
+    truth = written(tmp_path / "truth.txt", tum(T, POSITION, ROTATION))
+    return truth, written(
+        tmp_path / "slam.txt", tum(T, POSITION + np.array([0.3, 0.4, 0.0]), ROTATION)
+    )
+
+
+def test_a_shift_is_the_error_everywhere_and_gone_after_alignment(run_command, files, tmp_path):
+    ended = run_command("validate", *files, "--out", tmp_path / "out")
+    assert ended.code == 0, ended.err
+    assert "absolute error (ATE), rms" in ended.out
+    assert "plane xy" in ended.out
+    assert "60 of 60 reference and 60 estimated poses are matched" in ended.out
+    table = pd.read_csv(tmp_path / "out/metrics.csv")
+    assert table["in"].tolist() == ["plane xy", "space"]
+    np.testing.assert_allclose(table["ate_m"], 0.5, atol=1e-7)
+    np.testing.assert_allclose(table[["ate_aligned_m", "rpe_step_m", "rpe_2m_m"]], 0, atol=1e-7)
+    errors = pd.read_csv(tmp_path / "out/errors.csv")
+    np.testing.assert_allclose(np.hypot(errors.along_m, errors.cross_m), 0.5, atol=1e-7)
+    np.testing.assert_allclose(errors.distance_in_space_m, 0.5, atol=1e-7)
+    manifest = json.loads((tmp_path / "out/manifest.json").read_text())
+    assert manifest["kind"] == "trajectories"
+    assert set(manifest["outputs"]) == {
+        "metrics.csv", "errors.csv", "trajectories.png", "reference.tum", "estimate.tum",
+    }  # fmt: skip
+    assert set(manifest["inputs"]) == {str(file) for file in files}
+
+
+def test_a_flat_table_is_validated_in_the_plane_alone(run_command, files, tmp_path):
+    frame = pd.DataFrame(
+        np.column_stack([T, 1000 * POSITION[:, :2]]), columns=["when", "east", "north"]
+    )
+    frame.to_csv(tmp_path / "track.csv", index=False)
+    (tmp_path / "c.toml").write_text(
+        '[columns]\nt_s = "when"\nx_m = {name = "east", unit = "mm"}\n'
+        'y_m = {name = "north", unit = "mm"}\n'
+    )
+    arguments = [files[0], tmp_path / "track.csv", "--columns", tmp_path / "c.toml"]
+    ended = run_command("validate", *arguments, "--out", tmp_path / "out")
+    assert ended.code == 0, ended.err
+    table = pd.read_csv(tmp_path / "out/metrics.csv")
+    assert table["in"].tolist() == ["plane xy"]
+    assert table["ate_m"][0] < 1e-9
+    assert table[["rpe_step_m", "rotation_rms_deg"]].isna().all(axis=None)
+
+
+def test_another_clock_is_set_by_the_offset(run_command, files, tmp_path):
+    late = written(tmp_path / "late.txt", tum(T + 100, POSITION, ROTATION))
+    ended = run_command("validate", files[0], late, "--out", tmp_path / "out")
+    assert ended.code == 1
+    assert "late.txt: 0 poses have a reference pose within 0.01 s; expected 3 or more" in ended.err
+    assert not (tmp_path / "out").exists()
+    ended = run_command("validate", files[0], late, "--time-offset", 100, "--out", tmp_path / "out")
+    assert ended.code == 0, ended.err
+
+
+def test_poses_without_times_are_matched_by_number_or_not_at_all(run_command, files, tmp_path):
+    whole = written(tmp_path / "a.txt", kitti(POSITION, ROTATION))
+    part = written(tmp_path / "b.txt", kitti(POSITION[1:], ROTATION[1:]))
+    ended = run_command("validate", whole, part)
+    assert ended.code == 1
+    assert "b.txt: has 59 poses without times, the reference has 60" in ended.err
+    ended = run_command("validate", whole, files[0], "--plane", "xy")
+    assert ended.code == 1
+    assert "a.txt: has no times, and the other file has; give" in ended.err
+    np.savetxt(tmp_path / "times.txt", T)
+    arguments = [whole, files[0], "--plane", "xy", "--times", tmp_path / "times.txt"]
+    ended = run_command("validate", *arguments, "--out", tmp_path / "out")
+    assert ended.code == 0, ended.err
+    assert pd.read_csv(tmp_path / "out/metrics.csv")["ate_m"].max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (["third.txt"], "3 paths; give run folders, or two files of trajectories"),
+        (["--predicted", "p", "--track", "t"], "belongs to predicted walks"),
+        (["--no-anchor"], "belongs to predicted walks"),
+        (["--plane", "xx"], "xx"),
+        (["--layout", "rosbag"], "rosbag"),
+        (["--max-difference", "-1"], "--max-difference"),
+    ],
+)
+def test_wrong_usage_ends_with_2(run_command, files, more, message):
+    ended = run_command("validate", *files, *more)
+    assert ended.code == 2
+    assert message in " ".join(ended.err.replace("│", " ").split())
+
+
+def test_options_of_trajectories_do_not_go_with_runs(run_command, tmp_path):
+    ended = run_command("validate", tmp_path, "--correct-scale")
+    assert ended.code == 2
+    assert "belongs to two trajectories" in ended.err
+
+
+def test_a_file_beside_a_folder_is_wrong_usage(run_command, files, tmp_path):
+    ended = run_command("validate", files[0], tmp_path)
+    assert ended.code == 2
+    assert "is a folder" in " ".join(ended.err.replace("│", " ").split())
+
+
+def test_a_missing_estimate_is_named(run_command, files, tmp_path):
+    ended = run_command("validate", files[0], tmp_path / "none.txt")
+    assert ended.code == 1
+    assert "none.txt: no such file" in ended.err

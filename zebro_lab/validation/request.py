@@ -7,6 +7,7 @@ from typing import Annotated
 
 from typer import Argument, Option
 
+from zebro_lab.terminal.limits import Limits
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 
@@ -17,7 +18,7 @@ class ValidateRequest:
     runs: Annotated[
         tuple[Path, ...],
         Argument(
-            metavar="[RUN]... | REFERENCE ESTIMATE",
+            metavar="RUN|FILE",
             help="Run folders with prediction/ and track/; or two files with trajectories, the "
             "reference first: TUM, KITTI, EuRoC or a table.",
         ),
@@ -71,14 +72,20 @@ class ValidateRequest:
     ] = None
     max_difference: Annotated[
         float,
-        Option(min=0.0, help="Largest difference of the times of two matched poses [s]."),
+        Option(
+            min=0.0,
+            metavar="SECONDS",
+            help="Largest difference of the times of two matched poses [s].",
+        ),
     ] = 0.01
     distance: Annotated[
         tuple[float, ...],
         Option(
+            metavar="METRES",
             help="Distance of a relative error of trajectories [m]; repeatable; default: three "
-            "round ones up to a quarter of the reference."
+            "round ones up to a quarter of the reference.",
         ),
+        Limits(above=0),
     ] = ()
     correct_scale: Annotated[
         bool,

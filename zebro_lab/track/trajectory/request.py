@@ -44,23 +44,27 @@ class TrajectoryRequest:
     layout: Annotated[
         tuple[Layout, ...],
         Option(
+            metavar="LAYOUT",
             help="Layout of the trajectory, where its content leaves it open: tum (time, position, "
             "quaternion with w last), euroc (the same with w first), kitti (matrices), table; "
-            "given twice, of the first and of the second file."
+            "given twice, of the first and of the second file.",
         ),
     ] = ()
     plane: Annotated[
         Plane | None,
         Option(
-            help="Axes of the trajectory that span the floor, the second to the left of the first "
-            "seen from above; default: xz for kitti (camera: x right, y down, z forward), else xy."
+            metavar="PLANE",
+            help="Axes of the trajectory that span the floor, such as xy or zx, the second to the "
+            "left of the first seen from above; default: xz for kitti (camera: x right, y down, z "
+            "forward), else xy.",
         ),
     ] = None
     forward: Annotated[
         Axis | None,
         Option(
+            metavar="AXIS",
             help="Axis of the body, or camera, that points ahead; default: z where the plane "
-            "contains z, else x."
+            "contains z, else x.",
         ),
     ] = None
     times: Annotated[

@@ -95,8 +95,22 @@ def joint_table(log: JointLog, columns: MappedColumns) -> RawTable:
             file=log.table.path,
         )
     used = {columns.mapped[name].name for name in ANGLES}
+    table = _with_legs(table, used)
     told = {name: leg for name, leg in log.legs.items() if f"theta{leg}" in used & set(aliases)}
     return replace(table, notes=(*table.notes, *_told(told)))
+
+
+def _with_legs(table: RawTable, legs: Collection[str]) -> RawTable:
+    """Return the rows that have a leg: others drive an arm or wheels on the same topic."""
+    import pandas as pd
+
+    angles = np.column_stack([table.columns[name].to_numpy(dtype=float) for name in legs])
+    kept = ~np.isnan(angles).all(axis=1)
+    if kept.all():
+        return table
+    columns = {name: pd.Series(cells.to_numpy()[kept]) for name, cells in table.columns.items()}
+    note = f"{table.path.name}: {int((~kept).sum())} of {len(angles)} messages have no leg's joint"
+    return replace(table, columns=columns, notes=(*table.notes, f"{note}: skipped"))
 
 
 def _with_positions(message: LoggedMessage) -> Parts:

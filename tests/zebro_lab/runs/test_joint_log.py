@@ -75,6 +75,17 @@ def test_names_that_state_their_legs_are_columns_of_legs_and_told(tmp_path):
     assert note == "leg log: legs and their joints by name: 1 lf, 2 rf, 3 lm, 4 rm, 5 lr, 6 rr"
 
 
+def test_messages_of_other_joints_on_the_topic_are_skipped(tmp_path):
+    legs, arm = {f"leg_{leg}": 0.1 * leg for leg in range(1, 7)}, {"arm": 1.0}
+    states = [("/joints", 1.0 + 0.1 * i, 1.0, (legs, arm)[i % 2]) for i in range(6)]
+    table = joint_table(
+        read_joint_log(write(tmp_path / "bag.mcap", *states)), canonical_columns(LEG_UNITS)
+    )
+    np.testing.assert_allclose(table.numbers("t"), [1.0, 1.2, 1.4])
+    np.testing.assert_allclose(table.numbers("theta6"), 0.6)
+    assert table.notes == ("bag.mcap: 3 of 6 messages have no leg's joint: skipped",)
+
+
 def test_joints_are_never_legs_by_their_place_in_the_message(tmp_path):
     joints = {f"motor_{number}": 0.1 * number for number in range(6)}
     log = read_joint_log(write(tmp_path / "bag.mcap", ("/joints", 1.0, 1.0, joints)))

@@ -6,9 +6,10 @@ import pandas as pd
 import pytest
 
 from support.leg_tables import leg_table
+from support.written_bags import joints, write_bag
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.robot.leg_log import ANGLES
-from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.legs import LegNames, read_leg_log
 from zebro_lab.walk.folder import write_path
 
 
@@ -84,6 +85,31 @@ def test_named_columns_file_must_exist(read, tmp_path):
 def test_empty_folder_is_no_leg_log(tmp_path):
     with pytest.raises(DataError, match=r"is a folder without path\.csv, run\.json or metadata"):
         read_leg_log(tmp_path)
+
+
+def test_a_bag_is_a_leg_log_whose_topic_is_chosen(tmp_path):
+    t, theta = leg_table().t.to_numpy(), leg_table()[list(ANGLES)].to_numpy()
+    bag = write_bag(
+        tmp_path / "bag", joints(t, theta, topic="/a"), joints(t, -theta, topic="/b"),
+        storage="mcap",
+    )  # fmt: skip
+    with pytest.raises(DataError, match=r"on the topics /a, /b; choose one with --topic NAME"):
+        read_leg_log(bag)
+    chosen = read_leg_log(bag, names=LegNames(topics=("/b",)))
+    np.testing.assert_array_equal(chosen.reference.theta, -theta)
+    (tmp_path / "columns.toml").write_text('[legs]\ntopic = "/a"')
+    np.testing.assert_array_equal(read_leg_log(bag).reference.theta, theta)
+    with pytest.raises(SettingsError, match=r"--topic: found /b, but nothing is read from it"):
+        read_leg_log(bag, names=LegNames(topics=("/b",)))
+
+
+def test_columns_of_a_table_are_named_in_an_option_and_keep_unit_and_sign(read):
+    table = leg_table()
+    theirs = pd.DataFrame({"t": table.t} | {c: np.degrees(table[f"theta{i}"])
+                                            for i, c in enumerate("abcdef", 1)})  # fmt: skip
+    units = "".join(f'theta{leg} = {{unit = "deg"}}\n' for leg in range(1, 7))
+    found = read(theirs, f"[columns]\n{units}", names=LegNames(joints=tuple("abcdef")))
+    np.testing.assert_allclose(found.reference.theta, table[list(ANGLES)], atol=1e-9)
 
 
 @pytest.mark.reference

@@ -57,7 +57,7 @@ def draw_status(
 ) -> Text:
     """Draw a recording: what is left of it, then each stream with its values.
 
-    Where the lines are more than `height`, values of the last streams are left out, then streams.
+    Where the lines are more than `height`, a stream's values are left out, then the last streams.
 
     Args:
         status: Status of the recording.

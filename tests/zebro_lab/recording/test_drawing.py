@@ -54,11 +54,12 @@ def test_a_narrow_terminal_shows_every_leg():
     assert all("█" in line or "░" in line for line in lines if line.startswith("leg "))
 
 
-def test_a_low_terminal_leaves_out_values_of_the_last_streams():
-    lines = drawn(80, 7)
-    assert any(line.startswith("leg 1") for line in lines)
-    assert any(line.startswith("load_cell") for line in lines)
-    assert not any(line.startswith("normal") for line in lines)
+def test_a_low_terminal_leaves_out_values_before_streams():
+    for height, legs, forces in ((8, True, True), (7, True, False), (6, False, True)):
+        lines = drawn(80, height)
+        assert any(line.startswith("load_cell") for line in lines)
+        assert any(line.startswith("leg 1") for line in lines) == legs
+        assert any(line.startswith("normal") for line in lines) == forces
 
 
 def test_the_bar_of_a_leg_is_its_share_of_a_turn():

@@ -87,7 +87,7 @@ def time_left(status: RecordStatus) -> str:
     if status.duration is None:
         return f"{status.elapsed:.0f} s recorded"
     left = max(status.duration - status.elapsed, 0.0)
-    return f"{status.elapsed:.0f} of {status.duration:g} s recorded, {left:.0f} s left"
+    return f"{status.elapsed:.0f} of {round(status.duration, 1):g} s recorded, {left:.0f} s left"
 
 
 def stream_in_words(name: str, stream: StreamStatus) -> dict[str, str]:

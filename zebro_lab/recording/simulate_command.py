@@ -36,7 +36,7 @@ def zebro(request: ZebroTwinRequest, duration: Duration = None) -> None:
 @app.command()
 @request_command()
 def imu(request: ImuTwinRequest, duration: Duration = None) -> None:
-    """Simulate an inertial measurement unit on a body that rolls and pitches."""
+    """Simulate an inertial measurement unit on a robot that walks."""
     from zebro_lab.recording.simulate_stage import serve_imu
 
     _serve(serve_imu(request), request.profile, duration)

@@ -20,6 +20,7 @@ from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import shortest_distinct
 from zebro_lab.files.opening import parsing
+from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind
 
@@ -34,7 +35,7 @@ PICTURES = ("curves", "surface", "corner", "traces", "residuals")
 CALIBRATION = ResultKind(
     "calibration",
     "calibrate-slip",
-    (SLIP_TOML, "summary.csv", "posterior.nc", *(f"{name}.png" for name in PICTURES)),
+    (SLIP_TOML, "summary.csv", "posterior.nc", *in_every_format(*PICTURES)),
     schema=SCHEMA,
     inside={"walks": "walks"},
 )

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Draw the PNG pictures of a calibration folder."""
+"""Draw the pictures of a calibration folder."""
 
 from pathlib import Path
 
 from model.bayes.calibration import Calibration
+from zebro_lab.files.picture_format import PictureFormat
 
-CURVE_DRAWS = 400
 
-
-def draw_calibration(folder: Path, calibration: Calibration) -> None:
-    """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit as PNG files.
+def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat = "png") -> None:
+    """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit.
 
     Args:
-        folder: Existing folder to write the PNG files into.
+        folder: Existing folder to write the pictures into.
         calibration: The finished fit.
+        form: Format of the pictures.
     """
     from zebro_lab import plots  # matplotlib takes most of a second to import
 
@@ -21,11 +21,10 @@ def draw_calibration(folder: Path, calibration: Calibration) -> None:
     residuals, simulated = calibration.residuals, calibration.simulated
     k = len(law.parameters)
     draws = calibration.draws.flat[:, :k]
-    some = draws[:: max(1, len(draws) // CURVE_DRAWS)]
     labels = plots.parameter_labels(law.parameters)
     figures = {
         "curves": plots.slip_curves(
-            blocks, law, draws=some, load_levels=calibration.levels, simulated=simulated
+            blocks, law, draws=draws, load_levels=calibration.levels, simulated=simulated
         ),
         "surface": plots.slip_surface(blocks, law, values=draws.mean(axis=0), simulated=simulated),
         "corner": plots.corner(draws, labels=labels, simulated=simulated),
@@ -37,4 +36,4 @@ def draw_calibration(folder: Path, calibration: Calibration) -> None:
         ),
     }
     for name, figure in figures.items():
-        plots.save(figure, folder / f"{name}.png")
+        plots.save(figure, folder / f"{name}.{form}")

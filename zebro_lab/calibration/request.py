@@ -10,6 +10,7 @@ from typer import Argument, Option
 
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.picture_options import FormatOption
 
 LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]
@@ -76,6 +77,7 @@ class CalibrationRequest:
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
     threads: Annotated[int, Option(min=1, help="Ensembles advanced in parallel.")] = 2
     resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
+    form: FormatOption = "png"
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for a curvature, or a choice with it, that no law has."""
@@ -101,8 +103,8 @@ class CalibrationRequest:
     def decisive(self) -> dict[str, object]:
         """Return the options that a resumed fit must share with the stopped one, JSON-serialisable.
 
-        Left out are data and column map, whose content is hashed, and `out`, `max_steps`, `threads`
-        and `resume`.
+        Left out are data and column map, whose content is hashed, and `out`, `max_steps`,
+        `threads`, `resume` and `form`.
         """
         return {
             "slip_definition": self.slip_definition,

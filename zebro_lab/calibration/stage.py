@@ -151,4 +151,4 @@ def _write(request: CalibrationRequest, calibration: Calibration, inputs: dict[s
     content = {"source": calibration.source, "settings": settings, "inputs": inputs}
     with result_folder(request.out, CALIBRATION, content=content) as folder:
         write_tables(folder, calibration, inputs=inputs)
-        draw_calibration(folder, calibration)
+        draw_calibration(folder, calibration, request.form)

@@ -18,6 +18,7 @@ from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
+from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.provenance import file_hash, file_hashes
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
@@ -31,7 +32,7 @@ FOLDER = "walks"
 WALKS_TOML, DRAWS, LEFT_OUT = "walks.toml", "draws.npz", "left_out.csv"
 _ANEW = "fit the walks again with calibrate-slip --walks"
 WALKS = ResultKind(
-    "walks", "calibrate-slip --walks", (WALKS_TOML, DRAWS, LEFT_OUT, "*.png"), SCHEMA
+    "walks", "calibrate-slip --walks", (WALKS_TOML, DRAWS, LEFT_OUT, *in_every_format("*")), SCHEMA
 )
 
 

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from model.path_draws import quantiles
 from model.poses import Poses
-from zebro_lab.plots.sheet import BLUE, draw_band, legend_below, map_and_panels, styled
+from zebro_lab.plots.sheet import BLUE, draw_band, legend_below, map_and_panels, styled, tint
 
 _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -25,14 +25,14 @@ def path_band(paths: Poses, *, title: str) -> Figure:
     """
     names = ("x [m]", "y [m]", "yaw [deg]")
     figure, above, panels = map_and_panels(title, simulated=True, height=5.6, names=names)
-    draw_band(above, paths, color=BLUE, lw=0.6, alpha=0.2)
+    draw_band(above, paths, label="draws", color=BLUE, lw=0.6, alpha=0.2)
     bands = quantiles(paths, _LEVELS) * [1.0, 1.0, 180 / np.pi]
     above.plot(*bands[2, :, :2].T, color="black", lw=1.2)
     for axes, (low, lower, median, upper, high) in zip(
         panels, bands.transpose(2, 0, 1), strict=True
     ):
-        axes.fill_between(paths.t, low, high, color=BLUE, alpha=0.2, lw=0, label="90 %")
-        axes.fill_between(paths.t, lower, upper, color=BLUE, alpha=0.35, lw=0, label="50 %")
+        axes.fill_between(paths.t, low, high, color=tint(0.2), lw=0, label="90 % of draws")
+        axes.fill_between(paths.t, lower, upper, color=tint(0.5), lw=0, label="50 % of draws")
         axes.plot(paths.t, median, color="black", lw=1.0, label="median")
     legend_below(figure, columns=4)
     return figure

@@ -42,7 +42,7 @@ def path_validation(
     figure, above, panels = map_and_panels(
         f"Prediction and track: {title}", simulated=simulated, height=5.8, names=_PANELS
     )
-    draw_band(above, band, color=BLUE, lw=0.5, alpha=0.15)
+    draw_band(above, band, label="draws of the prediction", color=BLUE, lw=0.5, alpha=0.15)
     moving = {name: path for name, path in paths.items() if path.length > 0}
     for (name, path), colour in zip(moving.items(), CYCLE, strict=False):
         above.plot(*path.position.T, color=colour, lw=1.2, label=name)
@@ -54,5 +54,5 @@ def path_validation(
     for axes in panels:
         axes.axhline(0, color="0.5", lw=0.6)
     panels[0].set_title("error: predicted minus tracked", loc="left")
-    legend_below(figure, columns=5)
+    legend_below(figure, columns=6)
     return figure

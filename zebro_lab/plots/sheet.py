@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from pint import Unit
@@ -158,7 +159,18 @@ def map_and_panels(
         axes.set_ylabel(name)
         axes.grid(color="0.92", lw=0.6)
     figure.axes[-1].set_xlabel("time [s]")
+    figure.align_ylabels(figure.axes[1:])
     return figure, figure.axes[0], figure.axes[1:]
+
+
+def tint(share: float) -> str:
+    """Return blue mixed with white, the share of blue from 0 to 1; opaque, so keys look like it.
+
+    >>> tint(0.0), tint(1.0) == BLUE.lower()
+    ('#ffffff', True)
+    """
+    red, green, blue = (1 - share * (1 - each) for each in to_rgb(BLUE))
+    return to_hex((red, green, blue))
 
 
 def draw_band(axes: Axes, band: Poses | None, *, label: str | None = None, **style: Any) -> None:

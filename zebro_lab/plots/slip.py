@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from model.bayes.blocks import SlipBlocks
@@ -19,6 +18,7 @@ from zebro_lab.plots.sheet import (
     NARROW,
     RED,
     TRACTION_LABEL,
+    few_ticks,
     legend_below,
     new_figure,
     plain,
@@ -26,9 +26,11 @@ from zebro_lab.plots.sheet import (
     slip_grid,
     slip_label,
     styled,
+    tint,
 )
 
 _QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+_CURVES = 400  # draws whose curves make the bands
 _NEAR_LOAD = 0.1  # relative load difference beyond which a block is not comparable with the curve
 
 
@@ -87,18 +89,11 @@ class _LoadCurve:
     rows: NDArray[np.bool_]
     slip: Array
     bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
-
-    def peaks(self) -> list[int]:
-        """Return indices of maximum and minimum of the median curve; each only if not at an end."""
-        median = self.bands[2]
-        tops = (int(np.argmax(median)), int(np.argmin(median)))
-        return [top for top in tops if 0 < top < len(median) - 1]
+    peaks: Array  # shape (0 to 2, 2): slip [-] and force [N] of driving, then of braking peak
 
     def main_peak(self) -> tuple[float, float] | None:
         """Return slip [-] and force [N] of the driving peak, else the braking one, else None."""
-        if not (peaks := self.peaks()):
-            return None
-        return float(self.slip[peaks[0]]), float(self.bands[2, peaks[0]])
+        return (float(self.peaks[0, 0]), float(self.peaks[0, 1])) if len(self.peaks) else None
 
 
 def _draw_load(
@@ -119,20 +114,33 @@ def _draw_load(
     close.set_xlim(reach[0] - margin, reach[1])
     close.set_title(peak, loc="left")
     close.tick_params(labelleft=False)
-    close.xaxis.set_major_locator(MaxNLocator(4))
+    close.xaxis.set_major_locator(few_ticks(4))
     return [whole, close]
 
 
 def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
-    values = draws.T[:, :, None]
+    values = draws[:: max(1, len(draws) // _CURVES)].T[:, :, None]
     curves = []
     for index, load in enumerate(levels):
         rows = nearest == index
         slip = slip_grid(blocks.slip[rows] if rows.any() else blocks.slip, 250)
         bands = np.quantile(law.force(slip, load, values), _QUANTILES, axis=0)
-        curves.append(_LoadCurve(float(load), rows, slip, bands))
+        peaks = _peaks(law, draws, float(load), slip)
+        curves.append(_LoadCurve(float(load), rows, slip, bands, peaks))
     return curves
+
+
+def _peaks(law: SlipLaw, draws: Array, load: float, slip: Array) -> Array:
+    """Return slip and force of the peaks inside the tested slip, medians over all draws.
+
+    They are those of the tables: medians of each draw's own peak, not the peak of the median curve.
+    """
+    own = np.broadcast_to(law.peak_slip(load, draws.T), len(draws))
+    largest = law.force(np.minimum(own, np.abs(slip).max()), load, draws.T)
+    at, force = float(np.median(own)), float(np.median(largest))
+    both = np.array([[at, force], [-at, -force]])
+    return both[(both[:, 0] > slip[0]) & (both[:, 0] < slip[-1])]
 
 
 def _narrow_reach(blocks: SlipBlocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
@@ -159,14 +167,16 @@ def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
         linewidths=0.6, label="block means, load differs > 10 %" if off.any() else None,
     )  # fmt: skip
     low, lower, median, upper, high = curve.bands
-    axes.fill_between(curve.slip, low, high, color=BLUE, alpha=0.25, lw=0, label="90 % of curves")
     axes.fill_between(
-        curve.slip, lower, upper, color=BLUE, alpha=0.45, lw=0, label="50 % of curves"
+        curve.slip, low, high, color=tint(0.25), lw=0, zorder=0.5, label="90 % of curves"
+    )
+    axes.fill_between(
+        curve.slip, lower, upper, color=tint(0.6), lw=0, zorder=0.6, label="50 % of curves"
     )
     axes.plot(curve.slip, median, color=BLUE, lw=1.4, label="posterior median")
-    if peaks := curve.peaks():
+    if len(curve.peaks):
         axes.plot(
-            curve.slip[peaks], median[peaks], ls="none", marker="D", ms=5, color=RED,
+            *curve.peaks.T, ls="none", marker="D", ms=5, color=RED,
             mec="white", mew=0.6, label="peak",
         )  # fmt: skip
     axes.axhline(0, color="0.6", lw=0.5, zorder=0)

@@ -5,13 +5,13 @@ from typing import cast
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
 from model.bayes.blocks import SlipBlocks
 from model.slip.law import SlipLaw
 from zebro_lab.plots.sheet import (
+    few_ticks,
     legend_below,
     new_figure,
     point_alpha,
@@ -41,13 +41,14 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
         load_low, load_high = 0.8 * load_low, 1.2 * load_high
     slip, load = np.meshgrid(slip_grid(blocks.slip, 60), np.linspace(load_low, load_high, 25))
     force = law.force(slip, load, np.asarray(values, dtype=float))
-    figure = new_figure("Slip surface", simulated, width=7.0, height=5.0)
+    figure = new_figure("Slip surface", simulated, width=8.0, height=5.0)
     axes = cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
-    axes.plot_surface(
+    surface = axes.plot_surface(
         slip, load, force, cmap="viridis", linewidth=0, antialiased=False, rstride=1, cstride=1
     )
+    figure.colorbar(surface, ax=axes, shrink=0.6, pad=0.02, label="traction force of the law [N]")
     for row in range(0, len(load), 4):
-        axes.plot(slip[row], load[row], force[row], color="white", lw=0.6)
+        axes.plot(slip[row], load[row], force[row], color="0.2", lw=0.5, label="law at one load")
     axes.plot(
         blocks.slip, blocks.normal_force, blocks.traction_force, ls="none", marker="o", ms=2.8,
         mew=0.2, mec="white", color="black", alpha=point_alpha(len(blocks.slip)),
@@ -58,9 +59,9 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
     axes.set_zlabel("traction force [N]", labelpad=8)
     axes.zaxis.set_tick_params(pad=5)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_locator(few_ticks(5))
     axes.view_init(elev=24, azim=-125)
     # matplotlib's default makes checkers think zoom an int
     axes.set_box_aspect((1.25, 1.0, 0.75), zoom=1.06)  # pyright: ignore[reportArgumentType]
-    legend_below(figure, columns=1)
+    legend_below(figure, columns=2)
     return figure

@@ -8,14 +8,15 @@ from itertools import combinations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from tracking.camera.lens import Array
-from zebro_lab.plots.sheet import BLUE, CYCLE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, CYCLE, RED, few_ticks, legend_below, new_figure, styled
 
 _WIDTH = 9.0  # inches
 _GREEN = CYCLE[2]
+_ORIGIN, _HEADING = "body's origin", "heading"
+_UNSEEN = "0.35"  # black, as pale as the photograph is drawn
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,7 @@ def over_photo(
         _path(axes, path_px, headings_px)
     axes.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5))
     axes.set_axis_off()
+    legend_below(figure, columns=3)
     return figure
 
 
@@ -70,7 +72,14 @@ def _outline(axes: Axes, group: SeenMarks) -> None:
     for outline, label in zip(group.outlines_px, group.labels, strict=True):
         closed = np.vstack((outline, outline[:1]))
         axes.plot(*closed.T, color=group.colour, lw=1.0)
-        axes.plot(*outline[0], color=group.colour, marker="o", ms=3, ls="none")
+        axes.plot(
+            *outline[0],
+            color=group.colour,
+            marker="o",
+            ms=3,
+            ls="none",
+            label="a mark's first corner",
+        )
         if label:
             # Beside the mark: a label on a marker would hide it.
             axes.annotate(
@@ -81,11 +90,11 @@ def _outline(axes: Axes, group: SeenMarks) -> None:
 
 
 def _path(axes: Axes, path: Array, ahead: Array) -> None:
-    axes.plot(*path.T, color=RED, lw=1.2, marker="o", ms=2.5)
+    axes.plot(*path.T, color=RED, lw=1.2, marker="o", ms=2.5, label=_ORIGIN)
     step = ahead - path
     axes.quiver(
         *path.T, *step.T, angles="xy", scale_units="xy", scale=1, color=_GREEN, width=0.0022,
-        headwidth=4, headlength=5,
+        headwidth=4, headlength=5, label=_HEADING,
     )  # fmt: skip
 
 
@@ -116,15 +125,19 @@ def over_floor(
     axes = figure.add_subplot()
     # The photograph is drawn paler, so that the path stands out.
     axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.65)
-    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=2.5, label="body's origin")
+    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=2.5, label=_ORIGIN)
     for ellipse in ellipses:
-        axes.plot(*ellipse.T, color=BLUE, lw=0.7)
+        axes.plot(*ellipse.T, color=BLUE, lw=0.7, label="90 % region of the origin")
     arrow = 0.05 * max(width, height)
     axes.quiver(
         *poses[:, :2].T, arrow * np.cos(poses[:, 2]), arrow * np.sin(poses[:, 2]), angles="xy",
         scale_units="xy", scale=1, color=_GREEN, width=0.002, headwidth=4, headlength=5,
+        label=_HEADING,
     )  # fmt: skip
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+    if np.any(np.all(floor == 0, axis=2)):
+        axes.fill_between([], [], color=_UNSEEN, lw=0, label="outside the photograph")
+    legend_below(figure, columns=4)
     labelled = [k for k, label in enumerate(labels) if label]
     _label_apart(figure, axes, poses[labelled, :2], [labels[k] for k in labelled])
     return figure
@@ -187,7 +200,7 @@ def residual_page(
     _by_source(panels[4], t, score, source)
     panels[4].set(ylabel="score [-]", xlabel="time [s]")
     for axes in panels:
-        axes.yaxis.set_major_locator(MaxNLocator(5))
+        axes.yaxis.set_major_locator(few_ticks(5))
         axes.grid(color="0.93", lw=0.6)
         axes.set_axisbelow(True)
     figure.align_ylabels(panels)

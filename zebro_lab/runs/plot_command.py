@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.picture_options import Window, parse_window
 from zebro_lab.terminal.request_command import request_command
 
 EPILOG = """
@@ -15,23 +17,36 @@ Examples:
 zebro-lab plot data/20260304T050607Z_walk_circle
 
 zebro-lab plot data/20260304T050607Z_walk_circle --out circle.png
+
+zebro-lab plot data/20260304T050607Z_walk_circle --format pdf --window 20:24
 """
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
 Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="PNG to write; default: RUN.png beside RUN.")
+    Path | None, typer.Option(metavar="FILE", help="Picture to write; default: RUN.png beside RUN.")
 ]
+Form = Annotated[
+    PictureFormat | None,
+    typer.Option("--format", help="Format of the picture; default: as --out ends, else png."),
+]
+Shown = Annotated[
+    Window | None,
+    typer.Option(
+        parser=parse_window, metavar="BEGIN:END",
+        help="Time of the run that is drawn [s]; default: all.",
+    ),
+]  # fmt: skip
 
 
 @request_command()
-def plot(run: Run, out: Out = None) -> None:
+def plot(run: Run, out: Out = None, form: Form = None, window: Shown = None) -> None:
     """Plot all recorded streams of a run over time in one picture; mark gaps and events."""
     from zebro_lab.runs.plot_stage import plot_run
     from zebro_lab.terminal.progress import progress_bar
 
     with progress_bar() as watcher:
         watcher.step("drawing", None)
-        drawn = plot_run(run, out=out)
+        drawn = plot_run(run, out=out, form=form, window=window)
     for note in drawn.signals.notes:
         say(note)
     for panel in drawn.signals.panels:

@@ -8,11 +8,12 @@ from pathlib import Path
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.own_file import picture, require_own
+from zebro_lab.files.picture_format import PictureFormat, format_of
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.signals import RunSignals, read_signals
+from zebro_lab.terminal.picture_options import Window
 
-SUFFIX = ".png"
 PLOT = picture("plot")
 
 
@@ -29,32 +30,52 @@ class Drawn:
     signals: RunSignals
 
 
-def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
-    """Draw every stream of a run and write the picture atomically as PNG.
+def plot_run(
+    folder: Path,
+    *,
+    out: Path | None = None,
+    form: PictureFormat | None = None,
+    window: Window | None = None,
+) -> Drawn:
+    """Draw every stream of a run and write the picture atomically.
 
     Args:
         folder: The run folder.
-        out: Picture to write; when None, `RUN.png` beside the run folder RUN.
+        out: Picture to write; when None, `RUN.png` (or of the format) beside the run folder RUN.
+        form: Format of the picture; when None, as `out` ends.
+        window: Time of the run to draw; None for all.
 
     Raises:
-        SettingsError: `out` does not end in `.png`, or is a folder.
+        SettingsError: `out` has the suffix of no format or of another one than `form`, or is a
+            folder; or no sample lies in the window.
         AlreadyExists: `out` exists and is not a picture of this command, or is part of a result.
         NotFound: The folder is not a run folder, or the log or the picture's folder is missing.
         DataError: The run cannot be read, or holds no samples.
         OSError: The picture cannot be written.
     """
     place = folder.absolute()
-    file = out or place.with_name(place.name + SUFFIX)
-    if file.suffix.lower() != SUFFIX or file.is_dir():
-        raise SettingsError(
-            f"found '{file}'; expected a file, not a folder, ending in {SUFFIX}", key="--out"
-        )
+    file = out or place.with_name(f"{place.name}.{form or 'png'}")
+    own = _format_of(file, form)
     target = require_own(file, PLOT, inputs=(folder / LOG_FILE, folder / MANIFEST_FILE))
     signals = read_signals(folder)
+    if window is not None:
+        signals = signals.within(*window)
     from zebro_lab.plots.sheet import save
     from zebro_lab.runs.pictures import raw_streams  # matplotlib: only where all is read
 
     drawn = BytesIO()
-    save(raw_streams(signals), drawn, command=PLOT.command)
+    save(raw_streams(signals), drawn, command=PLOT.command, form=own)
     atomic_write_bytes(target, drawn.getvalue())
     return Drawn(file, signals)
+
+
+def _format_of(file: Path, form: PictureFormat | None) -> PictureFormat:
+    """Return the format that a file's suffix names; raise if it is a folder, or not `form`."""
+    if file.is_dir():
+        raise SettingsError(f"found the folder '{file}'; expected a file", key="--out")
+    own = format_of(file)
+    if form not in (None, own):
+        raise SettingsError(
+            f"found '{file}' with --format {form}; expected the same format in both", key="--out"
+        )
+    return own

@@ -2,7 +2,7 @@
 """Read all streams of a run as curves in the units of a picture, with gaps and events."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Final, TypeAlias
@@ -19,7 +19,7 @@ from rig.slip_rig.decode import Forces, decode_board, decode_forces
 from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.zebro.profile import LegProfile, decode_angles, load_leg_profile
-from zebro_lab.files.errors import DataError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import LOG, WARNING
@@ -53,6 +53,13 @@ class Panel:
     lines: Mapping[str, Array]
     simulated: bool
     gaps: Array
+
+    def within(self, begin: float, end: float) -> "Panel":
+        """Return the samples from `begin` to `end` [s], and the gaps that reach into this time."""
+        kept = (self.t >= begin) & (self.t <= end)
+        lines = {name: np.asarray(line)[kept] for name, line in self.lines.items()}
+        gaps = self.gaps[(self.gaps[:, 0] < end) & (self.gaps[:, 1] > begin)]
+        return replace(self, t=self.t[kept], lines=lines, gaps=gaps)
 
 
 @dataclass(frozen=True)
@@ -89,6 +96,25 @@ class RunSignals:
     panels: tuple[Panel, ...]
     events: tuple[Event, ...]
     notes: tuple[str, ...] = ()
+
+    def within(self, begin: float, end: float) -> "RunSignals":
+        """Return curves and events from `begin` to `end` [s]; streams with no sample there go.
+
+        Raises:
+            SettingsError: No stream has a sample in this time.
+        """
+        panels = [panel.within(begin, end) for panel in self.panels]
+        drawn = tuple(panel for panel in panels if len(panel.t))
+        if not drawn:
+            first = min(panel.t[0] for panel in self.panels if len(panel.t))
+            last = max(panel.t[-1] for panel in self.panels if len(panel.t))
+            raise SettingsError(
+                f"found {begin:g}:{end:g} s; expected a time of the run, {first:.3f} to "
+                f"{last:.3f} s",
+                key="--window",
+            )
+        events = tuple(event for event in self.events if begin <= event.t <= end)
+        return replace(self, panels=drawn, events=events)
 
 
 def read_signals(folder: Path) -> RunSignals:

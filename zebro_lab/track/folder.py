@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from zebro_lab.files.folder_manifest import read_folder_manifest
+from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.track.annotations import ANNOTATIONS_FILE
@@ -16,7 +17,7 @@ from zebro_lab.track.request import KIND
 SCHEMA = 1
 TRACK_CSV = "track.csv"
 TRACK_TUM = "track.tum"
-PICTURES = ("overlay.png", "map.png", "residuals.png")
+PICTURES = in_every_format("overlay", "map", "residuals")
 TRACKED = ResultKind(
     KIND, "track", (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, *PICTURES), SCHEMA
 )

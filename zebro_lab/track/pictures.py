@@ -13,6 +13,7 @@ from tracking.detect import Detection
 from tracking.floor import FloorMap
 from tracking.path import Track
 from tracking.pictures import ellipse_90
+from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.track.photographs import PlacedPhoto
 
 if TYPE_CHECKING:
@@ -26,18 +27,19 @@ _MOST_LABELS = 16
 
 def draw_track(
     folder: Path, track: Track, photo: PlacedPhoto, *, floor: FloorMap,
-    detection: Detection | None, title: str, simulated: bool,
+    detection: Detection | None, title: str, simulated: bool, form: PictureFormat = "png",
 ) -> None:  # fmt: skip
-    """Write `overlay.png` and `map.png`, the path over photograph and floor, and `residuals.png`.
+    """Write `overlay` and `map`, the path over photograph and floor, and `residuals`.
 
     Args:
-        folder: Folder to write the PNG files into.
+        folder: Folder to write the pictures into.
         track: The track.
         photo: Photograph to draw over, with the camera's pose.
         floor: The floor as fitted.
         detection: Markers detected in `photo`; None where none was searched.
         title: Name of the track, appended to each figure's own title.
         simulated: Whether the photographs are simulated; the titles then say so.
+        form: Format, and suffix, of the pictures.
     """
     from zebro_lab.plots import save  # matplotlib takes most of a second
     from zebro_lab.plots import track as draw
@@ -51,8 +53,8 @@ def draw_track(
         headings_px=ahead,
         marks=seen_marks(photo, floor, detection),
     )
-    save(figure, folder / "overlay.png")
-    _draw_map(folder / "map.png", track, photo, floor, title, simulated)
+    save(figure, folder / f"overlay.{form}")
+    _draw_map(folder / f"map.{form}", track, photo, floor, title, simulated)
     seen = track.observations
     figure = draw.residual_page(
         track.t,
@@ -64,7 +66,7 @@ def draw_track(
         title=f"Residuals: {title}",
         simulated=simulated,
     )
-    save(figure, folder / "residuals.png")
+    save(figure, folder / f"residuals.{form}")
 
 
 def draw_preview(

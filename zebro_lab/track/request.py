@@ -13,6 +13,7 @@ from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import option_to_si
 from zebro_lab.robot.marker_print import parse_marker
 from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.picture_options import FormatOption
 
 MergedAs: TypeAlias = Literal["pasted", "darkest", "mean"]
 KIND = "track"
@@ -160,6 +161,7 @@ class TrackRequest:
         ),
     ] = None
     workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2
+    form: FormatOption = "png"
 
     def __post_init__(self) -> None:
         _ = self.standing_height, self.walking_height_sd

@@ -8,6 +8,7 @@ from pathlib import Path
 from tracking import Scene, Tracked, track_photos
 from tracking.images import PhotoTimes, read_pixels
 from tracking.photos.workers import Progress
+from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.robot.marker_print import MarkerPrint
@@ -115,10 +116,12 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
         (draft / FLOOR_FILE).write_text(render_floor_file(seen.fit.floor, heading=heading))
         if request.annotations is not None:
             (draft / ANNOTATIONS_FILE).write_text(render_annotations(inputs.annotations))
-        _draw(draft, result, inputs.scene_of(sequence), sequence)
+        _draw(draft, result, inputs.scene_of(sequence), sequence, request.form)
 
 
-def _draw(draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequence) -> None:
+def _draw(
+    draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequence, form: PictureFormat
+) -> None:
     track, seen = result.tracked.track, result.tracked.floor
     # In the last photograph the robot no longer hides the floor where the path begins.
     last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None
@@ -129,7 +132,7 @@ def _draw(draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequenc
         draft, track, PlacedPhoto(read_pixels(path), scene.camera, seen.fit.pose_of(shown)),
         floor=seen.fit.floor, detection=detection,
         title=sequence.origin.name,
-        simulated=result.source.startswith("sim:"),
+        simulated=result.source.startswith("sim:"), form=form,
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from model.errors import InsufficientData
 from model.judgement import Judged, TiltJudged
 from model.metrics.bootstrap import Interval, bootstrap_mean
 from model.metrics.path_errors import pose_errors
+from zebro_lab.files.picture_format import PictureFormat, in_every_format
 from zebro_lab.files.result_folder import ResultKind, result_folder
 from zebro_lab.track.file import tum_lines
 from zebro_lab.validation.judged_run import JudgedRun
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 
 SCHEMA = 1
 METRICS, ERRORS = "metrics.csv", "errors.csv"
-VALIDATION = ResultKind("validation", "validate", (METRICS, ERRORS, "*.tum", "*.png"), SCHEMA)
+VALIDATION = ResultKind(
+    "validation", "validate", (METRICS, ERRORS, "*.tum", *in_every_format("*")), SCHEMA
+)
 MEANS = ("ate_m", "ate_of_length", "ate_aligned_m", "yaw_rms_deg", "energy_m", "crps_yaw_deg")
 """Metrics that are averaged over runs."""
 
@@ -138,6 +141,7 @@ def write_validation(
     settings: Mapping[str, object],
     inputs: Mapping[str, str],
     source: str,
+    form: PictureFormat = "png",
 ) -> None:
     """Write the folder: metrics, errors pose by pose, TUM files for evo, pictures, manifest.
 
@@ -148,6 +152,7 @@ def write_validation(
         settings: Settings of the validation, JSON-serialisable.
         inputs: SHA-256 of each file that was read.
         source: Where prediction and track come from.
+        form: Format of the pictures.
 
     Raises:
         AlreadyExists, NotWritten: As in `result_folder`.
@@ -168,7 +173,7 @@ def write_validation(
     with result_folder(out, VALIDATION, content=content) as draft:
         _write_tables(draft, runs)
         for each in shown:
-            undrawn = draw_validation(draft, each, simulated="sim:" in source)
+            undrawn = draw_validation(draft, each, simulated="sim:" in source, form=form)
             notes += [f"{each.run.name}: {why}" for why in undrawn]
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from model.slip.law import Array
 from tracking.errors import TrackingError
+from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk.prediction_file import PredictionFile, WalkedPath
@@ -41,15 +42,18 @@ class ShownRun:
     time_offset: float = 0.0
 
 
-def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[str, ...]:
+def draw_validation(
+    folder: Path, shown: ShownRun, *, simulated: bool, form: PictureFormat = "png"
+) -> tuple[str, ...]:
     """Draw `RUN.png`, and `RUN.imu.png`, `RUN.photos.png` and `RUN.floor.png` if there are data.
 
     The latter two need photographs and a prediction from a walk folder.
 
     Args:
-        folder: Folder to write the PNG files into.
+        folder: Folder to write the pictures into.
         shown: Errors, prediction and photographs of the walk.
         simulated: Whether to append "(simulated)" to the titles.
+        form: Format, and suffix, of the pictures.
 
     Returns:
         Notes on pictures that could not be drawn, one line each.
@@ -61,21 +65,21 @@ def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[
     run = shown.run
     rows = {row.name: row.path for row in run.rows}
     figure = path_validation(rows, run.track, band=run.band, title=run.name, simulated=simulated)
-    save(figure, folder / f"{run.name}.png")
+    save(figure, folder / f"{run.name}.{form}")
     if run.tilt is not None:
         seen = run.tilt
         figure = tilt(seen.t, seen.predicted, seen.measured, title=run.name, simulated=simulated)
-        save(figure, folder / f"{run.name}.imu.png")
+        save(figure, folder / f"{run.name}.imu.{form}")
     if shown.photos is None:
         return ()
     try:
-        _draw_photos(folder, shown, shown.photos)
+        _draw_photos(folder, shown, shown.photos, form)
     except TrackingError as error:
         return (f"photographs are not shown: {error}",)
     return ()
 
 
-def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos) -> None:
+def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos, form: PictureFormat) -> None:
     from zebro_lab.plots import save
     from zebro_lab.plots.photo_poses import photos_beside_poses
 
@@ -89,9 +93,9 @@ def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos) -> None:
     figure = photos_beside_poses(
         shots, walk.robot, title=run.name, simulated_photos=photos.simulated
     )
-    save(figure, folder / f"{run.name}.photos.png")
+    save(figure, folder / f"{run.name}.photos.{form}")
     # In the last photograph the robot no longer hides the floor at the start of the path.
-    _draw_floor(folder / f"{run.name}.floor.png", run, views[max(views)], photos.simulated)
+    _draw_floor(folder / f"{run.name}.floor.{form}", run, views[max(views)], photos.simulated)
 
 
 def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDArray[np.intp]:

@@ -8,6 +8,7 @@ from typing import Annotated
 from typer import Argument, Option
 
 from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 
@@ -100,6 +101,8 @@ class ValidateRequest:
     def is_pair(self) -> bool:
         """Whether trajectories are given: something other than a folder is among `runs`."""
         return any(path.exists() and not path.is_dir() for path in self.runs)
+
+    form: FormatOption = "png"
 
     @property
     def folder(self) -> Path:

@@ -49,7 +49,7 @@ def _table(run: JudgedRun) -> Table:
     length = run.rows[0].errors.length
     title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
     numbers = (
-        "ATE\n[mm]", "of path", "along\n[mm]", "across\n[mm]", "yaw\n[deg]", "end\n[mm]",
+        "ATE\n[mm]", "of path\n[%]", "along\n[mm]", "across\n[mm]", "yaw\n[deg]", "end\n[mm]",
         "aligned\n[mm]", "radius\n[m]", "CRPS x, y\n[mm]",
     )  # fmt: skip
     table = plain_table(title, ("model",), numbers)
@@ -57,7 +57,8 @@ def _table(run: JudgedRun) -> Table:
         e = row.errors
         crps = " ".join(f"{1000 * value:.1f}" for value in row.scores.crps[:2])
         table.add_row(
-            row.name, f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}", f"{1000 * e.along:.1f}",
+            row.name, f"{1000 * e.ate:.1f}", f"{100 * e.ate_of_length:.2f}",
+            f"{1000 * e.along:.1f}",
             f"{1000 * e.cross:.1f}", f"{np.degrees(e.yaw):.2f}", f"{1000 * e.final_distance:.1f}",
             f"{1000 * e.ate_aligned:.1f}", f"{e.radius[0]:.3f}", crps,
         )  # fmt: skip

@@ -77,7 +77,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     }
     write_validation(
         request.folder, shown, summary=summary, settings=settings,
-        inputs=file_hashes(dict.fromkeys(files)), source=source,
+        inputs=file_hashes(dict.fromkeys(files)), source=source, form=request.form,
     )  # fmt: skip
     return Validated(runs, summary, source)
 

@@ -97,8 +97,8 @@ def _quality(posterior: WalkPosterior) -> list[str]:
 
 def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
     numbers = (
-        "error, rms\n[mm]", "of path", "yaw\n[deg]", "radius\n[m]", "tracked\n[m]",
-        "90 % band\nholds x, y, yaw", "CRPS x, y\n[mm]", "best baseline's\n[mm]",
+        "error, rms\n[mm]", "of path\n[%]", "yaw\n[deg]", "radius\n[m]", "tracked\n[m]",
+        "90 % band holds\nx, y, yaw [%]", "CRPS x, y\n[mm]", "best baseline's\n[mm]",
     )  # fmt: skip
     table = plain_table(
         "each walk predicted from a fit of the others", ("walk",), numbers, fold=True
@@ -108,9 +108,9 @@ def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
         e, scores = prediction.errors, prediction.scores
         held = scores.coverage[list(scores.levels).index(0.9)]
         table.add_row(
-            plain(run.name), f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}",
+            plain(run.name), f"{1000 * e.ate:.1f}", f"{100 * e.ate_of_length:.2f}",
             f"{np.degrees(e.yaw):.2f}", f"{e.radius[0]:.3f}", f"{e.radius[1]:.3f}",
-            " ".join(f"{share:.0%}" for share in held),
+            " ".join(f"{100 * share:.0f}" for share in held),
             _two(scores.crps), _two([min(o.scores.crps[k] for o in others) for k in range(2)]),
         )  # fmt: skip
     return table

@@ -106,7 +106,9 @@ def calibrate_walks(
             source=source,
             notes=notes,
         ),
-        draw=lambda draft: draw_walks(draft, posterior, left_out, simulated="sim:" in source),
+        draw=lambda draft: draw_walks(
+            draft, posterior, left_out, simulated="sim:" in source, form=calibration.form
+        ),
     )
     return WalksCalibrated(posterior, left_out, folder, source, notes)
 

@@ -35,5 +35,5 @@ def test_bands_hold_half_and_nine_tenths_of_the_draws(draws):
 def test_a_predicted_band_is_called_simulated_and_its_levels_are_named(draws):
     figure = path_band(draws, title="A walk")
     names = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert set(names) == {"90 %", "50 %", "median"}
+    assert set(names) == {"draws", "90 % of draws", "50 % of draws", "median"}
     assert figure.get_suptitle() == "A walk (simulated)"

@@ -15,7 +15,7 @@ from zebro_lab.plots import (
     parameter_labels,
     save,
 )
-from zebro_lab.plots.sheet import legend_below, new_figure, slip_grid, time_texts
+from zebro_lab.plots.sheet import legend_below, new_figure, slip_grid, time_texts, tint
 
 
 def test_no_figure_is_left_with_pyplot(one_load, tmp_path):
@@ -101,6 +101,12 @@ def test_a_long_title_is_wrapped_to_the_figure():
     figure = new_figure("a walk of many words " * 8, simulated=True, width=4.0, height=3.0)
     figure.draw_without_rendering()
     assert figure._suptitle.get_window_extent().width <= figure.bbox.width
+
+
+def test_tints_are_opaque_between_white_and_blue():
+    shares = [int(tint(share)[1:3], 16) for share in (0.0, 0.3, 0.6, 1.0)]
+    assert shares == sorted(shares, reverse=True)
+    assert shares[0] == 255
 
 
 def test_times_are_told_apart_with_the_fewest_decimals():

@@ -37,15 +37,13 @@ def test_the_median_of_one_repeated_draw_is_the_law(tyre):
         np.testing.assert_allclose(force, tyre.law.force(slip, load, tyre.truth))
 
 
-def test_peaks_are_marked_where_the_law_has_them(any_scene):
-    repeated = replace(any_scene, draws=np.tile(any_scene.truth, (5, 1)))
-    marks = labelled_lines(repeated.curves(), "peak")
-    expected = any_scene.law.peak_slip(any_scene.load_levels, any_scene.truth)
-    found = np.unique([abs(slip) for mark in marks for slip in mark.get_xdata()])
-    step = np.ptp(any_scene.blocks.slip) / 249
-    assert len(found)
-    for slip in found:
-        assert np.abs(expected - slip).min() <= step
+def test_peaks_are_marked_where_the_tables_have_them(any_scene):
+    low, high = any_scene.blocks.slip.min(), any_scene.blocks.slip.max()
+    own = any_scene.law.peak_slip(any_scene.load_levels, any_scene.draws.T[:, :, None])
+    tabled = [each for each in np.median(own, axis=0) if low < each < high]
+    marks = labelled_lines(any_scene.curves(), "peak")
+    found = {float(max(mark.get_xdata())) for mark in marks}
+    np.testing.assert_allclose(sorted(found), sorted(tabled), rtol=1e-12)
 
 
 def test_a_narrow_peak_gets_a_close_up_and_a_wide_one_none(rig, one_load, tyre):

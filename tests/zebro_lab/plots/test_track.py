@@ -85,3 +85,18 @@ def test_the_photograph_has_v_down_and_half_a_pixel_around_it():
 def test_every_way_of_finding_is_told_apart():
     labels = residuals().axes[0].get_legend_handles_labels()[1]
     assert {"by marker", "by hand", "by body"} <= set(labels)
+
+
+def test_every_colour_of_a_map_and_a_photograph_has_a_key():
+    def keys(figure):
+        return {text.get_text() for text in figure.legends[0].get_texts()}
+
+    assert keys(floor()) == {"body's origin", "heading", "90 % region of the origin"}
+    assert keys(photograph()) == {"body's origin", "heading", "a mark's first corner"}
+    partly = PIXELS.copy()
+    partly[:10] = 0
+    figure = over_floor(
+        partly, extent=(-1.0, 2.0, -1.0, 1.25), poses=POSES, ellipses=[], labels=[""] * 4,
+        title="Path", simulated=True,
+    )  # fmt: skip
+    assert "outside the photograph" in keys(figure)

@@ -51,7 +51,7 @@ def test_every_model_has_its_errors_in_millimetres_and_degrees():
         line = next(each for each in text.splitlines() if each.strip().startswith(row.name))
         e, cells = row.errors, line.strip().removeprefix(row.name).split()
         assert cells[0] == f"{1000 * e.ate:.1f}"
-        assert cells[1] == f"{e.ate_of_length:.2%}"
+        assert cells[1] == f"{100 * e.ate_of_length:.2f}"
         assert cells[2:7] == [
             f"{1000 * e.along:.1f}", f"{1000 * e.cross:.1f}", f"{np.degrees(e.yaw):.2f}",
             f"{1000 * e.final_distance:.1f}", f"{1000 * e.ate_aligned:.1f}",

@@ -62,8 +62,8 @@ def test_walks_left_out_have_their_errors_beside_the_best_baselines():
     row = rows(printed(left_out=(run,)))["one"]
     prediction, still = run.rows
     assert row[1] == "20.0"
-    assert row[2] == f"{prediction.errors.ate_of_length:.2%}"
+    assert row[2] == f"{100 * prediction.errors.ate_of_length:.2f}"
     held = prediction.scores.coverage[list(prediction.scores.levels).index(0.9)]
-    assert row[6:9] == [f"{share:.0%}" for share in held]
+    assert row[6:9] == [f"{100 * share:.0f}" for share in held]
     assert row[9:11] == [f"{1000 * value:.1f}" for value in prediction.scores.crps[:2]]
     assert row[11:13] == [f"{1000 * value:.1f}" for value in still.scores.crps[:2]]

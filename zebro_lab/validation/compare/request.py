@@ -7,6 +7,8 @@ from typing import Annotated
 
 from typer import Argument, Option
 
+from zebro_lab.terminal.picture_options import FormatOption
+
 
 @dataclass(frozen=True)
 class CompareRequest:
@@ -16,3 +18,4 @@ class CompareRequest:
     second: Annotated[Path, Argument(metavar="B", help="Second folder, of the same kind as A.")]
     out: Annotated[Path, Option(metavar="DIR", help="Folder to write.")] = Path("comparison")
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
+    form: FormatOption = "png"

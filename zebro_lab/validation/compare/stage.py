@@ -10,6 +10,7 @@ from model.metrics.difference import Difference
 from zebro_lab.calibration.folder import SLIP_TOML
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.names import shortest_distinct
+from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
@@ -19,8 +20,8 @@ from zebro_lab.validation.compare.runs import compare_runs, is_walked
 from zebro_lab.validation.compare.values import Comparison, Quantity
 
 SCHEMA = 1
-TABLE, PICTURE = "comparison.csv", "comparison.png"
-COMPARISON = ResultKind("comparison", "compare", (TABLE, PICTURE), SCHEMA)
+TABLE, PICTURE = "comparison.csv", "comparison"
+COMPARISON = ResultKind("comparison", "compare", (TABLE, *in_every_format(PICTURE)), SCHEMA)
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def _write(request: CompareRequest, done: Compared) -> None:
             draft / TABLE, index=False, float_format="%.6g", lineterminator="\n"
         )
         figure = overlay(compared, done.differences, simulated="sim:" in compared.source)
-        save(figure, draft / PICTURE)
+        save(figure, draft / f"{PICTURE}.{request.form}")
 
 
 def _row(quantity: Quantity, difference: Difference) -> dict[str, object]:

@@ -53,8 +53,10 @@ def joints(
 
 
 def pose(x: float, y: float, yaw: float) -> Any:
+    """Return a pose; a yaw that is NaN gives a quaternion of zeros."""
     point = made("geometry_msgs/msg/Point", x=x, y=y, z=0.06)
-    turn = made("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=np.sin(yaw / 2), w=np.cos(yaw / 2))
+    z, w = (np.sin(yaw / 2), np.cos(yaw / 2)) if np.isfinite(yaw) else (0.0, 0.0)
+    turn = made("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=z, w=w)
     return made("geometry_msgs/msg/Pose", position=point, orientation=turn)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from model.slip.law import Array
 from zebro_lab.exchange.topic_table import TopicTable
+from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.log_topics import Parts, TopicRows, read_topic
 from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_poses import POSE, TRANSFORMS
@@ -16,6 +17,7 @@ from zebro_lab.mcap.ros_poses import POSE, TRANSFORMS
 ODOMETRY: Final = "nav_msgs/msg/Odometry"
 STAMPED: Final = "geometry_msgs/msg/PoseStamped"
 TRANSFORM: Final = "geometry_msgs/msg/TransformStamped"
+_NORM_TOLERANCE: Final = 0.05
 POSE_TYPES: Final = (ODOMETRY, STAMPED, POSE.name, TRANSFORM, TRANSFORMS.name)
 _PLANAR: Final = {
     "cov_xx": 0, "cov_xy": 1, "cov_xyaw": 5, "cov_yy": 7, "cov_yyaw": 11, "cov_yawyaw": 35,
@@ -35,20 +37,23 @@ def read_pose_log(
         topics: Topics to prefer, also such of other messages.
 
     Returns:
-        `t_s` [s], `x_m`, `y_m`, `z_m` [m], `yaw_rad` [rad], unwrapped, and the planar covariance
-        where the messages have one that is not zero; and the topic.
+        `t_s` [s], `x_m`, `y_m`, `z_m` [m]; `yaw_rad` [rad], unwrapped, unless all quaternions are
+        zeros, and the planar covariance where the messages have one that is not zero; the topic.
 
     Raises:
         NotFound: The log does not exist, or the package that reads it.
-        DataError: It cannot be read, has no poses (on `topic`), or several topics and none chosen.
+        DataError: It cannot be read, has no poses (on `topic`), or several topics and none chosen,
+            or a quaternion's length is not 1 within 0.05.
     """
     found = read_topic(path, POSE_TYPES, what="poses", topic=topic, topics=topics, parts=_poses)
     place, turn = zip(*(_pose(found.type, each) for each in found.contents), strict=True)
     position = np.array([(p.x, p.y, p.z) for p in place])
-    qx, qy, qz, qw = np.array([(q.x, q.y, q.z, q.w) for q in turn]).T
-    yaw = np.unwrap(np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2)))
     columns = {"t_s": np.array(found.t), "x_m": position[:, 0], "y_m": position[:, 1],
-               "z_m": position[:, 2], "yaw_rad": yaw, **_covariances(found)}  # fmt: skip
+               "z_m": position[:, 2]}  # fmt: skip
+    quaternion = np.array([(q.x, q.y, q.z, q.w) for q in turn])
+    if quaternion.any():  # zeros throughout: the publisher knows no orientation
+        columns["yaw_rad"] = _yaw(path, found.topic, quaternion)
+        columns |= _covariances(found)
     return TopicTable.of(path, columns, found)
 
 
@@ -67,6 +72,21 @@ def _pose(kind: str, content: Any) -> tuple[Any, Any]:
         return moved.translation, moved.rotation
     pose = content.pose if kind == STAMPED else content.pose.pose
     return pose.position, pose.orientation
+
+
+def _yaw(path: Path, topic: str, quaternion: Array) -> Array:
+    """Return the unwrapped yaw of quaternions x, y, z, w, shape (n, 4), in (n,) [rad]."""
+    norm = np.linalg.norm(np.clip(quaternion, -2, 2), axis=1)  # clipped, as damage may be huge
+    good = np.abs(norm - 1) <= _NORM_TOLERANCE
+    if not good.all():
+        row = int(np.argmin(good))
+        raise DataError(
+            f"the quaternion of message {row + 1} on topic {topic} has length {norm[row]:.3g}; "
+            f"expected 1 within {_NORM_TOLERANCE}: choose another topic, or leave the message out",
+            file=path,
+        )
+    qx, qy, qz, qw = quaternion.T
+    return np.unwrap(np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2)))
 
 
 def _covariances(found: TopicRows) -> dict[str, Array]:

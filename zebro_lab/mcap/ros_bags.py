@@ -2,6 +2,8 @@
 """Read messages of bags that are not MCAP: ROS 2 in SQLite (.db3, or its folder), ROS 1 (.bag)."""
 
 from collections.abc import Collection, Iterator
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,7 +57,11 @@ def read_bag(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], s
     bag_files(path)
     messages: list[LoggedMessage] = []
     problem = "cannot be read as a ROS bag"
-    with parsing(path, problem, advice="record or copy it again"), _reader(path) as reader:
+    with (
+        parsing(path, problem, advice="record or copy it again"),
+        redirect_stdout(StringIO()),  # it prints what it does not understand
+        _reader(path) as reader,
+    ):
         try:
             messages.extend(_messages(reader, types))
         except Exception as error:  # damage is answered with whatever went wrong inside

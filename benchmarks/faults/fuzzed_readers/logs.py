@@ -2,7 +2,9 @@
 """Readers of MCAP."""
 
 import io
+import tempfile
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 
@@ -19,9 +21,10 @@ from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
-from zebro_lab.mcap.ros_messages import Schema
+from zebro_lab.mcap.ros_messages import Schema, joint_state
 from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, SCHEMA_TEXT, TOPIC, read_log
 from zebro_lab.mcap.stream_views import legs_view
+from zebro_lab.runs.legs import read_leg_log
 
 
 def of_logs() -> Mapping[str, Reader]:
@@ -35,13 +38,37 @@ def of_logs() -> Mapping[str, Reader]:
     earlier.add(TOPIC, 10**18, message.message())
     earlier.finish()
     log = "rcl_interfaces/msg/Log"
-    raw, samples = _logs([recorded]), _logs([rig.getvalue()])
+    raw, samples, joints = _logs([recorded]), _logs([rig.getvalue()]), _bag()
     return {
         "log.mcap, raw": Reader("log.mcap", read_raw_log, raw, mcap_check),
         "log.mcap, rig": Reader("log.mcap", read_log, samples, mcap_check),
         "log.mcap, ROS 2": Reader("log.mcap", lambda f: read_messages(f, schema=log), raw,
                                   mcap_check),
+        "bag of ROS 2, legs": Reader("log.db3", read_leg_log, pool([joints]), _bag_check, 10_000),
     }  # fmt: skip
+
+
+def _bag() -> bytes:
+    """Make a bag of joint states in SQLite."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    kind, store = "sensor_msgs/msg/JointState", get_typestore(Stores.ROS2_HUMBLE)
+    names = [f"leg_{leg}" for leg in range(1, 7)]
+    with tempfile.TemporaryDirectory() as folder:
+        bag = Path(folder) / "bag"
+        with Writer(bag, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+            connection = writer.add_connection("/joints", kind, typestore=store)
+            for n in range(50):
+                message = joint_state(10**18 + n * 10**7, names, position=[0.1 * n] * 6)
+                writer.write(connection, 10**18 + n * 10**7, message)
+        return (bag / "bag.db3").read_bytes()
+
+
+def _bag_check(data: bytes) -> None:
+    """Read the magic of SQLite."""
+    if not data.startswith(b"SQLite format 3"):
+        raise ValueError("no SQLite")
 
 
 def _recorded() -> bytes:

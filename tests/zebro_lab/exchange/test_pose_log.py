@@ -44,3 +44,13 @@ def test_a_transform_is_chosen_by_its_child_frame(tmp_path):
     expect(found.table)
     assert found.topic == "/tf:base_link"
     assert found.table.notes[0] == "bag: topic /tf:base_link, tf2_msgs/msg/TFMessage, 80 messages"
+
+
+def test_quaternions_of_zeros_are_no_yaw_but_a_single_one_is_a_fault(tmp_path):
+    places = PATH.copy()
+    places[3, 2] = np.nan
+    with pytest.raises(DataError, match=r"quaternion of message 4 on topic /odom has length 0"):
+        read_pose_log(write_bag(tmp_path / "one", odometry(T, places), storage="mcap"))
+    places[:, 2] = np.nan
+    table = read_pose_log(write_bag(tmp_path / "all", odometry(T, places), storage="mcap")).table
+    assert list(table.columns) == ["t_s", "x_m", "y_m", "z_m"]

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""What twins record goes all the way: rig and robot, photographs, and a judged prediction."""
+
+import subprocess
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from support.bundled_walk import WALK
+from support.commands import COMMAND, started
+
+pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
+
+PLAN = Path(__file__).parents[2] / "examples/plan-thesis.toml"
+STOOD = 1.0  # s that `record --play` takes before the gait begins
+
+
+def run(*arguments: object, code: int = 0) -> str:
+    """Run a command as a process of its own; return what it printed."""
+    ended = subprocess.run([COMMAND, *map(str, arguments)], capture_output=True, text=True,
+                           check=False)  # fmt: skip
+    assert ended.returncode == code, ended
+    return ended.stdout + ended.stderr
+
+
+def small_plan(file: Path) -> Path:
+    """Write the thesis's plan with two loads and 16 slip ratios."""
+    text = PLAN.read_text()
+    for old, new in (
+        ("loads = [2.13, 6.63, 8.13, 12.75]", "loads = [4.0, 12.0]"),
+        ("count = 62", "count = 16"), ("_every = 62", "_every = 16"),
+    ):  # fmt: skip
+        assert old in text
+        text = text.replace(old, new)
+    file.write_text(text)
+    return file
+
+
+def test_recorded_twins_end_in_a_judged_prediction_on_one_page(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    play = ("--play", WALK / "legs.csv", "--label", "played")
+    with started("record", "--zebro", "sim", "--imu", "sim", *play, "--data", "data") as recording:
+        run("rig", "plan", small_plan(tmp_path / "plan.toml"))
+        run("rig", "run", "plan.toml", "--rig", "sim", "--fast", "--data", "experiment")
+        said = run("calibrate", "experiment", "--curvature", "peak")
+        assert "verdict: " in said
+        run("rig", "check", "experiment")
+        recording.wait(120)
+    assert recording.returncode == 0
+    found = pd.read_csv("calibration/summary.csv").set_index("parameter")
+    for parameter, value in zip(THESIS_LAW.parameters, THESIS_VALUES, strict=True):
+        row = found.loc[parameter.name]
+        assert abs(row["median"] - value) < 4 * row["sd"], parameter.name
+    (walked,) = Path("data").iterdir()
+    began = pd.Timestamp("2020-06-01T12:00:00+00:00") - pd.Timedelta(seconds=STOOD)
+    run("track", WALK / "photos", "--camera", WALK / "camera.toml", "--floor", WALK / "floor.toml",
+        "--robot", WALK / "robot.toml", "--run", walked, "--start", began.isoformat())  # fmt: skip
+    run("predict", walked, "--slip", "calibration", "--robot", WALK / "robot.toml", "--draws", 60)
+    judged = run("validate", walked)
+    assert "roll: error against the IMU" in judged
+    errors = pd.read_csv(walked / "validation/metrics.csv").set_index("model")
+    assert errors.loc["prediction", "ate_of_length"] < 0.05
+    assert errors.loc["prediction", "ate_m"] < errors.loc["no-slip", "ate_m"]
+    said = run("report", walked, "--out", "page.html")
+    assert "does not belong together" not in said
+    assert "Slip curve: " in Path("page.html").read_text()

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Validated access to a table of a TOML file: each key is read once, unknown keys are an error."""
 
-import difflib
 import math
 from os import PathLike
 from typing import Any, Final, Self, TypeVar
 
 import numpy as np
 
+from model.similar_name import similar_name
 from rig.errors import ProfileError
 from rig.nearest_name import nearest
 
@@ -91,8 +91,8 @@ class TomlTable:
             default: Value of an absent key; None where the key is required.
         """
         if key not in self and default is None:
-            near = difflib.get_close_matches(key, self._entries, n=1, cutoff=0.8)
-            hint = f"; found '{near[0]}': did you mean '{key}'?" if near else ""
+            near = similar_name(key, self._entries)
+            hint = f"; found '{near}': did you mean '{key}'?" if near else ""
             raise self.fault(f"is missing{hint}", key)
         return self._entries.pop(key, default)
 

@@ -5,7 +5,6 @@ Corrections are applied in the order in which they were made; the tracker's obse
 overwritten. The same corrections on the same observations give the same result.
 """
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, asdict, dataclass, fields, replace
@@ -13,6 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from model.similar_name import similar_name
 from tracking.errors import CorrectionError
 from tracking.path import PoseObservation
 
@@ -146,8 +146,9 @@ def _require_value(kind: str, key: str, value: Any) -> None:
     """Raise `CorrectionError` for an unknown key, or a value that its attribute cannot hold."""
     names = [field.name for field in fields(_KINDS[kind])]
     if key not in names:
-        near = difflib.get_close_matches(key, names, n=1) or names[:1]
-        raise CorrectionError(f"correction '{kind}' has no '{key}'; did you mean '{near[0]}'?")
+        near = similar_name(key, names)
+        hint = f"did you mean '{near}'?" if near else f"known: {', '.join(names)}"
+        raise CorrectionError(f"correction '{kind}' has no '{key}'; {hint}")
     if key == "photos":
         wanted, valid = "a list of names", isinstance(value, list | tuple)
         valid = valid and all(isinstance(name, str) for name in value)
@@ -176,8 +177,8 @@ def plain(correction: Correction) -> dict[str, Any]:
 
 def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
     if photo not in found:
-        near = difflib.get_close_matches(photo, found, n=1)
-        hint = f"; did you mean '{near[0]}'?" if near else "; correct the name, or remove it"
+        near = similar_name(photo, found)
+        hint = f"; did you mean '{near}'?" if near else "; correct the name, or remove it"
         raise CorrectionError(f"a correction names '{photo}', of which there is no pose{hint}")
     return found[photo]
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Dictionaries (families) of ArUco and AprilTag markers, by name."""
 
-import difflib
 from contextlib import suppress
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.similar_name import similar_name
 from tracking.errors import MarkerError
 
 DICTIONARIES = {
@@ -36,8 +36,9 @@ def dictionary_named(name: str) -> cv2.aruco.Dictionary:
         return _dictionary_of_file(name)
     key = name.lower().removeprefix("dict_")
     if key not in DICTIONARIES:
-        near = difflib.get_close_matches(key, DICTIONARIES, n=1) or ["4x4_50"]
-        raise MarkerError(f"dictionary '{name}' is unknown; did you mean '{near[0]}'?")
+        near = similar_name(key, DICTIONARIES)
+        hint = f"did you mean '{near}'?" if near else f"known: {', '.join(DICTIONARIES)}"
+        raise MarkerError(f"dictionary '{name}' is unknown; {hint}")
     return cv2.aruco.getPredefinedDictionary(DICTIONARIES[key])
 
 

@@ -2,11 +2,11 @@
 """The slip laws by name."""
 
 from dataclasses import fields
-from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any
 
 from model.errors import DomainError
+from model.similar_name import similar_name
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
@@ -47,6 +47,6 @@ def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:
     """Raise `DomainError` unless `found` is one of `known`; it names these and the nearest."""
     if found in known:
         return
-    nearest = get_close_matches(found, known, n=1, cutoff=0.3)
-    hint = f"; did you mean '{nearest[0]}'?" if nearest else ""
+    nearest = similar_name(found, known)
+    hint = f"; did you mean '{nearest}'?" if nearest else ""
     raise DomainError(f"'{found}' is no {what}; expected one of {', '.join(known)}{hint}")

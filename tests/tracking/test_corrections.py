@@ -72,7 +72,7 @@ def test_an_order_shares_out_the_times():
 @pytest.mark.parametrize(
     ("correction", "message"),
     [
-        (Flip("p11.jpg"), "p11.jpg.*did you mean 'p1.jpg'"),
+        (Flip("p1.jpgg"), "p1.jpgg.*did you mean 'p1.jpg'"),
         (Delete("x"), "'x'"),
         (Move("q.jpg", 0, 0, 0), r"q\.jpg"),
         (Order(("p1.jpg", "p1.jpg")), "twice"),
@@ -87,7 +87,7 @@ def test_a_correction_of_nothing_is_named(correction, message):
     ("entry", "message"),
     [
         ({"kind": "turn", "photo": "a"}, "'turn' is missing or unknown"),
-        ({"kind": "flip", "foto": "a"}, "did you mean 'photo'"),
+        ({"kind": "flip", "phto": "a"}, "did you mean 'photo'"),
         ({"kind": "move", "photo": "a", "y": 1}, "needs x, yaw"),
         ({"kind": "order"}, "needs photos"),
         ({"kind": "order", "photos": 5}, "photos of correction 'order' is 5; expected a list"),

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Unit conversion: parse units and compute factors to SI."""
 
-import difflib
 import math
 import re
 from functools import cache
 from typing import TYPE_CHECKING
 
+from model.similar_name import similar_name
 from zebro_lab.files.errors import SettingsError, UnitError
 
 if TYPE_CHECKING:
@@ -170,8 +170,8 @@ def _in_root_units(unit: str) -> tuple[float, str]:
             parsed = registry.parse_units(_respelled(text))
         quantity = registry.Quantity(1.0, parsed).to_root_units()
     except Exception as error:
-        near = difflib.get_close_matches(text, _COMMON, n=1, cutoff=0.5)
-        advice = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(_COMMON)}, …"
+        near = similar_name(text, _COMMON)
+        advice = f"did you mean '{near}'?" if near else f"known are {', '.join(_COMMON)}, …"
         raise UnitError(f"unknown unit '{unit}'; {advice}", unit=unit) from error
     return float(quantity.magnitude), str(quantity.units)
 

@@ -5,12 +5,12 @@ No window is opened. Annotations are arguments or a file; their pixels are read 
 grid, which any viewer shows on any machine.
 """
 
-import difflib
 from collections.abc import Mapping, Sequence
 from io import BytesIO
 from math import isfinite, radians
 from pathlib import Path
 
+from model.similar_name import similar_name
 from tracking.body import TopPlate
 from tracking.corrections import Correction, Delete, Flip, Move, Order
 from tracking.images import find_photos, read_pixels
@@ -204,6 +204,6 @@ def _require_photo(photo: str, names: Sequence[str]) -> None:
     # Exposures and frames are known only after tracking: walk.jpg#3 is one of walk.jpg.
     if photo in names or photo.rpartition(_EXPOSURE)[0] in names:
         return
-    near = difflib.get_close_matches(photo, names, n=1)
-    hint = f"did you mean '{near[0]}'?" if near else f"there are {names[0]} to {names[-1]}"
+    near = similar_name(photo, names)
+    hint = f"did you mean '{near}'?" if near else f"there are {names[0]} to {names[-1]}"
     raise SettingsError(f"there is no photograph '{photo}'; {hint}")

@@ -35,7 +35,7 @@ def test_a_column_is_returned_as_it_is():
 @pytest.mark.parametrize(
     ("raw", "message"),
     [
-        (table(tt=[1.0]), "column 't': is missing; did you mean 'tt'"),
+        (table(T=[1.0]), "column 't': is missing; did you mean 'T'"),
         (RawTable(Path("a.csv"), {"t": pd.Series([1.0])}, frozenset({"t"})),
          "column 't': several columns have this header"),
         (RawTable(Path("a.csv"), {"t": pd.Series([None])}, unreadable={"t": "list<int>"}),

@@ -81,7 +81,8 @@ def test_what_another_file_says_is_added_but_never_to_itself(asked, tmp_path):
 @pytest.mark.parametrize(
     ("said", "message"),
     [
-        ({"flips": ("p3.png",)}, "did you mean"),
+        ({"flips": ("p1.pgn",)}, "did you mean 'p1.png'"),
+        ({"flips": ("p3.png",)}, "no photograph 'p3.png'; there are p1.png to p2.png"),
         ({"photo": "p1.png", "corners": "1,2"}, "1 corners"),
         ({"corners": "1,2 3,2 3,8 1,8"}, "name the photograph"),
         (

@@ -60,10 +60,21 @@ def _table(run: JudgedRun) -> Table:
             row.name, f"{1000 * e.ate:.1f}", f"{100 * e.ate_of_length:.2f}",
             f"{1000 * e.along:.1f}",
             f"{1000 * e.cross:.1f}", f"{np.degrees(e.yaw):.2f}", f"{1000 * e.final_distance:.1f}",
-            f"{1000 * e.ate_aligned:.1f}", f"{e.radius[0]:.3f}", crps,
+            f"{1000 * e.ate_aligned:.1f}", radius_text(e.radius[0]), crps,
         )  # fmt: skip
-    table.add_row("track", *[""] * 7, f"{run.rows[0].errors.radius[1]:.3f}", "")
+    table.add_row("track", *[""] * 7, radius_text(run.rows[0].errors.radius[1]), "")
     return table
+
+
+def radius_text(radius: float) -> str:
+    """Format a radius [m] for a table: `straight` if infinite, `no circle` if NaN.
+
+    >>> radius_text(1.7012), radius_text(float("inf")), radius_text(float("nan"))
+    ('1.701', 'straight', 'no circle')
+    """
+    if np.isnan(radius):
+        return "no circle"
+    return "straight" if np.isinf(radius) else f"{radius:.3f}"
 
 
 def _tilt(run: JudgedRun) -> list[str]:

@@ -71,6 +71,8 @@ def summary_lines(summary: WalkSummary) -> list[str]:
     rate = f"yaw rate {np.degrees(summary.yaw_rate):.3f} deg/s"
     if summary.straight:
         curve = f"straight ahead, {rate}"
+    elif np.isnan(summary.radius):
+        curve = f"on no circle, so without a radius, {rate}"
     else:
         side = "left" if summary.radius > 0 else "right"
         curve = f"turning {side}, radius {abs(summary.radius):.4f} m, {rate}"

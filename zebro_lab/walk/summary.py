@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.metrics.turning import fitted_radius
+from model.poses import Poses
 from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.walk.shown_time import leg_turns
@@ -24,7 +26,8 @@ class WalkSummary:
             is none, and they are means over the whole walk.
         speed: Mean speed along the circle through the poses between strides [m/s].
         yaw_rate: Mean yaw rate, positive to the left [rad/s].
-        radius: Mean radius of the circle [m], positive to the left; infinite without any turn.
+        radius: Mean radius of the circle [m], positive to the left; infinite without any turn, NaN
+            if the poses between strides, four or more, lie on no circle.
         largest_roll: Largest absolute roll [rad].
         largest_pitch: Largest absolute pitch [rad].
         mean_slip: Mean slip speed of legs in contact [m/s]; NaN without slip or contacts.
@@ -43,8 +46,8 @@ class WalkSummary:
 
     @property
     def straight(self) -> bool:
-        """Whether the absolute radius is at least 20 m, or NaN."""
-        return not abs(self.radius) < 1 / _STRAIGHT
+        """Whether the absolute radius is at least 20 m."""
+        return abs(self.radius) >= 1 / _STRAIGHT
 
 
 def summarise(path: WalkPath) -> WalkSummary:
@@ -76,11 +79,19 @@ def summarise(path: WalkPath) -> WalkSummary:
         strides=strides,
         speed=float(arc / time),
         yaw_rate=float(turn / time),
-        radius=float("inf") if sine == 0 else float(chord / sine),
+        radius=_radius(poses, float(chord), float(sine)),
         largest_roll=float(largest[0]),
         largest_pitch=float(largest[1]),
         mean_slip=float(sliding.mean()) if len(sliding) else float("nan"),
     )
+
+
+def _radius(poses: Array, chord: float, sine: float) -> float:
+    """Return the radius by chord and turn of a stride; NaN if the poses lie on no circle [m]."""
+    fitted = fitted_radius(Poses(poses[:, 0], poses[:, 1:3], poses[:, 3]))
+    if len(poses) >= 4 and np.isnan(fitted):
+        return float("nan")
+    return float("inf") if sine == 0 else chord / sine
 
 
 def stride_poses(path: WalkPath) -> tuple[Array, int]:

@@ -27,6 +27,34 @@ def test_what_hardly_turns_is_straight():
     assert fitted_radius(circle(20.0, turn=0.05)) == np.inf
 
 
+def path_of(yaw):
+    """Return a path of even steps along the headings."""
+    steps = 0.02 * np.column_stack([np.cos(yaw), np.sin(yaw)])
+    return Poses(0.1 * np.arange(len(yaw)), np.cumsum(steps, axis=0), yaw)
+
+
+@pytest.mark.parametrize(
+    "yaw",
+    [
+        np.radians(40) * np.sin(np.linspace(0, 2 * np.pi, 200)),
+        np.concatenate([np.linspace(0, 1.5, 100), np.linspace(1.5, 0, 100)]),
+        np.concatenate([np.zeros(120), np.linspace(0, 1.5, 60), np.full(120, 1.5)]),
+        np.radians(4) * np.random.default_rng(1).normal(size=200),
+    ],
+    ids=["wave", "S-curve", "bend between straights", "straight with noise"],
+)
+def test_what_is_no_circle_has_no_radius(yaw):
+    assert np.isnan(fitted_radius(path_of(yaw)))
+
+
+@pytest.mark.parametrize("turn", [0.1, 0.5, 2.0, 7.0])
+def test_an_arc_that_sways_keeps_its_radius(turn):
+    poses = circle(1.5, turn=turn, n=120)
+    sway = 0.004 * np.sin(np.arange(120.0))
+    swaying = Poses(poses.t, poses.position + sway[:, None], poses.yaw + sway)
+    assert fitted_radius(swaying) == pytest.approx(1.5, rel=0.2)
+
+
 def test_headings_are_needed():
     poses = circle(0.5)
     blind = Poses(poses.t, poses.position, np.full(len(poses), np.nan))

@@ -9,6 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from model.walk.path import WalkPath
+from zebro_lab.walk.screen import summary_lines
 from zebro_lab.walk.summary import stride_poses, summarise
 
 
@@ -76,3 +77,16 @@ def test_standing_robot_has_a_summary(walked):
     still = replace(walked.part(np.zeros(10, dtype=int)), t=np.arange(10) * 0.1)
     summary = summarise(still)
     assert (summary.speed, summary.yaw_rate, summary.strides) == (0.0, 0.0, 0)
+
+
+def test_a_walk_on_an_s_curve_has_no_radius_and_is_not_called_straight(walked):
+    path = walk_on_circle(1.0, 0.1, 24.0, 0.0)
+    half = len(path.t) // 2
+    yaw = np.concatenate([path.yaw[:half], 2 * path.yaw[half] - path.yaw[half:]])
+    steps = np.diff(path.t, prepend=0.0)[:, None] * 0.1
+    position = np.cumsum(steps * np.column_stack([np.cos(yaw), np.sin(yaw), 0 * yaw]), axis=0)
+    orientation = np.column_stack([0 * yaw, 0 * yaw, yaw])
+    summary = summarise(replace(path, position=position, orientation=orientation))
+    assert np.isnan(summary.radius)
+    assert not summary.straight
+    assert "on no circle, so without a radius" in summary_lines(summary)[1]

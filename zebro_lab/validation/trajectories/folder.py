@@ -8,16 +8,20 @@ import numpy as np
 
 from model.metrics.path_errors import pose_errors
 from model.metrics.rigid_errors import rotation_angles
+from zebro_lab.files.picture_format import PictureFormat, in_every_format
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import ResultKind, result_folder
 from zebro_lab.track.file import tum_lines
 from zebro_lab.validation.trajectories.pair import Errors, JudgedPair
 
 SCHEMA = 1
-METRICS, ERRORS, PICTURE = "metrics.csv", "errors.csv", "trajectories.png"
+METRICS, ERRORS, PICTURE = "metrics.csv", "errors.csv", "trajectories"
 REFERENCE, ESTIMATE = "reference.tum", "estimate.tum"
 TRAJECTORIES = ResultKind(
-    "trajectories", "validate", (METRICS, ERRORS, PICTURE, REFERENCE, ESTIMATE), SCHEMA
+    "trajectories",
+    "validate",
+    (METRICS, ERRORS, *in_every_format(PICTURE), REFERENCE, ESTIMATE),
+    SCHEMA,
 )
 
 
@@ -47,13 +51,16 @@ def metrics(row: Errors) -> dict[str, float]:
     return found
 
 
-def write_trajectories(out: Path, judged: JudgedPair, *, settings: Mapping[str, object]) -> None:
+def write_trajectories(
+    out: Path, judged: JudgedPair, *, settings: Mapping[str, object], form: PictureFormat = "png"
+) -> None:
     """Write the folder: metrics, errors pose by pose, matched poses, picture, manifest.
 
     Args:
         out: Folder to create or replace.
         judged: The errors.
         settings: Settings of the validation, JSON-serialisable.
+        form: Format of the picture.
 
     Raises:
         AlreadyExists, NotWritten: As in `result_folder`.
@@ -74,7 +81,7 @@ def write_trajectories(out: Path, judged: JudgedPair, *, settings: Mapping[str, 
         _write_tables(draft, judged)
         (draft / REFERENCE).write_text(tum_lines(judged.tracked))
         (draft / ESTIMATE).write_text(tum_lines(judged.estimated))
-        save(trajectories(judged), draft / PICTURE)
+        save(trajectories(judged), draft / f"{PICTURE}.{form}")
 
 
 def _write_tables(draft: Path, judged: JudgedPair) -> None:

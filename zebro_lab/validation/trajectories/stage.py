@@ -49,5 +49,5 @@ def validate_trajectories(request: ValidateRequest, watcher: Watcher) -> JudgedP
         "time_offset": request.time_offset,
         "correct_scale": request.correct_scale,
     }
-    write_trajectories(request.folder, judged, settings=settings)
+    write_trajectories(request.folder, judged, settings=settings, form=request.form)
     return judged

@@ -86,9 +86,10 @@ def needed_packages(home: Path = HOME) -> tuple[str, ...]:
         home: Folder of zebro-lab's packages.
     """
     project = home / "pyproject.toml"
-    if not project.is_file():
+    text = project.read_text(encoding="utf-8") if project.is_file() else ""
+    table = tomllib.loads(text).get("project", {})
+    if table.get("name") != NAME:  # none, or one that another package left in site-packages
         return tuple(requires(NAME) or ()) if _version(NAME) else ()
-    table = tomllib.loads(project.read_text(encoding="utf-8"))["project"]
     extras = table.get("optional-dependencies", {}).items()
     return (
         *table["dependencies"],

@@ -74,11 +74,17 @@ def test_a_module_that_is_gone_although_its_package_is_there_is_broken(monkeypat
 
 
 def test_a_checkout_is_asked_for_its_own_requirements(tmp_path):
-    (tmp_path / "pyproject.toml").write_text(
-        "[project]\ndependencies = ['numpy>=99']\n[project.optional-dependencies]\nx = ['evo>=9']\n"
+    project = tmp_path / "pyproject.toml"
+    text = (
+        "[project]\nname = '{}'\ndependencies = ['numpy>=99']\n"
+        "[project.optional-dependencies]\nx = ['evo>=9']\n"
     )
+    project.write_text(text.format("zebro-lab"))
     assert doctor.needed_packages(tmp_path) == ("numpy>=99", "evo>=9; extra == 'x'")
-    assert set(doctor.needed_packages(tmp_path / "none")) == set(requires("zebro-lab"))
+    installed = set(requires("zebro-lab"))
+    assert set(doctor.needed_packages(tmp_path / "none")) == installed
+    project.write_text(text.format("another"))
+    assert set(doctor.needed_packages(tmp_path)) == installed
 
 
 def installed(place, version, editable=None):

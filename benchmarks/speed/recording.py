@@ -1,23 +1,29 @@
 # SPDX-License-Identifier: MIT
 """What recording costs, beside a robot, an IMU and a load cell at full rate in another process.
 
-python -m benchmarks.speed.recording [SECONDS [single]]
+python -m benchmarks.speed.recording [SECONDS [single] [shown]]
 
-The load cell sends many records in a datagram, as `record` asks it to, or each in its own.
+The load cell sends many records in a datagram, as `record` asks it to, or each in its own. With
+`shown` the live display of `record` is drawn, too, for a terminal of 100 columns.
 """
 
+import io
 import multiprocessing
 import resource
 import socket
 import sys
 import tempfile
 import time
+from contextlib import closing
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 import numpy as np
+from rich.console import Console
+from rich.live import Live
 
 from rig.acquisition import Device, acquiring
+from rig.clock import SYSTEM_CLOCK
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import SimulatedImu
 from rig.imu.stream import ImuStream
@@ -31,7 +37,11 @@ from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
 from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait, profile_text
+from zebro_lab.recording.display import Display
 from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.recording.screen import RecordScreen
+from zebro_lab.recording.stage import LOOK_EVERY
+from zebro_lab.recording.status import StreamWatch
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 LEGS = load_leg_profile("zebro-100-serial")
@@ -72,7 +82,7 @@ def cpu() -> float:
 
 
 def measure(
-    seconds: float, folder: Path, *, buffered: bool = True
+    seconds: float, folder: Path, *, buffered: bool = True, shown: bool = False
 ) -> tuple[RunManifest, float, int]:
     """Record for a while; return the end record, the share of a core and the log's size [bytes]."""
     ours, theirs = multiprocessing.Pipe()
@@ -99,13 +109,27 @@ def measure(
         with acquiring(devices, sink=recorder, start=recorder.start) as readers:
             time.sleep(0.5)
             before, began = cpu(), time.monotonic()
-            time.sleep(seconds)
+            if shown:
+                show(StreamWatch(recorder, readers, devices, None), seconds)
+            else:
+                time.sleep(seconds)
             share = (cpu() - before) / (time.monotonic() - began)
         for name, reader in readers.items():
             recorder.count(name, reader.counters)
     ours.send("enough")
     server.join(5)
     return read_manifest(recorder.folder), share, (recorder.folder / "log.mcap").stat().st_size
+
+
+def show(streams: StreamWatch, seconds: float) -> None:
+    """Draw the live display for a while, as `record` does."""
+    console = Console(file=io.StringIO(), force_terminal=True, width=100, height=30)
+    live = Live(console=console, auto_refresh=False, redirect_stdout=False, redirect_stderr=False)
+    end = time.monotonic() + seconds
+    with closing(Display(RecordScreen(console, live).show, give_up=print)) as display:
+        while time.monotonic() < end:
+            display.show(streams.status(SYSTEM_CLOCK.now()))
+            time.sleep(LOOK_EVERY)
 
 
 def report(manifest: RunManifest, share: float, size: int) -> None:
@@ -124,7 +148,8 @@ def main(arguments: list[str]) -> None:
     """Record for so many seconds, and print the tables."""
     with tempfile.TemporaryDirectory() as place:
         seconds = float(arguments[0]) if arguments else 10.0
-        report(*measure(seconds, Path(place), buffered="single" not in arguments))
+        options = {"buffered": "single" not in arguments, "shown": "shown" in arguments}
+        report(*measure(seconds, Path(place), **options))
 
 
 if __name__ == "__main__":

@@ -79,7 +79,8 @@ class RecordScreen:
             if error.errno == errno.EIO:
                 self._hang_up()
             raise
-        self._writing = False
+        finally:  # a write that hangs does not come here
+            self._writing = False
         self._drawn = time.monotonic()
 
     def stop_reason(self) -> str | None:

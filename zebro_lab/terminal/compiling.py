@@ -23,7 +23,7 @@ def announcing_compilation() -> Iterator[None]:
     The line is written in a thread of its own, so that a terminal that is stopped stops nothing.
     Nothing is announced unless numba has been imported before: this does not import it.
     """
-    if "numba" not in sys.modules:
+    if "numba" not in sys.modules or sys.stderr is None:  # a shell has closed it
         yield
         return
     from numba.core.event import install_listener

@@ -58,3 +58,10 @@ def test_numba_is_not_imported_for_it(monkeypatch):
     monkeypatch.delitem(sys.modules, "numba")
     with announcing_compilation():
         assert "numba" not in sys.modules
+
+
+def test_nobody_is_told_where_a_shell_has_closed_stderr(at_once, monkeypatch):
+    monkeypatch.setattr(sys, "stderr", None)
+    with announcing_compilation():
+        compile_anew()((1.0, 2.0))
+        time.sleep(0.05)

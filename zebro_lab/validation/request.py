@@ -11,6 +11,8 @@ from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
+_OF_RUNS = ("run.json", "prediction", "track")  # in a run folder
+
 
 @dataclass(frozen=True)
 class ValidateRequest:
@@ -99,8 +101,12 @@ class ValidateRequest:
 
     @property
     def is_pair(self) -> bool:
-        """Whether trajectories are given: something other than a folder is among `runs`."""
-        return any(path.exists() and not path.is_dir() for path in self.runs)
+        """Whether trajectories are given: a file is among `runs`, and no run folder.
+
+        Of `data/*`, with plots beside runs, the runs are meant.
+        """
+        files = any(path.exists() and not path.is_dir() for path in self.runs)
+        return files and not any((path / name).exists() for path in self.runs for name in _OF_RUNS)
 
     form: FormatOption = "png"
 

@@ -7,6 +7,7 @@ from support.written_runs import make_run
 from zebro_lab.files.errors import NotFound
 from zebro_lab.validation.chosen_runs import pairs_of_runs
 from zebro_lab.validation.predicted_walks import pairs_of_run
+from zebro_lab.validation.request import ValidateRequest
 
 
 @pytest.fixture
@@ -44,3 +45,9 @@ def test_paths_without_any_walk_are_one_line(others):
 def test_a_path_that_does_not_exist_is_not_left_out(walk, tmp_path):
     with pytest.raises(NotFound, match="typo: no such file"):
         pairs_of_runs([walk, tmp_path / "typo"])
+
+
+def test_files_beside_a_run_are_no_trajectories(walk, others):
+    assert not ValidateRequest((others[0], walk)).is_pair
+    assert ValidateRequest((others[0], others[0])).is_pair
+    assert ValidateRequest((others[0], others[1])).is_pair  # wrong usage, and named as such

@@ -10,7 +10,8 @@ import numpy as np
 from model.slip.law import Array
 from zebro_lab.exchange.topic_table import TopicTable
 from zebro_lab.files.errors import DataError
-from zebro_lab.mcap.log_topics import read_topic
+from zebro_lab.files.opening import parsing
+from zebro_lab.mcap.log_topics import OTHER_FIELDS, TopicRows, read_topic
 from zebro_lab.mcap.ros_messages import IMU
 
 _VECTORS: Final = {"angular_velocity": "rate", "linear_acceleration": "force"}
@@ -36,13 +37,22 @@ def read_imu_messages(
             the messages mark the orientation as not measured.
     """
     found = read_topic(path, (IMU.name,), what="IMU messages", topic=topic, topics=topics)
-    if any(_absent(each, "orientation") for each in found.contents):
+    with parsing(path, OTHER_FIELDS):
+        columns = _columns(found)
+    if columns is None:
         raise DataError(
             f"has no orientation on topic {found.topic}: the first element of its covariance is "
             "-1; expected the orientation of the body: choose the topic of a filter that estimates "
             "it, such as imu_filter_madgwick",
             file=path,
         )
+    return TopicTable.of(path, columns, found)
+
+
+def _columns(found: TopicRows) -> dict[str, Array] | None:
+    """Return the columns of an IMU table; None without orientation."""
+    if any(_absent(each, "orientation") for each in found.contents):
+        return None
     columns: dict[str, Array] = {"t": np.array(found.t)}
     for axis in "wxyz":
         columns[f"q{axis}"] = np.array([getattr(m.orientation, axis) for m in found.contents])
@@ -51,7 +61,7 @@ def read_imu_messages(
             for axis in "xyz":
                 values = [getattr(getattr(m, field), axis) for m in found.contents]
                 columns[f"{name}_{axis}"] = np.array(values)
-    return TopicTable.of(path, columns, found)
+    return columns
 
 
 def _absent(message: Any, field: str) -> bool:

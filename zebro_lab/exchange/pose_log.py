@@ -10,7 +10,8 @@ import numpy as np
 from model.slip.law import Array
 from zebro_lab.exchange.topic_table import TopicTable
 from zebro_lab.files.errors import DataError
-from zebro_lab.mcap.log_topics import Parts, TopicRows, read_topic
+from zebro_lab.files.opening import parsing
+from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, TopicRows, read_topic
 from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_poses import POSE, TRANSFORMS
 
@@ -46,14 +47,16 @@ def read_pose_log(
             or a quaternion's length is not 1 within 0.05.
     """
     found = read_topic(path, POSE_TYPES, what="poses", topic=topic, topics=topics, parts=_poses)
-    place, turn = zip(*(_pose(found.type, each) for each in found.contents), strict=True)
-    position = np.array([(p.x, p.y, p.z) for p in place])
+    with parsing(path, OTHER_FIELDS):
+        place, turn = zip(*(_pose(found.type, each) for each in found.contents), strict=True)
+        position = np.array([(p.x, p.y, p.z) for p in place], dtype=float)
+        quaternion = np.array([(q.x, q.y, q.z, q.w) for q in turn], dtype=float)
+        covariances = _covariances(found)
     columns = {"t_s": np.array(found.t), "x_m": position[:, 0], "y_m": position[:, 1],
                "z_m": position[:, 2]}  # fmt: skip
-    quaternion = np.array([(q.x, q.y, q.z, q.w) for q in turn])
     if quaternion.any():  # zeros throughout: the publisher knows no orientation
         columns["yaw_rad"] = _yaw(path, found.topic, quaternion)
-        columns |= _covariances(found)
+        columns |= covariances
     return TopicTable.of(path, columns, found)
 
 

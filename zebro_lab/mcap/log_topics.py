@@ -8,9 +8,12 @@ from typing import Any, Final
 
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import parsing
 from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_log import read_typed_messages
 
+OTHER_FIELDS: Final = "has messages with other fields than ROS defines"
+"""What is wrong with a log whose description of a message is damaged, for `parsing`."""
 NANOSECOND: Final = 1e-9
 _TOLD: Final = '--topic NAME, or topic = "NAME" in the file\'s section of a columns.toml'
 
@@ -67,8 +70,9 @@ def read_topic(
     """
     messages, damage = read_typed_messages(path, types)
     found: dict[str, list[tuple[float, str, Any]]] = {}
-    for name, stamp, kind, content in _stamped(messages, parts):
-        found.setdefault(name, []).append((stamp, kind, content))
+    with parsing(path, OTHER_FIELDS):
+        for name, stamp, kind, content in _stamped(messages, parts):
+            found.setdefault(name, []).append((stamp, kind, content))
     chosen = _chosen(path, found, topic, topics, types, what)
     t, kinds, contents = zip(*found[chosen], strict=True)
     notes = [] if damage is None else [f"{path.name} is incomplete ({damage})"]

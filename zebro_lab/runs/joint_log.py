@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.mcap.log_topics import Parts, read_topic
+from zebro_lab.files.opening import parsing
+from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, read_topic
 from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_messages import JOINT_STATE
 from zebro_lab.robot.joint_names import legs_of_joints
@@ -63,8 +64,9 @@ def read_joint_log(
         path, (JOINT_STATE.name,), what="joint positions", topic=topic, topics=topics,
         parts=_with_positions,
     )  # fmt: skip
-    rows = [dict(zip(state.name, state.position, strict=False)) for state in found.contents]
-    table = RawTable(path, _columns(found.t, rows), notes=found.notes)
+    with parsing(path, OTHER_FIELDS):
+        rows = [dict(zip(state.name, state.position, strict=False)) for state in found.contents]
+        table = RawTable(path, _columns(found.t, rows), notes=found.notes)
     return JointLog(table, legs_of_joints(table.columns), found.topic)
 
 

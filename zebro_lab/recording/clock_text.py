@@ -16,6 +16,10 @@ _PPM: Final = 1e6
 def with_uncertainty(value: float, half_width: float) -> str:
     """Format a value and its uncertainty, both to the first two digits of the latter.
 
+    Args:
+        value: Value, in any unit.
+        half_width: Half width of the interval around it, in the same unit.
+
     >>> with_uncertainty(324.4, 41.03), with_uncertainty(0.00173312, 0.0005)
     ('324 ± 41', '0.00173 ± 0.00050')
     """

@@ -91,7 +91,12 @@ def time_left(status: RecordStatus) -> str:
 
 
 def stream_in_words(name: str, stream: StreamStatus) -> dict[str, str]:
-    """Return what is said of a stream, by `_PIECES`; dropped and rejected where there are any."""
+    """Return what is said of a stream, by `_PIECES`; dropped and rejected where there are any.
+
+    Args:
+        name: Name of the stream.
+        stream: Its status.
+    """
     counters = stream.counters
     simulated = " SIMULATED" if stream.source.startswith("sim:") else ""
     said = {

@@ -145,7 +145,12 @@ def read_signals(folder: Path) -> RunSignals:
 
 
 def profile_of(folder: Path, name: str) -> Path:
-    """Return the profile in a run folder that describes a stream, from the stream's name."""
+    """Return the path of the profile that describes a stream.
+
+    Args:
+        folder: The run folder.
+        name: Name of the stream.
+    """
     return profile_file(folder, name if name == LEGS or name.startswith("imu") else RIG)
 
 

@@ -62,7 +62,7 @@ SETTINGS = {
     "no TOML": ("[columns", "cannot be read as TOML"),
     "unknown table": ("[leg]\n", "leg: unknown key"),
     "a guess": ('[columns.t]\nunit = "ms?"', 'columns.t.unit = "ms?"; correct each'),
-    "unknown column": ('[columns]\ntheta7 = "x"', "columns.theta7: unknown key; did you mean 'the"),
+    "unknown column": ('[columns]\ntheta7 = "x"', "columns.theta7: unknown key; known: 't'"),
     "unknown key": ('[columns.t]\nnam = "x"', "columns.t.nam: unknown key; did you mean 'name'"),
     "frequency": ('[columns.theta1]\nunit = "Hz"', "columns.theta1.unit: unit 'Hz' cannot be conv"),
     "sign": ("[columns.theta1]\nsign = 0", "columns.theta1.sign: found 0; expected 1 or -1"),

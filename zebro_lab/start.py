@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Entry points of the commands; they first check where zebro-lab's packages are imported from."""
+"""Entry points of the commands: they can be stopped from here on, and check the packages first."""
 
 import sys
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
+
+from zebro_lab.terminal.stopping import stoppable
 
 PACKAGES: Final = ("model", "rig", "tracking")
 
@@ -34,18 +36,20 @@ def require_own_packages() -> None:
 
 def zebro_lab() -> None:
     """Check the packages, then run the command line `zebro-lab`; exit 1 if the check fails."""
-    _check_or_exit()
-    from zebro_lab.main import main
+    with stoppable():
+        _check_or_exit()
+        from zebro_lab.main import main
 
-    main()
+        main()
 
 
 def calibrate_slip() -> None:
     """Check the packages, then run the command line `calibrate-slip`; exit 1 if the check fails."""
-    _check_or_exit()
-    from zebro_lab.main import calibrate_slip
+    with stoppable():
+        _check_or_exit()
+        from zebro_lab.main import calibrate_slip
 
-    calibrate_slip()
+        calibrate_slip()
 
 
 def _check_or_exit() -> None:

@@ -27,6 +27,7 @@ from typing import IO, Final
 from rig.exclusive import try_lock
 from zebro_lab.files.atomic import sync_folder
 from zebro_lab.files.errors import AlreadyExists, DataError
+from zebro_lab.files.uninterrupted import uninterrupted
 
 PREVIOUS: Final = ".previous"
 PATIENCE: Final = 10.0
@@ -74,9 +75,10 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
         if folder.exists():
             require_free_previous(folder)
             _carry(folder, draft, names)
-            _write_note(note, _Note(folder.stat().st_ino, names))
-            _swap(folder, draft)
-            _settle_locked(folder, _read_note(note))
+            with uninterrupted():
+                _write_note(note, _Note(folder.stat().st_ino, names))
+                _swap(folder, draft)
+                _settle_locked(folder, _read_note(note))
         else:
             _sync(draft)
             draft.rename(folder)

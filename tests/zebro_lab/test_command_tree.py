@@ -40,6 +40,7 @@ REFUSED_TEXTS = {
     "TIME": ("yesterday", "12:00"),
     "YYYY-MM-DDTHH:MM:SS": ("yesterday", "2020-06-01T12:00:00+01:00"),
     "KG,KG…": ("heavy", "1,nan", "1,-1", "0", ","),
+    "A,B,C,D,E,F": ("a", "a,b,c,d,e,a", "a,b,c,d,e,"),
     "SLIP": ("coulomb:38", "coulomb:", "coulomb:nan", "coulomb:0.4:0", "coulomb:0.4:1:2"),
 }
 """Texts that options of a metavar refuse."""

@@ -41,12 +41,11 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
         load_low, load_high = 0.8 * load_low, 1.2 * load_high
     slip, load = np.meshgrid(slip_grid(blocks.slip, 60), np.linspace(load_low, load_high, 25))
     force = law.force(slip, load, np.asarray(values, dtype=float))
-    figure = new_figure("Slip surface", simulated, width=8.0, height=5.0)
+    figure = new_figure("Slip surface", simulated, width=7.0, height=5.0)
     axes = cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
-    surface = axes.plot_surface(
+    axes.plot_surface(
         slip, load, force, cmap="viridis", linewidth=0, antialiased=False, rstride=1, cstride=1
     )
-    figure.colorbar(surface, ax=axes, shrink=0.6, pad=0.02, label="traction force of the law [N]")
     for row in range(0, len(load), 4):
         axes.plot(slip[row], load[row], force[row], color="0.2", lw=0.5, label="law at one load")
     axes.plot(
@@ -56,7 +55,7 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
     )  # fmt: skip
     axes.set_xlabel(slip_label(blocks.definition), labelpad=8)
     axes.set_ylabel("normal force [N]", labelpad=6)
-    axes.set_zlabel("traction force [N]", labelpad=8)
+    axes.set_zlabel("traction force, also as colour [N]", labelpad=8)
     axes.zaxis.set_tick_params(pad=5)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_major_locator(few_ticks(5))

@@ -148,4 +148,4 @@ def _sides(extent: Array) -> tuple[float, float]:
     """
     scale = (_LONGEST_SIDE - 1.0) / float(max(extent[0], extent[1]))
     width, height = (float(np.clip(scale * side, 2.0, 7.5)) for side in extent)
-    return max(width + 1.0, _NARROWEST), max(height + 1.3, _LOWEST)
+    return max(width + 1.0, _NARROWEST), max(height + 1.6, _LOWEST)

@@ -11,8 +11,8 @@ def test_a_single_load_still_spans_a_surface(one_load):
 
 
 def test_the_surface_is_the_law_over_tested_slip_and_load(rig):
-    axes, key = rig.picture("surface").axes
-    assert key.get_ylabel() == "traction force of the law [N]"
+    (axes,) = rig.picture("surface").axes
+    assert axes.get_zlabel() == "traction force, also as colour [N]"
     ridges = [line.get_data_3d() for line in axes.lines[:-1]]
     for slip, load, force in ridges:
         np.testing.assert_allclose(force, rig.law.force(slip, load, rig.truth))

@@ -47,7 +47,9 @@ def test_the_slip_axis_names_its_definition(tyre):
     for name in ("curves", "surface", "residuals"):
         assert "slip ratio, travel definition [-]" in labels[name]
     assert "traction force [N]" in labels["curves"]
-    assert {"normal force [N]", "traction force [N]"} <= set(labels["surface"].splitlines())
+    assert {"normal force [N]", "traction force, also as colour [N]"} <= set(
+        labels["surface"].splitlines()
+    )
     assert "normal force [N]" in labels["residuals"]
 
 

@@ -4,12 +4,13 @@
 import typer
 
 from zebro_lab.calibration.request import CalibrationRequest
-from zebro_lab.terminal.messages import say, wide_console
+from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 
 INTERRUPTED = 130
 
 
-def fit_and_report(request: CalibrationRequest) -> bool:
+def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
     """Fit a slip law, write its folder, print the results; return whether the fit converged.
 
     Raises:
@@ -18,13 +19,12 @@ def fit_and_report(request: CalibrationRequest) -> bool:
     """
     from zebro_lab.calibration.screen import print_calibration
     from zebro_lab.calibration.stage import Stopped, calibrate
-    from zebro_lab.terminal.progress import progress_bar
 
     try:
-        with progress_bar() as watcher:
+        with output.progress() as watcher:
             calibration, read = calibrate(request, watcher)
     except Stopped as stopped:
         say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
-    print_calibration(wide_console(), calibration, read, request.out)
+    print_calibration(output.console(), calibration, read, request.out)
     return calibration.verdict.converged

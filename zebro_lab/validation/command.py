@@ -3,7 +3,7 @@
 
 import typer
 
-from zebro_lab.terminal.messages import wide_console
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.validation.request import ValidateRequest
 
@@ -36,14 +36,13 @@ _ONLY_RUNS = ("predicted", "track", "anchor", "estimate_offset")
 
 
 @request_command()
-def validate(request: ValidateRequest) -> None:
+def validate(request: ValidateRequest, output: Output = TEXT) -> None:
     """Compute the errors of predicted paths against tracked ones, with baselines."""
-    from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.validation import stage
     from zebro_lab.validation.screen import print_validated
 
     if request.is_pair:
-        _validate_pair(request)
+        _validate_pair(request, output)
         return
     _require_no_options(request, _ONLY_PAIRS, "belongs to two trajectories; give their files")
     n_predicted, n_tracks = len(request.predicted), len(request.track)
@@ -54,13 +53,13 @@ def validate(request: ValidateRequest) -> None:
         )
     if request.estimate_offset and request.time_offset:
         raise typer.BadParameter("give --time-offset, or let --estimate-offset find it; not both")
-    with progress_bar() as watcher:
+    with output.progress() as watcher:
         validated = stage.validate(request, watcher)
-    print_validated(wide_console(), validated, request.folder)
+    print_validated(output.console(), validated, request.folder)
+    _print_document(request, output)
 
 
-def _validate_pair(request: ValidateRequest) -> None:
-    from zebro_lab.terminal.progress import progress_bar
+def _validate_pair(request: ValidateRequest, output: Output) -> None:
     from zebro_lab.validation.trajectories.screen import print_pair
     from zebro_lab.validation.trajectories.stage import validate_trajectories
 
@@ -72,9 +71,20 @@ def _validate_pair(request: ValidateRequest) -> None:
             "REFERENCE ESTIMATE"
         )
     _require_no_options(request, _ONLY_RUNS, "belongs to predicted walks, not to trajectories")
-    with progress_bar() as watcher:
+    with output.progress() as watcher:
         judged = validate_trajectories(request, watcher)
-    print_pair(wide_console(), judged, request.folder)
+    print_pair(output.console(), judged, request.folder)
+    _print_document(request, output)
+
+
+def _print_document(request: ValidateRequest, output: Output) -> None:
+    """Print the manifest of the written folder, which has all errors."""
+    from zebro_lab.files.documents import read_json_document
+
+    manifest = read_json_document(request.folder / "manifest.json")
+    simulated = "sim:" in str(manifest.get("source", ""))
+    content = {"folder": request.folder, "simulated": simulated, "validation": manifest}
+    output.document("validate", content)
 
 
 def _require_no_options(request: ValidateRequest, names: tuple[str, ...], problem: str) -> None:

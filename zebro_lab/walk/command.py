@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.walk.request import WalkRequest
 
@@ -31,15 +31,17 @@ WriteRobot = Annotated[
 
 
 @request_command(first=("name", "duration", "slip", "out"))
-def walk(request: WalkRequest, write_robot: WriteRobot = None) -> None:
+def walk(request: WalkRequest, write_robot: WriteRobot = None, output: Output = TEXT) -> None:
     """Simulate a gait and write FOLDER/path.csv, a band, pictures and an animation."""
     from zebro_lab.walk import stage
     from zebro_lab.walk.screen import run_and_report
 
     if write_robot is not None:
-        say(f"wrote {stage.write_robot(write_robot, request.model)}")
+        file = stage.write_robot(write_robot, request.model)
+        output.say(f"wrote {file}")
+        output.document("walk", {"written": [file]})
         return
     if request.duration is None:
         raise typer.BadParameter("missing: the duration of the walk [s]", param_hint="'--duration'")
     request.model.require_slip()
-    run_and_report(lambda watcher: stage.walk(request, watcher), request.out)
+    run_and_report("walk", lambda watcher: stage.walk(request, watcher), request.out, output)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab predict LEGLOG`: predict the path from measured leg angles."""
 
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.walk.request import PredictRequest
 
@@ -19,11 +20,13 @@ other names and units through a columns.toml beside it. docs/formats.md says mor
 
 
 @request_command(first=("log", "out", "slip", "model", "toe", "robot", "arc_deg"))
-def predict(request: PredictRequest) -> None:
+def predict(request: PredictRequest, output: Output = TEXT) -> None:
     """Predict the path from leg angles: FOLDER/path.csv, a band, pictures and an animation."""
     from zebro_lab.walk import predict_stage
     from zebro_lab.walk.screen import run_and_report
 
     request.model.require_slip()
     folder = predict_stage.prediction_folder(request)
-    run_and_report(lambda watcher: predict_stage.predict(request, watcher), folder)
+    run_and_report(
+        "predict", lambda watcher: predict_stage.predict(request, watcher), folder, output
+    )

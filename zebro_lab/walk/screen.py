@@ -13,8 +13,8 @@ from rich.text import Text
 from model.gait import CyclicReference
 from model.progress import Watcher
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.terminal.messages import plain, say, wide_console
-from zebro_lab.terminal.progress import progress_bar
+from zebro_lab.terminal.messages import plain, say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.output import WalkStopped
@@ -25,23 +25,52 @@ INTERRUPTED = 130
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
-def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
+def run_and_report(
+    command: str, run: Callable[[Watcher], Walked], folder: Path, output: Output = TEXT
+) -> None:
     """Run a stage with a progress bar and print the results.
 
     Args:
+        command: Name of the command.
         run: The stage; given a watcher, it writes the folder and returns the walk.
         folder: Walk folder that the stage writes.
+        output: What is printed.
 
     Raises:
         Exit: The walk was stopped (exit code 130); other errors of the stage pass.
     """
     try:
-        with progress_bar() as watcher:
+        with output.progress() as watcher:
             walked = run(watcher)
     except WalkStopped as stopped:
         say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
-    print_walk(wide_console(), walked, folder)
+    print_walk(output.console(), walked, folder)
+    output.document(command, {**walk_document(walked), "folder": folder})
+
+
+def walk_document(walked: Walked) -> dict[str, object]:
+    """Return the results of a walk for `--json`; keys end in the unit."""
+    summary = summarise(walked.path)
+    x, y, yaw = summary.end
+    return {
+        "title": walked.title,
+        "simulated": True,
+        "time_step_s": walked.dt,
+        "duration_s": summary.duration,
+        "end_x_m": x,
+        "end_y_m": y,
+        "end_yaw_rad": yaw,
+        "length_m": summary.length,
+        "strides": summary.strides,
+        "speed_m_per_s": summary.speed,
+        "yaw_rate_rad_per_s": summary.yaw_rate,
+        "radius_m": summary.radius,
+        "largest_roll_rad": summary.largest_roll,
+        "largest_pitch_rad": summary.largest_pitch,
+        "mean_slip_m_per_s": summary.mean_slip,
+        "notes": [*slip_lines(walked, summary), *walked.notes],
+    }
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:

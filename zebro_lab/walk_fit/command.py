@@ -5,7 +5,7 @@ import typer
 
 from zebro_lab.calibration.command import fit_and_report
 from zebro_lab.calibration.request import CalibrationRequest
-from zebro_lab.terminal.messages import wide_console
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.version import Version
 from zebro_lab.walk_fit.request import WalksRequest
@@ -34,36 +34,55 @@ and marked), 130 stopped (a checkpoint is kept for --resume).
 
 
 @request_command()
-def calibrate(request: CalibrationRequest, tracked: WalksRequest, version: Version = False) -> None:
+def calibrate(
+    request: CalibrationRequest,
+    tracked: WalksRequest,
+    output: Output = TEXT,
+    version: Version = False,
+) -> None:
     """Fit a slip curve to rig data by Bayesian inference and report whether to trust it."""
     if not (request.data or tracked.walks):
         raise typer.BadParameter(
             "missing: rig data, or --walks and the --out of a finished calibration"
         )
     if request.data and tracked.walks:
-        _require_walks(tracked, request)
-    converged = fit_and_report(request) if request.data else True
+        _require_walks(tracked, request, output)
+    converged = fit_and_report(request, output) if request.data else True
     if tracked.walks:
-        _fit_walks(tracked, request)
+        _fit_walks(tracked, request, output)
+    if output.as_json:
+        _print_document(request, output, with_walks=bool(tracked.walks), converged=converged)
     if not converged:
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _require_walks(tracked: WalksRequest, calibration: CalibrationRequest) -> None:
+def _print_document(
+    request: CalibrationRequest, output: Output, *, with_walks: bool, converged: bool
+) -> None:
+    """Print the contents of the folder's slip.toml, and of the manifest of `walks/` if fitted."""
+    from zebro_lab.files.documents import read_json_document, read_toml_document
+
+    slip = read_toml_document(request.out / "slip.toml")
+    source = str(slip.get("source", ""))
+    content = {"folder": request.out, "simulated": "sim:" in source, "calibration": slip}
+    if with_walks:
+        content["walks"] = read_json_document(request.out / "walks" / "manifest.json")
+    output.document("calibrate", content, exit_code=0 if converged else NOT_CONVERGED)
+
+
+def _require_walks(tracked: WalksRequest, calibration: CalibrationRequest, output: Output) -> None:
     """Check the walks before a fit of rig data, which takes long and replaces files."""
-    from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.walk_fit.stage import require_walks
 
-    with progress_bar() as watcher:
+    with output.progress() as watcher:
         require_walks(tracked, calibration, watcher)
 
 
-def _fit_walks(tracked: WalksRequest, calibration: CalibrationRequest) -> None:
+def _fit_walks(tracked: WalksRequest, calibration: CalibrationRequest, output: Output) -> None:
     """Fit leg offsets and floor parameters to tracked walks, write `walks/`, print the results."""
-    from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.walk_fit.screen import print_walks
     from zebro_lab.walk_fit.stage import calibrate_walks
 
-    with progress_bar() as watcher:
+    with output.progress() as watcher:
         done = calibrate_walks(tracked, calibration, watcher)
-    print_walks(wide_console(), done)
+    print_walks(output.console(), done)

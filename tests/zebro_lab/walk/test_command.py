@@ -88,3 +88,25 @@ def test_wrong_usage_is_exit_2(arguments, run_command):
     code, stdout, stderr = run_command(*arguments)
     assert (code, stdout) == (2, "")
     assert "Usage: " in stderr
+
+
+def test_json_is_one_document_with_the_results_and_quiet_leaves_it_alone(run_command, tmp_path):
+    given = ("walk", "--slip", "coulomb:0.4", "--duration", 4, "--json", "--out")
+    ended, quiet = (run_command(*given, tmp_path / "a", *more) for more in ((), ("--quiet",)))
+    document = json.loads(ended.out)
+    assert ended.code == document["exit_code"] == quiet.code == 0
+    assert document == json.loads(quiet.out)
+    assert document["command"] == "walk"
+    assert document["simulated"]
+    assert document["duration_s"] == 4.0
+    assert document["length_m"] > 0.1
+    assert "SIMULATED walk" in ended.err
+    assert quiet.err == ""
+
+
+def test_quiet_prints_nothing_but_errors(run_command, tmp_path):
+    given = ("walk", "--slip", "coulomb:0.4", "--duration", 1, "--quiet", "--out")
+    assert run_command(*given, tmp_path / "a") == (0, "", "")
+    ended = run_command(*given, tmp_path / "b", "--robot", "none.toml")
+    assert (ended.code, ended.out) == (1, "")
+    assert "none.toml: no such file" in ended.err

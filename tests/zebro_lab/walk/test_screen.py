@@ -93,6 +93,6 @@ def test_a_stopped_walk_is_one_line_and_exit_130(capsys):
         raise WalkStopped("stopped; nothing was written")
 
     with pytest.raises(typer.Exit) as ended:
-        run_and_report(stop, Path("out"))
+        run_and_report("walk", stop, Path("out"))
     assert ended.value.exit_code == INTERRUPTED
     assert capsys.readouterr() == ("", "stopped; nothing was written\n")

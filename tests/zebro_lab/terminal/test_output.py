@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""Text goes to stdout, or beside a document to stderr, or nowhere."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zebro_lab.terminal.output import TEXT, Output
+
+
+@pytest.mark.parametrize(
+    ("output", "out", "err"),
+    [(TEXT, "said", ""), (Output(as_json=True), "", "said"), (Output(quiet=True), "", ""),
+     (Output(as_json=True, quiet=True), "", "")],
+)  # fmt: skip
+def test_text_goes_where_it_disturbs_no_document(output, out, err, capsys):
+    output.say("said")
+    output.console().print("said")
+    captured = capsys.readouterr()
+    assert captured.out.split() == [out] * 2 * bool(out)
+    assert captured.err.split() == [err] * 2 * bool(err)
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_a_document_is_json_whatever_is_in_it(quiet, capsys):
+    content = {
+        "radius_m": np.float64("inf"), "x_m": np.array([1.0, np.nan]), "folder": Path("a"),
+        "n": np.int64(3), "label": "caf\udce9",
+    }  # fmt: skip
+    Output(as_json=True, quiet=quiet).document("walk", content, exit_code=3)
+    captured = capsys.readouterr()
+    assert json.loads(captured.out) == {
+        "command": "walk", "exit_code": 3, "radius_m": None, "x_m": [1.0, None], "folder": "a",
+        "n": 3, "label": "caf\\udce9",
+    }  # fmt: skip
+    assert captured.err == ""
+
+
+def test_no_document_is_printed_unasked(capsys):
+    TEXT.document("walk", {"x_m": 1.0})
+    assert capsys.readouterr().out == ""

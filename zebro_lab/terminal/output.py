@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""What a command prints: text, one JSON document, or nothing."""
+
+import json
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from zebro_lab.terminal.progress import ProgressBar
+
+
+@dataclass(frozen=True)
+class Output:
+    """Options of what a command prints."""
+
+    as_json: Annotated[
+        bool,
+        typer.Option(
+            "--json", help="Print the results as one JSON document; all else goes to stderr."
+        ),
+    ] = False
+    quiet: Annotated[
+        bool, typer.Option("--quiet", help="Print errors alone, and the document of --json.")
+    ] = False
+
+    def progress(self) -> "AbstractContextManager[ProgressBar]":
+        """Show progress as `progress_bar` does, unless quiet; stop signals are heard either way."""
+        from zebro_lab.terminal.progress import progress_bar
+
+        return progress_bar(quiet=self.quiet)
+
+    def console(self) -> "Console":
+        """Create the console for results as text: on stdout, or stderr beside a JSON document."""
+        from rich.console import Console
+
+        from zebro_lab.terminal.messages import wide_console
+
+        if not (self.quiet or self.as_json):
+            return wide_console()
+        return Console(stderr=True, quiet=self.quiet, highlight=False, width=120)
+
+    def say(self, line: str) -> None:
+        """Write one line of results where `console` writes."""
+        from zebro_lab.terminal.messages import say
+
+        if not self.quiet:
+            say(line, err=self.as_json)
+
+    def document(self, command: str, content: Mapping[str, Any], *, exit_code: int = 0) -> None:
+        """Print the JSON document, if it is asked for; NaN and infinity become null.
+
+        Args:
+            command: The command, without `zebro-lab`.
+            content: Results; keys end in the unit.
+            exit_code: Exit code with which the command is about to end.
+        """
+        if not self.as_json:
+            return
+        from zebro_lab.files.encodable import encodable
+        from zebro_lab.files.result_folder import plain_json
+
+        whole = {"command": command, "exit_code": exit_code, **content}
+        whole = json.loads(json.dumps(whole, default=_plain))
+        typer.echo(json.dumps(encodable(plain_json(whole)), indent=2, allow_nan=False))
+
+
+TEXT: Final = Output()
+"""Results as text, which is the default."""
+
+
+def _plain(value: Any) -> Any:
+    """Convert what JSON does not know: paths, and arrays and numbers of NumPy."""
+    return str(value) if isinstance(value, Path) else value.tolist()

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, TypeAlias
 
 import typer
 
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 ExportFormat: TypeAlias = Literal["csv", "parquet", "mcap"]
@@ -22,18 +22,22 @@ Out = Annotated[
 
 
 @request_command()
-def export(run: RunFolder, out: Out, to: To = "csv") -> None:
+def export(run: RunFolder, out: Out, to: To = "csv", output: Output = TEXT) -> None:
     """Export a run as tables of its samples, or its track and prediction as one MCAP file."""
     if to == "mcap":
         from zebro_lab.exchange.export_mcap_stage import export_mcap
 
         exported = export_mcap(run, out=out)
         for topic, count in exported.topics.items():
-            say(f"{topic}: {count} messages")
+            output.say(f"{topic}: {count} messages")
         for line in (*exported.notes, f"wrote {exported.file}"):
-            say(line)
+            output.say(line)
+        content = {"messages": dict(exported.topics), "notes": list(exported.notes)}
+        output.document("export", {**content, "written": [exported.file]})
         return
     from zebro_lab.exchange.export_stage import export_run
 
-    for file in export_run(run, to=to, out=out):
-        say(f"wrote {file}")
+    files = list(export_run(run, to=to, out=out))
+    for file in files:
+        output.say(f"wrote {file}")
+    output.document("export", {"written": files})

@@ -2,7 +2,7 @@
 """`zebro-lab import`: convert files from other software to run folders."""
 
 from zebro_lab.exchange.import_request import ImportRequest
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 EPILOG = """
@@ -24,18 +24,24 @@ Other names and units of columns are mapped by a columns.toml in the folder of t
 
 
 @request_command()
-def import_files(request: ImportRequest) -> None:
+def import_files(request: ImportRequest, output: Output = TEXT) -> None:
     """Convert files from other software to run folders in DIR: run.json, log.mcap, track/."""
     from zebro_lab.exchange.import_stage import import_run
     from zebro_lab.runs.manifest import read_manifest
-    from zebro_lab.terminal.progress import progress_bar
 
-    with progress_bar() as watcher:
+    with output.progress() as watcher:
         imported = import_run(request, watcher)
     for note in imported.notes:
-        say(note)
-    for folder in imported.folders:
-        manifest = read_manifest(folder)
+        output.say(note)
+    manifests = {folder: read_manifest(folder) for folder in imported.folders}
+    for folder, manifest in manifests.items():
         simulated = "SIMULATED " if manifest.source.startswith("sim:") else ""
         counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
-        say(f"{simulated}source {manifest.source}, samples: {counts}; wrote {folder}")
+        output.say(f"{simulated}source {manifest.source}, samples: {counts}; wrote {folder}")
+    runs = [
+        {"folder": folder, "source": manifest.source, "samples": dict(manifest.streams)}
+        for folder, manifest in manifests.items()
+    ]
+    simulated = any("sim:" in manifest.source for manifest in manifests.values())
+    content = {"simulated": simulated, "runs": runs, "notes": list(imported.notes)}
+    output.document("import", content)

@@ -2,7 +2,7 @@
 """`zebro-lab report RUN`: write an HTML report of a run."""
 
 from zebro_lab.report.request import ReportRequest
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 EPILOG = """
@@ -19,7 +19,7 @@ named, and a calibration that no prediction used is no headline.
 
 
 @request_command()
-def report(request: ReportRequest) -> None:
+def report(request: ReportRequest, output: Output = TEXT) -> None:
     """Write an HTML report with slip curve, track, prediction and validation: report.html."""
     from datetime import UTC, datetime
 
@@ -27,9 +27,13 @@ def report(request: ReportRequest) -> None:
     from zebro_lab.report.belonging import belonging
 
     sources = stage.report(request, made=datetime.now(UTC))
-    for notice in belonging(sources).notices:
-        say(f"does not belong together: {notice}")
+    notices = list(belonging(sources).notices)
+    for notice in notices:
+        output.say(f"does not belong together: {notice}")
     for part in sources.parts:
         if part.missing:
-            say(f"missing: {part.name}; create it with: {part.maker}")
-    say(f"wrote {request.out} ({request.out.stat().st_size / 1e6:.1f} MB)")
+            output.say(f"missing: {part.name}; create it with: {part.maker}")
+    output.say(f"wrote {request.out} ({request.out.stat().st_size / 1e6:.1f} MB)")
+    missing = {part.name: part.maker for part in sources.parts if part.missing}
+    content = {"written": [request.out], "missing": missing, "not_belonging": notices}
+    output.document("report", content)

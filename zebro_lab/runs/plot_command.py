@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from zebro_lab.files.picture_format import PictureFormat
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.picture_options import Window, parse_window
 from zebro_lab.terminal.request_command import request_command
 
@@ -39,18 +39,23 @@ Shown = Annotated[
 
 
 @request_command()
-def plot(run: Run, out: Out = None, form: Form = None, window: Shown = None) -> None:
+def plot(
+    run: Run, out: Out = None, form: Form = None, window: Shown = None, output: Output = TEXT
+) -> None:
     """Plot all recorded streams of a run over time in one picture; mark gaps and events."""
     from zebro_lab.runs.plot_stage import plot_run
-    from zebro_lab.terminal.progress import progress_bar
 
-    with progress_bar() as watcher:
+    with output.progress() as watcher:
         watcher.step("drawing", None)
         drawn = plot_run(run, out=out, form=form, window=window)
     for note in drawn.signals.notes:
-        say(note)
+        output.say(note)
     for panel in drawn.signals.panels:
         simulated = "SIMULATED " if panel.simulated else ""
         gaps = f", {len(panel.gaps)} gaps" if len(panel.gaps) else ""
-        say(f"{simulated}{panel.title}: {len(panel.t)} samples{gaps}")
-    say(f"wrote {drawn.file}")
+        output.say(f"{simulated}{panel.title}: {len(panel.t)} samples{gaps}")
+    output.say(f"wrote {drawn.file}")
+    samples = {panel.title: len(panel.t) for panel in drawn.signals.panels}
+    simulated = any(panel.simulated for panel in drawn.signals.panels)
+    content = {"simulated": simulated, "samples": samples, "notes": list(drawn.signals.notes)}
+    output.document("plot", {**content, "written": [drawn.file]})

@@ -3,7 +3,8 @@
 
 from typing import TYPE_CHECKING
 
-from zebro_lab.terminal.messages import plain, wide_console
+from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.validation.compare.request import CompareRequest
 
@@ -26,20 +27,48 @@ take the two for independent; a track's errors are taken for independent from po
 
 
 @request_command()
-def compare(request: CompareRequest) -> None:
+def compare(request: CompareRequest, output: Output = TEXT) -> None:
     """Compare two calibrations or two runs: overlay them and list differences with intervals."""
     from rich.text import Text
 
     from zebro_lab.validation.compare import stage
 
     done = stage.compare(request)
-    console = wide_console()
+    console = output.console()
     if "sim:" in done.comparison.source:
         console.print(plain(f"SIMULATED: {done.comparison.source}"))
     console.print(_table(done))
     for note in done.comparison.notes:
         console.print(plain(note))
     console.print(Text(f"\nwritten to {request.out}"))
+    simulated = "sim:" in done.comparison.source
+    content = {"folder": request.out, "simulated": simulated, "names": done.comparison.names}
+    notes = list(done.comparison.notes)
+    output.document("compare", {**content, "quantities": _quantities(done), "notes": notes})
+
+
+def _quantities(done: "Compared") -> list[dict[str, object]]:
+    """Return medians and 90 % intervals of both and of their difference, for `--json`."""
+    found = []
+    for quantity, apart in zip(done.comparison.quantities, done.differences, strict=True):
+        values = {
+            "first": quantity.quantiles(0),
+            "second": quantity.quantiles(1),
+            "difference": (apart.median, apart.low, apart.high),
+        }
+        intervals = {
+            name: dict(zip(("median", "low", "high"), map(float, each), strict=True))
+            for name, each in values.items()
+        }
+        found.append(
+            {
+                "name": quantity.name,
+                "unit": quantity.unit,
+                **intervals,
+                "probability_second_larger": float(apart.probability),
+            }
+        )
+    return found
 
 
 def _table(done: "Compared") -> "Table":

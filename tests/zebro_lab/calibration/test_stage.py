@@ -159,7 +159,7 @@ def test_failure_while_drawing_leaves_the_earlier_calibration_untouched(
 ):
     before = {path.name: path.read_bytes() for path in uninterrupted.iterdir()}
 
-    def fail(folder: Path, _) -> None:
+    def fail(folder: Path, *_) -> None:
         (folder / "curves.png").write_bytes(b"half a pict")
         raise OSError("disk full")
 

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.imperfections import GAIN_SD
 from zebro_lab.calibration.folder import read_slip
 
 PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
@@ -41,7 +42,8 @@ def calibrate(seed: int, folder: Path) -> tuple[np.ndarray, np.ndarray, str]:
         BIN / "zebro-lab", "rig", "run", PLAN, "--rig", "sim", "--fast", "--seed", seed,
         "--data", data,
     )  # fmt: skip
-    fitted = run(BIN / "calibrate-slip", data, "--curvature", "peak", "--out", out)
+    fitted = run(BIN / "calibrate-slip", data, "--curvature", "peak", "--gain-sd", GAIN_SD,
+                 "--out", out)  # fmt: skip
     curve = read_slip(out)
     miss = curve.values - THESIS_VALUES
     square = float(miss @ np.linalg.solve(curve.covariance, miss))

@@ -18,6 +18,7 @@ from model.slip.law import SlipLaw
 
 FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
+UNSTATED_GAIN_SD = 0.01  # of a load cell that nobody has weighed: cells, mounts and wiring differ
 PRIOR_DRAWS = 400
 PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
 CLEAR_WIN = 2.0  # standard errors by which a later law must predict better to be preferred
@@ -51,8 +52,8 @@ def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCe
     """Build the prior knowledge of a load cell from known fields and defaults scaled to the forces.
 
     Zero stability is 0.15 N, but at least 0.5 % of the largest traction; the standard deviation of
-    the bias is 0.05 N, but at least 0.2 % of the largest load: a tyre bench has a larger cell. All
-    other defaults are those of `LoadCell`.
+    the bias is 0.05 N, but at least 0.2 % of the largest load: a tyre bench has a larger cell. That
+    of the gains is `UNSTATED_GAIN_SD`, and the crosstalk's that of `LoadCell`.
 
     Args:
         samples: The samples.
@@ -62,6 +63,7 @@ def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCe
     defaults = {
         "zero_stability": max(0.15, 0.005 * float(np.abs(samples.traction_force).max())),
         "bias_sd": max(0.05, 0.002 * float(samples.normal_force.max())),
+        "gain_sd": UNSTATED_GAIN_SD,
     }
     return LoadCell(**{**defaults, **known})
 

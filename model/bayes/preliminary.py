@@ -17,6 +17,7 @@ N_CLIMBS = 5  # best of them that are optimised
 MAX_BLOCKS = 3000  # largest number of blocks
 MAX_SLIP_SPREAD = 0.3  # of the curve's slip scale within a block: the quadrature is good to 1e-3
 MIN_BLOCKS_PER_RUN = 5
+MEMORIES = 2  # correlation times in a block: means over shorter ones are not an AR(1) process
 
 
 def least_squares_values(
@@ -75,27 +76,35 @@ def least_squares_values(
     return values(min(candidates, key=lambda z: float(np.abs(misfit(z)).sum())))
 
 
-def correlation_time(residual: Array, slices: list[slice]) -> float:
+def correlation_time(residual: Array, slices: list[slice], *, white: Array) -> float:
     """Estimate the integrated autocorrelation time of residuals, run means removed [samples].
 
     One plus twice the sum of the autocorrelation pooled over runs, up to Sokal's window (the first
-    lag of at least five times the sum so far). At least 1, the value of white noise.
+    lag of at least five times the sum so far). At least 1, the value of white noise. A known white
+    part of the residual does not count: it would hide the correlation of the rest. Residuals are
+    scaled down where it is large, or few runs of much white noise would outweigh all others.
 
     Args:
         residual: Residual of each sample, shape (n,).
         slices: Range of each run's samples.
+        white: Variance of the known white part of each residual, shape (n,).
     """
     centred = [residual[part] - residual[part].mean() for part in slices]
-    longest = max(len(part) for part in centred)
-    total = np.zeros(longest)
-    for part in centred:
-        spectrum = np.fft.rfft(part, 2 * len(part))
-        total[: len(part)] += np.fft.irfft(np.abs(spectrum) ** 2)[: len(part)]
+    neighbours = np.median([np.mean(own[1:] * own[:-1]) for own in centred if len(own) > 1] or [0])
+    variance = max(float(neighbours), 1e-3 * float(np.mean(residual**2))) + white
+    if not variance.all():
+        return 1.0
+    total = np.zeros(max(len(own) for own in centred))
+    for own, part in zip(centred, slices, strict=True):
+        spectrum = np.fft.rfft(own / np.sqrt(variance[part]), 2 * len(own))
+        total[: len(own)] += np.fft.irfft(np.abs(spectrum) ** 2)[: len(own)]
+    total[0] -= np.sum(white / variance)
+    total[0] = max(total[:2])  # no variance is below the covariance of neighbours
     if total[0] <= 0:
         return 1.0
     time = 2 * np.cumsum(total / total[0]) - 1
-    beyond = np.arange(longest) >= 5 * time
-    window = int(np.argmax(beyond)) if beyond.any() else longest - 1
+    beyond = np.arange(len(time)) >= 5 * time
+    window = int(np.argmax(beyond)) if beyond.any() else len(time) - 1
     return max(1.0, float(time[window]))
 
 
@@ -120,11 +129,12 @@ def choose_block_length(
 ) -> BlockChoice:
     """Choose how many samples to average in a block, from residuals of a preliminary fit.
 
-    A block is at least one autocorrelation time of the residuals long, long enough that the slip
-    sensors' noise averages to a tenth of the curve's slip scale (the slip at which its initial
-    slope reaches its largest force), and that there are at most 3,000 blocks. Two limits override
-    these: a run of median length keeps 5 blocks, and the standard deviation of true slip in nine of
-    ten blocks is at most 0.3 slip scales. The length is 1 at least.
+    A block is at least `MEMORIES` autocorrelation times of the residuals long, long enough that the
+    slip sensors' noise averages to a tenth of the curve's slip scale (the slip at which its initial
+    slope reaches its largest force), and that there are at most 3,000 blocks. The slip sensors'
+    white noise is no part of that time: the likelihood has it apart. Two limits override these: a
+    run of median length keeps 5 blocks, and the standard deviation of true slip in nine of ten
+    blocks is at most 0.3 slip scales. The length is 1 at least.
 
     Args:
         samples: The samples.
@@ -140,11 +150,15 @@ def choose_block_length(
     coarse = block_means(samples, max(1, min(longest, len(samples) // 1000)))
     values = least_squares_values(coarse, law, priors=priors, rng=rng)
     residual = samples.traction_force - law.force(samples.slip, samples.normal_force, values)
-    correlation = correlation_time(residual, samples.slices())
+    slip_noise = slip_noise_variance(samples)
+    slope = law.slip_derivative(samples.slip, samples.normal_force, values)
+    correlation = correlation_time(
+        residual, samples.slices(), white=slope**2 * slip_noise[samples.run]
+    )
     slip_scale = _slip_scale(law, values, float(np.median(samples.normal_force)))
-    noise = float(np.median(slip_noise_variance(samples)))
+    noise = float(np.median(slip_noise))
     wanted = {
-        "the correlation time of the noise": int(np.ceil(correlation)),
+        "twice the correlation time of the noise": int(np.ceil(MEMORIES * correlation)),
         "to average out the slip sensors' noise": int(np.ceil(noise * (10 / slip_scale) ** 2)),
         f"at most {MAX_BLOCKS} blocks": int(np.ceil(len(samples) / MAX_BLOCKS)),
     }

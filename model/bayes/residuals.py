@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_triangular, toeplitz
 from scipy.stats import binomtest, f, norm
 
@@ -72,7 +73,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     variance = np.mean((blocks.traction_force - blocks.traction_force.mean()) ** 2)
     return Residuals(
         whitened=whitened,
-        lag_one=lag_one_correlation(whitened, blocks),
+        lag_one=lag_correlation(whitened, blocks.run, 1)[0],
         run_score=score,
         inside=inside / blocks.n_runs,
         inside_p=float(binomtest(inside, blocks.n_runs, 0.9).pvalue),
@@ -130,17 +131,23 @@ def _run_scores(
     return blocks.run_mean(residual) / np.hypot(scatter, run_spread)
 
 
-def lag_one_correlation(values: Array, blocks: SlipBlocks) -> float:
-    """Compute the correlation of successive values within runs; 0 if no run has two blocks [-].
+def lag_correlation(values: Array, run: NDArray[np.intp], lag: int) -> tuple[float, int]:
+    """Compute the correlation of values some lag apart within runs, from -1 to 1, and its pairs.
+
+    Their mean is known to be zero and is not subtracted.
 
     Args:
         values: One value a block, of mean zero, shape (n,).
-        blocks: The blocks.
+        run: Index of each block's run, non-decreasing, shape (n,).
+        lag: Distance of a pair, at least 1 [blocks].
+
+    Returns:
+        The correlation, 0 without pairs [-], and the number of pairs.
     """
-    same_run = np.diff(blocks.run) == 0
-    if not same_run.any():
-        return 0.0
-    return float(np.mean((values[1:] * values[:-1])[same_run]) / np.mean(values**2))
+    same_run = run[lag:] == run[:-lag]
+    late, early = values[lag:][same_run], values[:-lag][same_run]
+    size = np.sqrt(np.sum(late**2) * np.sum(early**2))
+    return (float(np.sum(late * early) / size) if size > 0 else 0.0), len(late)
 
 
 def load_levels(blocks: SlipBlocks) -> Array:
@@ -161,7 +168,7 @@ def load_levels(blocks: SlipBlocks) -> Array:
     return np.quantile(blocks.normal_force, (np.arange(MAX_LOAD_LEVELS) + 0.5) / MAX_LOAD_LEVELS)
 
 
-def nearest_level(load: Array, levels: Array) -> Array:
+def nearest_level(load: Array, levels: Array) -> NDArray[np.intp]:
     """Find the load level nearest to each load, by the ratio of the two.
 
     Args:

@@ -10,8 +10,10 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.convergence import Convergence
 from model.bayes.likelihood import predict_blocks
 from model.bayes.residuals import Residuals, largest_slips, load_levels
+from model.bayes.rise import advice, sampled_rise
 from model.slip.law import Array, SlipLaw
 
+RISE = "the rise of the curve is tested"  # name of a check of the data, not of the model
 MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
 MIN_P = 0.01  # p-value of the share of run means inside their intervals
 MAX_MISFIT = 0.05  # of the peak force
@@ -19,6 +21,7 @@ MISFIT_P = 1e-3  # p-value below which a larger misfit fails the check
 MAX_OFFSET_SHARE = 0.2  # of the force variance, explained by run offsets
 MAX_OFFSET_RATIO = 3.0  # a half-normal exceeds three scales once in 370
 MIN_CONTRACTION = 0.75  # the posterior half as wide as the prior
+MAX_RISE_GAP = 0.5  # of the peak's slip: three slips at least, and two of them before the peak
 MIN_REACH = 2.5  # peak slips: where the curve has fallen clearly behind its peak
 
 
@@ -45,7 +48,7 @@ class Verdict:
 
     Attributes:
         convergence: Checks of the sampler's convergence.
-        trust: Checks of the model against the data.
+        trust: Checks of the model against the data, and of what the data show of the curve.
         weak: Reason and advice for each weakly identified parameter, by the parameter's name.
     """
 
@@ -68,7 +71,10 @@ class Verdict:
         weak = f"; weakly identified: {', '.join(self.weak)}" if self.weak else ""
         if not self.converged:
             return "NOT CONVERGED: do not use these numbers"
-        if not self.trustworthy:
+        failed = [check.name for check in self.trust if not check.passed]
+        if failed == [RISE]:
+            return "converged, but NOT TRUSTWORTHY: too few slips where the curve rises" + weak
+        if failed:
             return "converged, but NOT TRUSTWORTHY: the model does not describe these data" + weak
         return "converged and trustworthy" + weak
 
@@ -88,7 +94,7 @@ def judge(
     residuals: Residuals,
     offset_scale: float,
 ) -> Verdict:
-    """Check convergence, residuals, run means, curve shape, run offsets and identification.
+    """Check convergence, residuals, run means, curve shape, offsets, slips and identification.
 
     Args:
         blocks: The block means.
@@ -107,6 +113,7 @@ def judge(
             _run_means(residuals, blocks),
             _shape(residuals, values, law, blocks),
             _offsets(blocks, law, values, offset_scale),
+            _rise(blocks, law, values),
         ),
         weak=_weak(blocks, law, values, contraction),
     )
@@ -130,7 +137,7 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
     pairs = len(blocks) - blocks.n_runs
     if pairs == 0:
         return Check(name, True, "not tested: no run has two blocks", "")
-    limit = max(MAX_LAG_ONE, 2.6 / np.sqrt(pairs))  # white noise exceeds it once in 100
+    limit = lag_one_limit(pairs)
     return Check(
         name,
         abs(residuals.lag_one) < limit,
@@ -138,6 +145,14 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
         "residuals of successive blocks are correlated, so intervals are too narrow (too wide if "
         "negative): look at residuals.png for what the law misses",
     )
+
+
+def lag_one_limit(pairs: int) -> float:
+    """Return the largest lag-1 correlation of a good fit: `MAX_LAG_ONE`, or more for few pairs [-].
+
+    White noise exceeds it once in 100.
+    """
+    return float(max(MAX_LAG_ONE, 2.6 / np.sqrt(pairs)))
 
 
 def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
@@ -186,6 +201,23 @@ def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> C
         f"standard deviation is {tau:.3g} N, limit {MAX_OFFSET_RATIO * scale:.3g} N",
         "zero offsets between runs are too large, or cannot be separated from the curve: tare "
         "before each run and give --zero-stability, or vary slip within runs",
+    )
+
+
+def _rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
+    """Check that tested slips between zero and the peak leave no gap above `MAX_RISE_GAP`.
+
+    Where they do, slope and peak are those of the law's shape, which nothing has tested there.
+    """
+    rise = sampled_rise(blocks, law, values)
+    if not len(rise.further):
+        return Check(RISE, True, "not tested: the curve has no peak", "")
+    return Check(
+        RISE,
+        rise.gap <= MAX_RISE_GAP,
+        f"between zero and the peak tested slips lie up to {rise.gap:.2f} of the peak's slip apart"
+        f", limit {MAX_RISE_GAP:g}",
+        advice(rise, blocks.definition),
     )
 
 

@@ -32,6 +32,10 @@ class Blocks:
     run: NDArray[np.intp]
     definition: str
 
+    @property
+    def run_names(self) -> tuple[str, ...]:
+        return tuple(f"run {index}" for index in range(int(self.run[-1]) + 1))
+
 
 @dataclass(frozen=True)
 class Scene:

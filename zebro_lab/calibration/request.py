@@ -63,7 +63,7 @@ class CalibrationRequest:
         float | None,
         Option(
             help="Relative gain error (sd) of the load cell [-]; default: columns.toml's, else "
-            "0.005."
+            "0.01."
         ),
         Limits(above=0.0, most=1.0),
     ] = None

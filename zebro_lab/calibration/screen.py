@@ -82,12 +82,17 @@ def _parameter_table(calibration: Calibration) -> Table:
             e.parameter.symbol,
             f"{e.median:.4g}",
             _interval(e),
-            "" if e.parameter.unit == "dimensionless" else e.parameter.unit,
+            _unit(e),
             f"{max(0.0, calibration.contraction[e.parameter.name]):.0%}",
             f"{calibration.convergence.r_hat[i]:.3f}",
             f"{calibration.convergence.ess_bulk[i]:.0f}",
         )
     return table
+
+
+def _unit(e: Estimate) -> str:
+    unit = e.parameter.unit
+    return {"dimensionless": "-"}.get(unit, unit.replace("newton", "N"))
 
 
 def _interval(e: Estimate) -> str:
@@ -96,11 +101,7 @@ def _interval(e: Estimate) -> str:
 
 def _curve_table(calibration: Calibration) -> Table:
     title = "slip curve at each tested load: median, and 90 % interval on the second line"
-    units = {"dimensionless": "", "newton": " [N]"}
-    headings = (
-        f"{e.parameter.symbol}{units.get(e.parameter.unit, f' [{e.parameter.unit}]')}"
-        for e in calibration.curves[0]
-    )
+    headings = (f"{e.parameter.symbol} [{_unit(e)}]" for e in calibration.curves[0])
     table = plain_table(title, (), ("Fn [N]", *headings))
     for load, row in zip(calibration.levels, calibration.curves, strict=True):
         table.add_row(f"{load:.4g}", *(f"{e.median:.4g}\n{e.low:.3g}…{e.high:.3g}" for e in row))

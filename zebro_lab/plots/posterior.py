@@ -78,7 +78,7 @@ def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
             trace.plot(kept, chains[ensemble, kept, row], color=colour, lw=0.4, alpha=0.8)
         density.spines["left"].set_visible(False)
         density.set(yticks=[], ylim=(0, None), xlabel=labels[row].replace("\n", " "))
-        density.xaxis.set_major_locator(MaxNLocator(4))
+        density.xaxis.set_major_locator(MaxNLocator(3))
         trace.yaxis.set_major_locator(MaxNLocator(4))
         trace.tick_params(labelbottom=row == k - 1)
         trace.set(xlim=(0, max(1, n_draws - 1)), ylabel=labels[row].split("\n")[-1])
@@ -133,7 +133,7 @@ def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
     half, most = (float(falling[np.searchsorted(held, mass)]) for mass in (0.5, 0.9))
     x, y = _middles(edges[0]), _middles(edges[1])
     stray = values[:: max(1, len(values) // 1000)]
-    axes.plot(*stray.T, ls="none", marker=".", ms=2, color="0.6", zorder=0)
+    axes.plot(*stray.T, ls="none", marker=".", ms=2, color="0.6", zorder=0, label="some draws")
     if most < half < falling[0]:  # not when all draws are one point
         axes.contourf(x, y, smooth.T, levels=[most, half, falling[0]], colors=_REGIONS)
     for colour, mass in zip(_REGIONS, (90, 50), strict=True):

@@ -202,7 +202,11 @@ def test_fewer_samples_than_unknowns_are_refused_with_both_numbers():
 
 
 def test_a_small_rigs_load_cell_has_the_defaults_of_a_small_cell():
-    assert scaled_load_cell(simulated(), {}) == LoadCell()
+    assert scaled_load_cell(simulated(), {"gain_sd": 0.005}) == LoadCell()
+
+
+def test_the_gain_of_a_cell_that_nobody_weighed_is_known_to_a_hundredth():
+    assert scaled_load_cell(simulated(), {}).gain_sd == 0.01
 
 
 def test_a_larger_cell_drifts_in_proportion_to_its_forces():

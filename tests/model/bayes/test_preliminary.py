@@ -11,6 +11,7 @@ from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import (
     MAX_BLOCKS,
     MAX_SLIP_SPREAD,
+    MEMORIES,
     MIN_BLOCKS_PER_RUN,
     choose_block_length,
     correlation_time,
@@ -79,24 +80,28 @@ def test_a_spoilt_run_hardly_moves_the_fit():
 # --- correlation time
 
 
+def time_of(residual, slices, *, white=0.0):
+    return correlation_time(residual, slices, white=np.full(len(residual), white))
+
+
 @pytest.mark.parametrize("rho", [0.5, 0.9, 0.97])
 def test_correlation_time_of_an_ar1_is_the_known_one(rho):
     paths = ar1(rho, (20, 5000))
     slices = [slice(5000 * run, 5000 * (run + 1)) for run in range(20)]
-    found = correlation_time(paths.ravel(), slices)
+    found = time_of(paths.ravel(), slices)
     assert found == pytest.approx((1 + rho) / (1 - rho), rel=0.1)
 
 
 def test_white_residuals_forget_themselves_at_once():
     slices = [slice(1000 * run, 1000 * (run + 1)) for run in range(20)]
-    assert correlation_time(ar1(0.0, (20, 1000)).ravel(), slices) == pytest.approx(1.0, abs=0.1)
+    assert time_of(ar1(0.0, (20, 1000)).ravel(), slices) == pytest.approx(1.0, abs=0.1)
 
 
 def test_run_offsets_are_no_memory():
     slices = [slice(1000 * run, 1000 * (run + 1)) for run in range(20)]
     paths = ar1(0.5, (20, 1000))
     offset = 100 * np.random.default_rng(1).standard_normal((20, 1))
-    found = [correlation_time(x.ravel(), slices) for x in (paths, paths + offset)]
+    found = [time_of(x.ravel(), slices) for x in (paths, paths + offset)]
     assert found[1] == pytest.approx(found[0], rel=1e-9)
 
 
@@ -105,11 +110,31 @@ def test_runs_of_different_length_pool_their_correlation():
     edges = np.append(0, np.cumsum(lengths))
     paths = np.concatenate([ar1(0.8, (1, n), seed=n)[0] for n in lengths])
     slices = [slice(a, b) for a, b in pairwise(edges)]
-    assert correlation_time(paths, slices) == pytest.approx(9.0, rel=0.15)
+    assert time_of(paths, slices) == pytest.approx(9.0, rel=0.15)
 
 
 def test_residuals_of_nothing_have_the_shortest_time():
-    assert correlation_time(np.zeros(10), [slice(0, 5), slice(5, 10)]) == 1.0
+    assert time_of(np.zeros(10), [slice(0, 5), slice(5, 10)]) == 1.0
+
+
+def test_known_white_noise_hides_no_memory():
+    slices = [slice(5000 * run, 5000 * (run + 1)) for run in range(20)]
+    paths = ar1(0.9, (20, 5000))
+    noise = np.random.default_rng(2).standard_normal(paths.shape)
+    hidden = (paths + noise).ravel()
+    assert time_of(hidden, slices) == pytest.approx(10.0, rel=0.1)  # half of 19, and half of 1
+    assert time_of(hidden, slices, white=1.0) == pytest.approx(19.0, rel=0.1)
+
+
+def test_a_few_noisy_runs_outweigh_no_others():
+    slices = [slice(5000 * run, 5000 * (run + 1)) for run in range(20)]
+    paths = ar1(0.9, (20, 5000))
+    loud = np.random.default_rng(3).standard_normal((2, 5000)) * 30.0
+    white = np.zeros(paths.shape)
+    paths[:2] += loud
+    white[:2] = 900.0
+    found = correlation_time(paths.ravel(), slices, white=white.ravel())
+    assert found == pytest.approx(19.0, rel=0.15)
 
 
 # --- block length
@@ -126,8 +151,8 @@ def test_blocks_last_as_long_as_the_noise_remembers():
     rho = np.exp(-0.004 / 0.05)
     # With each run's mean goes some of its memory: an eighth of it in runs 80 times as long.
     assert chosen.correlation == pytest.approx((1 + rho) / (1 - rho), rel=0.15)
-    assert chosen.length == int(np.ceil(chosen.correlation))
-    assert chosen.reason == "the correlation time of the noise"
+    assert chosen.length == int(np.ceil(MEMORIES * chosen.correlation))
+    assert chosen.reason == "twice the correlation time of the noise"
 
 
 @pytest.mark.parametrize("time", [0.2, 2.0])
@@ -189,8 +214,8 @@ def test_a_fast_sweep_of_slip_shortens_the_blocks_to_its_pace():
 
 def test_a_slow_sweep_keeps_the_blocks_the_noise_asks_for():
     chosen = choice(swept(20.0))
-    assert chosen.reason == "the correlation time of the noise"
-    assert chosen.length == int(np.ceil(chosen.correlation))
+    assert chosen.reason == "twice the correlation time of the noise"
+    assert chosen.length == int(np.ceil(MEMORIES * chosen.correlation))
 
 
 def test_three_samples_a_run_are_still_blocks():

@@ -14,7 +14,7 @@ from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import least_squares_values
 from model.bayes.residuals import (
     analyse_residuals,
-    lag_one_correlation,
+    lag_correlation,
     largest_slips,
     load_levels,
     nearest_level,
@@ -226,22 +226,31 @@ def test_lag_one_correlation_of_ar1_values_is_rho(rho, seed):
     data = blocks(np.linspace(0, 1, 20), LOADS, rng, size=100)
     root = np.linalg.cholesky(toeplitz(np.power(rho, np.arange(100), dtype=float)))
     values = (rng.standard_normal((data.n_runs, 100)) @ root.T).ravel()
-    assert lag_one_correlation(values, data) == pytest.approx(rho, abs=0.06)
+    assert lag_correlation(values, data.run, 1)[0] == pytest.approx(rho, abs=0.06)
 
 
 def test_the_step_from_one_run_to_the_next_does_not_count():
     rng = np.random.default_rng(3)
     data = blocks(np.linspace(0, 1, 20), LOADS, rng, size=2)
     alternating = np.tile([1.0, -1.0], data.n_runs)
-    assert lag_one_correlation(alternating, data) == pytest.approx(-1.0)
+    assert lag_correlation(alternating, data.run, 1)[0] == pytest.approx(-1.0)
     stepping = np.repeat(np.tile([1.0, -1.0], data.n_runs // 2), 2)
-    assert lag_one_correlation(stepping, data) == pytest.approx(1.0)
+    assert lag_correlation(stepping, data.run, 1)[0] == pytest.approx(1.0)
 
 
 def test_runs_of_one_block_have_no_lag_one_correlation():
     rng = np.random.default_rng(4)
     data = blocks(np.linspace(0, 1, 20), LOADS, rng, size=1)
-    assert lag_one_correlation(rng.standard_normal(len(data)), data) == 0.0
+    assert lag_correlation(rng.standard_normal(len(data)), data.run, 1)[0] == 0.0
+
+
+def test_a_few_wild_pairs_are_correlated_by_no_more_than_one():
+    run = np.repeat(np.arange(10), [40, *[8] * 9])
+    values = np.where(run == 0, 10.0, 0.1)
+    for lag in range(1, 40):
+        correlation, pairs = lag_correlation(values, run, lag)
+        assert correlation <= 1.0 + 1e-12
+        assert pairs == 40 - lag + 9 * max(0, 8 - lag)
 
 
 # --- load levels

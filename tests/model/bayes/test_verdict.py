@@ -35,8 +35,13 @@ WELL_INFORMED = dict.fromkeys(("slip_stiffness", "shape", "friction", "curvature
 
 
 def sweep_blocks(largest_slip: float, *, load: float = 6.0, per_run: int = 4) -> SlipBlocks:
-    """Make 12 runs of evenly spaced slip set-points."""
-    slip = np.repeat(np.linspace(largest_slip / 12, largest_slip, 12), per_run)
+    """Make 12 runs of slip set-points that lie closer together near zero, as a curve does."""
+    return blocks_at(largest_slip * np.linspace(1 / 12, 1.0, 12) ** 2, load=load, per_run=per_run)
+
+
+def blocks_at(set_points: np.ndarray, *, load: float = 6.0, per_run: int = 4) -> SlipBlocks:
+    """Make 12 runs, one a set-point of slip."""
+    slip = np.repeat(set_points, per_run)
     zeros = np.zeros(len(slip))
     return SlipBlocks(
         slip=slip, normal_force=zeros + load, traction_force=zeros,
@@ -152,6 +157,33 @@ def test_offsets_far_beyond_the_load_cells_stability_are_not_believed():
     small_beside_the_curve = draws(RIG_VALUES, offset_spread=0.04)
     assert verdict_on(values=small_beside_the_curve, offset_scale=0.02).trustworthy
     assert failed(verdict_on(values=small_beside_the_curve, offset_scale=0.01))
+
+
+def test_slips_that_leap_over_the_rise_cost_the_trust_and_are_told_what_to_add():
+    verdict = verdict_on(blocks=blocks_at(np.linspace(0.0, 1.0, 12)))
+    (check,) = failed(verdict)
+    assert check.name == "the rise of the curve is tested"
+    assert "up to 1.00 of the peak's slip apart, limit 0.5" in check.evidence
+    assert verdict.headline() == (
+        "converged, but NOT TRUSTWORTHY: too few slips where the curve rises"
+    )
+    (step,) = verdict.next_steps()
+    assert "loads = [6]" in step
+    assert "slips = [0.00" in step
+
+
+def test_a_model_that_misfits_is_named_before_the_slips_that_are_missing():
+    verdict = verdict_on(
+        blocks=blocks_at(np.linspace(0.0, 1.0, 12)), residuals=replace(CLEAN, lag_one=0.6)
+    )
+    assert "the model does not describe" in verdict.headline()
+    assert len(verdict.next_steps()) == 2
+
+
+def test_law_without_a_peak_has_no_rise_to_test():
+    verdict = verdict_on(law=Brush(), values=draws((20.0, 0.38)), blocks=sweep_blocks(0.9))
+    assert verdict.trustworthy
+    assert "not tested: the curve has no peak" in [check.evidence for check in verdict.trust]
 
 
 def test_sweep_that_stops_before_the_peak_names_shape_and_friction_weak():

@@ -4,11 +4,13 @@
 Each file in `layouts/` has an entry in `layouts/meaning.toml`.
 """
 
+import re
 import shutil
 import tomllib
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from support.bounded_reading import LONGEST_MESSAGE
@@ -85,3 +87,62 @@ def test_a_layout_that_is_not_clear_is_refused_in_one_line(file):
     assert file.name in message
     assert "\n" not in message
     assert len(message) < LONGEST_MESSAGE
+
+
+REFERENCE: dict[str, tuple[str | None, dict[str, str] | str]] = {
+    "realdata/tyre-bench/drivebrake_pure_slip.csv": (None, {
+        "t": "unit", "slip_ratio": "column unit sign", "normal_force": "unit sign",
+        "traction_force": "column unit sign",
+    }),
+    "realdata/single-wheel-sand/smooth.csv": (None, {
+        "slip_ratio": "unit sign", "normal_force": "unit sign",
+        "traction_force": "column unit sign",
+    }),
+    "realdata/single-wheel-sand/grouser.csv": (None, {
+        "slip_ratio": "unit sign", "normal_force": "unit sign",
+        "traction_force": "column unit sign",
+    }),
+    "realdata/omni-wheels/exp00.csv": (None, {
+        "t_s": "", "x_m": "unit", "y_m": "unit sign", "yaw_rad": "column sign",
+    }),
+    "realdata/wheel-odometry/Indoor_UWB_GT.txt": (None, "has no header: the first line is 'point2"),
+    "realdata/wheel-odometry/Indoor_UWB_Input.txt": (None, "has no header: the first line is '"),
+    "realdata/aruco-photos/gold_choriginal.csv": (None, "fits no kind of table, by its headers id"),
+    "virtual-world/rig/rig_law_noisy_Fn6.63.csv.gz": (None, {
+        "t": "", "omega_leg": "unit", "omega_ground": "unit", "slip_ratio": "unit sign",
+        "normal_force": "unit", "traction_force": "unit sign",
+    }),
+    "virtual-world/walks/tetrapod_mu0.20_tc3.csv.gz": (None, "may be of the kinds legs or imu or"),
+    "virtual-world/photos/s1.10_C/truth.csv": (
+        "track", dict.fromkeys(("t_s", "x_m", "y_m", "yaw_rad", "z_m"), "")
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.reference
+@pytest.mark.parametrize("name", REFERENCE)
+def test_a_table_of_the_reference_data_is_marked_or_refused(name, shared, tmp_path):
+    kind, expected = REFERENCE[name]
+    file = Path(shutil.copy(shared / name, tmp_path))
+    if isinstance(expected, str):
+        with pytest.raises(ZebroLabError, match=re.escape(expected)):
+            write_columns_template(file, kind=kind)
+        return
+    written = write_columns_template(file, kind=kind)
+    assert {name: " ".join(each.doubts) for name, each in written.guesses.items()} == expected
+    found = numbers(file, accepted(written))
+    assert all(np.isfinite(values).all() for values in found.values())
+
+
+@pytest.mark.reference
+@pytest.mark.parametrize("kind", ["legs", "imu", "track"])
+def test_a_walk_of_the_reference_data_is_read_as_each_kind(kind, shared, tmp_path):
+    name = "tripod_s1.10_left_mu0.38_tc2.csv.gz"
+    file = Path(shutil.copy(shared / "virtual-world" / "walks" / name, tmp_path))
+    walk = pd.read_csv(file)
+    found = numbers(file, accepted(write_columns_template(file, kind=kind)))
+    headers = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw",
+               **{f"theta{leg}": f"th{leg}" for leg in range(1, 7)}}  # fmt: skip
+    assert len(found) > 3
+    for column, values in found.items():
+        np.testing.assert_array_equal(values, walk[headers.get(column, column)])

@@ -37,6 +37,8 @@ _ROS = re.compile(
 _UPRIGHT = re.compile(r"p_RS_R_[xyz].*|t[xyz]")
 """Positions with z up and y to the left of x, beside those of ROS: of EuRoC and TUM."""
 _AXES = ("x_m", "y_m", "z_m")
+_EVERYBODYS: Final = frozenset(("t", "x", "y", "z", "roll", "pitch", "yaw"))
+"""Canonical names that other programs use, too, in other units."""
 _MOST_SET_POINTS = 200
 _QUATERNION = ("qw", "qx", "qy", "qz")
 
@@ -103,11 +105,12 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
     guesses: dict[str, ColumnGuess] = {}
     taken: set[str] = set()
     first = min((leg[0] for name in table.columns if (leg := leg_of(name))), default=1)
+    ours = any(name in UNITS[kind] and name not in _EVERYBODYS for name in table.columns)
     for canonical in UNITS[kind]:
         fitting = [n for n in table.columns if n not in taken and _fits(n, canonical, kind, first)]
         fitting.sort(key=lambda name: (not is_canonical(name, canonical), _is_weak(name)))
         if fitting:
-            guesses[canonical] = _guess(table, canonical, kind, fitting)
+            guesses[canonical] = _guess(table, canonical, kind, fitting, ours=ours)
             taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
     return _of_one_mind(_with_axes(guesses))
 
@@ -211,10 +214,13 @@ def _is_weak(header: str) -> bool:
     return split_header(header)[0] in WEAK
 
 
-def _guess(table: RawTable, canonical: str, kind: str, fitting: list[str]) -> ColumnGuess:
+def _guess(
+    table: RawTable, canonical: str, kind: str, fitting: list[str], *, ours: bool
+) -> ColumnGuess:
     name, *others = fitting
     si_unit = UNITS[kind][canonical]
-    known = is_canonical(name, canonical) or _ROS.fullmatch(name) is not None
+    own = is_canonical(name, canonical) and (ours or name not in _EVERYBODYS)
+    known = own or _ROS.fullmatch(name) is not None
     nanoseconds = _nanoseconds(table, name) if si_unit == "s" else None
     others = [other for other in others if other != nanoseconds]
     if canonical == "traction_force" and not others:  # of a wheel the other way may be forward

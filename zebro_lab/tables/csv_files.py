@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 _HEAD_BYTES: Final = 1 << 16  # enough to see the layout, little enough to decode twice
 _HEAD_LINES: Final = 400
+_CELL_LINES: Final = 20  # of a header whose cells have line breaks
 MOST_COLUMNS: Final = 2000
 _SURPLUS: Final = "\0"  # name of the empty column after a final separator
 _MAGIC: Final = {
@@ -91,7 +92,31 @@ def _head(path: Path) -> tuple[tuple[str, ...], list[Line]]:
     if len(head) == _HEAD_BYTES:
         lines = lines[:-1]  # cut in the middle
     numbered = [(i, line) for i, line in enumerate(lines, start=1) if line.strip()]
-    return encodings, numbered[:_HEAD_LINES]
+    if numbered and numbered[0][1].lstrip().startswith(("{", "[{", "<")):
+        raise DataError("is not a table but JSON, HTML or XML; export it as CSV", file=path)
+    return encodings, _unbroken(numbered[:_HEAD_LINES])
+
+
+def _unbroken(lines: list[Line]) -> list[Line]:
+    """Join the lines of a cell in quotes that has line breaks, as headers of spreadsheets may."""
+    joined: list[Line] = []
+    parts: list[str] = []
+    for number, line in lines:
+        parts.append(line)
+        if _is_open(" ".join(parts)) and len(parts) < _CELL_LINES:
+            continue
+        joined.append((number, " ".join(parts)))
+        parts = []
+    return joined
+
+
+def _is_open(text: str) -> bool:
+    """Return whether a text ends in a cell in quotes; a quote opens only where a cell begins."""
+    opened = False
+    for i, character in enumerate(text):
+        if character == '"':
+            opened = not opened and (i == 0 or text[i - 1] in ",;|\t ")
+    return opened
 
 
 def _layout(path: Path, lines: list[Line]) -> Layout:

@@ -96,13 +96,15 @@ def find_header(rows: Sequence[Row], data: DataRows) -> Header:
         if is_units_row(block[i]):
             units, symbols, block = block[i], len(block) - 1 - i, block[:i]
             break
+    if units is None and len(block) > 1 and is_units_row(block[-2]):
+        units = block.pop(-2)  # above the names
     names, above = _names(block, above, has_units=units is not None)
     width = max(len(names), data.width)
     names += [""] * (width - len(names))
     filled = [name.strip() or f"column {i}" for i, name in enumerate(names, start=1)]
     titles = f"{len(above)} lines are" if len(above) > 1 else "a line is"
     notes = [f"{titles} above the header and not read"] * bool(above)
-    notes += ["the row of units below the header is used"] * (units is not None)
+    notes += ["the row of units is used"] * (units is not None)
     notes += ["the row between units and numbers is not read"] * bool(symbols)
     return made_header(filled, data.first, units_row=units, notes=tuple(notes))
 

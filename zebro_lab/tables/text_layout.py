@@ -145,8 +145,8 @@ def _candidate(separator: str, body: Sequence[Line], comments: Sequence[Line]) -
     above = rows[: data.first]
     if not above:  # of EuRoC and TUM the header is a comment
         above = [_comment_cells(line, separator) for _, line in comments]
-    if separator == BLANKS:
-        above = [_joined_words(row, data.width) for row in above]
+    elif separator == BLANKS:
+        above = [_words(line, data.width) for _, line in body[: data.first]]
     moved = DataRows(len(above), len(above) + 1, data.width, data.values, data.count)
     try:
         header = find_header([*above, rows[data.first]], moved)
@@ -160,10 +160,17 @@ def _comment_cells(line: str, separator: str) -> list[str]:
     return cells if len(cells) > 1 else split_line(line, BLANKS)
 
 
-def _joined_words(words: list[str], width: int) -> list[str]:
-    """Join words of names and units that blanks split: `Time [s]`, `deg C`."""
+def _words(line: str, width: int) -> list[str]:
+    """Split a line of names at blanks, but keep names and units of several words together.
+
+    They are known by wider gaps between names, or by what they are: `Time [s]`, `deg C`.
+    """
+    words = split_line(line, BLANKS)
     if len(words) <= width:
         return words
+    wide = re.split(r"\s{2,}|\t", line.strip())
+    if len(wide) == width:
+        return wide
     joined: list[str] = []
     for word in words:
         after_degree = joined and joined[-1].lower() in ("deg", "°") and word in ("C", "F")

@@ -106,6 +106,13 @@ def test_canonical_header_is_recognised_whole():
     }
 
 
+def test_names_that_everybody_uses_are_in_si_only_beside_our_own():
+    assert guess_columns(one("t", "Fn"))["t"].doubts == ("unit",)
+    assert guess_columns(one("t", "normal_force"))["t"].doubts == ()
+    assert guess_columns(one("t", "roll", "pitch"), "imu")["roll"].doubts == ("unit", "sign")
+    assert guess_columns(one("t", "x_m", "y_m", "yaw"), "track")["yaw_rad"].doubts == ()
+
+
 def test_set_point_is_what_changes_seldom():
     steps, slope = np.repeat([1.0, 2.0, 3.0], 50), np.arange(150.0)
     table = RawTable(

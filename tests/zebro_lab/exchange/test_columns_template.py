@@ -35,7 +35,7 @@ def test_runs_of_times_that_restart_are_a_guess_to_check():
 def test_zero_and_order_of_leg_angles_are_to_check():
     columns = {"t": [0.0, 1.0], **{f"leg{i}": [0.0, 1.0] for i in range(1, 7)}}
     read = tomllib.loads(rendered("legs", columns, sectioned=True))["legs"]["columns"]
-    assert read["t"] == {"name": "t", "unit": "s"}
+    assert read["t"] == {"name": "t", "unit": "s?"}
     assert read["theta6"] == {
         "name": "leg6?", "unit": "rad?", "sign": "1?", "offset": "0 deg?",
     }  # fmt: skip

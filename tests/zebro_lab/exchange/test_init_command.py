@@ -21,7 +21,7 @@ def test_init_says_what_it_guessed_and_what_to_check(tmp_path):
     assert f"wrote {tmp_path / 'columns.toml'}" in result.output
     assert "normal_force    from 'FZ [N]' in N, sign reversed; CHECK sign" in result.output
     assert "traction_force  from 'FX' in N; CHECK unit, sign" in result.output
-    assert 'the 5 values that end in "?"' in result.output
+    assert 'the 6 values that end in "?"' in result.output
     assert "check: [constants] needs radius_leg and radius_ground" in result.output
 
 

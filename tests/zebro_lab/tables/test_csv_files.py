@@ -45,6 +45,14 @@ def test_a_special_character_far_down_tells_the_encoding(tmp_path):
     assert read_csv_file(tmp_path / "a.csv").column("where").iloc[-1] == "Köln"
 
 
+def test_a_cell_of_the_header_may_have_line_breaks(tmp_path):
+    (tmp_path / "a.csv").write_text('tyre 12" wide\n"Zeit\n[s]";"Kraft\n[N]"\n0,5;1\n1,5;2\n')
+    table = read_csv_file(tmp_path / "a.csv")
+    assert list(table.columns) == ["Zeit [s]", "Kraft [N]"]
+    assert table.numbers("Zeit [s]").tolist() == [0.5, 1.5]
+    assert table.fault("is bad", "Kraft [N]", 1).line == 6
+
+
 def test_headers_that_are_empty_or_repeated_are_told_apart(tmp_path):
     (tmp_path / "a.csv").write_text("t,,x,x\n1,2,3,4\n")
     table = read_csv_file(tmp_path / "a.csv")
@@ -114,6 +122,7 @@ RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
         lambda: b'"a" "b"\n"1" 0.5 0.6\n"2" 0.5 0.6\n',
         "has 3 cells, the header has 2",
     ),
+    "JSON": ("a.csv", lambda: b'{"t": [0, 1]}', "is not a table but JSON, HTML or XML"),
     "footer": ("a.csv", lambda: b"n,F\n1,2\n2,3\nMean,2.5\n", "'n', row 3 (line 4): 'Mean' stands"),
     "surplus cell far down": (
         "a.csv",

@@ -109,12 +109,13 @@ REFERENCE: dict[str, tuple[str | None, dict[str, str] | str]] = {
     "realdata/wheel-odometry/Indoor_UWB_Input.txt": (None, "has no header: the first line is '"),
     "realdata/aruco-photos/gold_choriginal.csv": (None, "fits no kind of table, by its headers id"),
     "virtual-world/rig/rig_law_noisy_Fn6.63.csv.gz": (None, {
-        "t": "", "omega_leg": "unit", "omega_ground": "unit", "slip_ratio": "unit sign",
+        "t": "unit", "omega_leg": "unit", "omega_ground": "unit", "slip_ratio": "unit sign",
         "normal_force": "unit", "traction_force": "unit sign",
     }),
     "virtual-world/walks/tetrapod_mu0.20_tc3.csv.gz": (None, "may be of the kinds legs or imu or"),
     "virtual-world/photos/s1.10_C/truth.csv": (
-        "track", dict.fromkeys(("t_s", "x_m", "y_m", "yaw_rad", "z_m"), "")
+        "track",
+        {"t_s": "unit", "x_m": "unit", "y_m": "unit sign", "yaw_rad": "unit sign", "z_m": "unit"},
     ),
 }  # fmt: skip
 

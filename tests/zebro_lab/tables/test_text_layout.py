@@ -20,6 +20,14 @@ def lines(text: str) -> list[tuple[int, str]]:
         ("a,b;c\n1,2;3\n", ";", "a,b c", 1, ","),
         ("t|F\n1|2\n", "|", "t F", 1, None),
         ("Run 5\n  t  F\n  1  2\n  2  3\n", BLANKS, "t F", 2, None),
+        (
+            "Elapsed Time  Normal Force\n0.5  1\n1.5  2\n",
+            BLANKS,
+            "Elapsed Time Normal Force",
+            1,
+            ".",
+        ),
+        ("sep=;\nt;F\n1;2\n", ";", "t F", 2, None),
         ("# pose\n# t x y\n1.5 2 3\n2.5 3 4\n", BLANKS, "t x y", 2, "."),
         ("%time,field.x\n12,0.5\n13,0.6\n", ",", "time field.x", 1, "."),
         ("Operator,1\nRate,1000\nA,3\nt,F,x\n0,1,2\n1,2,3\n", ",", "t F x", 4, None),
@@ -43,6 +51,9 @@ def test_header_and_separator_are_found(text, separator, names, last_line, decim
         ("a;b\n[ms];[-]\nt;f\n1;2\n", {"a": "ms", "b": "-"}),
         ("Zeit [ms];Kraft (N);F (left)\n1;2;3\n", {"Zeit [ms]": "ms", "Kraft (N)": "N"}),
         ("x[0],x[1]\n1,2\n", {}),
+        ("s;N\nt;F\n1;2\n", {"t": "s", "F": "N"}),
+        ("# t F\n# s N\n1 2\n", {"t": "s", "F": "N"}),
+        ("Unit;s;N\n", {}),
     ],
 )
 def test_units_of_a_row_and_of_brackets_are_kept(text, units):

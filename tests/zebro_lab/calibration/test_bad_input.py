@@ -193,8 +193,8 @@ def test_two_definitions_in_two_files_are_refused(tmp_path):
 def test_empty_folder_and_wrong_paths_are_named(tmp_path):
     assert f"{tmp_path}: holds no data; expected files ending in .csv" in message_of(tmp_path)
     assert "absent: no such file or folder" in message_of(tmp_path / "absent")
-    (tmp_path / "rig.xlsx").write_bytes(b"PK")
-    assert "is not a table file; expected a name ending in" in message_of(tmp_path / "rig.xlsx")
+    (tmp_path / "rig.docx").write_bytes(b"PK")
+    assert "is not a table file; expected a name ending in" in message_of(tmp_path / "rig.docx")
     (tmp_path / "slip.toml").write_text("")
     assert "is the result of a calibration" in message_of(tmp_path)
     with pytest.raises(ZebroLabError, match="no data given"):

@@ -48,7 +48,7 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     ),
     "one speed": (
         with_speeds().drop(columns="omega_ground"),
-        "column 'omega_ground': is missing; did you mean 'omega_leg'",
+        "column 'omega_ground': is missing; known: 't'",
     ),
     "nan": (
         put("traction_force", 7, None),

@@ -119,7 +119,6 @@ def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run_command):
 
 FAULTS = {
     "photographs of another day": (("--start", "2020-05-31T12:00:00"), "86400.0 to 86408.0 s"),
-    "a moment without a clock": (("--interval", "2", "--start", "2020-06-01"), "--start: the ph"),
     "no run": (("--run", "photos"), "photos is not a run folder"),
     "no clock in the picture": (("--clock", "photos/simulated_00.jpg"), "no QR clock is decoded"),
 }  # fmt: skip
@@ -132,6 +131,14 @@ def test_times_that_cannot_be_are_one_line_and_write_nothing(arguments, message,
     assert (code, out) == (1, "")
     assert message in err
     assert err.count("\n") == 1
+    assert not Path("run/track").exists()
+
+
+def test_a_moment_of_photographs_at_intervals_is_wrong_usage(lab, run_command):
+    given = ("--interval", "2", "--start", "2020-06-01")
+    code, out, err = run_command("track", "photos", *BENCH, "--run", "run", *given)
+    assert (code, out) == (2, "")
+    assert "--start: the photographs' times are not those of a camera's clock" in err
     assert not Path("run/track").exists()
 
 

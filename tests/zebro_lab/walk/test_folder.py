@@ -128,7 +128,7 @@ def test_result_of_another_command_is_not_overwritten(walked, tmp_path):
 
 
 FAULTS = {
-    "missing column": (lambda t: t.drop(columns="theta3"), "column 'theta3': is missing; did you"),
+    "missing column": (lambda t: t.drop(columns="theta3"), "column 'theta3': is missing; known"),
     "empty position": (lambda t: t.assign(x=t.x.where(t.index != 3)), "column 'x', row 4 (line 5)"),
     "text": (lambda t: t.assign(yaw=["left", *t.yaw[1:]]), "column 'yaw', row 1 (line 2): 'left'"),
     "reversed time": (lambda t: t.iloc[::-1], "column 't', row 2 (line 3): time goes from 4 to 3."),

@@ -83,7 +83,7 @@ def _reader(path: Path) -> "AnyReader":
     except ImportError as error:
         raise NotFound(
             f"{path}: reading bags other than MCAP needs the package rosbags; install it with "
-            "pip install 'zebro-lab[rosbags]', or convert the bag: ros2 bag convert, or the "
+            "pip install rosbags, or convert the bag: ros2 bag convert, or the "
             "command mcap convert"
         ) from error
     # Bags of ROS 2 before Iron do not hold the definitions of their messages.

@@ -87,7 +87,7 @@ def _open(path: Path, content: bytes, *, values: bool) -> Any:
         import openpyxl
     except ImportError as error:
         raise DataError(
-            "is an Excel workbook, which needs openpyxl: pip install 'zebro-lab[xlsx]', or save "
+            "is an Excel workbook, which needs openpyxl: pip install openpyxl, or save "
             "the sheet as CSV",
             file=path,
         ) from error

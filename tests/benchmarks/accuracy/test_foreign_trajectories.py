@@ -5,7 +5,7 @@ import pytest
 
 from support.foreign_trajectories import drive, euroc, tum, written
 
-pytest.importorskip("evo", reason="evo is an extra: pip install zebro-lab[evo]")
+pytest.importorskip("evo", reason="evo is an extra: pip install evo")
 from benchmarks.accuracy import foreign_trajectories as benchmark
 
 UNIX = 1_400_000_000.0

@@ -51,7 +51,7 @@ def test_a_folder_of_mcap_logs_needs_no_package(tmp_path, monkeypatch):
 
 def test_a_missing_package_is_named_with_the_way_to_install_it(bag, monkeypatch):
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
-    with pytest.raises(NotFound, match=r"pip install 'zebro-lab\[rosbags\]'"):
+    with pytest.raises(NotFound, match=r"pip install rosbags"):
         read_bag(bag, (JOINT_STATE.name,))
 
 

@@ -9,7 +9,7 @@ from support.watchers import Nobody
 from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.stage import validate
 
-pytest.importorskip("evo", reason="evo is an extra: pip install zebro-lab[evo]")
+pytest.importorskip("evo", reason="evo is an extra: pip install evo")
 from evo.core.metrics import APE, RPE, PoseRelation, StatisticsType, Unit
 from evo.core.sync import associate_trajectories
 from evo.tools.file_interface import read_tum_trajectory_file

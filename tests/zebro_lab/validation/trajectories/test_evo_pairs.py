@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from support.foreign_trajectories import drive, euroc, kitti, tum, written
 
-pytest.importorskip("evo", reason="evo is an extra: pip install zebro-lab[evo]")
+pytest.importorskip("evo", reason="evo is an extra: pip install evo")
 from evo.core.metrics import APE, RPE, PoseRelation, StatisticsType, Unit
 from evo.core.sync import associate_trajectories
 from evo.tools import file_interface as evo_files

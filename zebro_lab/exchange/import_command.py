@@ -15,6 +15,8 @@ zebro-lab import --legs legs.csv --track path.tum --imu imu.csv --robot robot.to
 
 zebro-lab import --legs bag --track bag --imu bag --topic /odom --robot robot.toml --data data
 
+zebro-lab import --track KITTI_00.txt --times times.txt --plane xz --data data
+
 zebro-lab import --rig sweep.csv --material "POM on steel" --data data
 
 Other names and units of columns are mapped by a columns.toml in the folder of the files, or by
@@ -37,7 +39,8 @@ def import_files(request: ImportRequest, output: Output = TEXT) -> None:
     for folder, manifest in manifests.items():
         simulated = "SIMULATED " if manifest.source.startswith("sim:") else ""
         counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
-        output.say(f"{simulated}source {manifest.source}, samples: {counts}; wrote {folder}")
+        held = f"samples: {counts}" if counts else "a track alone"
+        output.say(f"{simulated}source {manifest.source}, {held}; wrote {folder}")
     runs = [
         {"folder": folder, "source": manifest.source, "samples": dict(manifest.streams)}
         for folder, manifest in manifests.items()

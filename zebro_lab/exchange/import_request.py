@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Options of an import."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +9,7 @@ from typing import Annotated
 from typer import BadParameter, Option
 
 from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
+from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 _LABEL = "Name of the run, first part of it if a rig table has several; default: name of the file."
 _START = (
@@ -36,7 +37,10 @@ class ImportRequest:
     ] = None
     track: Annotated[
         Path | None,
-        Option(metavar="FILE", help="The robot's path: a table, TUM (.tum, .txt) or a ROS log."),
+        Option(
+            metavar="FILE",
+            help="The robot's path: a table, TUM, KITTI, EuRoC, a ROS log; alone or with --legs.",
+        ),
     ] = None
     imu: Annotated[
         Path | None, Option(metavar="FILE", help="Orientation of the body: a table or a ROS log.")
@@ -56,6 +60,7 @@ class ImportRequest:
     start: Annotated[datetime | None, Option(metavar="TIME", parser=_moment, help=_START)] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the person who recorded.")] = "unknown"
+    trajectory: TrajectoryRequest = field(default_factory=TrajectoryRequest)
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for `--joints` that are not six different names."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab import`: convert files from other software to run folders."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -36,10 +36,10 @@ from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import (
     TRACK_UNITS,
     ForeignTrack,
-    is_tum,
-    read_tum,
+    read_foreign_track,
     track_of_foreign_table,
 )
+from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 _UNIX: Final = 1e9
 """First time that counts as Unix time, since no run lasts for 30 years [s]."""
@@ -75,7 +75,7 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
 
     Raises:
         SettingsError: An option, a `columns.toml` or the robot's file is invalid, or neither leg
-            angles nor a rig's table are given.
+            angles nor a track nor a rig's table are given.
         NotFound: A file is missing.
         DataError: A file has invalid content, with file, column and row where there are such; IMU
             or track share no time with the legs; or two runs have the same name and start.
@@ -84,7 +84,8 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
     """
     _require_something(request)
     watcher.step("reading", None)
-    walk, walk_notes = _walk(request) if request.legs is not None else (None, ())
+    with_walk = request.legs is not None or request.track is not None
+    walk, walk_notes = _walk(request) if with_walk else (None, ())
     rig, rig_notes = _rig(request) if request.rig is not None else ((), ())
     _require_new(request.data, walk, rig)
     folders = [] if walk is None else [write_imported_walk(request.data, walk)]
@@ -95,11 +96,14 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
 
 
 def _require_something(request: ImportRequest) -> None:
-    if request.legs is None and request.rig is None:
-        raise SettingsError("no file to import is given; add --legs or --rig",
-                            key="--legs, --rig")  # fmt: skip
+    if request.legs is None and request.track is None and request.rig is None:
+        raise SettingsError("no file to import is given; add --legs, --track or --rig",
+                            key="--legs, --track, --rig")  # fmt: skip
+    if request.track is None and request.trajectory != TrajectoryRequest():
+        raise SettingsError("--plane, --forward, --times and --layout say how a track is read; add "
+                            "its file", key="--track")  # fmt: skip
     if request.legs is None:
-        for name in (TRACK, IMU, "robot"):
+        for name in (IMU, "robot"):
             if getattr(request, name) is not None:
                 raise SettingsError("belongs to a walk; give the leg angles, too, with --legs",
                                     key=f"--{name}")  # fmt: skip
@@ -118,19 +122,49 @@ def _require_something(request: ImportRequest) -> None:
 
 def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     robot = RobotFile() if request.robot is None else read_robot_file(request.robot)
-    legs, legs_topic = _legs(request)
-    t = legs.reference.t
-    start, zero, note = _start(request.start, float(t[0]))
+    legs, legs_topic = (None, None) if request.legs is None else _legs(request.legs, request)
+    track, track_topic = (None, None) if request.track is None else _track(request.track, request)
     imu, imu_topic = (None, None) if request.imu is None else _imu(request.imu, request)
-    track, track_topic = (
-        (None, None) if request.track is None else _track(request.track, request, zero)
-    )
     require_used(request.topic, (legs_topic, imu_topic, track_topic))
-    first = request.legs or Path()
-    sources = {LEGS: stated_source(legs.source, first)}
+    start, zero, note = _start(request.start, _first_time(legs, track))
+    track = None if track is None else track.since(zero)
+    suspected: tuple[str, ...] = ()
+    if legs is not None:
+        suspected = leg_warnings(
+            legs.reference, leg_sign=robot.leg_sign, leg_offset=robot.robot.leg_offset
+        )
+    manifest = _manifest(request, start, _sources(request, legs, imu, track))
+    walk = ImportedWalk(manifest, zero, legs, imu, track, robot, suspected)
+    parts = [legs.notes if legs else (), suspected, imu.notes if imu else (),
+             track.track.notes if track else ()]  # fmt: skip
+    if legs is not None:
+        _require_shared_time(legs.reference.t - zero, imu, track, zero)
+    return walk, (*note, *(line for part in parts for line in part))
+
+
+def _first_time(legs: LegLog | None, track: ForeignTrack | None) -> float:
+    """Return the first time of the legs, or of the track where there are none [s]."""
+    if legs is not None:
+        return float(legs.reference.t[0])
+    return 0.0 if track is None else float(track.track.poses.t[0])
+
+
+def _sources(
+    request: ImportRequest, legs: LegLog | None, imu: ImuLog | None, track: ForeignTrack | None
+) -> dict[str, str]:
+    """Return the source of each stream of the log; that of the track where there is no log."""
+    if legs is None:
+        stated = None if track is None else track.track.source
+        return {TRACK: stated_source(stated, request.track or Path())}
+    sources = {LEGS: stated_source(legs.source, request.legs or Path())}
     if imu is not None:
         sources[IMU] = stated_source(imu.source, request.imu or Path())
-    manifest = RunManifest(
+    return sources
+
+
+def _manifest(request: ImportRequest, start: datetime, sources: Mapping[str, str]) -> RunManifest:
+    first = request.legs or request.track or Path()
+    return RunManifest(
         kind="walk",
         label=request.label or table_stem(first) or first.stem,
         material=request.material,
@@ -140,19 +174,10 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
         exit_status=IMPORTED,
         sources=sources,
     )
-    suspected = leg_warnings(
-        legs.reference, leg_sign=robot.leg_sign, leg_offset=robot.robot.leg_offset
-    )
-    walk = ImportedWalk(manifest, zero, legs, imu, track, robot, suspected)
-    parts = [legs.notes, suspected, imu.notes if imu else (), track.track.notes if track else ()]
-    notes = [*note, *(line for part in parts for line in part)]
-    _require_shared_time(t - zero, imu, track, zero)
-    return walk, tuple(notes)
 
 
-def _legs(request: ImportRequest) -> tuple[LegLog, str | None]:
+def _legs(path: Path, request: ImportRequest) -> tuple[LegLog, str | None]:
     """Read the leg log; return it, and the topic that was read of a ROS log. So do the others."""
-    path = request.legs or Path()
     columns = foreign_columns(LEGS, path, request.columns)
     names = LegNames(joint_names(request.joints), request.topic, columns.topic)
     return legs_of_file(path, columns.series(LEGS), names=names)
@@ -168,19 +193,20 @@ def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
     return replace(imu, files=(*bag_files(path), *imu.files[1:])), found.topic
 
 
-def _track(path: Path, request: ImportRequest, zero: float) -> tuple[ForeignTrack, str | None]:
+def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:
     columns = foreign_columns(TRACK, path, request.columns)
     series = columns.series(TRACK)
-    own = replace(series, mapped=canonical_columns(TRACK_UNITS).mapped)  # without headers
     if is_ros_log(path):
+        if request.trajectory != TrajectoryRequest():
+            raise SettingsError(
+                f"{path} is a ROS log; leave out --plane, --forward, --times and --layout",
+                key="--track",
+            )
+        own = replace(series, mapped=canonical_columns(TRACK_UNITS).mapped)  # without headers
         found = read_pose_log(path, topic=columns.topic, topics=request.topic)
-        track = track_of_foreign_table(found.table, own, zero=zero)
+        track = track_of_foreign_table(found.table, own)
         return replace(track, files=(*bag_files(path), *track.files[1:])), found.topic
-    if is_tum(path):
-        return track_of_foreign_table(read_tum(path), own, zero=zero), None
-    return track_of_foreign_table(
-        read_table_file(path, sheet=series.sheet), series, zero=zero
-    ), None
+    return read_foreign_track(path, series, request.trajectory), None
 
 
 def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:

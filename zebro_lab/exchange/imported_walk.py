@@ -11,6 +11,7 @@ from model.robot import N_LEGS
 from model.slip.law import Array
 from rig.device import Counters
 from rig.imu.profile import render_table_profile
+from rig.sample_columns import SampleColumns
 from rig.zebro.profile import LegProfile, render_leg_profile
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.provenance import file_hashes
@@ -34,7 +35,7 @@ class ImportedWalk:
     Attributes:
         manifest: Manifest of the run, with its name, start and sources.
         zero: Time of the files at which the run began [s].
-        legs: Leg angles, in the files' time.
+        legs: Leg angles, in the files' time; None without a file, and then there is a track.
         imu: Orientation, angular rate and specific force of the body, in the files' time; None
             without a file.
         track: Tracked path, in the run's time; None without a file.
@@ -44,7 +45,7 @@ class ImportedWalk:
 
     manifest: RunManifest
     zero: float
-    legs: LegLog
+    legs: LegLog | None
     imu: ImuLog | None
     track: ForeignTrack | None
     robot: RobotFile
@@ -53,9 +54,9 @@ class ImportedWalk:
     @property
     def files(self) -> tuple[Path, ...]:
         """Every file read, each once: legs, IMU, track and robot."""
-        parts = (self.legs.files, self.imu and self.imu.files, self.track and self.track.files)
+        parts = [part.files for part in (self.legs, self.imu, self.track) if part is not None]
         robot = (self.robot.file,) if self.robot.file else ()
-        return tuple(dict.fromkeys([f for part in parts if part for f in part] + list(robot)))
+        return tuple(dict.fromkeys([f for part in parts for f in part] + list(robot)))
 
 
 def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
@@ -72,9 +73,13 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
         AlreadyExists: A run of this kind, start (to the second) and label exists.
         OSError: The folder cannot be written.
     """
-    t, theta, imu = walk.legs.reference.t - walk.zero, walk.legs.reference.theta, walk.imu
-    profiles = {LEGS: render_leg_profile(_leg_profile(_rate(t)))}
-    samples = {LEGS: table_samples(t, np.degrees(theta))}
+    profiles: dict[str, str] = {}
+    samples: dict[str, SampleColumns] = {}
+    imu = walk.imu
+    if walk.legs is not None:
+        t = walk.legs.reference.t - walk.zero
+        profiles[LEGS] = render_leg_profile(_leg_profile(_rate(t)))
+        samples[LEGS] = table_samples(t, np.degrees(walk.legs.reference.theta))
     if imu is not None:
         profiles[IMU] = render_table_profile(_rate(imu.t))
         samples[IMU] = table_samples(imu.t - walk.zero, imu.values)
@@ -91,6 +96,7 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
         data_dir, manifest, samples, profiles=profiles,
         event=f"imported, source {manifest.source}", warnings=walk.suspected,
         extra=lambda draft: _write_more(draft, walk),
+        until=0.0 if walk.track is None or samples else float(walk.track.track.poses.t[-1]),
     )  # fmt: skip
 
 

@@ -128,6 +128,11 @@ class RunManifest:
         """Start of the run as a datetime with its time zone; ValueError before the run."""
         return datetime.fromisoformat(self.start)
 
+    @property
+    def is_track_alone(self) -> bool:
+        """Whether the run was imported from the path of another program alone."""
+        return self.kind == "walk" and self.exit_status == IMPORTED and not self.streams
+
 
 def read_manifest(folder: Path) -> RunManifest:
     """Read and check a run folder's `run.json`.

@@ -16,6 +16,7 @@ from zebro_lab.runs.manifest import MANIFEST_FILE, profile_file, read_manifest
 from zebro_lab.tables.raw_table import RawTable
 
 LEGS = "legs"
+TRACK_ALONE = "holds a track without leg angles; import it again with its leg log, with --legs"
 
 
 def is_recorded(path: Path) -> bool:
@@ -38,11 +39,13 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     Raises:
         NotFound: Manifest, log or profile is missing.
         DataError: Manifest or profile is invalid, the log is not MCAP or has another checksum than
-            the manifest, its samples do not fit the profile, or no legs were recorded.
+            the manifest, its samples do not fit the profile, or no legs were recorded or imported.
     """
     import pandas as pd
 
     manifest = read_manifest(folder)
+    if manifest.is_track_alone:
+        raise DataError(f"{folder}: {TRACK_ALONE}")
     log, profile = folder / LOG_FILE, profile_file(folder, LEGS)
     for file in (log, profile):
         if not file.is_file():

@@ -40,6 +40,7 @@ def write_table_run(
     event: str = "",
     warnings: Sequence[str] = (),
     extra: Callable[[Path], object] | None = None,
+    until: float = 0.0,
 ) -> Path:
     """Write samples as a new run folder, atomically.
 
@@ -48,11 +49,12 @@ def write_table_run(
         manifest: Manifest of the run, with its start; stop, streams, checksum and profiles are set
             here.
         samples: Samples of each stream, at least one each, by the stream's name; host times since
-            the start of the run.
+            the start of the run. Without streams the log holds the events alone.
         profiles: TOML text of each profile, by its name in the run folder.
         event: Text of an event to log at time 0; empty for none.
         warnings: Texts of further events to log at time 0, each as a warning.
         extra: Called with the draft folder, to write more files before the folder gets its name.
+        until: Time at which the run without streams ends, since its start [s].
 
     Returns:
         The run folder.
@@ -71,7 +73,7 @@ def write_table_run(
             profile_file(draft, name).parent.mkdir(exist_ok=True)
             atomic_write_text(profile_file(draft, name), text)
         _write_log(draft, manifest, samples, profiles, event, warnings)
-        lasted = max(float(columns.host_time[-1]) for columns in samples.values())
+        lasted = max((float(columns.host_time[-1]) for columns in samples.values()), default=until)
         manifest = replace(
             manifest,
             stop=(manifest.began + timedelta(seconds=lasted)).isoformat(),

@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Import a path tracked by another program, from a table or a TUM file."""
+"""Import a path tracked by another program, from a table or a trajectory."""
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
+from model.poses import travel_direction, wrap
 from model.slip.law import Array
-from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import read_text
-from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.file import TrackFile, track_of_table, tum_lines
+from zebro_lab.track.trajectory.file import Trajectory, number_lines_of, read_trajectory
+from zebro_lab.track.trajectory.headers import named_columns
+from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
+from zebro_lab.track.trajectory.table import QUATERNION, read_table_columns
 
 _COVARIANCE: Final = {
     "cov_xx": "m^2", "cov_xy": "m^2", "cov_xyaw": "m rad", "cov_yy": "m^2", "cov_yyaw": "m rad",
@@ -23,10 +27,8 @@ _COVARIANCE: Final = {
 TRACK_UNITS: Final[Mapping[str, str]] = {
     "t_s": "s", "t_sigma": "s", "x_m": "m", "y_m": "m", "yaw_rad": "rad", **_COVARIANCE, "z_m": "m",
 }  # fmt: skip
-_SHORT: Final = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw"}
-_NEEDED: Final = ("t_s", "x_m", "y_m")
-TUM_SUFFIXES: Final = (".tum", ".txt")
-TUM_COLUMNS: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
+_SIDEWAYS: Final = np.radians(45.0)
+"""Median angle from the direction of travel beyond which a heading is told of."""
 
 
 @dataclass(frozen=True)
@@ -59,25 +61,89 @@ class ForeignTrack:
         known |= {name: column.tolist() for name, column in self.more.items()}
         return {name: known[name] for name in TRACK_UNITS if name in known}
 
+    def since(self, zero: float) -> "ForeignTrack":
+        """Return the path with times since `zero` [s], a time of the file."""
+        poses = self.track.poses
+        return replace(self, track=replace(self.track, poses=replace(poses, t=poses.t - zero)))
+
     @property
     def tum(self) -> Sequence[str]:
         """Lines of `track.tum`; see `tum_lines`."""
         return tum_lines(self.track.poses).splitlines()
 
 
-def is_tum(path: Path) -> bool:
-    """Return whether a file name ends in `.tum` or `.txt`, as TUM trajectories do."""
-    return path.suffix.lower() in TUM_SUFFIXES
+def read_foreign_track(
+    path: Path, mapping: MappedColumns, request: TrajectoryRequest
+) -> ForeignTrack:
+    """Read a path tracked by another program: a table, or a TUM, KITTI or EuRoC trajectory.
+
+    Args:
+        path: The file.
+        mapping: Header, unit and sign of each column of a table.
+        request: How a trajectory is read.
+
+    Raises:
+        NotFound: A file does not exist.
+        DataError: As in `read_trajectory` and `track_of_foreign_table`; or there are no times.
+        SettingsError: An option does not fit the file; or the path extends across the plane of the
+            floor, and that is not stated.
+    """
+    if number_lines_of(path, request.layout_of(0)) is None and request.plane in (None, Plane.XY):
+        table = read_table_file(path, sheet=mapping.sheet)
+        if not set(QUATERNION) <= set(named_columns(list(table.columns))):
+            return track_of_foreign_table(table, mapping)
+    trajectory = read_trajectory(path, request, mapping=mapping)
+    if not trajectory.timed:
+        raise DataError("has no times; give the file of its times with --times", file=path)
+    if trajectory.leaves_plane and request.plane is None:
+        raise SettingsError(
+            f"{path} extends farther across the plane {trajectory.plane} than in it; state the "
+            "plane of the floor, such as xy or xz",
+            key="--plane",
+        )
+    own = replace(mapping, mapped=canonical_columns(TRACK_UNITS).mapped)  # without headers
+    track = track_of_foreign_table(_flat(trajectory), own)
+    return replace(track, files=trajectory.files)
 
 
-def track_of_foreign_table(table: RawTable, mapping: MappedColumns, *, zero: float) -> ForeignTrack:
+def _flat(trajectory: Trajectory) -> RawTable:
+    """Return a trajectory as a table of t_s, x_m, y_m, yaw_rad and z_m, as far as known."""
+    import pandas as pd
+
+    poses = trajectory.poses
+    x, y = poses.position.T
+    columns = {"t_s": poses.t, "x_m": x, "y_m": y}
+    notes = trajectory.notes
+    if poses.has_yaw:
+        columns["yaw_rad"] = poses.yaw
+        notes = (*notes, *_sideways(trajectory))
+    if trajectory.in_space:
+        columns["z_m"] = trajectory.height
+    source = None if trajectory.source == "unknown" else trajectory.source
+    return RawTable(
+        trajectory.file, {n: pd.Series(v) for n, v in columns.items()}, source=source, notes=notes
+    )
+
+
+def _sideways(trajectory: Trajectory) -> tuple[str, ...]:
+    """Return a note if the body's forward axis mostly points elsewhere than it travels."""
+    poses = trajectory.poses
+    apart = float(np.median(np.abs(wrap(poses.yaw - travel_direction(poses)))))
+    if apart < _SIDEWAYS:
+        return ()
+    return (
+        f"{trajectory.file.name}: the heading, that of the {trajectory.forward} axis, is mostly "
+        f"{np.degrees(apart):.0f} deg off the direction of travel; is another --forward meant?",
+    )
+
+
+def track_of_foreign_table(table: RawTable, mapping: MappedColumns) -> ForeignTrack:
     """Convert a path in a table of another program to SI and validate it.
 
     Args:
         table: The table.
         mapping: Header, unit and sign of each column of `TRACK_UNITS`; the headers `t`, `x`, `y`,
             `z` and `yaw` are recognised without an entry.
-        zero: Time of the table at which the run began [s]; subtracted from all times.
 
     Raises:
         DataError: Time, x or y is missing, a cell holds no finite number, time does not increase, a
@@ -86,73 +152,12 @@ def track_of_foreign_table(table: RawTable, mapping: MappedColumns, *, zero: flo
     """
     import pandas as pd
 
-    columns = {}
-    for name in TRACK_UNITS:
-        seen = _seen_as(table, mapping, name)
-        if name in _NEEDED or seen.has(table, name):
-            values = seen.numbers(
-                table, name, what=f"{name} of the track", advice="leave such poses out"
-            )
-            columns[name] = values - zero if name == "t_s" else values
+    read = read_table_columns(table, mapping, TRACK_UNITS, what="track")
+    columns = read.columns
     si = {name: pd.Series(values) for name, values in columns.items()}
     source = mapping.source or table.source
-    checked = RawTable(table.path, si, source=source, notes=table.notes,
+    checked = RawTable(table.path, si, source=source, notes=(*table.notes, *read.notes),
                        header_line=table.header_line)  # fmt: skip
     more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
     files = (table.path, *([mapping.file] if mapping.file else []))
     return ForeignTrack(track_of_table(checked), more, set(_COVARIANCE) <= set(columns), files)
-
-
-def read_tum(path: Path) -> RawTable:
-    """Read a TUM trajectory, `t x y z qx qy qz qw`, as columns t_s, x_m, y_m, yaw_rad and z_m.
-
-    Yaw is unwrapped, roll and pitch are dropped. Empty lines and those with `#` are skipped.
-
-    Raises:
-        NotFound: The file does not exist.
-        DataError: The file is no text or empty, a line has not eight finite numbers, or a
-            quaternion's length differs from 1 by more than 0.05; names the row.
-    """
-    import pandas as pd
-
-    # Not splitlines: it also splits at characters that editors do not count as line ends.
-    lines = re.split(r"\r\n|\n|\r", read_text(path))
-    numbered = [(i, line) for i, line in enumerate(lines, start=1)
-                if line.strip() and not line.startswith("#")]  # fmt: skip
-    if not numbered:
-        raise DataError("has no pose; expected lines of t x y z qx qy qz qw", file=path)
-    rows = np.array([_pose(path, row, *line) for row, line in enumerate(numbered, start=1)])
-    t, x, y, z, qx, qy, qz, qw = rows.T
-    yaw = np.unwrap(np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2)))
-    columns = {"t_s": t, "x_m": x, "y_m": y, "yaw_rad": yaw, "z_m": z}
-    return RawTable(path, {name: pd.Series(values) for name, values in columns.items()})
-
-
-def _seen_as(table: RawTable, mapping: MappedColumns, name: str) -> MappedColumns:
-    """Map the canonical column `name` to its short header (`t`, `x`, …) if it is not in the table.
-
-    A header named in a `columns.toml` is kept.
-    """
-    short = _SHORT.get(name)
-    if short is None or mapping.has(table, name) or mapping.mapped[name].name != name:
-        return mapping
-    return mapping.called(name, short)
-
-
-def _pose(path: Path, row: int, line: int, text: str) -> list[float]:
-    try:
-        numbers = [float(word) for word in text.split()]
-    except ValueError as error:
-        raise DataError(f"{error}; expected 8 numbers", file=path, row=row, line=line) from error
-    if len(numbers) != len(TUM_COLUMNS) or not np.isfinite(numbers).all():
-        raise DataError(
-            f"found {len(numbers)} numbers; expected {len(TUM_COLUMNS)} finite ones: "
-            f"{' '.join(TUM_COLUMNS)}",
-            file=path, row=row, line=line,
-        )  # fmt: skip
-    norm = float(np.linalg.norm(numbers[4:]))
-    if abs(norm - 1) > 0.05:
-        raise DataError(
-            f"quaternion length {norm:.4g}; expected 0.95 to 1.05", file=path, row=row, line=line
-        )
-    return numbers

@@ -9,7 +9,8 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import PATH_CSV, TRACK, numbered
 from zebro_lab.files.replacement import settle
 from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
-from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.runs.recorded_legs import TRACK_ALONE, is_recorded
 from zebro_lab.runs.recorded_tilt import Tilt, read_recorded_tilt
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
@@ -61,9 +62,15 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
 
     Raises:
         NotFound: `prediction/path.csv` or `track/track.csv` is missing.
+        DataError: The run was imported without leg angles, and has no prediction.
     """
     prediction, track = settle(run / PREDICTION), settle(run / TRACK)
     if not (prediction / PATH_CSV).is_file():
+        if is_recorded(run) and read_manifest(run).is_track_alone:
+            raise DataError(
+                f"{run}: {TRACK_ALONE}, or compare two tracks with: zebro-lab validate "
+                f"REFERENCE {track / TRACK_CSV}"
+            )
         raise NotFound(
             f"{prediction}: no prediction; make one with: zebro-lab predict {run} --slip "
             f"CALIBRATION --out {prediction}"

@@ -31,7 +31,8 @@ from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.file import read_track
-from zebro_lab.track.foreign import read_tum, track_of_foreign_table
+from zebro_lab.track.foreign import read_foreign_track
+from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 
 def _numbers(file: Path) -> None:
@@ -43,7 +44,7 @@ def _numbers(file: Path) -> None:
 
 def _foreign_track(file: Path) -> object:
     columns = ForeignColumns().series("track")
-    return track_of_foreign_table(read_tum(file), columns, zero=0.0)
+    return read_foreign_track(file, columns, TrajectoryRequest())
 
 
 def of_tables() -> Mapping[str, Reader]:

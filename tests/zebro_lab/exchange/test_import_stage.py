@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from support.foreign_trajectories import drive, euroc, kitti, tum, written
 from support.imported_files import COLUMNS, THETA, YAW, T, everything, taken
 from support.leg_motions import T as T12
 from support.leg_motions import tripod
@@ -19,9 +20,14 @@ from zebro_lab.mcap.ros_messages import LOG, WARNING
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.track.file import read_track
+from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
 from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.request import ModelRequest, PredictRequest
+
+
+def kitti_of(t, position, rotation):
+    return kitti(position, rotation)
 
 
 def test_leg_angles_come_back_in_si_whatever_their_names_and_units(files, tmp_path):
@@ -127,7 +133,7 @@ def rewritten(name, text):
         (rewritten("imu.csv", "t,a\n0,1\n1,2\n"), DataError, "holds no orientation"),
         (rewritten("imu.csv", "t,qw,qx,qy,qz\n0,2,0,0,0\n"), DataError, "length 2; expected 1"),
         (change("track.csv", east_mm=(1, "inf")), DataError, "track.csv, column 'east_mm', row 2"),
-        (change("track.csv", t=(1, 0.0)), DataError, "row 2 .line 3.*increasing"),
+        (change("track.csv", t=(2, 0.1)), DataError, "row 3 .line 4.*increasing"),
         (change("track.csv", cov_xx=(1, -1.0)), DataError, "negative eigenvalue"),
         (rewritten("robot.toml", "masss = 2"), SettingsError, "did you mean 'mass'"),
         (rewritten("columns.toml", "[leg.columns]\n[legs]"), SettingsError, "mean 'legs'"),
@@ -149,11 +155,11 @@ def test_what_cannot_be_taken_is_named_and_leaves_nothing(files, tmp_path, spoil
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("1 2 3\n", "found 3 numbers"),
-        ("0 0 0 0 0 0 0 x\n", "could not convert"),
+        ("1 2 3\n", "has 3 numbers a line"),
+        ("0 0 0 0 0 0 0 x\n", "a line of words"),
         ("0 0 0 0 0 0 0 0\n", "length 0"),
         ("# nothing\n", "has no pose"),
-        ("0 0 0 0 0 0 0 1\n" * 3, "increasing"),
+        ("0 0 0 0 0 0 0 1\n" * 3, "has 1 poses"),
     ],
 )
 def test_a_trajectory_of_another_form_is_refused(files, tmp_path, text, message):
@@ -163,11 +169,69 @@ def test_a_trajectory_of_another_form_is_refused(files, tmp_path, text, message)
 
 
 @pytest.mark.parametrize(
+    ("name", "text", "how"),
+    [
+        ("a.tum", tum, {}),
+        ("a.csv", euroc, {}),
+        ("a.txt", kitti_of, {"plane": Plane.XY, "times": "times.txt"}),
+    ],
+)
+def test_a_trajectory_alone_makes_a_run_with_a_track(tmp_path, name, text, how):
+    t, position, rotation = drive()
+    file = written(tmp_path / name, text(t, position, rotation))
+    written(tmp_path / "times.txt", "".join(f"{stamp:.17g}\n" for stamp in t))
+    how = {key: tmp_path / v if key == "times" else v for key, v in how.items()}
+    (folder,) = taken(tmp_path, track=file, trajectory=TrajectoryRequest(**how)).folders
+    poses = read_track(folder / "track").poses
+    np.testing.assert_allclose(poses.t, t, atol=1e-9)
+    np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
+    ahead = rotation.apply([1.0, 0.0, 0.0])
+    np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
+    assert read_manifest(folder).sources == {"track": f"import:{name}"}
+
+
+def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
+    file = written(tmp_path / "a.tum", tum(*drive()))
+    (folder,) = taken(tmp_path, track=file).folders
+    with pytest.raises(DataError, match=r"^\S+: holds a track without leg angles; import"):
+        read_leg_log(folder)
+    with pytest.raises(DataError, match=r"without leg angles.*validate REFERENCE .*track\.csv$"):
+        pairs_of_run(folder)
+
+
+def test_times_since_1970_of_a_track_tell_when_it_began(tmp_path):
+    t, position, rotation = drive()
+    file = written(tmp_path / "a.csv", euroc(t + 1_772_600_767, position, rotation))
+    (folder,) = taken(tmp_path, track=file).folders
+    assert read_manifest(folder).start == "2026-03-04T05:06:07+00:00"
+    np.testing.assert_allclose(read_track(folder / "track").poses.t, t, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("how", "error", "message"),
+    [
+        ({"plane": Plane.XY}, DataError, "has no times.*--times"),
+        ({"times": "times.txt"}, SettingsError, "^--plane: .*across the plane xz.*state the plane"),
+    ],
+)
+def test_what_a_trajectory_leaves_open_is_asked_for(tmp_path, how, error, message):
+    t, position, rotation = drive()
+    file = written(tmp_path / "a.txt", kitti(position, rotation))
+    written(tmp_path / "times.txt", "".join(f"{stamp}\n" for stamp in t))
+    how = {key: tmp_path / v if key == "times" else v for key, v in how.items()}
+    with pytest.raises(error, match=message):
+        taken(tmp_path, track=file, trajectory=TrajectoryRequest(**how))
+    assert not (tmp_path / "data").exists()
+
+
+@pytest.mark.parametrize(
     ("changes", "message"),
     [
         ({}, "no file to import"),
         ({"imu": "imu.csv"}, "belongs to a walk|no file to import"),
         ({"legs": "legs.csv", "start": datetime(2026, 1, 1)}, "no time zone"),
+        ({"track": "track.csv", "imu": "imu.csv"}, "^--imu: belongs to a walk"),
+        ({"legs": "legs.csv", "trajectory": TrajectoryRequest(plane=Plane.XY)}, "^--track: .*add"),
     ],
 )
 def test_half_a_request_is_refused(files, tmp_path, changes, message):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Somebody else's path is read with its units and names, or refused by its row."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,7 +11,8 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.track.file import tum_lines
-from zebro_lab.track.foreign import TRACK_UNITS, is_tum, read_tum, track_of_foreign_table
+from zebro_lab.track.foreign import TRACK_UNITS, read_foreign_track, track_of_foreign_table
+from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 NAMES = ("t_s", "x_m", "y_m", "yaw_rad", "z_m")
 COVARIANCE = {
@@ -24,7 +27,11 @@ def table(tmp_path, **columns) -> RawTable:
 
 
 def track_of(read: RawTable, zero: float = 0.0):
-    return track_of_foreign_table(read, canonical_columns(TRACK_UNITS), zero=zero)
+    return track_of_foreign_table(read, canonical_columns(TRACK_UNITS)).since(zero)
+
+
+def read(file: Path, **how):
+    return read_foreign_track(file, canonical_columns(TRACK_UNITS), TrajectoryRequest(**how))
 
 
 def test_short_names_do_and_time_is_counted_from_the_zero_given(tmp_path):
@@ -54,9 +61,7 @@ def test_a_tum_file_comes_back_as_it_was_written(tmp_path):
     ).track.poses
     file = tmp_path / "path.tum"
     file.write_text("# t x y z qx qy qz qw\n" + tum_lines(poses))
-    assert is_tum(file)
-    assert not is_tum(tmp_path / "path.csv")
-    again = track_of(read_tum(file))
+    again = read(file)
     np.testing.assert_allclose(again.track.poses.position, poses.position)
     np.testing.assert_allclose(np.diff(again.track.poses.yaw), [0.3, 0.3], atol=1e-8)
     assert len(again.tum) == 3
@@ -68,11 +73,11 @@ def test_a_tum_file_comes_back_as_it_was_written(tmp_path):
         ("", "has no pose"),
         ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.*found 3 numbers"),
         ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.*length 2"),
-        ("0 0 0 0 0 0 zero 1\n", "expected 8 numbers"),
+        ("0 0 0 0 0 0 zero 1\n", "line of words; expected lines of 8"),
     ],
 )
 def test_a_faulty_tum_file_is_named_by_its_line(tmp_path, text, message):
     file = tmp_path / "path.tum"
     file.write_text(text)
     with pytest.raises(DataError, match=message):
-        read_tum(file)
+        read(file)

@@ -56,6 +56,13 @@ class Trajectory:
         return self.path.in_plane(self.plane, forward=self.forward)
 
     @property
+    def leaves_plane(self) -> bool:
+        """Whether the path extends farther across the plane than in it, in one direction."""
+        extent = np.ptp(self.poses.position, axis=0)
+        across = float(np.ptp(self.height))
+        return across > extent.min() and across > 0.1 * extent.max()
+
+    @property
     def height(self) -> Array:
         """Coordinate along the plane's normal, upwards where the plane is seen from above [m]."""
         first, second = ("xyz".index(axis) for axis in self.plane)
@@ -85,7 +92,7 @@ def read_trajectory(
         SettingsError: An option does not fit the file.
     """
     stated = request.layout_of(which)
-    numbers = _numbers_of(path, stated)
+    numbers = number_lines_of(path, stated)
     if numbers is None:
         if stated not in (None, Layout.TABLE):
             raise DataError(f"has a line of words; expected lines of numbers ({stated})", file=path)
@@ -108,16 +115,20 @@ def read_trajectory(
     return _with_doubts(trajectory)
 
 
-def _numbers_of(path: Path, stated: Layout | None) -> NumberLines | None:
+def number_lines_of(path: Path, stated: Layout | None) -> NumberLines | None:
     """Read lines of numbers; None for a table, which may be binary or in another encoding."""
     if stated is Layout.TABLE or path.suffix.lower() in (".parquet", ".xlsx", ".gz"):
         return None
     try:
-        return read_number_lines(path)
+        numbers = read_number_lines(path)
     except DataError as error:
         if is_table_file(path) and isinstance(error.__cause__, UnicodeDecodeError):
             return None
         raise
+    if numbers is None and not is_table_file(path):
+        raise DataError("has a line of words; expected lines of 8 (TUM) or 12 (KITTI) numbers, or "
+                        "a table with a suffix such as .csv", file=path)  # fmt: skip
+    return numbers
 
 
 def _has_matrices(numbers: NumberLines, stated: Layout | None) -> bool:
@@ -177,9 +188,9 @@ def _with_doubts(trajectory: Trajectory) -> Trajectory:
             f"rotations leave the plane {plane} by up to {np.degrees(tilt):.1f} deg; the heading "
             f"is the direction of the {trajectory.forward} axis in the plane"
         )
-    first, second = np.ptp(trajectory.poses.position, axis=0)
-    across = float(np.ptp(trajectory.height))
-    if across > min(first, second) and across > 0.1 * max(first, second):
+    if trajectory.leaves_plane:
+        first, second = np.ptp(trajectory.poses.position, axis=0)
+        across = float(np.ptp(trajectory.height))
         notes.append(
             f"the path extends {across:.3g} m across the plane {plane} and {first:.3g} m by "
             f"{second:.3g} m in it; is another --plane meant?"

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Read a trajectory from a table with headers."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -14,8 +15,9 @@ from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.trajectory.headers import named_columns
-from zebro_lab.track.trajectory.stamps import Fault, kept_stamps, stamp_factor
+from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
 
+NEEDED: Final = ("t_s", "x_m", "y_m")
 QUATERNION: Final = ("qx", "qy", "qz", "qw")
 TABLE_UNITS: Final = {
     "t_s": "s", "x_m": "m", "y_m": "m", "z_m": "m", "yaw_rad": "rad",
@@ -55,34 +57,70 @@ def read_table_trajectory(path: Path, mapping: MappedColumns | None) -> TableTra
         DataError: The table is damaged, time, x or y is missing, a cell is no finite number, or
             a stamp is earlier than the one before or repeated with another pose.
     """
-    table = read_table_file(path)
-    mapping = recognised(table, mapping or canonical_columns(TABLE_UNITS))
-    names = [
-        name for name in TABLE_UNITS if name in ("t_s", "x_m", "y_m") or mapping.has(table, name)
-    ]
-    columns = {name: _column(table, mapping, name) for name in names}
-    t = columns.pop("t_s")
-    header = mapping.mapped["t_s"].name
-
-    def fault(problem: str, index: int) -> DataError:
-        return table.fault(problem, header, index)
-
-    notes: tuple[str, ...] = ()
-    if header not in table.units and mapping.mapped["t_s"].unit == "s":
-        factor, notes = stamp_factor(t, "s", fault=fault)
-        t = t * factor
-    poses = np.column_stack(list(columns.values()))
-    kept, more = kept_stamps(t, poses, fault=fault)
-    zero = np.zeros(len(t))
-    position = np.column_stack([columns.get(name, zero) for name in ("x_m", "y_m", "z_m")])
-    rotation = _rotation(columns, fault)
+    mapping = mapping or canonical_columns(TABLE_UNITS)
+    table = read_table_file(path, sheet=mapping.sheet)
+    read = read_table_columns(table, mapping, TABLE_UNITS)
+    columns = read.columns
+    t = columns["t_s"]
+    position = np.column_stack(
+        [columns.get(name, np.zeros_like(t)) for name in ("x_m", "y_m", "z_m")]
+    )
     return TableTrajectory(
-        path=RigidPath(t, position, rotation).part(kept),
+        path=RigidPath(t, position, _rotation(columns, table)),
         in_space="z_m" in columns,
         source=mapping.source or table.source or "unknown",
-        notes=(*table.notes, *notes, *more),
+        notes=(*table.notes, *read.notes),
         files=(path, *([mapping.file] if mapping.file else [])),
     )
+
+
+class TableColumns(NamedTuple):
+    """Columns of a path in a table.
+
+    Attributes:
+        columns: Columns in SI by canonical name, without rows that repeat a stamp, shape (n,) each.
+        notes: Notes on stamps, one line each.
+    """
+
+    columns: Mapping[str, Array]
+    notes: tuple[str, ...]
+
+
+def read_table_columns(
+    table: RawTable, mapping: MappedColumns, units: Mapping[str, str], *, what: str = "trajectory"
+) -> TableColumns:
+    """Convert the columns of a path to SI, and check its stamps.
+
+    Args:
+        table: The table.
+        mapping: Headers and units of its columns, see `recognised`.
+        units: Canonical names to look for; time, x and y are needed.
+        what: Description of the path, for error messages.
+
+    Raises:
+        DataError: Time, x or y is missing, a cell is no finite number, or a stamp is earlier than
+            the one before or, in many rows, repeated with another pose.
+    """
+    mapping = recognised(table, mapping)
+    columns = {
+        name: mapping.numbers(
+            table, name, what=f"{name} of the {what}", advice="leave such poses out"
+        )
+        for name in units
+        if name in NEEDED or mapping.has(table, name)
+    }
+    time = mapping.mapped["t_s"]
+
+    def fault(problem: str, index: int) -> DataError:
+        return table.fault(problem, time.name, index)
+
+    notes: tuple[str, ...] = ()
+    if time.name not in table.units and time.factor == 1.0:
+        factor, notes = stamp_factor(columns["t_s"], "s", fault=fault)
+        columns["t_s"] = columns["t_s"] * factor
+    poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
+    kept, more = kept_stamps(columns["t_s"], poses, fault=fault)
+    return TableColumns({n: column[kept] for n, column in columns.items()}, (*notes, *more))
 
 
 def recognised(table: RawTable, mapping: MappedColumns) -> MappedColumns:
@@ -94,20 +132,16 @@ def recognised(table: RawTable, mapping: MappedColumns) -> MappedColumns:
     return mapping
 
 
-def _column(table: RawTable, mapping: MappedColumns, name: str) -> Array:
-    return mapping.numbers(
-        table, name, what=f"{name} of the trajectory", advice="leave such poses out"
-    )
-
-
-def _rotation(columns: dict[str, Array], fault: Fault) -> Array | None:
+def _rotation(columns: Mapping[str, Array], table: RawTable) -> Array | None:
     if set(QUATERNION) <= set(columns):
         quaternion = np.column_stack([columns[name] for name in QUATERNION])
         length = np.linalg.norm(quaternion, axis=1)
         wrong = np.abs(length - 1) > 0.05
         if wrong.any():
             index = int(np.argmax(wrong))
-            raise fault(f"quaternion length {length[index]:.4g}; expected 0.95 to 1.05", index)
+            raise table.fault(
+                f"quaternion length {length[index]:.4g}; expected 0.95 to 1.05", "qw", index
+            )
         return rotations_of_quaternions(quaternion)
     if "yaw_rad" not in columns:
         return None

@@ -62,6 +62,11 @@ def compare(request: CompareRequest) -> Compared:
 
 def _kind(path: Path) -> str:
     settle(path)
+    if path.is_file() and path.suffix.lower() != ".toml":
+        raise SettingsError(
+            f"{path} is a file and no slip.toml; compare two trajectories with: zebro-lab validate "
+            "REFERENCE ESTIMATE"
+        )
     if path.is_file() or (path / SLIP_TOML).is_file():
         return "calibration"
     if is_walked(path):

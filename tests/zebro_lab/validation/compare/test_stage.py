@@ -41,3 +41,11 @@ def test_what_cannot_be_compared_is_named(tmp_path):
     (tmp_path / "taken/manifest.json").write_text('{"kind": "track"}')
     with pytest.raises(AlreadyExists, match="another command"):
         compare(CompareRequest(slip, slip, tmp_path / "taken"))
+
+
+def test_two_files_of_trajectories_are_sent_to_validate(tmp_path):
+    for name in ("a.tum", "b.txt"):
+        (tmp_path / name).write_text("0 0 0 0 0 0 0 1\n")
+    with pytest.raises(SettingsError, match=r"a\.tum is a file .*validate REFERENCE ESTIMATE$"):
+        compare(CompareRequest(tmp_path / "a.tum", tmp_path / "b.txt", out=tmp_path / "out"))
+    assert not (tmp_path / "out").exists()

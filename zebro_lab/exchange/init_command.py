@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def init(
     force: Annotated[
         bool, typer.Option("--force", help="Replace an existing columns.toml.")
     ] = False,
+    output: Output = TEXT,
 ) -> None:
     """Write a commented columns.toml to the folder of FILE, guessed from its header.
 
@@ -35,15 +36,19 @@ def init(
 
     written = write_columns_template(file, kind=kind, sheet=sheet, force=force)
     for note in written.notes:
-        say(note)
-    say(f"wrote {written.file} for a table of kind {written.kind}")
+        output.say(note)
+    output.say(f"wrote {written.file} for a table of kind {written.kind}")
     for name, guess in written.guesses.items():
         sign = ", sign reversed" if guess.sign < 0 else ""
         unit = f" in {guess.unit.unit}" if guess.unit and guess.unit.unit != "dimensionless" else ""
         check = f"; CHECK {', '.join(guess.doubts)}" if guess.doubts else ""
-        say(f"  {name:<15} from '{guess.name}'{unit}{sign}{check}")
-    for advice in _to_check(written):
-        say(f"please check: {advice}")
+        output.say(f"  {name:<15} from '{guess.name}'{unit}{sign}{check}")
+    advice = _to_check(written)
+    for line in advice:
+        output.say(f"please check: {line}")
+    columns = {name: guess.name for name, guess in written.guesses.items()}
+    content = {"written": [written.file], "kind": written.kind, "columns": columns}
+    output.document("init", {**content, "to_check": advice, "notes": list(written.notes)})
 
 
 def _to_check(written: "WrittenColumns") -> list[str]:

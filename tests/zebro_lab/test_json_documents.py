@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""`--json` of commands prints one document with the keys that docs/formats.md lists."""
+
+import json
+import tomllib
+
+import numpy as np
+
+from support.compared_folders import calibration
+from support.foreign_trajectories import drive, tum, written
+from support.walk_requests import write_log
+from support.written_runs import make_run
+
+
+def document(ended, command, keys, *, code=0):
+    """Return the document of a command that ended with a code, which must be all of its stdout."""
+    assert ended.code == code, ended.err
+    found = json.loads(ended.out)
+    assert (found["command"], found["exit_code"]) == (command, code)
+    assert set(found) - {"simulated"} == {"command", "exit_code"} | keys
+    return found
+
+
+def test_compare_lists_each_quantity_with_intervals(run_command, tmp_path):
+    one, other = calibration(tmp_path / "one"), calibration(tmp_path / "other", friction=0.5)
+    ended = run_command("compare", one, other, "--out", tmp_path / "out", "--json")
+    found = document(ended, "compare", {"folder", "names", "notes", "quantities"})
+    assert found["simulated"]
+    assert found["names"] == ["one", "other"]
+    for each in found["quantities"]:
+        assert each.keys() == {
+            "name", "unit", "first", "second", "difference", "probability_second_larger"
+        }  # fmt: skip
+        assert each["difference"]["low"] <= each["difference"]["median"]
+    larger = [each for each in found["quantities"] if each["probability_second_larger"] > 0.99]
+    assert larger
+    assert all(each["difference"]["low"] > 0 for each in larger)
+
+
+def test_predict_gives_the_walked_path_in_numbers(run_command, tmp_path):
+    given = ("predict", write_log(tmp_path), "--model", "no-slip-simple", "--json", "--quiet")
+    ended = run_command(*given, "--out", tmp_path / "out")
+    assert ended.err == ""
+    found = document(ended, "predict", {
+        "folder", "title", "time_step_s", "duration_s", "end_x_m", "end_y_m", "end_yaw_rad",
+        "length_m", "strides", "speed_m_per_s", "yaw_rate_rad_per_s", "radius_m",
+        "largest_roll_rad", "largest_pitch_rad", "mean_slip_m_per_s", "notes",
+    })  # fmt: skip
+    assert found["length_m"] > 0
+    assert found["folder"] == str(tmp_path / "out")
+
+
+def test_validate_of_two_trajectories_has_their_errors(run_command, tmp_path):
+    t, position, rotation = drive()
+    truth = written(tmp_path / "truth.txt", tum(t, position, rotation))
+    slam = written(tmp_path / "slam.txt", tum(t, position + np.array([0.3, 0.4, 0.0]), rotation))
+    ended = run_command("validate", truth, slam, "--out", tmp_path / "out", "--json")
+    found = document(ended, "validate", {"folder", "validation"})
+    assert found["validation"] == json.loads((tmp_path / "out" / "manifest.json").read_text())
+    assert not found["simulated"]
+    assert "absolute error (ATE), rms" in ended.err
+
+
+def test_a_fit_of_few_steps_has_its_verdict_and_exit_code_inside(run_command, sweep, tmp_path):
+    ended = run_command(
+        "calibrate", sweep, "--out", tmp_path / "out", "--law", "coulomb-stribeck",
+        "--block-length", 150, "--max-steps", 100, "--threads", 1, "--json", "--quiet",
+    )  # fmt: skip
+    found = document(ended, "calibrate", {"folder", "calibration"}, code=3)
+    assert found["simulated"]
+    slip = tomllib.loads((tmp_path / "out" / "slip.toml").read_text())
+    assert found["calibration"].keys() == slip.keys()
+    assert not found["calibration"]["verdict"]["converged"]
+
+
+def test_a_run_is_listed_and_its_exclusion_is_told(run_command, tmp_path):
+    run = make_run(tmp_path)
+    ended = run_command("exclude", run, "--why", "belt slipped", "--json", "--quiet")
+    found = document(ended, "exclude", {"folder", "excluded"})
+    assert found["excluded"]["why"] == "belt slipped"
+    found = document(run_command("runs", tmp_path, "--json"), "runs", {"runs"})
+    (listed,) = found["runs"]
+    assert listed.keys() == {"name", "state", "duration", "samples", "source"}
+    assert listed["state"] == "excluded (belt slipped)"
+    ended = run_command("exclude", run, "--undo", "--json")
+    assert document(ended, "exclude", {"folder", "excluded"})["excluded"] is None
+
+
+def test_doctor_lists_its_findings(run_command, tmp_path):
+    ended = run_command("doctor", "--data", tmp_path, "--json", "--quiet")
+    found = document(ended, "doctor", {"findings"}, code=ended.code)
+    assert "python" in {each["what"].lower() for each in found["findings"]}
+    states = {each["state"] for each in found["findings"]}
+    assert states <= {"ok", "note", "BROKEN"}
+    assert ended.code == int("BROKEN" in states)
+
+
+def test_init_names_the_columns_that_it_guessed(run_command, tmp_path):
+    table = tmp_path / "bench.csv"
+    table.write_text("time [s],normal force [N],traction force [N],slip ratio\n0,4,1,0.1\n")
+    ended = run_command("init", table, "--kind", "rig", "--json", "--quiet")
+    keys = {"written", "kind", "columns", "to_check", "notes"}
+    found = document(ended, "init", keys)
+    assert found["columns"]["normal_force"] == "normal force [N]"
+    assert found["written"] == [str(tmp_path / "columns.toml")]
+    assert found["to_check"]

@@ -50,7 +50,7 @@ def test_what_cannot_be_understood_is_one_line(options, message, run_command, tm
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--flip", "simulated_2.jpg"), "did you mean 'simulated_"),
+        (("--flip", "simulated_2.jpg"), "there are simulated_00.jpg to simulated_"),
         (("--from", "nothing.toml"), "nothing.toml: no such file"),
     ],
 )

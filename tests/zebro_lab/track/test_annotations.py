@@ -35,7 +35,7 @@ def test_later_words_are_added_and_none_is_lost():
 
 FAULTS = {
     "unknown kind": ('[[correction]]\nkind = "turn"\nphoto = "a"', r"correction\[1\].*'turn'"),
-    "unknown key": ('[[correction]]\nkind = "flip"\nfoto = "a"', "did you mean 'photo'"),
+    "unknown key": ('[[correction]]\nkind = "flip"\nfoto = "a"', "has no 'foto'; known: photo"),
     "three corners": (
         '[template]\nphoto = "a"\ncorners_px = [[1, 2], [3, 4], [5, 6]]', "expected four pixels",
     ),

@@ -51,6 +51,18 @@ NEEDED_TOO = {
     "annotate": {"--photo": "a.jpg", "--corners": "1,1 2,1 2,2 1,2"},
 }
 """Options that are required by rules of a command, not of the parser."""
+NO_DOCUMENT = {
+    "zebro-lab record": "its display is live, and run.json has the results",
+    "zebro-lab rig run": "its display is live, and the folder has the results",
+    "zebro-lab rig say": "it sends a command",
+    "zebro-lab rig weigh": "it asks a person, and writes its result to --out",
+    "zebro-lab zebro check": "it asks a person, and writes a profile",
+    "zebro-lab camera clock": "it shows a picture",
+    "zebro-lab sim zebro": "it serves a device until it is stopped",
+    "zebro-lab sim rig": "it serves a device until it is stopped",
+    "zebro-lab sim imu": "it serves a device until it is stopped",
+}
+"""Commands without `--json`, and why."""
 NUMBER = r"(-?[\d.e+-]+)"
 
 
@@ -222,3 +234,12 @@ def test_a_flag_and_its_opposite_are_given_twice():
     ended = run(Found(("zebro-lab",), None), "validate", "run", "--anchor", "--no-anchor")
     assert ended.code == 2
     assert "given twice" in ended.err
+
+
+def test_every_command_with_results_prints_them_as_json_or_is_listed_with_its_reason():
+    without = {
+        named(found)
+        for found in LEAVES
+        if not {"--json", "--quiet"} <= {name for p in found.command.params for name in p.opts}
+    }
+    assert without == set(NO_DOCUMENT)

@@ -9,11 +9,13 @@ import typer
 from zebro_lab.experiment.request import Data, RigRunRequest, WeighRequest
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from rig.experiment.control import Control
     from rig.experiment.run import Outcome
+    from zebro_lab.experiment.check_stage import CheckedRun
     from zebro_lab.experiment.plan_stage import Foreseen
 
 STOPPED = 130
@@ -42,11 +44,17 @@ def plan(
         str, typer.Option(metavar="PROFILE", help="Profile of the rig; sim: rig-board-serial.")
     ] = "sim",
     steps: Annotated[bool, typer.Option("--steps", help="List every step of the plan.")] = False,
+    output: Output = TEXT,
 ) -> None:
     """Check a plan by its own limits and the rig's; print duration and number of points."""
     from zebro_lab.experiment.plan_stage import foresee
 
-    _print_plan(foresee(file, rig), steps=steps)
+    foreseen = foresee(file, rig)
+    _print_plan(foreseen, output, steps=steps)
+    plan, estimate = foreseen.plan, foreseen.estimate
+    content = {"plan": plan.name, "material": plan.material, "profile": foreseen.profile.name}
+    numbers = {"points": estimate.points, "loads": estimate.loads, "duration_s": estimate.seconds}
+    output.document("rig plan", {**content, **numbers})
 
 
 @app.command(epilog=EPILOG)
@@ -159,21 +167,38 @@ def check(
             min=0.0, metavar="NEWTON", help="Sd of the load cell's zero between runs [N]."
         ),
     ] = 0.1,
+    output: Output = TEXT,
 ) -> None:
     """Compare the traction of new runs with a calibration to detect drift of the rig."""
     from zebro_lab.experiment.check_stage import SUSPICIOUS, check_runs
 
     runs = check_runs(data, slip, zero_sd=zero_sd)
     for found in runs:
-        say(
+        output.say(
             f"{found.name}: mean slip {found.slip:.4f}, normal force {found.load:.2f} N, traction "
             f"{found.traction:.3f} N, expected {found.expected:.3f} +/- {found.sd:.3f} N, off by "
             f"{found.deviation:+.1f} sd {found.verdict}".rstrip()
         )
     drifted = sum(found.verdict == "DRIFTED" for found in runs)
-    say(f"{drifted} of {len(runs)} runs deviate from the calibration by over {SUSPICIOUS:g} sd")
-    if any(found.verdict for found in runs):
+    output.say(
+        f"{drifted} of {len(runs)} runs deviate from the calibration by over {SUSPICIOUS:g} sd"
+    )
+    code = REFUSED if any(found.verdict for found in runs) else 0
+    output.document("rig check", {"runs": [_in_numbers(run) for run in runs]}, exit_code=code)
+    if code:
         raise typer.Exit(REFUSED)
+
+
+def _in_numbers(run: "CheckedRun") -> dict[str, object]:
+    return {
+        "name": run.name,
+        "slip_ratio": run.slip,
+        "normal_force_N": run.load,
+        "traction_N": run.traction,
+        "expected_N": run.expected,
+        "sd_N": run.sd,
+        "verdict": run.verdict or "ok",
+    }
 
 
 class _Asker:
@@ -190,27 +215,29 @@ class _Asker:
             self._control.confirm()
 
 
-def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
+def _print_plan(foreseen: "Foreseen", output: Output, *, steps: bool) -> None:
     from rig.experiment.plan import LIMIT_UNITS
     from rig.experiment.steps import Point
 
     plan, points = foreseen.plan, foreseen.plan.points
     minutes, seconds = divmod(round(foreseen.estimate.seconds), 60)
-    say(f"plan '{plan.name}', material {plan.material}, rig profile {foreseen.profile.name}")
-    say(
+    output.say(f"plan '{plan.name}', material {plan.material}, rig profile {foreseen.profile.name}")
+    output.say(
         f"{foreseen.estimate.points} points in all, check points included: {len(points.loads)} "
         f"loads x {len(points.slips)} slip ratios, gone through {points.repeats} time(s), "
         f"order {points.order}{', slip ratios as one sweep' if points.sweep else ''}"
     )
-    say(f"the load is set {foreseen.estimate.loads} times, 0 N included, by {plan.load.set_by}")
-    say(f"the plan takes about {minutes} min {seconds} s if every point is good at once")
-    say("limits of the plan, which all set-points keep, as those of the profile:")
+    output.say(
+        f"the load is set {foreseen.estimate.loads} times, 0 N included, by {plan.load.set_by}"
+    )
+    output.say(f"the plan takes about {minutes} min {seconds} s if every point is good at once")
+    output.say("limits of the plan, which all set-points keep, as those of the profile:")
     for name, unit in LIMIT_UNITS.items():
         value = getattr(plan.limits, name)
         limit = "the profile's, if any" if value is None else f"{value:g} {unit}"
-        say(f"  {name:<20}{limit:>24}")
+        output.say(f"  {name:<20}{limit:>24}")
     if plan.limits.guards_off:
-        say(f"guards switched off by the plan: {plan.limits.guards_off_text}")
+        output.say(f"guards switched off by the plan: {plan.limits.guards_off_text}")
     if steps:
         for step in foreseen.steps:
-            say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")
+            output.say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.annotate_request import AnnotateRequest
 
@@ -39,7 +39,11 @@ Reach = Annotated[int, typer.Option(min=5, help="Half the width of the enlarged 
 
 @request_command()
 def annotate(
-    request: AnnotateRequest, grid: Grid = None, around: Around = None, reach: Reach = 100
+    request: AnnotateRequest,
+    grid: Grid = None,
+    around: Around = None,
+    reach: Reach = 100,
+    output: Output = TEXT,
 ) -> None:
     """Annotate photographs for the tracker: annotations.toml, used by track --annotations."""
     from zebro_lab.track import annotate_stage
@@ -47,15 +51,16 @@ def annotate(
     if grid is None:
         if around is not None:
             raise typer.BadParameter("applies only with --grid", param_hint="'--around'")
-        _annotate(request)
+        _annotate(request, output)
         return
     if request.photo is None:
         raise typer.BadParameter("missing: name the photograph to draw", param_hint="'--photo'")
     annotate_stage.draw_grid(request.photos, request.photo, grid, around=around, reach=reach)
-    say(f"wrote {grid}")
+    output.say(f"wrote {grid}")
+    output.document("annotate", {"written": [grid]})
 
 
-def _annotate(request: AnnotateRequest) -> None:
+def _annotate(request: AnnotateRequest, output: Output) -> None:
     """Add the request's annotations to its file and print how many the file then holds.
 
     Raises `BadParameter` if the request has none.
@@ -71,5 +76,7 @@ def _annotate(request: AnnotateRequest) -> None:
     written, out = annotate_stage.annotate(request), request.out
     template = "" if written.template is None else f"robot's top in {written.template.photo}, "
     clicks = sum(len(points) for points in written.clicks.values())
-    say(f"{template}{clicks} points of the floor, {len(written.corrections)} corrections")
-    say(f"wrote {out}; give it to track as --annotations {out}")
+    output.say(f"{template}{clicks} points of the floor, {len(written.corrections)} corrections")
+    output.say(f"wrote {out}; give it to track as --annotations {out}")
+    counts = {"clicks": clicks, "corrections": len(written.corrections)}
+    output.document("annotate", {"written": [out], **counts})

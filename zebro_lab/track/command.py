@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.request import TrackRequest
 
@@ -44,24 +45,23 @@ PreviewPng = Annotated[
 
 
 @request_command()
-def track(request: TrackRequest, preview: PreviewPng = None) -> None:
+def track(request: TrackRequest, preview: PreviewPng = None, output: Output = TEXT) -> None:
     """Track the robot in photographs; write track.csv with covariance, track.tum, pictures."""
     if preview is not None:
-        _preview(request, preview)
+        _preview(request, preview, output)
         return
     if request.out is None and request.run is None:
         raise typer.BadParameter("missing: give --run RUN or --out FOLDER", param_hint="'--run'")
-    _track(request)
+    _track(request, output)
 
 
-def _track(request: TrackRequest) -> None:
+def _track(request: TrackRequest, output: Output) -> None:
     from tracking.errors import TrackStopped
-    from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.track.inputs import HowMergedUnknown
     from zebro_lab.track.stage import track as run_stage
 
     try:
-        with progress_bar() as watcher:
+        with output.progress() as watcher:
             result = run_stage(request, watcher)
     except TrackStopped as stopped:
         say(str(stopped), err=True)
@@ -69,7 +69,21 @@ def _track(request: TrackRequest) -> None:
     except HowMergedUnknown as unknown:
         raise typer.BadParameter(unknown.problem, param_hint="'--merged'") from unknown
     for line in track_lines(result):
-        say(line)
+        output.say(line)
+    _print_document(result, output)
+
+
+def _print_document(result: "TrackResult", output: Output) -> None:
+    track = result.tracked.track
+    content = {"folder": result.folder, "simulated": "sim:" in result.source}
+    numbers = {
+        "source": result.source,
+        "photographs": result.photos,
+        "poses": len(track.t),
+        "duration_s": track.t[-1] - track.t[0],
+    }
+    notes = {"left_out": dict(result.tracked.lost), "notes": list(result.tracked.notes)}
+    output.document("track", {**content, **numbers, **notes})
 
 
 def track_lines(result: "TrackResult") -> list[str]:
@@ -106,12 +120,13 @@ def track_lines(result: "TrackResult") -> list[str]:
     ]  # fmt: skip
 
 
-def _preview(request: TrackRequest, file: Path) -> None:
+def _preview(request: TrackRequest, file: Path, output: Output) -> None:
     from zebro_lab.track.preview_stage import preview
 
     seen = preview(request, file)
     for line in (*preview_lines(seen), f"wrote {file}"):
-        say(line)
+        output.say(line)
+    output.document("track", {"written": [file]})
     if any(check.is_off for check in seen.tape):
         sys.stderr.write("distances marked off differ by over 4 mm; measure the floor again\n")
 

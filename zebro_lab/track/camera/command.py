@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 import typer
 
 from zebro_lab.terminal.command_classes import Application
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.camera.request import CameraRequest
 
@@ -36,26 +36,34 @@ def kit(
         "tracking-kit"
     ),
     paper: Annotated[Paper, typer.Option(help="Size of the paper.")] = "a4",
+    output: Output = TEXT,
 ) -> None:
     """Write a true-scale PDF of markers, board and ruler, and a floor.toml to edit."""
     from zebro_lab.track.camera.stage import write_kit
 
-    for file in write_kit(out, paper=paper):
-        say(f"wrote {file}")
-    say("print kit.pdf at 100 % and measure the 100 mm bar of every page")
+    files = list(write_kit(out, paper=paper))
+    for file in files:
+        output.say(f"wrote {file}")
+    output.say("print kit.pdf at 100 % and measure the 100 mm bar of every page")
+    output.document("camera kit", {"written": files})
 
 
 @app.command(epilog=CALIBRATE_EPILOG)
 @request_command()
-def calibrate(request: CameraRequest) -> None:
+def calibrate(request: CameraRequest, output: Output = TEXT) -> None:
     """Calibrate the lens from photographs of a board: camera.toml."""
-    from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.track.camera.stage import calibrate_camera
 
-    with progress_bar() as watcher:
+    with output.progress() as watcher:
         result = calibrate_camera(request, watcher)
     for line in calibration_lines(result):
-        say(line)
+        output.say(line)
+    fit = result.fit
+    content = {"written": [result.file], "lens_model": fit.lens_model, "size_px": fit.camera.size}
+    lens = {"matrix_px": fit.camera.matrix, "distortion": fit.camera.distortion}
+    found = {"rms_px": fit.rms, "coverage": fit.coverage, "photographs": list(fit.view_names)}
+    notes = {"left_out": result.left_out, "warnings": list(fit.warnings)}
+    output.document("camera calibrate", {**content, **lens, **found, **notes})
 
 
 def calibration_lines(result: "CameraResult") -> list[str]:

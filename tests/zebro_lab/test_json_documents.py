@@ -6,7 +6,9 @@ import tomllib
 
 import numpy as np
 
+from support.bundled_walk import PHOTOS, WALK
 from support.compared_folders import calibration
+from support.experiment_plans import short_plan
 from support.foreign_trajectories import drive, tum, written
 from support.walk_requests import write_log
 from support.written_runs import make_run
@@ -104,3 +106,50 @@ def test_init_names_the_columns_that_it_guessed(run_command, tmp_path):
     assert found["columns"]["normal_force"] == "normal force [N]"
     assert found["written"] == [str(tmp_path / "columns.toml")]
     assert found["to_check"]
+
+
+def test_a_plan_is_told_in_numbers(run_command, tmp_path):
+    ended = run_command("rig", "plan", short_plan(tmp_path), "--json", "--quiet")
+    keys = {"plan", "material", "profile", "points", "loads", "duration_s"}
+    found = document(ended, "rig plan", keys)
+    assert found["points"] == 2
+    assert found["duration_s"] > 0
+
+
+def test_rig_check_has_a_verdict_of_each_run_and_its_exit_code(run_command, tmp_path):
+    curve = calibration(tmp_path / "curve")
+    run = make_run(tmp_path / "data")
+    ended = run_command("rig", "check", run, "--slip", curve, "--json")
+    found = document(ended, "rig check", {"runs"}, code=ended.code)
+    (only,) = found["runs"]
+    assert only.keys() == {
+        "name", "slip_ratio", "normal_force_N", "traction_N", "expected_N", "sd_N", "verdict"
+    }  # fmt: skip
+    assert (only["verdict"] == "ok") == (ended.code == 0)
+
+
+def test_the_kit_lists_its_files(run_command, tmp_path):
+    ended = run_command("camera", "kit", "--out", tmp_path / "kit", "--json", "--quiet")
+    found = document(ended, "camera kit", {"written"})
+    assert str(tmp_path / "kit" / "kit.pdf") in found["written"]
+
+
+def test_a_camera_is_told_in_numbers(run_command, tmp_path):
+    ended = run_command(
+        "camera", "calibrate", WALK / "calibration", "--board", "charuco:9x6:40mm:30mm:4x4_50",
+        "--out", tmp_path / "camera.toml", "--json",
+    )  # fmt: skip
+    found = document(ended, "camera calibrate", {
+        "written", "lens_model", "size_px", "matrix_px", "distortion", "rms_px", "coverage",
+        "photographs", "left_out", "warnings",
+    })  # fmt: skip
+    assert 1490 < found["matrix_px"][0][0] < 1510
+    assert 0 < found["coverage"] <= 1
+
+
+def test_annotations_are_counted(run_command, tmp_path):
+    given = ("--click", "simulated_03.jpg:door=10,20", "--delete", "simulated_06.jpg")
+    out = tmp_path / "said.toml"
+    ended = run_command("annotate", PHOTOS, "--out", out, *given, "--json", "--quiet")
+    found = document(ended, "annotate", {"written", "clicks", "corrections"})
+    assert (found["written"], found["clicks"], found["corrections"]) == ([str(out)], 1, 1)

@@ -58,7 +58,8 @@ def test_recorded_twins_end_in_a_judged_prediction_on_one_page(tmp_path, monkeyp
     judged = run("validate", walked)
     assert "roll: error against the IMU" in judged
     errors = pd.read_csv(walked / "validation/metrics.csv").set_index("model")
-    # The photographs show the walk that is played; legs of a twin follow it with counts and delay.
+    # Loose bounds: they show that the stages join. Predictions of such recordings were 8 to 11 % of
+    # the path off, and how much of it is the twin's counts and delay has not been established.
     assert errors.loc["prediction", "ate_of_length"] < 0.15
     assert errors.loc["prediction", "ate_m"] < 0.5 * errors.loc["stand still", "ate_m"]
     said = run("report", walked, "--out", "page.html")

@@ -22,7 +22,7 @@ class CalibrationRequest:
 
     data: Annotated[
         tuple[Path, ...],
-        Argument(metavar="DATA", help="Run folders, or files or folders of CSV or Parquet."),
+        Argument(metavar="DATA", help="Run folders, tables, or folders of them."),
     ] = ()
     out: Annotated[Path, Option(metavar="DIR", help="Calibration folder to write.")] = Path(
         "calibration"

@@ -56,7 +56,7 @@ class RigData:
 def read_rig_data(
     paths: Sequence[Path], *, columns: Path | None = None, slip_definition: str | None = None
 ) -> RigData:
-    """Read rig data from CSV or Parquet tables and run folders.
+    """Read rig data from tables and run folders.
 
     Left out, with a note, are excluded runs, copies, runs of another kind than the rig's, and runs
     that were cut short before they had samples that can be used.

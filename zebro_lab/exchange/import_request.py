@@ -45,9 +45,7 @@ class ImportRequest:
     imu: Annotated[
         Path | None, Option(metavar="FILE", help="Orientation of the body: a table or a ROS log.")
     ] = None
-    rig: Annotated[
-        Path | None, Option(metavar="FILE", help="Table of a slip rig: CSV or Parquet.")
-    ] = None
+    rig: Annotated[Path | None, Option(metavar="FILE", help="Table of a slip rig.")] = None
     robot: Annotated[Path | None, Option(metavar="FILE", help="robot.toml to copy to the run.")] = (
         None
     )

@@ -65,7 +65,7 @@ def rig_runs(
     """Read a table of a slip rig and separate it into runs.
 
     Args:
-        path: CSV or Parquet file.
+        path: The table file.
         columns: Column map, radii, and the rule that separates runs.
         label: Prefix of every run's name; the whole name of a single run without a rule.
         material: Leg and ground material.

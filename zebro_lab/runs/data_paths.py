@@ -60,7 +60,7 @@ def find_sources(paths: Sequence[Path]) -> list[DataSource]:
         DataError: A named folder holds no data.
     """
     if not paths:
-        raise NotFound("no data given; give CSV or Parquet files, run folders, or folders of them")
+        raise NotFound("no data given; give tables, run folders, or folders of them")
     found: dict[Path, DataSource] = {}
     for path in map(Path, paths):
         for source in _sources_at(path):

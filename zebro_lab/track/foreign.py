@@ -85,12 +85,13 @@ def read_foreign_track(
     Raises:
         NotFound: A file does not exist.
         DataError: As in `read_trajectory` and `track_of_foreign_table`; or there are no times.
-        SettingsError: An option does not fit the file; or the path extends across the plane of the
-            floor, and that is not stated.
+        SettingsError: An option does not fit the file, or has no effect on it; or the path extends
+            across the plane of the floor, and that is not stated.
     """
     if number_lines_of(path, request.layout_of(0)) is None and request.plane in (None, Plane.XY):
         table = read_table_file(path, sheet=mapping.sheet)
         if not set(QUATERNION) <= set(named_columns(list(table.columns))):
+            _require_unused(path, request)
             return track_of_foreign_table(table, mapping)
     trajectory = read_trajectory(path, request, mapping=mapping)
     if not trajectory.timed:
@@ -104,6 +105,17 @@ def read_foreign_track(
     own = replace(mapping, mapped=canonical_columns(TRACK_UNITS).mapped)  # without headers
     track = track_of_foreign_table(_flat(trajectory), own)
     return replace(track, files=trajectory.files)
+
+
+def _require_unused(path: Path, request: TrajectoryRequest) -> None:
+    """Raise `SettingsError` for options that a table of plane poses leaves without effect."""
+    for option, value in (("--forward", request.forward), ("--times", request.times)):
+        if value is not None:
+            raise SettingsError(
+                f"{path} is a table of poses in the plane, with columns of its own for time and "
+                "heading; leave the option out",
+                key=option,
+            )
 
 
 def _flat(trajectory: Trajectory) -> RawTable:

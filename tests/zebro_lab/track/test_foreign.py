@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from zebro_lab.files.errors import DataError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.track.file import tum_lines
 from zebro_lab.track.foreign import TRACK_UNITS, read_foreign_track, track_of_foreign_table
-from zebro_lab.track.trajectory.request import TrajectoryRequest
+from zebro_lab.track.trajectory.request import Axis, TrajectoryRequest
 
 NAMES = ("t_s", "x_m", "y_m", "yaw_rad", "z_m")
 COVARIANCE = {
@@ -53,6 +53,15 @@ def test_a_covariance_comes_back_where_all_of_it_is_there(tmp_path):
 def test_a_missing_place_is_named(tmp_path):
     with pytest.raises(DataError, match="x_m of the track"):
         track_of(table(tmp_path, t_s=[0, 1, 2], y_m=[0, 0, 0]))
+
+
+@pytest.mark.parametrize("option", [{"forward": Axis.Z}, {"times": Path("times.txt")}])
+def test_an_option_without_effect_on_a_plane_table_is_refused(option, tmp_path):
+    file = tmp_path / "path.csv"
+    file.write_text("t,x,y,yaw\n0,0,0,0\n1,1,0,0\n2,2,0,0\n")
+    assert len(read(file).track.poses) == 3
+    with pytest.raises(SettingsError, match=f"--{next(iter(option))}: .*leave the option out"):
+        read(file, **option)
 
 
 def test_a_tum_file_comes_back_as_it_was_written(tmp_path):

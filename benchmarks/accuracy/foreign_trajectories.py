@@ -16,7 +16,7 @@ import copy
 import json
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -26,8 +26,21 @@ from evo.core.geometry import umeyama_alignment
 from evo.core.metrics import APE, RPE, PoseRelation, StatisticsType, Unit
 from evo.core.sync import associate_trajectories
 from evo.tools import file_interface
+from rosbags.rosbag1 import Reader
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
+
+
+def in_bag(topic: str) -> Callable[[str], Any]:
+    """Return evo's reader of one topic of a bag of ROS 1."""
+
+    def read(file: str) -> Any:
+        with Reader(file) as bag:
+            return file_interface.read_bag_trajectory(bag, topic)
+
+    return read
+
+
 KITTI, TUM, EUROC = (
     file_interface.read_kitti_poses_file,
     file_interface.read_tum_trajectory_file,
@@ -44,6 +57,8 @@ PAIRS = (  # reference, estimate, evo's readers, distance of the relative error 
     ("fr2_desk_groundtruth.txt", "fr2_desk_ORB_kf_mono.txt", (TUM, TUM), 1.0,
      ("--correct-scale",)),
     ("V102_groundtruth.csv", "V102.txt", (EUROC, TUM), 1.0, ()),
+    ("ROS_example.bag", "ROS_example.bag", (in_bag("groundtruth"), in_bag("S-PTAM")), 5.0,
+     ("--topic", "groundtruth", "--topic", "S-PTAM")),
 )  # fmt: skip
 
 

@@ -87,8 +87,10 @@ def stamped(t: Sequence[float], path: np.ndarray, *, topic: str = "/pose") -> It
         yield topic, at, kind, made(kind, header=header(at, "map"), pose=pose(*row))
 
 
-def transforms(t: Sequence[float], paths: Mapping[str, np.ndarray]) -> Iterable[Message]:
-    """Yield transforms of several child frames on /tf."""
+def transforms(
+    t: Sequence[float], paths: Mapping[str, np.ndarray], *, topic: str = "/tf"
+) -> Iterable[Message]:
+    """Yield transforms of several child frames."""
     for i, at in enumerate(t):
         frames = []
         for child, path in paths.items():
@@ -97,7 +99,7 @@ def transforms(t: Sequence[float], paths: Mapping[str, np.ndarray]) -> Iterable[
                          rotation=placed.orientation)  # fmt: skip
             frames.append(made("geometry_msgs/msg/TransformStamped", header=header(at, "map"),
                                child_frame_id=child, transform=moved))  # fmt: skip
-        yield "/tf", at, "tf2_msgs/msg/TFMessage", made("tf2_msgs/msg/TFMessage", transforms=frames)
+        yield topic, at, "tf2_msgs/msg/TFMessage", made("tf2_msgs/msg/TFMessage", transforms=frames)
 
 
 def imu(t: Sequence[float], *, absent: Sequence[str] = ()) -> Iterable[Message]:

@@ -34,5 +34,5 @@ class TopicTable:
         import pandas as pd
 
         series = {name: pd.Series(values) for name, values in columns.items()}
-        told = f"{path.name}: topic {rows.topic}, {rows.type}, {len(rows.t)} messages"
+        told = f"{path.name}: {rows.told}"
         return TopicTable(RawTable(path, series, notes=(told, *rows.notes)), rows.topic)

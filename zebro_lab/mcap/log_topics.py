@@ -15,6 +15,7 @@ from zebro_lab.mcap.ros_log import read_typed_messages
 OTHER_FIELDS: Final = "has messages with other fields than ROS defines"
 """What is wrong with a log whose description of a message is damaged, for `parsing`."""
 NANOSECOND: Final = 1e-9
+_MOST_LISTED: Final = 12
 _TOLD: Final = '--topic NAME, or topic = "NAME" in the file\'s section of a columns.toml'
 
 Parts = Iterable[tuple[str, Any, Any]]
@@ -37,6 +38,11 @@ class TopicRows:
     t: tuple[float, ...]
     contents: tuple[Any, ...]
     notes: tuple[str, ...]
+
+    @property
+    def told(self) -> str:
+        """Topic, type and number of the messages, for a note."""
+        return f"topic {self.topic}, {self.type}, {len(self.t)} messages"
 
 
 def whole(message: LoggedMessage) -> Parts:
@@ -77,7 +83,7 @@ def read_topic(
     t, kinds, contents = zip(*found[chosen], strict=True)
     notes = [] if damage is None else [f"{path.name} is incomplete ({damage})"]
     if len(found) > 1:
-        others = ", ".join(sorted(set(found) - {chosen}))
+        others = _listed(set(found) - {chosen})
         notes.append(f"{path.name}: {what} are taken from topic {chosen}, not from {others}")
     return TopicRows(chosen, kinds[0], t, contents, tuple(notes))
 
@@ -109,6 +115,13 @@ def _chosen(
         return topic
     fitting = [each for each in found if each in topics] or list(found)
     if len(fitting) > 1:
-        listed = ", ".join(sorted(fitting))
+        listed = _listed(fitting)
         raise DataError(f"has {what} on the topics {listed}; choose one with {_TOLD}", file=path)
     return fitting[0]
+
+
+def _listed(topics: Collection[str]) -> str:
+    """List topics; of many the first few, and how many more there are."""
+    shown = sorted(topics)[:_MOST_LISTED]
+    more = len(topics) - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more else "")

@@ -22,16 +22,18 @@ zebro-lab validate groundtruth.txt slam.txt --max-difference 0.02
 
 zebro-lab validate KITTI_00_gt.txt KITTI_00_ORB.txt --plane xz --times times.txt
 
-Folders are runs, files are trajectories (TUM, KITTI, EuRoC, tables), of which the reference comes
-first. Their errors are those of the program evo, in the plane and in space.
+zebro-lab validate walk.bag walk.bag --topic /ground_truth --topic /odom
+
+Folders are runs, files are trajectories (TUM, KITTI, EuRoC, tables, ROS logs), of which the
+reference comes first. Their errors are those of the program evo, in the plane and in space.
 
 Unaligned errors come first: alignment hides a wrong start and a wrong heading. Every path starts
 from the first tracked pose, which is not scored.
 """
 
 
-_ONLY_PAIRS = ("layout", "plane", "forward", "times", "columns", "max_difference", "distance",
-               "correct_scale")  # fmt: skip
+_ONLY_PAIRS = ("layout", "plane", "forward", "times", "columns", "topic", "max_difference",
+               "distance", "correct_scale")  # fmt: skip
 _ONLY_RUNS = ("predicted", "track", "anchor", "estimate_offset")
 
 
@@ -60,16 +62,20 @@ def validate(request: ValidateRequest, output: Output = TEXT) -> None:
 
 
 def _validate_pair(request: ValidateRequest, output: Output) -> None:
+    from zebro_lab.mcap.ros_log import is_ros_log
     from zebro_lab.validation.trajectories.screen import print_pair
     from zebro_lab.validation.trajectories.stage import validate_trajectories
 
-    folders = [path for path in request.runs if path.is_dir()]
+    logs = [path for path in request.runs if is_ros_log(path)]
+    folders = [path for path in request.runs if path.is_dir() and path not in logs]
     if folders or len(request.runs) != 2:
         found = f", of which {folders[0]} is a folder" if folders else ""
         raise typer.BadParameter(
             f"{len(request.runs)} paths{found}; give run folders, or two files of trajectories: "
             "REFERENCE ESTIMATE"
         )
+    if request.topic and not logs:
+        raise typer.BadParameter("belongs to ROS logs; no file is one", param_hint="--topic")
     _require_no_options(request, _ONLY_RUNS, "belongs to predicted walks, not to trajectories")
     with output.progress() as watcher:
         judged = validate_trajectories(request, watcher)

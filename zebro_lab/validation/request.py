@@ -7,6 +7,7 @@ from typing import Annotated
 
 from typer import Argument, Option
 
+from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.track.trajectory.request import TrajectoryRequest
@@ -23,7 +24,7 @@ class ValidateRequest:
         Argument(
             metavar="RUN|FILE",
             help="Run folders with prediction/ and track/; or two files with trajectories, the "
-            "reference first: TUM, KITTI, EuRoC or a table.",
+            "reference first: TUM, KITTI, EuRoC, a table or a ROS log.",
         ),
     ] = ()
     predicted: Annotated[
@@ -73,6 +74,14 @@ class ValidateRequest:
             help="columns.toml of trajectories in tables, instead of those beside them.",
         ),
     ] = None
+    topic: Annotated[
+        tuple[str, ...],
+        Option(
+            metavar="NAME",
+            help="Topic of a ROS log, where it has poses on several; given twice, of the first and "
+            "of the second file.",
+        ),
+    ] = ()
     max_difference: Annotated[
         float,
         Option(
@@ -105,10 +114,14 @@ class ValidateRequest:
 
         Of `data/*`, with plots beside runs, the runs are meant.
         """
-        files = any(path.exists() and not path.is_dir() for path in self.runs)
+        files = any(is_ros_log(path) or path.is_file() for path in self.runs)
         return files and not any((path / name).exists() for path in self.runs for name in _OF_RUNS)
 
     form: FormatOption = "png"
+
+    def topic_of(self, which: int) -> str | None:
+        """Return the topic stated for the first (0) or second (1) file; None if not stated."""
+        return self.topic[min(which, len(self.topic) - 1)] if self.topic else None
 
     @property
     def folder(self) -> Path:

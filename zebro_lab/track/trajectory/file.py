@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read a trajectory of another program: a TUM, KITTI or EuRoC file, or a table."""
+"""Read a trajectory of another program: TUM, KITTI, EuRoC, a table or a ROS log."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,12 +8,15 @@ from pathlib import Path
 import numpy as np
 
 from model.poses import Poses
-from model.rigid_path import RigidPath
+from model.rigid_path import RigidPath, rotations_of_quaternions
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.mcap.ros_bags import bag_files
+from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.table_files import is_table_file
 from zebro_lab.track.trajectory.layouts import OrderedNumbers, ordered
+from zebro_lab.track.trajectory.logged_poses import read_logged_poses
 from zebro_lab.track.trajectory.numbers import NumberLines, read_number_lines
 from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
 from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
@@ -76,6 +79,7 @@ def read_trajectory(
     *,
     mapping: MappedColumns | None = None,
     which: int = 0,
+    topic: str | None = None,
 ) -> Trajectory:
     """Read a trajectory; its layout is found by its content where the request does not state it.
 
@@ -84,14 +88,20 @@ def read_trajectory(
         request: How to read it.
         mapping: Headers and units of the columns of a table.
         which: 0 for the first file of a command, 1 for the second.
+        topic: Topic to read from a ROS log; None for the only one with poses.
 
     Raises:
-        NotFound: A file is missing.
+        NotFound: A file is missing, or the package that reads a ROS log.
         DataError: The file is damaged or its layout is not known; a stamp is repeated with another
             pose, or earlier than the one before.
         SettingsError: An option does not fit the file.
     """
     stated = request.layout_of(which)
+    if is_ros_log(path):
+        return _of_ros_log(path, request, which, topic)
+    if stated is Layout.ROS:
+        raise DataError("is no ROS log by its name; expected .mcap, .db3, .bag or a bag's folder, "
+                        "or another --layout", file=path)  # fmt: skip
     numbers = number_lines_of(path, stated)
     if numbers is None:
         if stated not in (None, Layout.TABLE):
@@ -176,6 +186,39 @@ def _of_table(path: Path, request: TrajectoryRequest, mapping: MappedColumns | N
         path, Layout.TABLE, table.path, True, table.in_space, plane, forward, table.source,
         _named(path, table.notes), table.files,
     )  # fmt: skip
+    return _with_doubts(trajectory)
+
+
+def _of_ros_log(
+    path: Path, request: TrajectoryRequest, which: int, topic: str | None
+) -> Trajectory:
+    if request.times is not None:
+        raise SettingsError(f"{path} is a ROS log, whose messages have times; leave the option out",
+                            key="--times")  # fmt: skip
+    if request.layout_of(which) not in (None, Layout.ROS):
+        raise SettingsError(f"{path} is a ROS log; leave the option out", key="--layout")
+    found = read_logged_poses(path, topic=topic)
+    rows, quaternion = found.rows, found.quaternion
+
+    def fault(problem: str, index: int) -> DataError:
+        return DataError(f"message {index + 1} on topic {rows.topic}: {problem}", file=path)
+
+    t = np.array(rows.t)
+    poses = found.position if quaternion is None else np.hstack([found.position, quaternion])
+    kept, notes = kept_stamps(t, poses, fault=fault)
+    rotation = None if quaternion is None else rotations_of_quaternions(quaternion)
+    plane, forward = _frame(request, is_kitti=False)
+    trajectory = Trajectory(
+        file=path,
+        layout=Layout.ROS,
+        path=RigidPath(t, found.position, rotation).part(kept),
+        timed=True,
+        in_space=True,
+        plane=plane,
+        forward=forward,
+        notes=_named(path, (rows.told, *rows.notes, *notes)),
+        files=tuple(bag_files(path)),
+    )
     return _with_doubts(trajectory)
 
 

@@ -10,12 +10,13 @@ from typer import Option
 
 
 class Layout(StrEnum):
-    """Order of the numbers in a line of a trajectory."""
+    """Layout of a trajectory: order of the numbers in a line, a table, or a ROS log."""
 
     TUM = "tum"
     KITTI = "kitti"
     EUROC = "euroc"
     TABLE = "table"
+    ROS = "ros"
 
 
 class Plane(StrEnum):
@@ -46,8 +47,8 @@ class TrajectoryRequest:
         Option(
             metavar="LAYOUT",
             help="Layout of the trajectory, where its content leaves it open: tum (time, position, "
-            "quaternion with w last), euroc (the same with w first), kitti (matrices), table; "
-            "given twice, of the first and of the second file.",
+            "quaternion with w last), euroc (the same with w first), kitti (matrices), table, "
+            "ros (a ROS log, told by its name); given twice, of the first and of the second file.",
         ),
     ] = ()
     plane: Annotated[

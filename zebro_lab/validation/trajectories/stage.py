@@ -29,7 +29,11 @@ def validate_trajectories(request: ValidateRequest, watcher: Watcher) -> JudgedP
     watcher.step("reading", None)
     reference, estimate = (
         read_trajectory(
-            file, request.trajectory, mapping=trajectory_columns(file, request.columns), which=i
+            file,
+            request.trajectory,
+            mapping=trajectory_columns(file, request.columns),
+            which=i,
+            topic=request.topic_of(i),
         )
         for i, file in enumerate(files)
     )

@@ -93,6 +93,7 @@ def test_poses_without_times_are_matched_by_number_or_not_at_all(run_command, fi
         (["--no-anchor"], "belongs to predicted walks"),
         (["--plane", "xx"], "xx"),
         (["--layout", "rosbag"], "rosbag"),
+        (["--topic", "/odom"], "--topic: belongs to ROS logs; no file is one"),
         (["--max-difference", "-1"], "--max-difference"),
     ],
 )
@@ -118,3 +119,42 @@ def test_a_missing_estimate_is_named(run_command, files, tmp_path):
     ended = run_command("validate", files[0], tmp_path / "none.txt")
     assert ended.code == 1
     assert "none.txt: no such file" in ended.err
+
+
+@pytest.fixture
+def log(tmp_path):
+    """Return a bag with a path on two topics, the second 0.5 m off."""
+    bags = pytest.importorskip("support.written_bags", reason="rosbags is an extra")
+    path = np.column_stack([0.1 * T, 0.05 * T**2, 0.1 * T])
+    shifted = path + np.array([0.3, 0.4, 0.0])
+    parts = bags.stamped(T, path, topic="/truth"), bags.odometry(T, shifted)
+    return bags.write_bag(tmp_path / "log", *parts)
+
+
+def test_two_topics_of_a_ros_log_are_validated(run_command, log, tmp_path):
+    topics = ["--topic", "/truth", "--topic", "/odom"]
+    ended = run_command("validate", log, log, *topics, "--out", tmp_path / "out")
+    assert ended.code == 0, ended.err
+    table = pd.read_csv(tmp_path / "out/metrics.csv")
+    assert table["in"].tolist() == ["plane xy", "space"]
+    np.testing.assert_allclose(table["ate_m"], 0.5, atol=1e-7)
+    np.testing.assert_allclose(table[["ate_aligned_m", "rotation_rms_deg"]], 0, atol=1e-6)
+    manifest = json.loads((tmp_path / "out/manifest.json").read_text())
+    assert manifest["layouts"] == ["ros", "ros"]
+    assert any(name.endswith("metadata.yaml") for name in manifest["inputs"])
+
+
+@pytest.mark.parametrize(
+    ("more", "code", "message"),
+    [
+        ([], 1, "has poses on the topics /odom, /truth; choose one with --topic NAME"),
+        (["--topic", "/trut"], 1, "has no poses on topic /trut; did you mean '/truth'?"),
+        (["--topic", "/odom", "--times", "t.txt"], 2, "whose messages have times"),
+        (["--topic", "/odom", "--layout", "tum"], 2, "is a ROS log; leave the option out"),
+    ],
+)
+def test_what_a_ros_log_does_not_tell_is_asked_for(run_command, log, tmp_path, more, code, message):
+    ended = run_command("validate", log, log, *more, "--out", tmp_path / "out")
+    assert ended.code == code
+    assert message in ended.err
+    assert not (tmp_path / "out").exists()

@@ -22,7 +22,8 @@ Fast: TypeAlias = Annotated[
     bool, Option("--fast", help="Run a simulated rig with a board faster than real time.")
 ]
 Seed: TypeAlias = Annotated[
-    int, Option(min=0, help="Seed of a simulated rig: load cell errors, noise, slip wander.")
+    int,
+    Option(min=0, help="Which simulated rig: errors of its load cell; noise is new in each run."),
 ]
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Open the rig that a command line names, real or simulated, for an experiment."""
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -92,6 +93,7 @@ def rig_at_hand(
     address: str,
     *,
     seed: int = 0,
+    run: str = "",
     fast: bool = False,
     imperfections: RigImperfections | None = None,
 ) -> Iterator[RigAtHand]:
@@ -99,7 +101,9 @@ def rig_at_hand(
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        seed: Seed of a twin's randomness.
+        seed: Seed of a twin: which rig it is, load cell and all.
+        run: Name of this use of a twin; noise, slip wander, the zero at power-on and the first
+            angle of the ground disc are drawn anew for another name.
         fast: Run a twin in simulated time, as fast as possible; only a profile with a board.
         imperfections: Errors of a twin's load cell, discs and sensors; by default drawn from the
             seed, so that each seed is another rig and an equal seed the same rig.
@@ -119,7 +123,7 @@ def rig_at_hand(
             raise SettingsError("works only with a simulated rig; omit it", key="--fast")
         yield RigAtHand(make_bench(open_rig(address)), profiles)
         return
-    rng = np.random.default_rng(seed)
+    rng = _run_rng(seed, run)
     rig = SimulatedRig(
         plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
         imperfections=imperfections or draw_imperfections(np.random.default_rng([seed, 1])),
@@ -135,6 +139,13 @@ def rig_at_hand(
         return
     with simulated_rig_devices(profile, rig, rng=rng) as devices:
         yield RigAtHand(make_bench(devices), profiles, twin=rig, truth=truth)
+
+
+def _run_rng(seed: int, run: str) -> np.random.Generator:
+    """Return the random generator of what changes from run to run of one simulated rig."""
+    if not run:
+        return np.random.default_rng(seed)
+    return np.random.default_rng([seed, int.from_bytes(hashlib.sha256(run.encode()).digest())])
 
 
 def _fast_bench(

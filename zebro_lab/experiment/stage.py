@@ -19,7 +19,12 @@ from rig.experiment.steps import require_allowed
 from rig.experiment.supervision import supervised
 from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.folder import ExperimentFolder
-from zebro_lab.experiment.journal import JOURNAL_FILE, Journal, begin_or_resume
+from zebro_lab.experiment.journal import (
+    JOURNAL_FILE,
+    Journal,
+    begin_or_resume,
+    plan_fingerprint,
+)
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.points import Finished, finished_points, holds_points, point_sources
 from zebro_lab.experiment.request import RigRunRequest
@@ -33,7 +38,7 @@ from zebro_lab.files.errors import (
     SettingsError,
     ZebroLabError,
 )
-from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.runs.manifest import MANIFEST_FILE, RunManifest
 
 CONTROL_FILE: Final = "control.json"
 LOCK_FILE: Final = ".experiment.lock"
@@ -59,7 +64,9 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
             de-energised.
     """
     plan = read_plan(request.plan)
-    with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
+    with rig_at_hand(
+        request.rig, seed=request.seed, run=_run_name(request), fast=request.fast
+    ) as rig:
         require_allowed(plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)
         with _owned(request.data):
@@ -77,6 +84,17 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
                     plan, bench=rig.bench, load=load, sink=folder, control=control,
                     watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
                 )  # fmt: skip
+
+
+def _run_name(request: RigRunRequest) -> str:
+    """Name this run, for the noise of a twin, by folder, plan and attempts that are there already.
+
+    So a second experiment on one simulated rig, or one that is resumed, has noise of its own, and
+    the same command repeated from nothing gives the same data.
+    """
+    attempts = len(list(request.data.glob(f"*/{MANIFEST_FILE}")))
+    plan = plan_fingerprint(request.plan.read_text(encoding="utf-8"))
+    return f"{request.data.resolve().name} {plan} {attempts}"
 
 
 def _begin(request: RigRunRequest, *, source: str) -> tuple[Journal, Finished]:

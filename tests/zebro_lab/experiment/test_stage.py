@@ -24,6 +24,7 @@ from zebro_lab.experiment.journal import read_journal
 from zebro_lab.experiment.stage import command_run
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.runs.folder import find_runs, read_slip_rig_run
+from zebro_lab.runs.manifest import read_manifest
 
 WATCHDOG = 2.0
 """Ten times a real one's [s]: a busy machine holds a process up for longer than that."""
@@ -55,6 +56,38 @@ def test_a_stopped_experiment_is_resumed_where_it_was(lab, plan, tmp_path):
     again = lab.run(plan, data, resume=True)
     assert (again.completed, again.finished, again.attempts) == (True, 6, 3)
     assert read_rig_data([data]).samples.n_runs == 6
+
+
+def shorten(plan):
+    """Leave two equal points of a plan."""
+    text = plan.read_text().replace("slips = [0.02, 0.1, 0.6]", "slips = [0.6, 0.6]")
+    plan.write_text(text.replace("loads = [4.0, 8.0]", "loads = [4.0]"))
+
+
+def forces_of(data):
+    return [read_slip_rig_run(run).table.traction_force for run in find_runs(data)]
+
+
+def test_a_second_run_on_a_simulated_rig_has_its_own_noise_on_the_same_rig(lab, plan, tmp_path):
+    shorten(plan)
+    folders = [tmp_path / "data", tmp_path / "again" / "data", tmp_path / "further"]
+    for data in folders:
+        lab.run(plan, data, seed=3)
+    first, again, further = map(forces_of, folders)
+    np.testing.assert_array_equal(np.concatenate(first), np.concatenate(again))
+    assert not np.array_equal(first[0][:20], further[0][:20])
+    rigs = [read_manifest(find_runs(data)[0]).truth["rig"]["imperfections"] for data in folders]
+    assert rigs[0] == rigs[1] == rigs[2]
+
+
+def test_a_resumed_run_does_not_repeat_the_noise_of_what_was_measured_before(lab, plan, tmp_path):
+    shorten(plan)
+    data, control = tmp_path / "data", Control()
+    stop = lab.StopAfter(1, lambda: control.stop.request(StopCategory.SAFE, "planted"))
+    lab.run(plan, data, watcher=stop, control=control)
+    lab.run(plan, data, resume=True)
+    before, after, *_ = forces_of(data)
+    assert not np.array_equal(before[:20], after[:20])
 
 
 def test_an_experiment_is_not_begun_twice_nor_resumed_with_another_plan(lab, plan, tmp_path):

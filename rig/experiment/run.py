@@ -36,12 +36,14 @@ class Outcome:
         finished: Number of accepted points, those of an earlier run included.
         refused: Numbers of the points of which every attempt was rejected.
         attempts: Number of attempts at points in this run.
+        source: Source of the samples, "real" or "sim:WHAT".
     """
 
     reason: str
     finished: int
     refused: tuple[int, ...]
     attempts: int
+    source: str
 
     @property
     def completed(self) -> bool:
@@ -139,7 +141,8 @@ class _Run:
             failed = self._finish(reason)
         if failed is not None:
             raise failed
-        return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
+        refused, source = tuple(self._refused), self._bench.source
+        return Outcome(reason, len(self._done), refused, self._attempts, source)
 
     def _execute_plan(self) -> str:
         """Carry out the steps, and a stop that ends the run; return the reason of `Outcome`."""

@@ -31,11 +31,13 @@ class Weighing:
         forces: True forces, the first one 0 for no load, n values [N].
         readings: Mean of the normal channel under each force, n values [N].
         errors: Standard error of each mean, n values [N].
+        source: Source of the readings, "real" or "sim:WHAT".
     """
 
     forces: tuple[float, ...]
     readings: tuple[float, ...]
     errors: tuple[float, ...]
+    source: str = "real"
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ def weigh(
         mean, error = _read(poll, duration, clock)
         readings.append(mean)
         errors.append(error)
-    return Weighing((0.0, *forces), tuple(readings), tuple(errors))
+    return Weighing((0.0, *forces), tuple(readings), tuple(errors), bench.source)
 
 
 def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:

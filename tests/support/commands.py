@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import pytest
 
-from zebro_lab.main import app
+from zebro_lab.main import app, slip_app
 from zebro_lab.terminal.ending import run
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
@@ -25,12 +25,18 @@ class Ended(NamedTuple):
 
 
 def within_process(monkeypatch, capsys) -> Callable[..., Ended]:
-    """Return what runs `zebro-lab` with arguments in this process, which saves its start."""
+    """Return what runs `zebro-lab` with arguments in this process, which saves its start.
+
+    The first argument `calibrate-slip` runs that command.
+    """
 
     def run_with(*arguments: object) -> Ended:
-        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
+        words, command = [COMMAND, *map(str, arguments)], app
+        if words[1] == "calibrate-slip":
+            words, command = words[1:], slip_app
+        monkeypatch.setattr(sys, "argv", words)
         with pytest.raises(SystemExit) as ended:
-            run(app)
+            run(command)
         return Ended(int(ended.value.code or 0), *capsys.readouterr())
 
     return run_with

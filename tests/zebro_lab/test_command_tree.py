@@ -52,15 +52,7 @@ NEEDED_TOO = {
 }
 """Options that are required by rules of a command, not of the parser."""
 NO_DOCUMENT = {
-    "zebro-lab record": "its display is live, and run.json has the results",
-    "zebro-lab rig run": "its display is live, and the folder has the results",
-    "zebro-lab rig say": "it sends a command",
-    "zebro-lab rig weigh": "it asks a person while it runs",
-    "zebro-lab zebro check": "it asks a person while it runs, and writes a profile",
-    "zebro-lab camera clock": "it shows a picture",
-    "zebro-lab sim zebro": "it serves a device until it is stopped",
-    "zebro-lab sim rig": "it serves a device until it is stopped",
-    "zebro-lab sim imu": "it serves a device until it is stopped",
+    "zebro-lab camera clock": "it shows a picture on the terminal, and has no results",
 }
 """Commands without `--json`, and why."""
 NUMBER = r"(-?[\d.e+-]+)"

@@ -5,6 +5,7 @@ import json
 import tomllib
 
 import numpy as np
+import pytest
 
 from support.bundled_walk import PHOTOS, WALK
 from support.compared_folders import calibration
@@ -65,10 +66,10 @@ def test_validate_of_two_trajectories_has_their_errors(run_command, tmp_path):
 
 def test_a_fit_of_few_steps_has_its_verdict_and_exit_code_inside(run_command, sweep, tmp_path):
     ended = run_command(
-        "calibrate", sweep, "--out", tmp_path / "out", "--law", "coulomb-stribeck",
+        "calibrate-slip", sweep, "--out", tmp_path / "out", "--law", "coulomb-stribeck",
         "--block-length", 150, "--max-steps", 100, "--threads", 1, "--json", "--quiet",
     )  # fmt: skip
-    found = document(ended, "calibrate", {"folder", "calibration"}, code=3)
+    found = document(ended, "calibrate-slip", {"folder", "calibration"}, code=3)
     assert found["simulated"]
     slip = tomllib.loads((tmp_path / "out" / "slip.toml").read_text())
     assert found["calibration"].keys() == slip.keys()
@@ -82,8 +83,10 @@ def test_a_run_is_listed_and_its_exclusion_is_told(run_command, tmp_path):
     assert found["excluded"]["why"] == "belt slipped"
     found = document(run_command("runs", tmp_path, "--json"), "runs", {"runs"})
     (listed,) = found["runs"]
-    assert listed.keys() == {"name", "state", "duration", "samples", "source"}
+    assert listed.keys() == {"name", "state", "duration_s", "samples", "source"}
     assert listed["state"] == "excluded (belt slipped)"
+    assert listed["duration_s"] > 0
+    assert listed["samples"] == {"/board/raw": 200}
     ended = run_command("exclude", run, "--undo", "--json")
     assert document(ended, "exclude", {"folder", "excluded"})["excluded"] is None
 
@@ -121,6 +124,7 @@ def test_rig_check_has_a_verdict_of_each_run_and_its_exit_code(run_command, tmp_
     run = make_run(tmp_path / "data")
     ended = run_command("rig", "check", run, "--slip", curve, "--json")
     found = document(ended, "rig check", {"runs"}, code=ended.code)
+    assert found["simulated"]
     (only,) = found["runs"]
     assert only.keys() == {
         "name", "slip_ratio", "normal_force_N", "traction_N", "expected_N", "sd_N", "verdict"
@@ -153,3 +157,63 @@ def test_annotations_are_counted(run_command, tmp_path):
     ended = run_command("annotate", PHOTOS, "--out", out, *given, "--json", "--quiet")
     found = document(ended, "annotate", {"written", "clicks", "corrections"})
     assert (found["written"], found["clicks"], found["corrections"]) == ([str(out)], 1, 1)
+
+
+def test_a_recording_is_told_as_its_folder_tells_it(run_command, tmp_path):
+    given = ("record", "--zebro", "sim", "--duration", 0.3, "--label", "x", "--data", tmp_path)
+    ended = run_command(*given, "--json")
+    found = document(ended, "record", {"folder", "run"})
+    (folder,) = tmp_path.iterdir()
+    assert found["simulated"]
+    assert found["folder"] == str(folder)
+    assert found["run"] == json.loads((folder / "run.json").read_text())
+    assert found["run"]["streams"]["/legs/raw"] > 0
+    assert "recording completed; run folder" in ended.err
+
+
+def test_a_recording_that_fails_has_no_document(run_command, tmp_path):
+    given = ("record", "--zebro", "zebro-100-serial@/dev/no", "--label", "x", "--data", tmp_path)
+    ended = run_command(*given, "--json", "--quiet")
+    assert (ended.code, ended.out, ended.err.count("\n")) == (1, "", 1)
+
+
+def test_an_experiment_lists_its_runs_and_their_results(run_command, tmp_path):
+    given = ("rig", "run", short_plan(tmp_path), "--rig", "sim", "--fast", "--data")
+    ended = run_command(*given, tmp_path / "data", "--json")
+    keys = {"folder", "source", "reason", "finished", "refused", "attempts", "latched", "runs"}
+    found = document(ended, "rig run", keys)
+    assert found["simulated"]
+    assert (found["reason"], found["finished"], found["latched"]) == ("completed", 2, False)
+    assert "point-0002" in ended.err
+    assert len(found["runs"]) == 2
+    for run in found["runs"]:
+        assert (tmp_path / "data" / run["name"] / "run.json").is_file()
+        assert run["accepted"]
+        assert run["normal_force_N"] == pytest.approx(8, abs=1)
+    again = run_command(*given, tmp_path / "data", "--resume", "--json", "--quiet")
+    assert again.err == ""
+    assert len(document(again, "rig run", keys)["runs"]) == 2
+
+
+def test_a_weighing_is_told_in_numbers(run_command, tmp_path):
+    given = ("rig", "weigh", "--rig", "sim", "--fast", "--masses", "0.2,1", "--data", tmp_path)
+    found = document(run_command(*given, "--json", "--quiet"), "rig weigh", {
+        "written", "weights", "slope", "slope_sd", "zero_N", "zero_sd_N", "largest_residual_N",
+        "gain_sd", "bias_sd_N",
+    })  # fmt: skip
+    assert found["simulated"]
+    assert [each["force_N"] for each in found["weights"]] == pytest.approx([0, 1.96133, 9.80665])
+    load_cell = tomllib.loads((tmp_path / "columns.toml").read_text())["load_cell"]
+    assert load_cell["gain_sd"] == pytest.approx(found["gain_sd"], rel=0.01)
+
+
+def test_a_simulated_device_tells_its_port_while_it_is_served(run_command, monkeypatch, capsys):
+    told = []
+    monkeypatch.setattr(
+        "zebro_lab.recording.simulate_stage.wait_until",
+        lambda *_, **__: told.append(capsys.readouterr().out),
+    )
+    assert run_command("sim", "zebro", "--json", "--quiet") == (0, "", "")
+    found = json.loads(told[0])
+    assert (found["command"], found["source"]) == ("sim zebro", "sim:zebro")
+    assert found["address"] == f"zebro-100-serial@{found['ports']['robot']}"

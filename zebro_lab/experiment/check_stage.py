@@ -12,7 +12,7 @@ import numpy as np
 from model.bayes.samples import SlipSamples
 from model.slip.curve import SlipCurve
 from model.slip.law import Array
-from zebro_lab.calibration.folder import read_slip
+from zebro_lab.calibration.folder import read_slip_file
 from zebro_lab.calibration.rig_data import read_rig_data
 
 _LOG = logging.getLogger(__name__)
@@ -58,9 +58,20 @@ class CheckedRun:
         return "DRIFTED" if abs(self.deviation) > SUSPICIOUS else ""
 
 
-def check_runs(
-    data: Sequence[Path], calibration: Path, *, zero_sd: float = 0.1
-) -> tuple[CheckedRun, ...]:
+@dataclass(frozen=True)
+class DriftCheck:
+    """Comparison of runs with a calibration.
+
+    Attributes:
+        runs: Comparison of each run, in the order in which the runs were read.
+        sources: Source of the runs and that of the calibration, such as "real" or "sim:what".
+    """
+
+    runs: tuple[CheckedRun, ...]
+    sources: tuple[str, str]
+
+
+def check_runs(data: Sequence[Path], calibration: Path, *, zero_sd: float = 0.1) -> DriftCheck:
     """Compare the mean traction of each run with the calibrated slip curve.
 
     Args:
@@ -69,19 +80,21 @@ def check_runs(
         zero_sd: Standard deviation of the zero offset of traction between runs [N].
 
     Returns:
-        Comparison of each run, in the order in which the runs were read.
+        The comparisons.
 
     Raises:
         ZebroLabError: Data or calibration cannot be read.
     """
-    curve = read_slip(calibration)
+    calibrated = read_slip_file(calibration)
+    curve = calibrated.curve
     read = read_rig_data(data, slip_definition=str(curve.definition))
     for note in read.repeated:
         _LOG.warning("%s", note)
     samples = read.samples
-    return tuple(
+    runs = tuple(
         _checked(samples, curve, index, zero_sd) for index in range(len(samples.run_names))
     )
+    return DriftCheck(runs, (read.source, calibrated.source))
 
 
 def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float) -> CheckedRun:

@@ -8,14 +8,13 @@ import typer
 
 from zebro_lab.experiment.request import Data, RigRunRequest, WeighRequest
 from zebro_lab.terminal.command_classes import Application
-from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from rig.experiment.control import Control
     from rig.experiment.run import Outcome
-    from zebro_lab.experiment.check_stage import CheckedRun
+    from rig.experiment.weigh import GainCheck, Weighing
     from zebro_lab.experiment.plan_stage import Foreseen
 
 STOPPED = 130
@@ -59,7 +58,7 @@ def plan(
 
 @app.command(epilog=EPILOG)
 @request_command()
-def run(request: RigRunRequest) -> None:
+def run(request: RigRunRequest, output: Output = TEXT) -> None:
     """Run a plan; record each point to a run folder, as calibrate-slip reads them."""
     from rich.console import Console
 
@@ -69,12 +68,14 @@ def run(request: RigRunRequest) -> None:
 
     control = Control()
     try:
-        with experiment_screen(Console(highlight=False, soft_wrap=True), control) as screen:
+        beside = output.as_json or output.quiet
+        console = Console(stderr=beside, highlight=False, soft_wrap=True)
+        with experiment_screen(console, control, quiet=output.quiet) as screen:
             outcome = run_experiment(request, screen, control)
     finally:
         if control.stop.latched:
             _say_latched(request.data)
-    _end(outcome, request.data, latched=control.stop.latched)
+    _end(outcome, request.data, output, latched=control.stop.latched)
 
 
 def _say_latched(data: Path) -> None:
@@ -87,9 +88,11 @@ def _say_latched(data: Path) -> None:
     )
 
 
-def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
+def _end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
     """Print how an experiment ended, and exit with 0, `REFUSED` or `STOPPED`."""
-    from zebro_lab.terminal.last_words import leave_at_once, say_in_time
+    from zebro_lab.experiment.documents import experiment_in_numbers
+    from zebro_lab.experiment.journal import read_journal
+    from zebro_lab.terminal.last_words import leave_at_once
 
     words = (
         f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} points "
@@ -99,7 +102,11 @@ def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
         words += "\nto continue, repeat the command with --resume"
     refused = REFUSED if outcome.refused else 0
     code = refused if outcome.completed else STOPPED
-    if not say_in_time(words):
+    told = output.say_in_time(words)
+    if output.as_json:  # who reads it is waited for: the rig is at rest by now
+        content = experiment_in_numbers(outcome, read_journal(data), data)
+        output.document("rig run", {**content, "latched": latched}, exit_code=code)
+    if not told:
         leave_at_once(code)
     raise typer.Exit(code)
 
@@ -115,41 +122,55 @@ def command(
         ),
     ],
     data: Data = Path("experiment"),
+    output: Output = TEXT,
 ) -> None:
     """Send a command to the running experiment that records to DIR."""
     from zebro_lab.experiment.stage import command_run
 
-    say(command_run(data, " ".join(words)))
+    reply = command_run(data, " ".join(words))
+    output.say(reply)
+    output.document("rig say", {"reply": reply})
 
 
 @app.command()
 @request_command()
-def weigh(request: WeighRequest) -> None:
+def weigh(request: WeighRequest, output: Output = TEXT) -> None:
     """Check the load cell with known weights; the result is the gain's prior in a calibration."""
     from rig.experiment.control import Control
-    from zebro_lab.experiment.weigh_stage import render_load_cell, weigh_masses
+    from zebro_lab.experiment.documents import weighing_in_numbers
+    from zebro_lab.experiment.weigh_stage import weigh_masses
 
     control = Control()
-    weighing, check, written = weigh_masses(request, _Asker(control), control)
+    weighing, check, written = weigh_masses(request, _Asker(control, output), control)
+    _print_weighing(weighing, check, written, output)
+    output.document("rig weigh", weighing_in_numbers(weighing, check, written))
+
+
+def _print_weighing(
+    weighing: "Weighing", check: "GainCheck", written: Path | None, output: Output
+) -> None:
+    from zebro_lab.experiment.weigh_stage import render_load_cell
+
     for force, reading, error in zip(
         weighing.forces, weighing.readings, weighing.errors, strict=True
     ):
-        say(f"weight of {force:8.3f} N: the load cell reads {reading:8.4f} +/- {error:.4f} N")
-    say(
+        output.say(
+            f"weight of {force:8.3f} N: the load cell reads {reading:8.4f} +/- {error:.4f} N"
+        )
+    output.say(
         f"reading per force {check.slope:.5f} +/- {check.slope_sd:.5f} (expected 1), unloaded "
         f"{check.zero:.4f} +/- {check.zero_sd:.4f} N, largest residual {check.misfit:.4f} N"
     )
     if abs(check.slope - 1) > 2 * check.slope_sd:
-        say(
+        output.say(
             "the gain is wrong: in the rig's profile (a copy, if it is a shipped one) multiply "
             f"counts_per_force by {abs(check.slope):.5f}"
             f"{', reverse the sign of the normal force' if check.slope < 0 else ''}, then run "
             "`zebro-lab rig weigh` again with it"
         )
-    if written is None:
-        typer.echo(render_load_cell(check).rstrip())
-    else:
-        say(f"wrote {written}")
+    lines = render_load_cell(check).splitlines() if written is None else [f"wrote {written}"]
+    for line in lines:
+        output.say(line)
 
 
 @app.command()
@@ -171,8 +192,10 @@ def check(
 ) -> None:
     """Compare the traction of new runs with a calibration to detect drift of the rig."""
     from zebro_lab.experiment.check_stage import SUSPICIOUS, check_runs
+    from zebro_lab.experiment.documents import checked_in_numbers
 
-    runs = check_runs(data, slip, zero_sd=zero_sd)
+    done = check_runs(data, slip, zero_sd=zero_sd)
+    runs = done.runs
     for found in runs:
         output.say(
             f"{found.name}: mean slip {found.slip:.4f}, normal force {found.load:.2f} N, traction "
@@ -184,34 +207,27 @@ def check(
         f"{drifted} of {len(runs)} runs deviate from the calibration by over {SUSPICIOUS:g} sd"
     )
     code = REFUSED if any(found.verdict for found in runs) else 0
-    output.document("rig check", {"runs": [_in_numbers(run) for run in runs]}, exit_code=code)
+    simulated = any("sim:" in source for source in done.sources)
+    content = {"simulated": simulated, "runs": [checked_in_numbers(run) for run in runs]}
+    output.document("rig check", content, exit_code=code)
     if code:
         raise typer.Exit(REFUSED)
-
-
-def _in_numbers(run: "CheckedRun") -> dict[str, object]:
-    return {
-        "name": run.name,
-        "slip_ratio": run.slip,
-        "normal_force_N": run.load,
-        "traction_N": run.traction,
-        "expected_N": run.expected,
-        "sd_N": run.sd,
-        "verdict": run.verdict or "ok",
-    }
 
 
 class _Asker:
     """Prompter of the operator: shows each new instruction once and confirms on Enter."""
 
-    def __init__(self, control: "Control") -> None:
+    def __init__(self, control: "Control", output: Output) -> None:
         self._control = control
+        self._output = output
         self._asked = ""
 
     def __call__(self, text: str, normal: float) -> None:
         if text and text != self._asked:
             self._asked = text
-            typer.prompt(f"{text} with Enter (now {normal:.3f} N)", default="", show_default=False)
+            question = f"{text} with Enter (now {normal:.3f} N)"
+            with self._output.asking():
+                typer.prompt(question, default="", show_default=False)
             self._control.confirm()
 
 

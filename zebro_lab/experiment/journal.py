@@ -10,7 +10,7 @@ import contextlib
 import errno
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -40,12 +40,15 @@ class Journal:
         accepted: Number of the accepted point, by name of its run folder.
         folders: Names of the run folders that were closed, their point accepted or not.
         latched: Reason of the last emergency stop or damaged line since a reset; None without.
+        points: Entries of the run folders that were closed, in order, as `ExperimentFolder` writes
+            them.
     """
 
     plan: str
     accepted: Mapping[str, int]
     folders: frozenset[str]
     latched: str | None
+    points: Sequence[Mapping[str, Any]]
 
 
 def plan_fingerprint(text: str) -> str:
@@ -163,6 +166,7 @@ def read_journal(data: Path) -> Journal:
         },
         folders=frozenset(str(entry.get("folder")) for entry in points),
         latched=latched,
+        points=points,
     )  # fmt: skip
 
 

@@ -183,6 +183,28 @@ class ExperimentScreen(ExperimentWatcher):
         self._over.set()
 
 
+class QuietScreen(ExperimentScreen):
+    """Prints only what waits for a person: instructions, and that the run holds.
+
+    Args:
+        console: Console to print on.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__(console, None)
+
+    def changed(self, condition: Condition) -> None:
+        """Print that the run holds, and with which key it goes on."""
+        if condition.state is RigState.HOLDING:
+            super().changed(condition)
+
+    def notice(self, text: str) -> None:
+        """Print nothing."""
+
+    def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
+        """Print nothing."""
+
+
 def slip_chart(points: list[tuple[float, float, float]]) -> str:
     """Plot friction over slip ratio as text, one mark per load, below a line with the ranges.
 
@@ -209,18 +231,22 @@ def slip_chart(points: list[tuple[float, float, float]]) -> str:
 
 
 @contextmanager
-def experiment_screen(console: Console, control: Control) -> Iterator[ExperimentScreen]:
+def experiment_screen(
+    console: Console, control: Control, *, quiet: bool = False
+) -> Iterator[ExperimentScreen]:
     """Show an experiment on a console while the body runs, and execute keyboard commands.
 
     Args:
         console: Console to draw on; keys are read only if it and standard input are terminals.
         control: Mailbox of the run; receives commands, and failures of screen or keyboard.
+        quiet: Print only what waits for a person.
 
     Raises:
         PartFailed: The thread of the screen or of the keyboard cannot be started.
     """
-    live = Live(console=console, auto_refresh=False) if console.is_terminal else None
-    screen = ExperimentScreen(console, live)
+    is_drawn = console.is_terminal and not quiet
+    live = Live(console=console, auto_refresh=False) if is_drawn else None
+    screen = QuietScreen(console) if quiet else ExperimentScreen(console, live)
 
     def draw() -> None:
         if live is None:

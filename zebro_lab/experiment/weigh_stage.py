@@ -73,15 +73,19 @@ def weigh_masses(
     return weighing, check, target
 
 
-def render_load_cell(check: GainCheck) -> str:
-    """Format a load cell check as the text of `columns.toml`: `[load_cell]` gain_sd, bias_sd.
+def bias_sd(check: GainCheck) -> float:
+    """Return the largest of the zero's standard deviation, the misfit and 0.001 N [N].
 
-    `bias_sd` is the largest of the zero's standard deviation, the misfit and 0.001 N: each run is
-    tared, so that only the zero's error stays.
+    Each run is tared, so that only the zero's error stays.
     """
+    return max(check.zero_sd, check.misfit, 1e-3)
+
+
+def render_load_cell(check: GainCheck) -> str:
+    """Format a load cell check as the text of `columns.toml`: `[load_cell]` gain_sd, bias_sd."""
     return (
         "# From a check of the load cell with known weights.\n"
         "[load_cell]\n"
         f"gain_sd = {check.gain_sd:.3g}\n"
-        f'bias_sd = "{max(check.zero_sd, check.misfit, 1e-3):.3g} N"\n'
+        f'bias_sd = "{bias_sd(check):.3g} N"\n'
     )

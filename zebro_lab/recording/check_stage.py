@@ -58,11 +58,13 @@ class Checked:
     Attributes:
         file: File of the written profile.
         profile: Content of the written profile.
+        source: Source of the leg angles, "real" or "sim:WHAT".
         lift_off: Lift-off angle; None where no touchdown angle was given.
     """
 
     file: Path
     profile: LegProfile
+    source: str
     lift_off: LiftOffFound | None = None
 
 
@@ -97,7 +99,7 @@ def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_
         found = None
         if request.touchdown_deg is not None:
             found = _lift_off(robot, profile, request.touchdown_deg, person, clock)
-    return Checked(request.save, profile, found)
+    return Checked(request.save, profile, robot.source, found)
 
 
 @contextmanager

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab record`: devices into a run folder."""
 
+import json
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import typer
 
 from zebro_lab.recording.request import RecordRequest
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
@@ -26,21 +29,35 @@ STOPPED = 130
 
 
 @request_command()
-def record(request: RecordRequest) -> None:
+def record(request: RecordRequest, output: Output = TEXT) -> None:
     """Record a robot, IMUs or the slip rig into a new run folder in DIR: run.json, log.mcap."""
     from rich.console import Console
 
     from zebro_lab.recording import stage
     from zebro_lab.recording.screen import record_screen
     from zebro_lab.terminal.compiling import announcing_compilation
-    from zebro_lab.terminal.last_words import leave_at_once, say_in_time
+    from zebro_lab.terminal.last_words import leave_at_once
 
-    with record_screen(Console(stderr=True)) as screen, announcing_compilation():
+    announcing = nullcontext() if output.quiet else announcing_compilation()
+    with record_screen(Console(stderr=True, quiet=output.quiet)) as screen, announcing:
         recorded = stage.record(request, screen)
         code = STOPPED if screen.signalled else 0
-        if not (screen.close() and say_in_time(_report(recorded))):
-            leave_at_once(code)
+        told = screen.close() and output.say_in_time(_report(recorded))
+    _print_document(recorded, output, code)
+    if not told:
+        leave_at_once(code)
     raise typer.Exit(code)
+
+
+def _print_document(recorded: "Recorded", output: Output, code: int) -> None:
+    """Print the contents of the run's `run.json`; who reads them is waited for, by then."""
+    if output.as_json:
+        from zebro_lab.runs.manifest import manifest_text
+
+        run = json.loads(manifest_text(recorded.manifest))
+        simulated = "sim:" in recorded.manifest.source
+        content = {"folder": recorded.folder, "simulated": simulated, "run": run}
+        output.document("record", content, exit_code=code)
 
 
 def _report(recorded: "Recorded") -> str:

@@ -8,7 +8,7 @@ import typer
 
 from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
 from zebro_lab.terminal.command_classes import Application
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
@@ -26,37 +26,44 @@ Duration = Annotated[
 
 @app.command()
 @request_command()
-def zebro(request: ZebroTwinRequest, duration: Duration = None) -> None:
+def zebro(request: ZebroTwinRequest, duration: Duration = None, output: Output = TEXT) -> None:
     """Simulate the robot's legs, which walk a tripod gait or the leg angles of --play."""
     from zebro_lab.recording.simulate_stage import serve_zebro
 
-    _serve(serve_zebro(request), request.profile, duration)
+    _serve(serve_zebro(request), "sim zebro", request.profile, duration, output)
 
 
 @app.command()
 @request_command()
-def imu(request: ImuTwinRequest, duration: Duration = None) -> None:
+def imu(request: ImuTwinRequest, duration: Duration = None, output: Output = TEXT) -> None:
     """Simulate an inertial measurement unit on a robot that walks."""
     from zebro_lab.recording.simulate_stage import serve_imu
 
-    _serve(serve_imu(request), request.profile, duration)
+    _serve(serve_imu(request), "sim imu", request.profile, duration, output)
 
 
 @app.command()
 @request_command()
-def rig(request: RigTwinRequest, duration: Duration = None) -> None:
+def rig(request: RigTwinRequest, duration: Duration = None, output: Output = TEXT) -> None:
     """Simulate the slip rig, which repeats a slip sweep until a program commands its discs."""
     from zebro_lab.recording.simulate_stage import serve_rig
 
-    _serve(serve_rig(request), request.profile, duration)
+    _serve(serve_rig(request), "sim rig", request.profile, duration, output)
 
 
-def _serve(serving: "AbstractContextManager[Served]", profile: str, duration: float | None) -> None:
+def _serve(
+    serving: "AbstractContextManager[Served]",
+    command: str,
+    profile: str,
+    duration: float | None,
+    output: Output,
+) -> None:
     from zebro_lab.recording.simulate_stage import wait_until
-    from zebro_lab.terminal.progress import progress_bar
 
-    with progress_bar() as watcher, serving as served:
+    with output.progress() as watcher, serving as served:
         for what, place in served.places.items():
-            say(f"SIMULATED {what} ({served.source}), profile {profile}: {place}")
-        say(f"to record the simulated device, use the address {served.address}")
+            output.say(f"SIMULATED {what} ({served.source}), profile {profile}: {place}")
+        output.say(f"to record the simulated device, use the address {served.address}")
+        content = {"simulated": True, "source": served.source, "profile": profile}
+        output.document(command, {**content, "ports": served.places, "address": served.address})
         wait_until(watcher.stop_requested, duration=duration)

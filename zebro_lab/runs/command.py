@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab runs` and `exclude`: list runs, and leave runs out of calibrations."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +11,7 @@ from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from zebro_lab.runs.manifest import RunManifest
+    from zebro_lab.runs.stage import ListedRun
 
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder to search for run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
@@ -26,13 +26,28 @@ def runs(data: DataDir, output: Output = TEXT) -> None:
 
     listed = list_runs(data)
     for run in listed:
-        output.say(
-            f"{run.name}  {run.state}  {run.duration}  {run.samples}  "
-            f"{'SIMULATED ' if run.source.startswith('sim:') else ''}{run.source}"
-        )
+        output.say(_in_words(run))
     output.say(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
-    simulated = any("sim:" in run.source for run in listed)
-    output.document("runs", {"simulated": simulated, "runs": [asdict(run) for run in listed]})
+    simulated = any("sim:" in (run.source or "") for run in listed)
+    output.document("runs", {"simulated": simulated, "runs": [_in_numbers(run) for run in listed]})
+
+
+def _in_words(run: "ListedRun") -> str:
+    lasted = "-" if run.duration is None else f"{run.duration:.1f} s"
+    samples = ", ".join(f"{count} {topic}" for topic, count in run.samples.items()) or "-"
+    source = run.source or "-"
+    simulated = "SIMULATED " if source.startswith("sim:") else ""
+    return f"{run.name}  {run.state}  {lasted}  {samples}  {simulated}{source}"
+
+
+def _in_numbers(run: "ListedRun") -> dict[str, object]:
+    return {
+        "name": run.name,
+        "state": run.state,
+        "duration_s": run.duration,
+        "samples": dict(run.samples),
+        "source": run.source,
+    }
 
 
 @request_command()

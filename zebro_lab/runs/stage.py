@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab runs`: summarise all run folders below a folder."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
@@ -14,21 +15,21 @@ from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 @dataclass(frozen=True)
 class ListedRun:
-    """One run in the list of runs, as text.
+    """One run in the list of runs.
 
     Attributes:
         name: Name of the run folder.
         state: State of the run, its exclusions with reasons, or why it cannot be read.
-        duration: Time from start to stop with unit s; `-` without a stop.
-        samples: Number of samples of each topic; `-` when unknown.
-        source: Where the data come from.
+        duration: Time from start to stop [s]; None without a stop.
+        samples: Number of samples of each topic; empty when unknown.
+        source: Where the data come from; None if the run cannot be read.
     """
 
     name: str
     state: str
-    duration: str = "-"
-    samples: str = "-"
-    source: str = "-"
+    duration: float | None = None
+    samples: Mapping[str, int] = field(default_factory=dict)
+    source: str | None = None
 
 
 def list_runs(data: Path) -> list[ListedRun]:
@@ -54,8 +55,7 @@ def _listed(folder: Path) -> ListedRun:
     except (ZebroLabError, OSError) as error:
         return ListedRun(folder.name, f"unreadable: {error}")
     state = _with_exclusions(state, manifest)
-    samples = ", ".join(f"{count} {topic}" for topic, count in streams.items())
-    return ListedRun(folder.name, state, _lasted(manifest), samples or "-", manifest.source)
+    return ListedRun(folder.name, state, _lasted(manifest), streams, manifest.source)
 
 
 def _with_exclusions(state: str, manifest: RunManifest) -> str:
@@ -67,7 +67,7 @@ def _with_exclusions(state: str, manifest: RunManifest) -> str:
     return f"excluded ({why}; before: {before})" if before else f"excluded ({why})"
 
 
-def _lasted(manifest: RunManifest) -> str:
+def _lasted(manifest: RunManifest) -> float | None:
     if manifest.stop is None:
-        return "-"
-    return f"{(datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds():.1f} s"
+        return None
+    return (datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds()

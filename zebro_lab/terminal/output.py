@@ -2,8 +2,9 @@
 """What a command prints: text, one JSON document, or nothing."""
 
 import json
-from collections.abc import Mapping
-from contextlib import AbstractContextManager
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
@@ -52,6 +53,36 @@ class Output:
 
         if not self.quiet:
             say(line, err=self.as_json)
+
+    def say_in_time(self, text: str) -> bool:
+        """Write lines of results where `console` writes, with a timeout.
+
+        Returns:
+            Whether they were written, as of `zebro_lab.terminal.last_words.say_in_time`; True if
+            quiet.
+        """
+        from zebro_lab.terminal.last_words import say_in_time
+
+        return self.quiet or say_in_time(text, err=self.as_json)
+
+    @contextmanager
+    def asking(self) -> Iterator[None]:
+        """Ask questions within, on stderr, where they disturb no document; also if quiet.
+
+        Raises:
+            SettingsError: Standard input has ended before a question was answered.
+        """
+        from zebro_lab.files.errors import SettingsError
+
+        try:
+            with redirect_stdout(sys.stderr):
+                yield
+        except typer.Abort:
+            sys.stderr.write("\n")
+            raise SettingsError(
+                "standard input has ended before this question was answered; run the command at a "
+                "terminal, or pass it all answers, one a line"
+            ) from None
 
     def document(self, command: str, content: Mapping[str, Any], *, exit_code: int = 0) -> None:
         """Print the JSON document, if it is asked for; NaN and infinity become null.

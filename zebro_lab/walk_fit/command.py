@@ -35,6 +35,7 @@ and marked), 130 stopped (a checkpoint is kept for --resume).
 
 @request_command()
 def calibrate(
+    context: typer.Context,
     request: CalibrationRequest,
     tracked: WalksRequest,
     output: Output = TEXT,
@@ -51,15 +52,16 @@ def calibrate(
     if tracked.walks:
         _fit_walks(tracked, request, output)
     if output.as_json:
-        _print_document(request, output, with_walks=bool(tracked.walks), converged=converged)
+        content = _document(request, with_walks=bool(tracked.walks))
+        code = 0 if converged else NOT_CONVERGED
+        typed = "calibrate-slip" if context.parent is None else "calibrate"
+        output.document(typed, content, exit_code=code)
     if not converged:
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _print_document(
-    request: CalibrationRequest, output: Output, *, with_walks: bool, converged: bool
-) -> None:
-    """Print the contents of the folder's slip.toml, and of the manifest of `walks/` if fitted."""
+def _document(request: CalibrationRequest, *, with_walks: bool) -> dict[str, object]:
+    """Return the contents of the folder's slip.toml, and of the manifest of `walks/` if fitted."""
     from zebro_lab.files.documents import read_json_document, read_toml_document
 
     slip = read_toml_document(request.out / "slip.toml")
@@ -67,7 +69,7 @@ def _print_document(
     content = {"folder": request.out, "simulated": "sim:" in source, "calibration": slip}
     if with_walks:
         content["walks"] = read_json_document(request.out / "walks" / "manifest.json")
-    output.document("calibrate", content, exit_code=0 if converged else NOT_CONVERGED)
+    return content
 
 
 def _require_walks(tracked: WalksRequest, calibration: CalibrationRequest, output: Output) -> None:

@@ -27,8 +27,8 @@ def test_a_run_says_what_it_was_made_from_and_is_listed(files, tmp_path):
     names = ["legs.csv", "imu.csv", "track.csv", "robot.toml", "columns.toml"]
     assert manifest.inputs == {str(files / n): file_hash(files / n) for n in names}
     (run,) = list_runs(tmp_path / "data")
-    assert (run.state, run.duration) == ("imported", "2.0 s")
-    assert run.samples == "100 /legs/raw, 100 /imu/raw"
+    assert (run.state, run.duration) == ("imported", 1.98)
+    assert run.samples == {"/legs/raw": 100, "/imu/raw": 100}
     assert any("no column of yaw" in note for note in notes)
 
 

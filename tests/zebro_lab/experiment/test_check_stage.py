@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Check points tell whether the friction of a rig has drifted."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from support.experiment_plans import short_plan
+from zebro_lab.calibration.folder import SlipFile
 from zebro_lab.experiment.check_stage import check_runs
 from zebro_lab.main import app
 
 
 def zebro_lab(*arguments):
     return CliRunner().invoke(app, ["rig", *map(str, arguments)])
+
+
+def stated(curve):
+    return SlipFile(curve, Path("slip.toml"), "real", None)
 
 
 @pytest.fixture(name="plan")
@@ -28,11 +35,11 @@ def test_a_rig_that_lost_friction_has_drifted(plan, tmp_path, monkeypatch):
     data = tmp_path / "data"
     assert zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", data).exit_code == 0
     curve = thesis_curve()
-    monkeypatch.setattr(rig_check, "read_slip", lambda path: curve)
-    assert not any(found.verdict for found in check_runs([data], tmp_path))
+    monkeypatch.setattr(rig_check, "read_slip_file", lambda path: stated(curve))
+    assert not any(found.verdict for found in check_runs([data], tmp_path).runs)
     slippery = replace(curve, values=curve.values * np.array([1.0, 1.0, 0.6, 1.0]))
-    monkeypatch.setattr(rig_check, "read_slip", lambda path: slippery)
-    assert {found.verdict for found in check_runs([data], tmp_path)} == {"DRIFTED"}
+    monkeypatch.setattr(rig_check, "read_slip_file", lambda path: stated(slippery))
+    assert {found.verdict for found in check_runs([data], tmp_path).runs} == {"DRIFTED"}
     result = zebro_lab("check", data, "--slip", tmp_path)
     assert result.exit_code == 3
     assert "2 of 2 runs deviate from the calibration" in result.output
@@ -43,7 +50,7 @@ def test_a_run_of_a_few_samples_is_not_testable_and_not_passed(tmp_path, monkeyp
     from zebro_lab.experiment import check_stage as rig_check
 
     curve = thesis_curve()
-    monkeypatch.setattr(rig_check, "read_slip", lambda path: curve)
+    monkeypatch.setattr(rig_check, "read_slip_file", lambda path: stated(curve))
     data = tmp_path / "data"
     data.mkdir()
     for name, n in (("many", 50), ("few", 5)):

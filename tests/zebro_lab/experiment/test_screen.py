@@ -8,6 +8,7 @@ import os
 import pytest
 from rich.console import Console
 
+from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.verdict import PointVerdict
@@ -51,6 +52,20 @@ def test_without_a_terminal_a_prompt_is_one_line():
         screen.prompt("set it", normal=normal)
     screen.draw()
     assert console.file.getvalue() == "set it\n"
+
+
+def test_a_quiet_screen_prints_what_waits_for_a_person_alone():
+    console = Console(file=io.StringIO(), force_terminal=True, width=500)
+    with experiment_screen(console, Control(), quiet=True) as screen:
+        for state in (RigState.RUNNING, RigState.HOLDING, RigState.STOPPED):
+            screen.changed(Condition(state, energised=True, hold=600.0))
+        screen.notice("a point is measured again")
+        screen.doing("point-0001", done=1, of=4, left=75.0)
+        screen.judged(Point(1, 4.0, (0.1,)), PointVerdict((), 9, 0.1, 0.3, 4.0), attempt=1)
+        screen.prompt("set the normal force to 4 N, then confirm", normal=3.2)
+    held, prompt = console.file.getvalue().splitlines()
+    assert "HOLDING" in held
+    assert prompt == "set the normal force to 4 N, then confirm"
 
 
 def test_text_of_a_plan_cannot_command_the_terminal():

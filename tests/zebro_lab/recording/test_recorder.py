@@ -76,7 +76,7 @@ def test_a_run_without_an_end_is_recovered_and_says_what_it_holds(tmp_path):
             (copy / name).write_bytes((run.folder / name).read_bytes())
     os.utime(copy / "log.mcap", (0, 0))
     (listed,) = list_runs(copy)
-    assert (listed.state, listed.samples) == ("recovered", "10 /legs/raw")
+    assert (listed.state, listed.samples) == ("recovered", {"/legs/raw": 10})
 
 
 def test_an_exception_is_the_reason_and_goes_on(tmp_path):

@@ -120,7 +120,7 @@ parameters = { slip_stiffness = { mean = 20.0 }, friction = { mean = 0.4 } }
 covariance = { matrix = [[1.0, 0.0], [0.0, 1e-4]] }
 tested = { normal_force = [2.0, 13.0], slip_ratio = [0.0, 1.0] }
 """)
-    assert len(check_runs([data], tmp_path)) == 24
+    assert len(check_runs([data], tmp_path).runs) == 24
     assert "was ignored: sweep equals copy" in caplog.text
 
 

@@ -13,8 +13,8 @@ from zebro_lab.runs.stage import ListedRun, list_runs
 
 def test_a_run_is_listed_with_duration_samples_and_source(tmp_path):
     folder = make_run(tmp_path, 200)
-    samples = "200 /board/raw"
-    listed = ListedRun(folder.name, "completed", "0.2 s", samples, "sim:noise")
+    duration = pytest.approx(0.2, abs=0.05)
+    listed = ListedRun(folder.name, "completed", duration, {"/board/raw": 200}, "sim:noise")
     assert list_runs(tmp_path) == [listed]
 
 
@@ -37,7 +37,7 @@ def test_a_run_whose_recorder_died_is_listed_with_what_its_log_holds(tmp_path):
     edit(folder, exit_status="recording", stop=None, streams={})
     os.utime(folder / "log.mcap", (0, 0))
     (run,) = list_runs(tmp_path)
-    assert (run.state, run.duration, run.samples) == ("recovered", "-", "200 /board/raw")
+    assert (run.state, run.duration, run.samples) == ("recovered", None, {"/board/raw": 200})
 
 
 def test_a_run_that_cannot_be_read_does_not_hide_the_others(tmp_path):

@@ -109,11 +109,15 @@ def test_untied_clocks_are_pointed_at_and_still_tracked(lab, run_command):
 
 
 def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run_command):
-    code, out, _ = run_command(
-        "track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00:01"
+    code, out, err = run_command(
+        "track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00:01", "--json"
     )
     assert code == 0
-    assert "WARNING: 1 of 5 photographs were taken before or after the run" in out
+    assert "WARNING: 1 of 5 photographs were taken before or after the run" in err
+    found = json.loads(out)
+    assert (found["command"], found["folder"], found["simulated"]) == ("track", "run/track", True)
+    assert (found["photographs"], found["poses"], found["left_out"]) == (5, 5, {})
+    assert found["duration_s"] == pytest.approx(8, abs=0.2)
     assert pd.read_csv("run/track/track.csv")["t_s"].iloc[0] == pytest.approx(-1, abs=0.1)
 
 

@@ -63,3 +63,11 @@ def by_topic(file):
     for _, channel, message, decoded in reader.iter_decoded_messages():
         found.setdefault(channel.topic, []).append((message, decoded))
     return found
+
+
+def events(folder, level=0):
+    """Return the messages of topic `/events`, of a level or above, in the log of a run folder."""
+    with (folder / "log.mcap").open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        found = [d for *_, d in reader.iter_decoded_messages(topics=["/events"])]
+    return [each.msg for each in found if each.level >= level]

@@ -29,6 +29,9 @@ class Impatient(Nobody):
 class Onlooker:
     """Watcher of a recording that displays nothing and never stops it."""
 
+    def note(self, line: str) -> None:
+        pass
+
     def show(self, status: object) -> None:
         pass
 
@@ -37,11 +40,20 @@ class Onlooker:
 
 
 class RecordWatcher:
-    """Watcher that stops a recording after a number of calls or samples, or raises an error."""
+    """Watcher that stops a recording after a number of calls or samples, or raises an error.
+
+    Attributes:
+        seen: Statuses that were shown.
+        notes: Notes that were shown, each with the number of statuses shown before.
+    """
 
     def __init__(self, *, looks=None, samples=None, error=None):
         self.seen = []
+        self.notes = []
         self._looks, self._samples, self._error = looks, samples or {}, error
+
+    def note(self, line):
+        self.notes.append((line, len(self.seen)))
 
     def show(self, status):
         self.seen.append(status)

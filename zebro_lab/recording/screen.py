@@ -20,6 +20,7 @@ from rich.text import Text
 from zebro_lab.recording.drawing import draw_status, glyphs_of, stream_in_words, time_left
 from zebro_lab.recording.live_values import LiveValues
 from zebro_lab.terminal.last_words import in_time
+from zebro_lab.terminal.messages import plain
 
 if TYPE_CHECKING:
     from zebro_lab.recording.status import RecordStatus
@@ -57,6 +58,10 @@ class RecordScreen:
         self._drawn = float("-inf") if live is not None else time.monotonic()
         # Under `nohup` and the like hangups are ignored, so that the run outlives the terminal.
         self._outlives = _HANGUP is not None and signal.getsignal(_HANGUP) == signal.SIG_IGN
+
+    def note(self, line: str) -> None:
+        """Print a line; a terminal or pipe that does not take it in time is not waited for."""
+        in_time(lambda: self._console.print(plain(line), soft_wrap=True))
 
     def show(self, status: "RecordStatus") -> None:
         """Draw the status, at most every `DRAW_EVERY`; called in a separate thread.

@@ -21,15 +21,25 @@ from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.status import COUNT_EVERY, RecordStatus, StreamWatch, reading_failure
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.robot.gait_player import LEAD_IN
+from zebro_lab.robot.leg_warnings import WARNING as SUSPECTED
+from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 LOOK_EVERY: Final = 0.05
 """Interval between checks of the conditions that end a recording [s]."""
+_AS_THEY_ARE: Final = (
+    "--play sends these angles as they are, without signs and offsets of a robot.toml: if the "
+    "warning is right, stop, and repair the file or the columns.toml beside it"
+)
 
 
 class RecordWatcher(Protocol):
     """Interface of a display of a recording, which can also request the recording's end."""
+
+    def note(self, line: str) -> None:
+        """Show a line about the recording before it begins and before anything moves."""
+        ...
 
     def show(self, status: RecordStatus) -> None:
         """Show the status, up to twenty times a second.
@@ -81,7 +91,9 @@ def record(
         RecordingError: The run cannot begin, or ended early; then its folder holds the samples
             until then, and the reason, unless it was removed.
     """
-    play = None if request.play is None else _played(request.play)
+    play, notes = (None, ()) if request.play is None else _played(request.play)
+    for line in notes:
+        watcher.note(line)
     duration = _duration(request, play)
     wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, request.seed)
     with needing_threads(), ExitStack() as kept, open_devices(wanted) as opened:
@@ -93,6 +105,8 @@ def record(
             profiles=opened.profiles, clock=clock,
         )  # fmt: skip
         kept.enter_context(recorder)  # left after the devices: they wait for no disk
+        for line in notes:
+            recorder.event(line, level=WARNING)
         problem = _run(recorder, opened, watcher, duration, clock)
     if problem is not None or recorder.failure is not None:
         what = recorder.failure or problem
@@ -171,9 +185,13 @@ def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> Non
     recorder.compare_clocks(clocks)
 
 
-def _played(path: Path) -> SampledReference:
+def _played(path: Path) -> tuple[SampledReference, tuple[str, ...]]:
+    """Read the leg angles to play, from time 0, with notes on what is suspected of them."""
     reference = read_leg_log(path).reference
-    return SampledReference(reference.t - reference.t[0], reference.theta)
+    notes = leg_warnings(reference)
+    if any(line.startswith(SUSPECTED) for line in notes):
+        notes += (_AS_THEY_ARE,)
+    return SampledReference(reference.t - reference.t[0], reference.theta), notes
 
 
 def _duration(request: RecordRequest, play: SampledReference | None) -> float | None:

@@ -45,6 +45,14 @@ def test_a_terminal_sees_counters_time_and_what_is_simulated(duration):
     assert ("6 s left" in text) == (duration is not None)
 
 
+@pytest.mark.parametrize("terminal", [False, True])
+def test_a_note_is_one_line_whatever_it_holds(terminal):
+    place = console(terminal=terminal)
+    RecordScreen(place).note("legs \x1b[31m [bold]3[/] " + "are slow " * 20)
+    (line,) = written_on(place).splitlines()
+    assert line.startswith("legs \\x1b[31m [bold]3[/] are slow")
+
+
 def test_a_pipe_gets_a_line_now_and_then(monkeypatch):
     place, now = console(terminal=False), [0.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Live devices into run folders: real drivers over twins, and what goes wrong with them."""
+"""Live devices into run folders: real drivers over twins, and gaps in what they send."""
 
-import os
-import threading
 import time
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -13,42 +10,31 @@ from model.gait.reference import SampledReference
 from rig.acquisition import Acquisition, Device, acquiring
 from rig.backends import leg_driver, leg_link
 from rig.clock import ManualClock
-from rig.device import Counters, Sample
-from rig.errors import DeviceMismatch
 from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.links.serve import PortServer
 from rig.replay import ReplayStream
 from rig.sample_queue import LossyTap
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
+from support.leg_motions import T, tripod
+from support.leg_tables import table_of
+from support.logs import events
 from support.watchers import RecordWatcher
-from zebro_lab.files.errors import DataError, RecordingError
+from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.recording import stage as module
-from zebro_lab.recording import status
-from zebro_lab.recording.devices import OpenDevices, default_gait, profile_text
+from zebro_lab.mcap.ros_messages import WARNING
+from zebro_lab.recording.devices import default_gait, profile_text
 from zebro_lab.recording.recorder import RunRecorder
-from zebro_lab.recording.request import RecordRequest, ZebroTwinRequest
-from zebro_lab.recording.simulate_stage import serve_zebro
+from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
 from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest, profile_file
-from zebro_lab.runs.stage import list_runs
 
 LEGS = load_leg_profile("zebro-100-serial")
 ENOUGH = {"legs": 120, "imu1": 120, "imu2": 120, "drives": 240, "load_cell": 8000}
 """Samples of each simulated device that a run of all waits for: about 1.2 s of each."""
-
-
-def events(folder):
-    from mcap.reader import make_reader
-    from mcap_ros2.decoder import DecoderFactory
-
-    with (folder / "log.mcap").open("rb") as file:
-        reader = make_reader(file, decoder_factories=[DecoderFactory()])
-        return [d.msg for *_, d in reader.iter_decoded_messages(topics=["/events"])]
 
 
 @pytest.fixture(scope="module")
@@ -125,10 +111,7 @@ def walked(tmp_path_factory):
     t = np.arange(0, 2.4, 0.01)
     gait = SampledReference(t, default_gait().angles(t))
     folder = tmp_path_factory.mktemp("walked")
-    rows = [",".join(map(repr, row)) for row in np.column_stack([t, gait.theta]).tolist()]
-    (folder / "legs.csv").write_text(
-        "\n".join([",".join(["t", *(f"theta{leg}" for leg in range(1, 7))]), *rows])
-    )
+    table_of(t, gait.theta).to_csv(folder / "legs.csv", index=False)
     request = RecordRequest("walk", folder, zebro="sim", play=folder / "legs.csv")
     return record(request, RecordWatcher()), gait
 
@@ -144,6 +127,25 @@ def test_a_played_gait_is_followed_and_ends_the_run(walked):
     away = np.abs(apart).max(axis=-1)
     assert np.median(away.min(axis=1)) < 2 * LEGS.quantisation
     assert np.mean(played[-1] - played[0]) > 0.2 * np.mean(gait.theta[-1] - gait.theta[0])
+
+
+def test_suspected_legs_are_told_before_they_are_played_and_kept_in_the_log(tmp_path):
+    reversed_legs = tripod().angles(T) * [1, 1, -1, 1, 1, 1]
+    table_of(T, reversed_legs).to_csv(tmp_path / "legs.csv", index=False)
+    watcher = RecordWatcher()
+    request = RecordRequest(
+        "x", tmp_path, zebro="sim", play=tmp_path / "legs.csv", duration=0.2
+    )  # fmt: skip
+    folder = record(request, watcher).folder
+    lines, shown_before = zip(*watcher.notes, strict=True)
+    assert lines[0].startswith("WARNING: leg log: leg 3 turns backwards")
+    assert "robot.toml" in lines[1]
+    assert set(shown_before) == {0}
+    assert events(folder, level=WARNING) == list(lines)
+
+
+def test_legs_without_a_fault_are_played_without_a_note(walked):
+    assert events(walked[0].folder, level=WARNING) == []
 
 
 def test_a_wrong_zero_found_later_is_repaired_in_the_runs_own_profile(walked):
@@ -164,42 +166,6 @@ def test_a_run_without_legs_is_no_leg_log(everything, tmp_path):
     folder = record(request, RecordWatcher()).folder
     with pytest.raises((DataError, FileNotFoundError), match="leg"):
         read_leg_log(folder)
-
-
-def test_a_wish_to_stop_is_the_reason(tmp_path):
-    recorded = record(RecordRequest("x", tmp_path, imus=("sim",)), RecordWatcher(looks=3))
-    assert recorded.manifest.exit_status == "stopped: key"
-    assert recorded.manifest.log_sha256 is not None
-
-
-def test_a_display_that_raises_ends_no_run(tmp_path):
-    watcher = RecordWatcher(error=RuntimeError("screen"))
-    found = record(RecordRequest("x", tmp_path, imus=("sim",), duration=2.0), watcher)
-    assert found.manifest.exit_status == "completed"
-    assert found.manifest.streams["/imu/raw"] > 40
-    assert len(watcher.seen) == 3
-    said = [text for text in events(found.folder) if "display" in text]
-    assert said == [
-        "the display failed, the recording continues without it: RuntimeError('screen')"
-    ]
-
-
-def test_a_watcher_that_cannot_say_whether_to_stop_ends_the_run_with_its_record(tmp_path):
-    watcher = RecordWatcher()
-    watcher.stop_reason = lambda: 1 / 0
-    with pytest.raises(ZeroDivisionError):
-        record(RecordRequest("x", tmp_path, imus=("sim",)), watcher)
-    (listed,) = list_runs(tmp_path)
-    assert listed.state == "failed: ZeroDivisionError: division by zero"
-
-
-def test_swapped_devices_end_the_run_with_a_line_that_says_so(tmp_path):
-    with serve_zebro(ZebroTwinRequest("zebro-100-serial")) as served:
-        address = f"imu-quaternion-serial@{served.places['robot']}"
-        with pytest.raises(RecordingError, match="are two ports swapped"):
-            record(RecordRequest("x", tmp_path, imus=(address,), duration=5.0), RecordWatcher())
-    (listed,) = list_runs(tmp_path)
-    assert listed.state.startswith(f"failed: imu: {DeviceMismatch.__name__}")
 
 
 def wait_until(met, limit=20.0):
@@ -260,204 +226,3 @@ def test_a_viewer_that_hangs_slows_nobody(tmp_path):
             reader.stop()
     newest = reader.tap.take()
     assert newest == taken[-10:]
-
-
-class Legs:
-    """A stream of legs at 100 Hz that can begin late, raise, or stand still in a read."""
-
-    source = "sim:test"
-
-    def __init__(self, name="legs", *, late=0.0, error=None, hang=None):
-        self.name = name
-        self.closed = False
-        self.fails = threading.Event()
-        self._late, self._error, self._hang = late, error, hang
-        self._number = 0
-
-    @property
-    def counters(self):
-        return Counters(received=self._number)
-
-    def read(self, timeout):
-        time.sleep(0.01)
-        if self.fails.is_set():
-            raise self._error
-        if time.monotonic() < self._begins:
-            return []
-        self._number += 1
-        now = time.monotonic()
-        return [Sample(now, now - self._begins, self._number, (self._number % 100,) * 6)]
-
-    def __enter__(self):
-        self._begins = time.monotonic() + self._late
-        return self
-
-    def __exit__(self, *_):
-        self.closed = True
-
-
-@pytest.fixture
-def given(monkeypatch):
-    """Return a way to let the next recording open streams of this test."""
-
-    def give(*streams, **changes):
-        devices = [Device(s, **changes) for s in streams]
-        profiles = {s.name: (LEGS.name, profile_text(LEGS.name)) for s in streams}
-
-        @contextmanager
-        def opened(_request):
-            for device in devices:
-                device.stream.__enter__()
-            try:
-                yield OpenDevices(devices, profiles)
-            finally:
-                for device in devices:
-                    device.stream.__exit__(None, None, None)
-
-        monkeypatch.setattr(module, "open_devices", opened)
-
-    return give
-
-
-def spans(folder):
-    """Return the time from the first to the last sample of each stream [s]."""
-    streams = read_raw_log(folder / "log.mcap").streams
-    return {name.split("/")[1]: np.ptp(found.host_time) for name, found in streams.items()}
-
-
-def ended(act, limit):
-    """Run something beside the test; return what it returned, or fail after a limit."""
-    outcome = []
-    thread = threading.Thread(target=lambda: outcome.append(act()), daemon=True)
-    thread.start()
-    thread.join(limit)
-    assert not thread.is_alive(), f"has not ended within {limit} s"
-    return outcome[0]
-
-
-def test_the_duration_counts_from_the_first_sample_of_the_stream_that_begins_last(tmp_path, given):
-    given(Legs("legs"), Legs("late", late=0.6))
-    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=0.5), RecordWatcher())
-    assert spans(found.folder)["late"] >= 0.48
-    assert spans(found.folder)["legs"] >= 1.0
-    assert found.manifest.exit_status == "completed"
-    assert found.manifest.duration["asked"] == 0.5
-    assert 0.5 < found.manifest.duration["from"] < 5.0
-
-
-def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, given, monkeypatch):
-    monkeypatch.setattr(status, "FIRST_SAMPLE", 0.3)
-    given(Legs("legs"), Legs("silent", late=1e6))
-    with pytest.raises(RecordingError, match=r"no sample of silent within 0\.3 s"):
-        record(RecordRequest("x", tmp_path, zebro="sim", duration=0.2), RecordWatcher())
-    (listed,) = list_runs(tmp_path)
-    assert "no sample of silent" in listed.state
-
-
-def test_a_slow_disk_falsifies_neither_duration_nor_clocks(tmp_path, monkeypatch):
-    real = os.fsync
-    monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.7), real(file))[1])
-    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=1.0), RecordWatcher())
-    assert 0.98 < spans(found.folder)["legs"] < 1.5
-    assert set(found.manifest.clocks) == {"legs"}
-    assert found.manifest.counters["legs"]["lost"] == 0
-
-
-def test_a_display_that_hangs_holds_up_nothing(tmp_path):
-    watcher, released = RecordWatcher(), threading.Event()
-    watcher.show = lambda _status: released.wait(60)
-    request = RecordRequest("x", tmp_path, imus=("sim",), duration=0.5)
-    try:
-        found = ended(lambda: record(request, watcher), limit=8.0)
-    finally:
-        released.set()
-    assert found.manifest.exit_status == "completed"
-    assert 0.48 < spans(found.folder)["imu"] < 2.0
-    assert any("display hung" in text for text in events(found.folder))
-
-
-@pytest.mark.parametrize("which", ["first", "second"])
-def test_a_thread_that_cannot_be_started_ends_the_run_with_its_record(
-    tmp_path, given, monkeypatch, which
-):
-    before = set(threading.enumerate())
-    first, second = Legs("first"), Legs("second")
-    stopped = []
-    given(first, second, at_end=lambda: stopped.append(True))
-    start = threading.Thread.start
-
-    def fail(thread):
-        if thread.name == which:
-            raise RuntimeError("can't start new thread")
-        start(thread)
-
-    monkeypatch.setattr(threading.Thread, "start", fail)
-    with pytest.raises(RecordingError, match="can't start new thread"):
-        record(RecordRequest("x", tmp_path, zebro="sim", duration=0.2), RecordWatcher())
-    assert first.closed
-    assert stopped == [True, True]
-    (listed,) = list_runs(tmp_path)
-    assert listed.state.startswith("failed: ")
-    assert set(threading.enumerate()) <= before
-
-
-@pytest.mark.parametrize("error", [SystemExit("over"), GeneratorExit("over")])
-def test_whatever_ends_a_reader_ends_the_run(tmp_path, given, error):
-    legs = Legs(error=error)
-    given(legs)
-    watcher = RecordWatcher()
-    watcher.stop_reason = lambda: legs.fails.set()
-    with pytest.raises(RecordingError, match="over"):
-        record(RecordRequest("x", tmp_path, zebro="sim", duration=2.0), watcher)
-    (listed,) = list_runs(tmp_path)
-    assert "over" in listed.state
-
-
-def test_a_fault_in_the_last_read_is_not_completed(tmp_path, given):
-    legs = Legs(error=OSError("link lost"))
-    given(legs)
-    watcher = RecordWatcher(looks=3)
-    asked = watcher.stop_reason
-
-    def stop_reason():
-        reason = asked()
-        if reason is not None:
-            legs.fails.set()
-        return reason
-
-    watcher.stop_reason = stop_reason
-    with pytest.raises(RecordingError, match="link lost"):
-        record(RecordRequest("x", tmp_path, zebro="sim"), watcher)
-
-
-def test_all_streams_end_together(tmp_path, given):
-    given(*[Legs(f"legs{k}") for k in range(3)], pause=0.3)
-    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=1.0), RecordWatcher())
-    streams = read_raw_log(found.folder / "log.mcap").streams.values()
-    assert np.ptp([stream.host_time[-1] for stream in streams]) < 0.15
-    assert min(stream.host_time[0] for stream in streams) < 0.2
-
-
-def test_a_display_that_cannot_be_started_ends_no_run(tmp_path, given, monkeypatch):
-    given(Legs())
-    start = threading.Thread.start
-
-    def fail(thread):
-        if thread.name == "display":
-            raise RuntimeError("can't start new thread")
-        start(thread)
-
-    monkeypatch.setattr(threading.Thread, "start", fail)
-    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=0.2), RecordWatcher())
-    assert found.manifest.exit_status == "completed"
-    assert any("display cannot start" in text for text in events(found.folder))
-
-
-@pytest.mark.parametrize("pause", [0.0, 0.05])
-def test_a_loop_that_is_held_up_ends_no_recording_late(tmp_path, given, pause):
-    given(Legs(), pause=pause)
-    watcher = RecordWatcher()
-    looks = iter([0.0] * 4)
-    watcher.stop_reason = lambda: time.sleep(next(looks, 0.7))
-    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=0.5), watcher)
-    assert 0.48 < spans(found.folder)["legs"] < 0.65

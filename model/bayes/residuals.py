@@ -34,7 +34,7 @@ class Residuals:
         misfit: Root-mean-square residual that is a function of slip and load, over the largest
             predicted traction; repeated measurements do not average it away; 0 if no two runs
             share a slip and load [-].
-        misfit_p: p-value of the F test of `misfit` against the scatter between runs; then 1 [-].
+        misfit_p: p-value of the F test of `misfit` against the scatter between runs; then NaN [-].
         r_squared: Fraction of the variance of the fitted block means that is explained [-].
         rmse: Root-mean-square residual of block means [N].
         rmse_over_load: Root-mean-square of each block's residual over its measured load [-].
@@ -198,7 +198,7 @@ def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
 
     One-way analysis of variance: the groups are `SLIP_BINS` bins of slip at each of `load_levels`,
     a group's replicates the means of the runs in it. Returns the standard deviation of the
-    repeating part [N] and the p-value of the F test; 0 and 1 if no group has two runs.
+    repeating part [N] and the p-value of the F test; 0 and NaN if no group has two runs.
     """
     level = nearest_level(np.maximum(blocks.normal_force, 1e-9), load_levels(blocks))
     edges = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, SLIP_BINS + 1)[1:-1]))
@@ -210,7 +210,7 @@ def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
     centre = np.bincount(member, means) / size
     spare = len(means) - len(size)
     if spare < 1:
-        return 0.0, 1.0
+        return 0.0, float("nan")
     between = np.sum(size * centre**2) / len(size)
     within = np.sum((means - centre[member]) ** 2) / spare
     repeating = max(0.0, float(between - within) / float(size.mean()))

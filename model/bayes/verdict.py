@@ -16,6 +16,7 @@ from model.slip.law import Array, SlipLaw
 RISE = "the rise of the curve is tested"  # name of a check of the data, not of the model
 MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
 MIN_P = 0.01  # p-value of the share of run means inside their intervals
+FEWEST_RUNS = 3  # with fewer, none of them inside has a p-value of 0.01 or more
 MAX_MISFIT = 0.05  # of the peak force
 MISFIT_P = 1e-3  # p-value below which a larger misfit fails the check
 MAX_OFFSET_SHARE = 0.2  # of the force variance, explained by run offsets
@@ -31,15 +32,20 @@ class Check:
 
     Attributes:
         name: Claim that is checked, as text.
-        passed: Whether the claim holds.
-        evidence: Measured value and its limit, as text.
+        passed: Whether the claim holds; None if these data cannot test it.
+        evidence: Measured value and its limit, or why these data cannot test the claim, as text.
         advice: What to do when the claim does not hold, as text.
     """
 
     name: str
-    passed: bool
+    passed: bool | None
     evidence: str
-    advice: str
+    advice: str = ""
+
+    @property
+    def failed(self) -> bool:
+        """Whether the claim was tested and does not hold."""
+        return self.passed is not None and not self.passed
 
 
 @dataclass(frozen=True)
@@ -58,29 +64,39 @@ class Verdict:
 
     @property
     def converged(self) -> bool:
-        """Whether all checks of the sampler's convergence passed."""
-        return all(check.passed for check in self.convergence)
+        """Whether no check of the sampler's convergence failed."""
+        return not any(check.failed for check in self.convergence)
 
     @property
     def trustworthy(self) -> bool:
-        """Whether all checks, of convergence and of the model against the data, passed."""
-        return self.converged and all(check.passed for check in self.trust)
+        """Whether no check failed, of convergence and of the model; see also `not_testable`."""
+        return self.converged and not any(check.failed for check in self.trust)
+
+    @property
+    def not_testable(self) -> tuple[str, ...]:
+        """Claims that these data cannot test, which neither passed nor failed."""
+        return tuple(check.name for check in self.trust if check.passed is None)
 
     def headline(self) -> str:
-        """Format the verdict as one line of text, with the weak parameters unless unconverged."""
-        weak = f"; weakly identified: {', '.join(self.weak)}" if self.weak else ""
+        """Format the verdict as one line of text.
+
+        Unless unconverged it names the claims that are not testable, and the weak parameters.
+        """
         if not self.converged:
             return "NOT CONVERGED: do not use these numbers"
-        failed = [check.name for check in self.trust if not check.passed]
+        failed = [check.name for check in self.trust if check.failed]
+        result = "converged and trustworthy"
         if failed == [RISE]:
-            return "converged, but NOT TRUSTWORTHY: too few slips where the curve rises" + weak
-        if failed:
-            return "converged, but NOT TRUSTWORTHY: the model does not describe these data" + weak
-        return "converged and trustworthy" + weak
+            result = "converged, but NOT TRUSTWORTHY: too few slips where the curve rises"
+        elif failed:
+            result = "converged, but NOT TRUSTWORTHY: the model does not describe these data"
+        if self.not_testable:
+            result += f"; not testable with these data: {', '.join(self.not_testable)}"
+        return result + (f"; weakly identified: {', '.join(self.weak)}" if self.weak else "")
 
     def next_steps(self) -> tuple[str, ...]:
         """List the advice of failed checks, then the reasons of `weak`, without repetition."""
-        failed = [c.advice for c in (*self.convergence, *self.trust) if not c.passed]
+        failed = [c.advice for c in (*self.convergence, *self.trust) if c.failed]
         return tuple(dict.fromkeys([*failed, *(reason for reason in self.weak.values())]))
 
 
@@ -119,6 +135,10 @@ def judge(
     )
 
 
+def _not_testable(name: str, why: str) -> Check:
+    return Check(name, None, f"not testable with these data: {why}")
+
+
 def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
     """Return one failed check for each unmet criterion, or one passed check."""
     advice = "sample longer: --resume with a larger --max-steps"
@@ -131,12 +151,14 @@ def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
 def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
     """Check that whitened residuals of successive blocks are hardly correlated.
 
-    The limit is `MAX_LAG_ONE`, or more for few blocks; passed if no run has two blocks.
+    The limit is `MAX_LAG_ONE`, or more for few blocks; not testable if no run has two blocks.
     """
     name = "residuals are white"
     pairs = len(blocks) - blocks.n_runs
     if pairs == 0:
-        return Check(name, True, "not tested: no run has two blocks", "")
+        return _not_testable(
+            name, "no run has two blocks; a shorter --block-length would make them"
+        )
     limit = lag_one_limit(pairs)
     return Check(
         name,
@@ -159,9 +181,13 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
     """Check that about 90 % of run means lie inside their predictive 90 % intervals.
 
     Passed if the two-sided binomial p-value is above `MIN_P`: more may fail it as well as fewer.
+    Not testable with so few runs that none inside is no rarer than that.
     """
+    name = "run means are predicted"
+    if blocks.n_runs < FEWEST_RUNS:
+        return _not_testable(name, f"runs: {blocks.n_runs}; expected {FEWEST_RUNS} or more")
     return Check(
-        "run means are predicted",
+        name,
         residuals.inside_p > MIN_P,
         f"{residuals.inside:.0%} of {blocks.n_runs} run means inside their 90 % interval "
         f"(p = {residuals.inside_p:.2g}, expected above {MIN_P:g})",
@@ -173,10 +199,14 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
 def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks) -> Check:
     """Check that the misfit that all runs share is small or not significant.
 
-    It fails above `MAX_MISFIT` of the peak force with a p-value below `MISFIT_P`.
+    It fails above `MAX_MISFIT` of the peak force with a p-value below `MISFIT_P`. Not testable if
+    no two runs share a slip and load.
     """
+    name = "the law fits the shape of the curve"
+    if np.isnan(residuals.misfit_p):
+        return _not_testable(name, "no two runs share a slip and load; repeat runs")
     return Check(
-        "the law fits the shape of the curve",
+        name,
         not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
         f"the misfit that all runs share is {residuals.misfit:.1%} of the peak force, limit "
         f"{MAX_MISFIT:.0%} where p is below {MISFIT_P:g} (p = {residuals.misfit_p:.2g})",
@@ -211,7 +241,7 @@ def _rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
     """
     rise = sampled_rise(blocks, law, values)
     if not len(rise.further):
-        return Check(RISE, True, "not tested: the curve has no peak", "")
+        return _not_testable(RISE, "the curve has no peak")
     return Check(
         RISE,
         rise.gap <= MAX_RISE_GAP,

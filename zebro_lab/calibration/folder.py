@@ -172,6 +172,7 @@ def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
         "headline": verdict.headline(),
         "converged": verdict.converged,
         "trustworthy": verdict.trustworthy,
+        "not_testable": list(verdict.not_testable),
         "weakly_identified": list(verdict.weak),
         "next_steps": list(verdict.next_steps()),
     }

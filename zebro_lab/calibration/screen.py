@@ -135,6 +135,9 @@ def _print_quality(console: Console, calibration: Calibration) -> None:
         console.print(plain(line))
 
 
+_MARKS = {True: "ok  ", False: "FAIL", None: "--  "}  # of a check's `passed`
+
+
 def _print_verdict(console: Console, calibration: Calibration) -> None:
     verdict = calibration.verdict
     good = verdict.trustworthy
@@ -142,8 +145,7 @@ def _print_verdict(console: Console, calibration: Calibration) -> None:
         Text("\nverdict: " + verdict.headline(), style="bold green" if good else "bold red")
     )
     for check in (*verdict.convergence, *verdict.trust):
-        mark = "ok  " if check.passed else "FAIL"
-        console.print(plain(f"  {mark} {check.name}: {check.evidence}"))
+        console.print(plain(f"  {_MARKS[check.passed]} {check.name}: {check.evidence}"))
     if verdict.weak:
         for load, row in zip(calibration.levels, calibration.curves, strict=True):
             known = {e.parameter.symbol: e for e in row}

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Compute the errors of a run's prediction against its track."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from model.judgement import Judgement, TiltJudged, judge
+from model.metrics.consistency import FEWEST_DRAWS
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.shared_clock import shared_time
@@ -67,4 +69,22 @@ def judge_run(
     notes = (*track.notes, *predicted.notes)
     if left_out:
         notes += (f"{left_out} tracked poses lie outside the predicted time and are not scored",)
+    notes += tuple(_not_testable(judgement))
     return JudgedRun(judgement.track, judgement.rows, judgement.band, name, notes)
+
+
+def _not_testable(judgement: Judgement) -> Iterator[str]:
+    """Yield a line for each judgement on the band that prediction or track do not allow."""
+    if judgement.band is None:
+        yield "coverage and consistency: not testable without a band; predict with --draws"
+        return
+    if (draws := len(judgement.band.position)) < FEWEST_DRAWS:
+        yield (
+            f"consistency of the band: not testable with {draws} draws; expected {FEWEST_DRAWS} "
+            "or more: predict with --draws"
+        )
+    if not np.isfinite(judgement.track.yaw).all():
+        yield (
+            "coverage and consistency of yaw: not testable, as tracked poses have no heading "
+            "(column yaw_rad)"
+        )

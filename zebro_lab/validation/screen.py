@@ -100,7 +100,10 @@ def _verdict(run: JudgedRun) -> list[str]:
     states = ("x", "y", "yaw")
     lines = [
         f"coverage of the {level:.0%} band: "
-        + ", ".join(f"{s} {c:.0%}" for s, c in zip(states, cover, strict=True))
+        + ", ".join(
+            f"{s} {'not testable' if np.isnan(c) else f'{c:.0%}'}"
+            for s, c in zip(states, cover, strict=True)
+        )
         + _expected(level, row.errors.poses)
         for level, cover in zip(row.scores.levels, row.scores.coverage, strict=True)
     ]

@@ -40,15 +40,16 @@ def sweep_blocks(largest_slip: float, *, load: float = 6.0, per_run: int = 4) ->
 
 
 def blocks_at(set_points: np.ndarray, *, load: float = 6.0, per_run: int = 4) -> SlipBlocks:
-    """Make 12 runs, one a set-point of slip."""
+    """Make runs, one a set-point of slip."""
     slip = np.repeat(set_points, per_run)
     zeros = np.zeros(len(slip))
     return SlipBlocks(
         slip=slip, normal_force=zeros + load, traction_force=zeros,
-        count=np.full(len(slip), 50), run=np.repeat(np.arange(12), per_run),
-        run_names=tuple("abcdefghijkl"), definition=SlipDefinition.MATERIAL, slip_wander=zeros,
-        slip_error=zeros, load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
-        run_slip_error=np.zeros(12),
+        count=np.full(len(slip), 50), run=np.repeat(np.arange(len(set_points)), per_run),
+        run_names=tuple("abcdefghijkl"[: len(set_points)]),
+        definition=SlipDefinition.MATERIAL, slip_wander=zeros, slip_error=zeros,
+        load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
+        run_slip_error=np.zeros(len(set_points)),
     )  # fmt: skip
 
 
@@ -69,7 +70,7 @@ def verdict_on(**changes) -> Verdict:
 
 
 def failed(verdict: Verdict) -> list[Check]:
-    return [check for check in (*verdict.convergence, *verdict.trust) if not check.passed]
+    return [check for check in (*verdict.convergence, *verdict.trust) if check.failed]
 
 
 def test_fit_without_fault_is_trusted():
@@ -180,10 +181,40 @@ def test_a_model_that_misfits_is_named_before_the_slips_that_are_missing():
     assert len(verdict.next_steps()) == 2
 
 
-def test_law_without_a_peak_has_no_rise_to_test():
-    verdict = verdict_on(law=Brush(), values=draws((20.0, 0.38)), blocks=sweep_blocks(0.9))
-    assert verdict.trustworthy
-    assert "not tested: the curve has no peak" in [check.evidence for check in verdict.trust]
+NOT_TESTABLE = {
+    "residuals are white": {"blocks": sweep_blocks(0.9, per_run=1)},
+    "run means are predicted": {
+        "blocks": blocks_at(np.array([0.02, 0.9]), per_run=24),
+        "residuals": replace(CLEAN, inside=0.0, inside_p=0.0100001),
+    },
+    "the law fits the shape of the curve": {
+        "residuals": replace(CLEAN, misfit=0.0, misfit_p=float("nan"))
+    },
+    "the rise of the curve is tested": {"law": Brush(), "values": draws((20.0, 0.38))},
+}
+
+
+@pytest.mark.parametrize("name", NOT_TESTABLE)
+def test_what_the_data_cannot_test_neither_passes_nor_fails_and_is_named(name):
+    verdict = verdict_on(**NOT_TESTABLE[name])
+    (check,) = [check for check in verdict.trust if check.name == name]
+    assert (check.passed, check.failed) == (None, False)
+    assert check.evidence.startswith("not testable with these data: ")
+    assert verdict.not_testable == (name,)
+    assert f"; not testable with these data: {name}" in verdict.headline()
+    assert check.advice not in verdict.next_steps()
+
+
+def test_three_runs_are_enough_to_test_whether_run_means_are_predicted():
+    blocks = blocks_at(np.array([0.01, 0.03, 0.9]), per_run=16)
+    verdict = verdict_on(blocks=blocks, residuals=replace(CLEAN, inside=0.0, inside_p=1e-3))
+    assert "run means are predicted" in [check.name for check in failed(verdict)]
+
+
+def test_a_fit_that_has_not_converged_says_nothing_else():
+    bad = replace(CONVERGED, length=400)
+    verdict = verdict_on(convergence=bad, **NOT_TESTABLE["the rise of the curve is tested"])
+    assert verdict.headline() == "NOT CONVERGED: do not use these numbers"
 
 
 def test_sweep_that_stops_before_the_peak_names_shape_and_friction_weak():

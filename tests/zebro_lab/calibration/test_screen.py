@@ -51,8 +51,11 @@ def test_the_curve_is_told_at_each_load(printed):
 def test_faults_are_marked_with_their_evidence(printed):
     verdict = short_calibration().verdict
     assert f"verdict: {verdict.headline()}" in printed
-    for check in (*verdict.convergence, *verdict.trust):
-        assert f"  {'ok  ' if check.passed else 'FAIL'} {check.name}: " in printed
+    marks = {True: "ok  ", False: "FAIL", None: "--  "}
+    checks = (*verdict.convergence, *verdict.trust)
+    for check in checks:
+        assert f"  {marks[check.passed]} {check.name}: {check.evidence[:40]}" in printed
+    assert {check.passed for check in checks} == set(marks)
     assert "FAIL" in printed
     for step in verdict.next_steps():
         assert f"next: {step[:60]}" in printed

@@ -36,10 +36,13 @@ T = np.linspace(0.0, 4.0, 9)
 PATH = Poses(T, np.column_stack([0.1 * T, 0.0 * T]), 0.0 * T)
 
 
-def judge(track: Poses, *, anchor: bool = False):
+def judge(track: Poses, *, anchor: bool = False, draws: int = 0):
     file = TrackFile(track, "real", Path("track.csv"), notes=("tracked",))
-    return judge_run("walk", PredictionFile(Prediction(PATH), "sim:x", (), ("predicted",)), file,
-                     anchor=anchor, rng=np.random.default_rng(1))  # fmt: skip
+    rng = np.random.default_rng(1)
+    moved = PATH.position + rng.normal(0, 0.01, (draws, 1, 2))
+    band = Poses(T, moved, np.tile(PATH.yaw, (draws, 1))) if draws else None
+    prediction = PredictionFile(Prediction(PATH, band), "sim:x", (), ("predicted",))
+    return judge_run("walk", prediction, file, anchor=anchor, rng=rng)
 
 
 def test_errors_are_those_of_the_prediction_against_the_track():
@@ -47,7 +50,7 @@ def test_errors_are_those_of_the_prediction_against_the_track():
     assert found.name == "walk"
     assert [row.name for row in found.rows] == ["prediction", "stand still"]
     assert found.rows[0].errors.ate == pytest.approx(0.03)
-    assert found.notes == ("tracked", "predicted")
+    assert found.notes[:2] == ("tracked", "predicted")
 
 
 def test_an_anchored_path_starts_at_the_first_tracked_pose():
@@ -59,7 +62,7 @@ def test_an_anchored_path_starts_at_the_first_tracked_pose():
 def test_poses_outside_the_predicted_time_are_left_out_and_noted():
     found = judge(PATH.delayed(2.5))
     assert found.rows[0].errors.poses == 4
-    assert found.notes[-1].startswith("5 tracked poses lie outside the predicted time")
+    assert found.notes[2].startswith("5 tracked poses lie outside the predicted time")
     with pytest.raises(DataError, match="start from it: 1; expected two or more"):
         judge(PATH.delayed(3.2), anchor=True)
 
@@ -68,3 +71,20 @@ def test_a_track_without_headings_cannot_start_a_prediction():
     blind = Poses(T, PATH.position, np.full_like(T, np.nan))
     with pytest.raises(SettingsError, match="--no-anchor"):
         judge(blind, anchor=True)
+
+
+@pytest.mark.parametrize(
+    ("draws", "heading", "told"),
+    [
+        (0, 0.0, ["coverage and consistency: not testable without a band"]),
+        (49, 0.0, ["consistency of the band: not testable with 49 draws; expected 50 or more"]),
+        (50, 0.0, []),
+        (50, np.nan, ["coverage and consistency of yaw: not testable"]),
+    ],
+)
+def test_what_cannot_be_judged_is_told(draws, heading, told):
+    track = Poses(T, PATH.position, np.full_like(T, heading))
+    found = judge(track, draws=draws)
+    assert bool(found.rows[0].consistency) == (draws >= 50)
+    lines = [note for note in found.notes if "not testable" in note]
+    assert [line[: len(start)] for line, start in zip(lines, told, strict=True)] == told

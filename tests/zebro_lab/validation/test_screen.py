@@ -109,3 +109,13 @@ def test_errors_of_roll_and_pitch_are_told_with_their_bias(walked):
     assert "roll: error against the IMU 0.00 deg rms without bias, bias -1.00 deg" in text
     assert "pitch: error against the IMU 0.00 deg rms without bias, bias +0.00 deg" in text
     assert "roll: " not in printed()
+
+
+def test_a_share_that_is_not_known_is_not_testable():
+    prediction, *baselines = RUN.rows
+    coverage = prediction.scores.coverage.copy()
+    coverage[:, 2] = np.nan
+    unknown = replace(prediction, scores=replace(prediction.scores, coverage=coverage))
+    text = printed(replace(RUN, rows=(unknown, *baselines)))
+    assert text.count("yaw not testable (of") == len(prediction.scores.levels)
+    assert "nan%" not in text

@@ -5,7 +5,8 @@ python -m benchmarks.accuracy.pitch_spikes
 
 The bundled simulated walk is walked again by the project's model, with the engine's own friction
 law: from the engine's leg angles, from samples of them between which the corners lie where a leg
-changes from swing to stance, and from the log's encoder counts.
+changes from swing to stance, and from the log's encoder counts, at the log's samples alone and with
+the corners between them.
 """
 
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.tables import print_table
-from model.gait.quantised import CountedLeg, QuantisedLog, find_step
+from model.gait.quantised import QuantisedLog, find_step
 from model.gait.reference import LegReference, SampledReference
 from model.robot import GRAVITY
 from model.slip.law import Array
@@ -26,7 +27,6 @@ from zebro_lab.robot.robot_file import read_robot_file
 DATA = Path(__file__).parents[2] / "datasets" / "walk-sim"
 FRICTION, SPEED = 0.38, 0.001  # of the engine: coulomb:0.38:0.001 [-, m/s]
 WALKING = 1.2, 27.5  # s, of the steps alone
-FINE = 0.001  # s
 
 
 def main() -> None:
@@ -59,16 +59,14 @@ def leg_angles(truth: pd.DataFrame) -> dict[str, LegReference]:
     step = find_step(counted)
     if step is None:
         raise ValueError("the log's angles are not counted")
-    fine = np.arange(times[0], times[-1], FINE)
-    legs = [CountedLeg.of(times, each, step) for each in counted.T]
-    corners = [leg.angles(fine, step, None) for leg in legs if leg is not None]
+    rebuilt = QuantisedLog(times, counted, step).smooth()
     return {
         "the engine's, every 10 ms": SampledReference(t, theta),
         "the engine's, every 20 ms, corners between samples": SampledReference(
             t[1::2] - t[1], theta[1::2]
         ),
-        "the log's counts, rebuilt at its samples": QuantisedLog(times, counted, step).smooth(),
-        "the log's counts, rebuilt every 1 ms": SampledReference(fine, np.column_stack(corners)),
+        "the log's counts, rebuilt at its samples": SampledReference(times, rebuilt.angles(times)),
+        "the log's counts, rebuilt with their corners": rebuilt,
     }
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.errors import DomainError
-from model.gait.lines import Changes, Lines, Log, drawn, fitted, knots, rests, split
+from model.gait.lines import FASTEST, Changes, Lines, Log, drawn, fitted, knots, rests, split
 from model.gait.reference import SampledReference
 from model.slip.law import Array
 
@@ -23,6 +23,7 @@ SAME = 1e-9  # rad: angles no further apart are one count
 LARGEST_STEP = np.radians(10.0)  # of one count
 FEWEST_CHANGES = 8  # of count, to estimate the angle of one count
 SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
+DECIMALS = 6  # of a corner's time in seconds
 
 
 @dataclass(frozen=True)
@@ -91,22 +92,21 @@ class CountedLeg:
             self.log.half,
         )  # fmt: skip
 
-    def angles(self, t: Array, step: float, rng: np.random.Generator | None) -> Array:
-        """Compute the leg angle on the fitted lines or a draw of them, constant outside the log.
+    def corners(self, step: float, rng: np.random.Generator | None) -> tuple[Array, Array]:
+        """Compute the corners between the fitted lines or a draw of them, and the log's ends.
 
         Args:
-            t: Times, shape (n,) [s].
             step: Angle of one count [rad].
             rng: Source of randomness, to draw lines and the angle of rest, within 0.4 counts of a
                 count's middle; None for the fitted lines, with rests at the middle.
 
         Returns:
-            Leg angles, shape (n,) [rad].
+            Times [s], which do not decrease, and angles [rad] of the m corners, shape (m,) each.
         """
         lines = self.lines if rng is None else self.drawn(step, rng)
         rest = 0.0 if rng is None else float(rng.uniform(-0.4 * step, 0.4 * step))
-        times, angles = knots(lines, self.changes, self.first, self.rested, rest, self.log)
-        return np.interp(t, times, angles)
+        t, theta = knots(lines, self.changes, self.first, self.rested, rest, self.log)
+        return _without_jumps(np.minimum(t, self.log.end), theta)
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,8 @@ class QuantisedLog:
         step: Angle of one count [rad].
 
     Raises:
-        DomainError: The step is not positive and finite.
+        DomainError: The step is not positive and finite, the times do not increase, there are
+            fewer than two, or the legs are not six.
     """
 
     t: Array
@@ -127,7 +128,8 @@ class QuantisedLog:
     step: float
 
     def __post_init__(self) -> None:
-        """Check that the angle of a count is positive and finite."""
+        """Check times, shapes, and that the angle of a count is positive and finite."""
+        SampledReference(self.t, self.theta)
         if not (self.step > 0 and np.isfinite(self.step)):
             raise DomainError(f"one count is {self.step:g} rad; expected more than zero, finite")
 
@@ -137,33 +139,45 @@ class QuantisedLog:
         return [CountedLeg.of(self.t, theta, self.step) for theta in self.theta.T]
 
     def smooth(self, rng: np.random.Generator | None = None) -> SampledReference:
-        """Reconstruct smooth leg angles at the log's times from the counts.
+        """Reconstruct smooth leg angles from the counts, with every leg's corners.
 
         Args:
             rng: Source of randomness, to draw one of the motions that the counts allow; None for
                 the fitted lines. A leg that never moves is drawn within its count.
 
         Returns:
-            The angles, less a constant offset: whether counts are rounded or truncated, half a
-            count, is not known here.
-
-        Raises:
-            DomainError: The times do not increase, there are fewer than two, or the legs are not
-                six.
+            The angles at the log's ends and at the times of all legs' corners, to a microsecond,
+            less a constant offset: whether counts are rounded or truncated, half a count, is not
+            known here. Times differ from draw to draw.
         """
-        columns = [
-            self._still(theta, rng) if leg is None else leg.angles(self.t, self.step, rng)
+        legs = [
+            self._still(theta, rng) if leg is None else leg.corners(self.step, rng)
             for theta, leg in zip(self.theta.T, self._legs, strict=True)
         ]
-        return SampledReference(self.t, np.column_stack(columns))
+        # Corners of several legs within a microsecond become one, so that speeds stay accurate
+        times = np.concatenate([self.t[[0, -1]], *(t for t, _ in legs)])
+        times = np.unique(times.round(DECIMALS))
+        return SampledReference(times, np.column_stack([np.interp(times, *leg) for leg in legs]))
 
-    def _still(self, theta: Array, rng: np.random.Generator | None) -> Array:
-        """Return the counts of a leg that never moves, all shifted by one draw within half a count.
+    def _still(self, theta: Array, rng: np.random.Generator | None) -> tuple[Array, Array]:
+        """Return times and angles at the log's ends of a leg that never moves.
 
-        Unchanged if `rng` is None.
+        The angle is drawn within half a count of the counted one; unchanged if `rng` is None.
         """
         half = 0.5 * self.step
-        return theta + (0.0 if rng is None else rng.uniform(-half, half))
+        shift = 0.0 if rng is None else rng.uniform(-half, half)
+        return self.t[[0, -1]], theta[[0, -1]] + shift
+
+
+def _without_jumps(t: Array, theta: Array) -> tuple[Array, Array]:
+    """Merge corners between which a leg would turn faster than `FASTEST`, to their mean.
+
+    Lines through few changes of count may meet the next line before they met the one before.
+    """
+    while (fast := np.abs(np.diff(theta)) > FASTEST * np.diff(t)).any():
+        i = int(np.argmax(fast))
+        t, theta = (np.r_[a[:i], a[i : i + 2].mean(), a[i + 2 :]] for a in (t, theta))
+    return t, theta
 
 
 def find_step(theta: Array) -> float | None:

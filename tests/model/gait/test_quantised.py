@@ -2,13 +2,17 @@
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from model.errors import DomainError
+from model.gait.buehler import buehler_reference
+from model.gait.lines import FASTEST
 from model.gait.quantised import QuantisedLog, find_step
 
 STEP = np.radians(3.6)
+T = np.arange(0, 6, 0.01)
+EVERYWHERE = np.arange(0, T[-1], 1e-4)
 
 
 def tripod(t, *, cycle=2.0, slow=1.2, stood=0.0):
@@ -24,12 +28,61 @@ def counted(theta):
     return STEP * np.round(theta / STEP)
 
 
+def within(gait, began):
+    """Return a gait's log from a time on, and times and true angles half a cycle from its ends."""
+    half = 0.5 * gait.period
+    fine = EVERYWHERE[(half < EVERYWHERE) & (half < EVERYWHERE[-1] - EVERYWHERE)]
+    return QuantisedLog(T, counted(gait.angles(T + began)), STEP), fine, gait.angles(fine + began)
+
+
+def errors(motion, fine, truth):
+    """Return the largest error of six legs at each time, in counts."""
+    return np.abs(motion.angles(fine) - truth).max(axis=1) / STEP
+
+
+@settings(max_examples=30)
+@given(
+    cycle=st.floats(1.5, 4.0), ground=st.floats(0.4, 0.6), touchdown=st.floats(-1.1, -0.4),
+    liftoff=st.floats(0.4, 1.1), began=st.floats(0.0, 4.0), seed=st.integers(0, 9),
+)  # fmt: skip
+def test_no_angle_between_samples_is_a_count_off(cycle, ground, touchdown, liftoff, began, seed):
+    gait = buehler_reference(touchdown, liftoff, ground_time=ground * cycle, cycle_time=cycle)
+    log, fine, truth = within(gait, began)
+    assert errors(log.smooth(), fine, truth).max() < 1
+    drawn = log.smooth(np.random.default_rng(seed))
+    assert errors(drawn, fine[::10], truth[::10]).max() < 1
+
+
+@pytest.mark.parametrize(("cycle", "began"), [(2.0, 0.3), (1.83, 0.1), (2.71, 0.7)])
+def test_corners_between_samples_are_kept(cycle, began):
+    gait = buehler_reference(-0.6, 0.7, ground_time=0.51 * cycle, cycle_time=cycle)
+    log, fine, truth = within(gait, began)
+    assert errors(log.smooth(), fine, truth).max() < 0.07
+    rng = np.random.default_rng(4)
+    fine, truth = fine[::10], truth[::10]
+    draws = np.stack([log.smooth(rng).angles(fine) for _ in range(60)])
+    assert np.abs(draws - truth).max() < 0.2 * STEP
+    assert np.mean((draws.min(axis=0) <= truth) & (truth <= draws.max(axis=0))) > 0.85
+
+
+@given(seed=st.integers(0, 1000))
+def test_legs_that_change_speed_all_the_time_never_jump(seed):
+    rng = np.random.default_rng(seed)
+    corners = np.arange(0, 6.01, 0.05)
+    speeds = rng.uniform(0, 6, (6, len(corners)))
+    theta = np.column_stack([np.interp(T, corners, 0.05 * np.cumsum(each)) for each in speeds])
+    log = QuantisedLog(T, counted(theta), STEP)
+    for motion in (log.smooth(), log.smooth(rng)):
+        assert np.diff(motion.t).min() > 0.9e-6
+        assert np.abs(motion.speeds(motion.t)).max() < 1.01 * FASTEST
+
+
 @given(cycle=st.floats(1.8, 4.0), slow=st.floats(0.8, 2.5), rate=st.sampled_from([50.0, 100.0]))
 def test_angles_come_back_far_closer_than_a_count(cycle, slow, rate):
     t = np.arange(0, 10, 1 / rate)
     theta = tripod(t, cycle=cycle, slow=slow)
     smooth = QuantisedLog(t, counted(theta), STEP).smooth()
-    error = smooth.theta - theta
+    error = smooth.angles(t) - theta
     assert np.sqrt(np.mean(error**2)) < 0.25 * STEP
     assert np.all(np.abs(error.mean(axis=0)) < 0.12 * STEP)
 
@@ -37,7 +90,7 @@ def test_angles_come_back_far_closer_than_a_count(cycle, slow, rate):
 def test_a_robot_that_stands_first_stands_in_the_reconstruction():
     t = np.arange(0, 8, 0.01)
     theta = tripod(t, stood=1.5)
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth().theta
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.abs(smooth - theta).max() < 0.7 * STEP
     assert np.all(np.ptp(smooth[t < 1.3], axis=0) < 0.3 * STEP)
 
@@ -47,9 +100,9 @@ def test_draws_spread_as_far_as_the_middle_errs():
     theta = tripod(t)
     log = QuantisedLog(t, counted(theta), STEP)
     rng = np.random.default_rng(2)
-    draws = np.stack([log.smooth(rng).theta for _ in range(30)])
+    draws = np.stack([log.smooth(rng).angles(t) for _ in range(30)])
     spread = draws.std(axis=0).mean()
-    error = np.abs(log.smooth().theta - theta).mean()
+    error = np.abs(log.smooth().angles(t) - theta).mean()
     assert 0.3 * error < spread < 0.3 * STEP
 
 
@@ -57,8 +110,8 @@ def test_a_leg_that_never_moves_stays_in_its_count():
     t = np.arange(0, 2, 0.01)
     still = np.zeros((len(t), 6))
     log = QuantisedLog(t, still, STEP)
-    np.testing.assert_array_equal(log.smooth().theta, 0)
-    drawn = log.smooth(np.random.default_rng(1)).theta
+    np.testing.assert_array_equal(log.smooth().angles(t), 0)
+    drawn = log.smooth(np.random.default_rng(1)).angles(t)
     assert np.all(np.abs(drawn) <= 0.5 * STEP)
     assert np.all(np.ptp(drawn, axis=0) == 0)
 
@@ -67,14 +120,14 @@ def test_a_pause_in_the_middle_stays_a_pause():
     t = np.arange(0, 9, 0.01)
     walked = np.where(t < 4.03, t, np.maximum(4.03, t - 1.5))
     theta = tripod(walked)
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth().theta
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.abs(smooth - theta).max() < 1.0 * STEP
 
 
 def test_legs_may_turn_backwards():
     t = np.arange(0, 6, 0.01)
     theta = -tripod(t)
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth().theta
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.sqrt(np.mean((smooth - theta) ** 2)) < 0.12 * STEP
 
 
@@ -92,9 +145,15 @@ def test_a_count_of_nothing_is_refused():
         QuantisedLog(np.arange(3.0), np.zeros((3, 6)), 0.0)
 
 
+def test_times_that_do_not_increase_are_refused():
+    with pytest.raises(DomainError, match="expected increasing times"):
+        QuantisedLog(np.array([0.0, 2.0, 1.0]), np.zeros((3, 6)), STEP)
+
+
 @pytest.mark.reference
 def test_counted_angles_of_an_engine_s_servos_come_back(shared):
     table = pd.read_csv(shared / "virtual-world/walks/tripod_s1.20_left_mu0.38_tc2.csv.gz")
     theta = table[[f"th{leg}" for leg in range(1, 7)]].to_numpy()
-    smooth = QuantisedLog(table["t"].to_numpy(), counted(theta), STEP).smooth().theta
+    t = table["t"].to_numpy()
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.degrees(np.sqrt(np.mean((smooth - theta) ** 2))) < 0.15

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
+from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.runs.counted_once import run_keys
 from zebro_lab.runs.data_paths import DataSource
 from zebro_lab.runs.folder import read_slip_rig_run
@@ -98,7 +99,8 @@ def read_part(
     else:
         raw, files = read_table_file(source.path, sheet=columns.sheet), (source.path,)
     table = RigTable(raw, columns, kept_rows(raw, columns))
-    slip_column = slip(table)
+    slip_column, pressed, traction = slip(table), normal_force(table), table.si("traction_force")
+    doubts = require_plausible(table, slip_column, pressed, traction)
     if wanted is not None:
         slip_column = converted(table, slip_column, wanted)
     runs = separate_runs(table, label)
@@ -108,11 +110,11 @@ def read_part(
         sources=tuple(s for s in (columns.source, raw.source) if s),
         rows_read=len(raw),
         slip=slip_column,
-        normal_force=normal_force(table),
-        traction_force=table.si("traction_force"),
+        normal_force=pressed,
+        traction_force=traction,
         runs=runs,
         time=run_times(table, runs),
-        notes=(*raw.notes, *_conversions(table)),
+        notes=(*raw.notes, *_conversions(table), *doubts),
         files=files if columns.file is None else (*files, columns.file),
     )
 

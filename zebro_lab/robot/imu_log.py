@@ -61,7 +61,7 @@ def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
         DataError: Time or orientation is missing, a cell does not hold a finite number, time does
             not increase, or a quaternion's length is not 1 within 0.05; names the cell.
     """
-    t = mapping.numbers(table, "t", what="time", advice=_ADVICE)
+    t = mapping.times(table, "t", advice=_ADVICE)
     table.require_increasing(mapping.mapped["t"].name, t)
     quaternion, notes = _orientation(table, mapping)
     rest = [_or_nan(table, mapping, name) for name in (*_RATE, *_FORCE)]

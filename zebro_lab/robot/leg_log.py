@@ -19,6 +19,7 @@ ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
 LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
 _WIDEST_GAP = 5.0  # median sample intervals; interpolation over a longer gap is not valid
 _LONGEST_TURN = 2.5  # rad between samples; from pi on the direction of rotation is ambiguous
+_ADVICE = "fill in the cell, or delete all rows up to it or from it on"
 _LONGEST_WRAPPED = np.pi / 2  # the same where a whole turn may have been cut off between samples
 
 
@@ -60,7 +61,8 @@ def legs_of_table(
             between samples, or by more than pi/2 where angles are wrapped to one turn, or jumps by
             more than a turn; names the cell.
     """
-    t, *angles = (_numbers(table, name, mapping) for name in LEG_UNITS)
+    t = mapping.times(table, "t", advice=_ADVICE)
+    angles = [_angle(table, name, mapping) for name in ANGLES]
     time_column = mapping.mapped["t"].name
     if len(t) < 2:
         raise DataError(f"has {len(t)} row; expected two or more rows", file=files[0])
@@ -77,13 +79,8 @@ def legs_of_table(
     )
 
 
-def _numbers(table: RawTable, name: str, columns: MappedColumns) -> Array:
-    return columns.numbers(
-        table,
-        name,
-        what="time" if name == "t" else f"angle of leg {name[-1]}",
-        advice="fill in the cell, or delete all rows up to it or from it on",
-    )
+def _angle(table: RawTable, name: str, columns: MappedColumns) -> Array:
+    return columns.numbers(table, name, what=f"angle of leg {name[-1]}", advice=_ADVICE)
 
 
 def _require_no_gap(table: RawTable, column: str, t: Array) -> None:

@@ -4,12 +4,18 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Final
+
+import numpy as np
 
 from model.slip.law import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_mapped_column
 from zebro_lab.tables.raw_table import RawTable
+
+INTERVALS: Final = (2e-5, 2.0)
+"""Range of the median time between samples of legs or an IMU whose unit is not stated [s]."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +82,33 @@ class MappedColumns:
         values = mapped.in_si(table)
         table.require_finite(mapped.name, values, f"a number in {mapped.unit}: {advice}")
         return values
+
+    def times(self, table: RawTable, name: str, *, advice: str) -> Array:
+        """Return the times of samples, as `numbers`; their unit must fit if it is not stated.
+
+        Args:
+            table: The table.
+            name: Canonical name.
+            advice: What to do about a cell without a number, for the error message.
+
+        Raises:
+            DataError: As in `numbers`; or neither file nor map state the unit, and in seconds the
+                samples would be more than `INTERVALS` apart, or less.
+        """
+        values = self.numbers(table, name, what="time", advice=advice)
+        mapped = self.mapped[name]
+        stated = mapped.unit_stated or mapped.name in table.units
+        usual = float(np.median(np.diff(values))) if len(values) > 1 else 0.0
+        if usual <= 0 or stated or INTERVALS[0] <= usual <= INTERVALS[1]:
+            return values
+        unit = "ms" if usual > 1 else "min"
+        raise table.fault(
+            f"samples are {usual:.3g} s apart, {np.ptp(values):.5g} s in all, if times are in s; "
+            f"expected {INTERVALS[0]:g} to {INTERVALS[1]:g} s between samples: state the unit in "
+            f'{COLUMNS_FILE}, such as [{self.where}columns.{name}] unit = "{unit}", or "s" if that '
+            "is right",
+            mapped.name,
+        )
 
 
 def canonical_columns(units: Mapping[str, str]) -> MappedColumns:

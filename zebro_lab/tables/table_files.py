@@ -22,10 +22,12 @@ READERS: Final[Mapping[str, Callable[[Path], RawTable]]] = {
 """Reader of each table format without sheets, by the suffix of its files, which may be gzipped."""
 _EXCEL: Final = ".xlsx"
 _NAMED_ONLY: Final = ".txt"  # in folders of data mostly notes
+_UNPACK: Final = "unpack it, and name what was in it"
 _OTHERS: Final = {
     ".xls": "save it as .xlsx or CSV", ".xlsm": "save it as .xlsx or CSV",
     ".ods": "save it as .xlsx or CSV", ".mat": "export its arrays as CSV or Parquet",
     ".tdms": "export it as CSV", ".c3d": "export it as CSV", ".h5": "export it as CSV or Parquet",
+    **dict.fromkeys((".zip", ".rar", ".7z", ".tar", ".tgz", ".tar.gz", ".bz2", ".xz"), _UNPACK),
 }  # fmt: skip
 
 PLAIN_SUFFIXES: Final = tuple(s for s in (*READERS, _EXCEL) if s != _NAMED_ONLY)
@@ -58,7 +60,8 @@ def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
         raise NotFound(f"{path}: no such file")
     suffix = _suffix(path)
     if path.is_dir() or not suffix:
-        advice = _OTHERS.get(path.suffix.lower(), "")
+        name = path.name.lower()
+        advice = next((told for suffix, told in _OTHERS.items() if name.endswith(suffix)), "")
         raise DataError(
             f"is not a table file; expected a name ending in {', '.join((*READERS, _EXCEL))}, "
             f"perhaps with .gz{'; ' + advice if advice else ''}",

@@ -10,6 +10,8 @@ from typing import Any, Final
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from zebro_lab.terminal.bad_values import values_named
+
 SETTINGS: Final = {"help_option_names": ["-h", "--help"]}
 
 
@@ -23,7 +25,8 @@ class Command(TyperCommand):
             BadParameter: An option that takes one value is given more than once.
         """
         _require_single(self, ctx, args)
-        return super().parse_args(ctx, args)
+        with values_named():
+            return super().parse_args(ctx, args)
 
     def get_short_help_str(self, limit: int = 45) -> str:
         """Return the first sentence of the help, not shortened to `limit` characters."""
@@ -61,7 +64,8 @@ class Group(TyperGroup):
             BadParameter: An option that takes one value is given more than once.
         """
         _require_single(self, ctx, args)
-        return super().parse_args(ctx, args)
+        with values_named():
+            return super().parse_args(ctx, args)
 
     def get_short_help_str(self, limit: int = 45) -> str:
         """Return the first sentence of the help, not shortened to `limit` characters."""

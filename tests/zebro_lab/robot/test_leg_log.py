@@ -98,3 +98,11 @@ def test_angles_that_jump_by_more_than_a_turn_are_in_another_unit(tmp_path):
         DataError, match=r"leg \d turns by 3[56]\d rad .*are they degrees or counts"
     ):
         read(degrees, tmp_path)
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e3, "ms"), (1e9, "ms"), (1 / 3600, "min")])
+def test_times_of_another_unit_are_asked_for(tmp_path, factor, unit):
+    table = leg_table()
+    other = table.assign(t=factor * table.t)
+    with pytest.raises(DataError, match=rf"column 't'.* s apart.*\[columns.t\] unit = \"{unit}\""):
+        read(other, tmp_path)

@@ -52,7 +52,16 @@ def test_a_table_without_rows_is_refused(tmp_path):
         read_table_file(tmp_path / "a.parquet")
 
 
-@pytest.mark.parametrize(("name", "advice"), [("a.xls", "save it as .xlsx"), ("a.mat", "export")])
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("a.xls", "save it as .xlsx"),
+        ("a.mat", "export"),
+        ("run.ZIP", "unpack it"),
+        ("run.tar.gz", "unpack it"),
+        ("a.csv.xz", "unpack it"),
+    ],
+)
 def test_a_format_that_is_not_read_says_how_to_export(tmp_path, name, advice):
     (tmp_path / name).write_bytes(b"x")
     with pytest.raises(DataError, match=advice):

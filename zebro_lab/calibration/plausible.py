@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""Refuse rig data whose numbers no rig can have measured: exchanged columns, other units."""
+
+from typing import Final
+
+import numpy as np
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.rig_table import RigTable
+from zebro_lab.tables.slip_source import SlipColumn
+
+LARGEST_RADIUS: Final = 3.0
+"""Largest radius of a disc [m]; drums of tyre test benches have up to 1.7 m."""
+LARGEST_SLIP: Final = 1.5
+"""Slip ratio computed from speeds that most rows keep within, even when braking hard [-]."""
+FRICTION: Final = (0.01, 4.0)
+"""Range of the ratio of traction to normal force [-]: ice has 0.02, racing tyres 2."""
+
+
+def require_plausible(
+    table: RigTable, slip: SlipColumn, normal_force: Array, traction_force: Array
+) -> tuple[str, ...]:
+    """Check radii, slip ratios computed from speeds, and the ratio of the forces.
+
+    Args:
+        table: The table.
+        slip: Slip ratios of its kept rows.
+        normal_force: Normal forces, shape (n,) [N].
+        traction_force: Traction forces, shape (n,) [N].
+
+    Returns:
+        A note where the ratio of the forces is improbable, although their units are stated.
+
+    Raises:
+        DataError: A radius is above `LARGEST_RADIUS`, most slip ratios computed from speeds are
+            beyond `LARGEST_SLIP`, or the ratio of the forces is outside `FRICTION` and the unit of
+            one of them is not stated.
+    """
+    if slip.column == "omega_leg":
+        _require_radii(table)
+        _require_slip(table, slip.ratio)
+    ratio = float(np.quantile(np.abs(traction_force) / normal_force, 0.95))
+    if FRICTION[0] <= ratio <= FRICTION[1]:
+        return ()
+    found = (
+        f"the traction force is {ratio:.2g} times the normal force, {_typical(traction_force)} to "
+        f"{_typical(normal_force)} N; expected {FRICTION[0]:g} to {FRICTION[1]:g}"
+    )
+    unstated = [n for n in ("normal_force", "traction_force") if not _is_stated(table, n)]
+    if not unstated:
+        return (f"IMPROBABLE FORCES: {found}: check their units",)
+    raise table.raw.fault(
+        f"{found}; state the unit of the forces in {COLUMNS_FILE}, such as "
+        + " and ".join(f'[columns.{name}] unit = "N"' for name in unstated)
+        + " if it is right",
+        table.required(unstated[0]).name,
+    )
+
+
+def _typical(force: Array) -> str:
+    return f"{np.median(np.abs(force)):.3g}"
+
+
+def _is_stated(table: RigTable, name: str) -> bool:
+    """Return whether file or column map state the unit of a column; recorded runs are in SI."""
+    if table.raw.path.is_dir() or name in table.columns.columns:
+        return True
+    return table.required(name).name in table.raw.units
+
+
+def _require_radii(table: RigTable) -> None:
+    for name in ("radius_leg", "radius_ground"):
+        largest = float(np.max(table.constant_or_column(name)))
+        if largest > LARGEST_RADIUS:
+            raise DataError(
+                f"the radius is {largest:g} m; expected {LARGEST_RADIUS:g} m or less: a number "
+                f'without a unit is in m, write "{largest:g} mm" for millimetres',
+                file=table.columns.file or table.raw.path, column=name, value=largest, unit="m",
+            )  # fmt: skip
+
+
+def _require_slip(table: RigTable, ratio: Array) -> None:
+    omega_leg, omega_ground = (table.si(name) for name in ("omega_leg", "omega_ground"))
+    opposite = float(np.mean(omega_leg * omega_ground < 0))
+    beyond = float(np.mean(np.abs(ratio) > LARGEST_SLIP))
+    if opposite > 0.9:
+        found = f"the discs turn in opposite directions in {opposite:.0%} of the rows"
+        advice = f"set sign = -1 of one of the speeds in {COLUMNS_FILE}"
+    elif beyond > 0.5:
+        found = (
+            f"the slip ratio computed from speeds and radii is beyond {LARGEST_SLIP:g} in "
+            f"{beyond:.0%} of the rows, {np.median(ratio):.3g} in the middle"
+        )
+        advice = f"are the speeds exchanged, or a radius or a unit wrong? Correct {COLUMNS_FILE}"
+    else:
+        return
+    raise table.raw.fault(
+        f"{found}; {advice}, or give the slip ratio itself as a column",
+        table.required("omega_leg").name,
+    )

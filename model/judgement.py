@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from model.counted import counted
 from model.errors import InsufficientData
 from model.metrics.consistency import FEWEST_DRAWS, Consistency, consistency
 from model.metrics.path_errors import PathErrors, path_errors
@@ -112,8 +113,8 @@ def judge(
     target = seen.part(slice(1, None) if anchor else slice(None))
     if len(target) < 2:
         raise InsufficientData(
-            f"{len(target)} tracked poses to score within the path's time (without the first where "
-            "paths start from it); expected two or more"
+            f"{counted(len(target), 'tracked pose')} to score within the path's time (without the "
+            "first where paths start from it); expected two or more"
         )
     first, at = seen.states[0], float(seen.t[0])
     if anchor and not np.isfinite(first[2]):

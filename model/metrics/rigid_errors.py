@@ -8,6 +8,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from model.counted import counted
 from model.errors import InsufficientData
 from model.metrics.alignment import Similarity, umeyama
 from model.rigid_path import RigidPath
@@ -97,7 +98,9 @@ def rigid_errors(
         InsufficientData: There are fewer than two poses.
     """
     if len(reference) < 2:
-        raise InsufficientData(f"{len(reference)} poses to compare; expected two or more")
+        raise InsufficientData(
+            f"{counted(len(reference), 'pose')} to compare; expected two or more"
+        )
     scale = 1.0
     if correct_scale:
         scale = umeyama(estimate.position, reference.position, with_scale=True).scale

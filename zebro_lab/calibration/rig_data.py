@@ -10,6 +10,7 @@ import numpy as np
 
 from model.bayes.blocks import slip_noise_variance
 from model.bayes.samples import SlipSamples
+from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.rig_part import RigPart, read_part
@@ -258,7 +259,7 @@ def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None
     least = _LEAST_TRIALS if trials else _LEAST_SAMPLES
     if len(samples) < least:
         raise DataError(
-            f"{len(samples)} samples in all, expected at least {least}; record more"
+            f"{counted(len(samples), 'sample')} in all, expected at least {least}; record more"
             + ("" if trials else ", or set runs.each_row in columns.toml if rows are trials"),
             file=where,
         )
@@ -303,7 +304,7 @@ def _notes(parts: Sequence[RigPart]) -> list[str]:
     rules: Counter[str] = Counter()
     for part in parts:
         rules[part.runs.rule] += len(part.runs.names)
-    runs = [f"{count} run{'s' * (count != 1)}, {rule}" for rule, count in rules.items()]
+    runs = [f"{counted(count, 'run')}, {rule}" for rule, count in rules.items()]
     others = dict.fromkeys(note for part in parts for note in part.notes)
     return [*origins, *runs, *_rows_left_out(parts), *_time_note(parts), *others]
 

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from model.bayes.calibration import Calibration
 from model.bayes.estimate import Estimate
+from model.counted import counted
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
@@ -38,7 +39,8 @@ def _print_data(console: Console, calibration: Calibration, data: RigData) -> No
     correlation = choice.correlation
     kind = "SIMULATED data" if calibration.simulated else "data"
     lines = [
-        f"{kind}, source '{data.source}': {len(data.samples)} samples in {blocks.n_runs} runs",
+        f"{kind}, source '{data.source}': {counted(len(data.samples), 'sample')} in "
+        f"{counted(blocks.n_runs, 'run')}",
         *data.notes,
         f"slip definition: {blocks.definition}",
         f"Samples are averaged in {len(blocks)} blocks of about {choice.length} ({choice.reason})"

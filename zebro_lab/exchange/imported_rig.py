@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.counted import counted
 from model.slip.law import Array
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import DataError
@@ -110,7 +111,7 @@ def rig_runs(
     return made, (
         *raw.notes,
         *_left_out(table),
-        f"{len(made)} run{'s' * (len(made) != 1)}, {runs.rule}",
+        f"{counted(len(made), 'run')}, {runs.rule}",
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from model.counted import counted
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
@@ -42,7 +43,7 @@ class TopicRows:
     @property
     def told(self) -> str:
         """Topic, type and number of the messages, for a note."""
-        return f"topic {self.topic}, {self.type}, {len(self.t)} messages"
+        return f"topic {self.topic}, {self.type}, {counted(len(self.t), 'message')}"
 
 
 def whole(message: LoggedMessage) -> Parts:

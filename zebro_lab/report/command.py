@@ -30,10 +30,9 @@ def report(request: ReportRequest, output: Output = TEXT) -> None:
     notices = list(belonging(sources).notices)
     for notice in notices:
         output.say(f"does not belong together: {notice}")
-    for part in sources.parts:
-        if part.missing:
-            output.say(f"missing: {part.name}; create it with: {part.maker}")
+    for part in sources.missing:
+        output.say(f"missing: {part.name}; create it with: {part.maker}")
     output.say(f"wrote {request.out} ({request.out.stat().st_size / 1e6:.1f} MB)")
-    missing = {part.name: part.maker for part in sources.parts if part.missing}
+    missing = {part.name: part.maker for part in sources.missing}
     content = {"written": [request.out], "missing": missing, "not_belonging": notices}
     output.document("report", content)

@@ -3,7 +3,7 @@
 
 import csv
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from zebro_lab.files.opening import parsing, read_text
 from zebro_lab.files.replacement import settle
 from zebro_lab.report.pictures import SUFFIXES, VALIDATION, lies_in, place_of
 from zebro_lab.runs.folder import find_runs
-from zebro_lab.runs.manifest import MANIFEST_FILE
+from zebro_lab.runs.manifest import MANIFEST_FILE, is_track_alone
 from zebro_lab.walk.folder import PREDICTION
 
 MANIFEST, SUMMARY = "manifest.json", "summary.csv"
@@ -82,7 +82,7 @@ class ReportedRun:
         folder: The run folder.
         recorded: Content of `run.json`; empty if the folder is not a recorded run.
         parts: Track, prediction and validation, present or missing, by name; none for a run of the
-            slip rig.
+            slip rig, and only those that are present for a run with a track alone.
     """
 
     folder: Path
@@ -93,6 +93,11 @@ class ReportedRun:
     def name(self) -> str:
         """Name of the run folder."""
         return self.folder.absolute().name
+
+    @property
+    def has_track_alone(self) -> bool:
+        """Whether the run was imported from a path alone, without leg angles."""
+        return is_track_alone(self.recorded)
 
 
 @dataclass(frozen=True)
@@ -120,6 +125,17 @@ class Sources:
         walks = [part for run in self.runs for part in run.parts.values()]
         more = [part for part in (self.walks, self.together) if part is not None]
         return [self.calibration, *walks, *more]
+
+    @property
+    def hold_more_than_tracks(self) -> bool:
+        """Whether any run, or folder of results, is more than a track."""
+        return not all(run.has_track_alone for run in self.runs)
+
+    @property
+    def missing(self) -> Sequence[Part]:
+        """Parts that are missing; the calibration only if there is more than tracks."""
+        needed = [p for p in self.parts if p is not self.calibration or self.hold_more_than_tracks]
+        return [part for part in needed if part.missing]
 
     @property
     def simulated(self) -> Sequence[str]:
@@ -158,16 +174,20 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
     if data in found or not found:
         return Sources(data, [_run(data)], slip, walks=walks)
     together = _part(VALIDATION, data / VALIDATION, data / "*")
-    return Sources(data, [_run(folder) for folder in found], slip, together, walks)
+    of_all = Sources(data, [_run(folder) for folder in found], slip, together, walks)
+    if together.missing and not of_all.hold_more_than_tracks:
+        return replace(of_all, together=None)
+    return of_all
 
 
 def _run(folder: Path) -> ReportedRun:
     recorded = _read(folder / MANIFEST_FILE) if (folder / MANIFEST_FILE).is_file() else {}
     if recorded.get("kind") == "slip-rig":
         return ReportedRun(folder, recorded, {})
-    return ReportedRun(
-        folder, recorded, {name: _part(name, folder / name, folder) for name in WALK_PARTS}
-    )
+    parts = {name: _part(name, folder / name, folder) for name in WALK_PARTS}
+    if is_track_alone(recorded):  # nothing can be predicted from it
+        parts = {name: part for name, part in parts.items() if not part.missing}
+    return ReportedRun(folder, recorded, parts)
 
 
 def _part(name: str, folder: Path, data: Path) -> Part:

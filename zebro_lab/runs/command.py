@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from model.counted import counted
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
@@ -27,7 +28,7 @@ def runs(data: DataDir, output: Output = TEXT) -> None:
     listed = list_runs(data)
     for run in listed:
         output.say(_in_words(run))
-    output.say(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
+    output.say(f"{counted(len(listed), 'run')} in {data}")
     simulated = any("sim:" in (run.source or "") for run in listed)
     output.document("runs", {"simulated": simulated, "runs": [_in_numbers(run) for run in listed]})
 

@@ -131,7 +131,17 @@ class RunManifest:
     @property
     def is_track_alone(self) -> bool:
         """Whether the run was imported from the path of another program alone."""
-        return self.kind == "walk" and self.exit_status == IMPORTED and not self.streams
+        return is_track_alone(self.__dict__)
+
+
+def is_track_alone(manifest: Mapping[str, Any]) -> bool:
+    """Return whether entries of a `run.json` are of a run with a track and no log.
+
+    Args:
+        manifest: The entries, `kind`, `exit_status` and `streams` among them.
+    """
+    imported = manifest.get("kind") == "walk" and manifest.get("exit_status") == IMPORTED
+    return imported and not manifest.get("streams")
 
 
 def read_manifest(folder: Path) -> RunManifest:

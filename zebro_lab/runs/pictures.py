@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from model.counted import counted
 from model.slip.law import Array
 from zebro_lab.plots.sheet import CYCLE, RED, new_figure, styled
 from zebro_lab.runs.signals import Event, Panel, RunSignals
@@ -86,9 +87,9 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         spans, (0, 1), transform=axes.get_xaxis_transform(), facecolor=RED, edgecolor=RED,
         alpha=0.25, lw=0.5,
     )  # fmt: skip
-    gaps = f", {len(spans)} gap{'s' * (len(spans) != 1)}" if spans else ""
+    gaps = f", {counted(len(spans), 'gap')}" if spans else ""
     simulated = " (simulated)" if panel.simulated else ""
-    axes.set_title(f"{panel.title}{simulated}, {len(panel.t)} samples{gaps}", loc="left")
+    axes.set_title(f"{panel.title}{simulated}, {counted(len(panel.t), 'sample')}{gaps}", loc="left")
     axes.set_ylabel(f"[{panel.unit}]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=1.0)
     axes.grid(color="0.92", lw=0.6)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from model.counted import counted
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.picture_options import Window, parse_window
@@ -52,8 +53,8 @@ def plot(
         output.say(note)
     for panel in drawn.signals.panels:
         simulated = "SIMULATED " if panel.simulated else ""
-        gaps = f", {len(panel.gaps)} gaps" if len(panel.gaps) else ""
-        output.say(f"{simulated}{panel.title}: {len(panel.t)} samples{gaps}")
+        gaps = f", {counted(len(panel.gaps), 'gap')}" if len(panel.gaps) else ""
+        output.say(f"{simulated}{panel.title}: {counted(len(panel.t), 'sample')}{gaps}")
     output.say(f"wrote {drawn.file}")
     samples = {panel.title: len(panel.t) for panel in drawn.signals.panels}
     simulated = any(panel.simulated for panel in drawn.signals.panels)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from model.counted import counted
 from zebro_lab.tables.cells import decimal_sign
 from zebro_lab.tables.header_rows import (
     DataRows,
@@ -226,7 +227,8 @@ def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequenc
         if any(cells[len(header.names) :]) or len(cells) > len(header.names) + 1:
             advice = "; write decimals with a point" if best.separator == "," else "; correct it"
             raise LayoutError(
-                f"the row has {len(cells)} cells, the header has {len(header.names)}{advice}",
+                f"the row has {counted(len(cells), 'cell')}, the header has "
+                f"{len(header.names)}{advice}",
                 row=row, line=body[data.first + row - 1][0],
             )  # fmt: skip
 
@@ -245,7 +247,8 @@ def _without_numbers(body: Sequence[Line]) -> Layout:
     for row, (cells, (line, _)) in enumerate(zip(rows[1:], body[1:], strict=True), start=1):
         if len(cells) > len(rows[0]):
             raise LayoutError(
-                f"the row has {len(cells)} cells, the header has {len(rows[0])}; correct it",
+                f"the row has {counted(len(cells), 'cell')}, the header has "
+                f"{len(rows[0])}; correct it",
                 row, line,
             )  # fmt: skip
     names = [name or f"column {i}" for i, name in enumerate(rows[0], start=1)]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.counted import counted
 from model.errors import DomainError
 from model.poses import Poses
 from model.slip.law import Array
@@ -77,8 +78,8 @@ def track_of_table(table: RawTable) -> TrackFile:
     poses = _poses(table, file)
     if len(poses) < FEWEST:
         raise DataError(
-            f"has {len(poses)} poses; expected {FEWEST} or more, since the first only starts the "
-            "prediction: take photographs more often, or walk for longer",
+            f"has {counted(len(poses), 'pose')}; expected {FEWEST} or more, since the first "
+            "only starts the prediction: take photographs more often, or walk for longer",
             file=file,
         )
     notes = [] if poses.has_yaw else [f"{file.name} has no column yaw_rad; yaw is not scored"]

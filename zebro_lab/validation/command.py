@@ -3,6 +3,7 @@
 
 import typer
 
+from model.counted import counted
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.validation.request import ValidateRequest
@@ -71,8 +72,8 @@ def _validate_pair(request: ValidateRequest, output: Output) -> None:
     if folders or len(request.runs) != 2:
         found = f", of which {folders[0]} is a folder" if folders else ""
         raise typer.BadParameter(
-            f"{len(request.runs)} paths{found}; give run folders, or two files of trajectories: "
-            "REFERENCE ESTIMATE"
+            f"{counted(len(request.runs), 'path')}{found}; give run folders, or two files "
+            "of trajectories: REFERENCE ESTIMATE"
         )
     if request.topic and not logs:
         raise typer.BadParameter("belongs to ROS logs; no file is one", param_hint="--topic")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab report` writes the page, and names what is missing with what makes it."""
 
+from support.report_pages import write_json
+
 
 def test_the_page_is_written_and_its_size_told(walk, tmp_path, run_command):
     out = tmp_path / "page.html"
@@ -29,3 +31,12 @@ def test_a_folder_without_a_run_is_one_line(tmp_path, run_command):
     assert (ended.code, ended.out) == (1, "")
     assert len(ended.err.splitlines()) == 1
     assert not (tmp_path / "page.html").exists()
+
+
+def test_a_track_alone_misses_nothing(walk, tmp_path, run_command):
+    run = tmp_path / "alone"
+    write_json(run / "run.json", {"kind": "walk", "exit_status": "imported", "streams": {}})
+    (walk / "track").rename(run / "track")
+    out = tmp_path / "page.html"
+    ended = run_command("report", run, "--calibration", tmp_path / "none", "--out", out)
+    assert ended.out == f"wrote {out} (0.0 MB)\n"

@@ -19,6 +19,36 @@ def test_missing_parts_are_named_with_the_command_that_makes_them(walk):
     assert "zebro-lab validate" not in page.text
 
 
+TRACK_ALONE = {"kind": "walk", "label": "ours", "exit_status": "imported", "streams": {}}
+
+
+@pytest.mark.parametrize("of_folder", [False, True])
+def test_a_track_alone_is_compared_with_trajectories_and_needs_nothing_else(
+    walk, tmp_path, of_folder
+):
+    run = tmp_path / "data" / "alone"
+    write_json(run / "run.json", TRACK_ALONE)
+    (walk / "track").rename(run / "track")
+    page = made(run.parent if of_folder else run, calibration=tmp_path / "nowhere")
+    assert f"zebro-lab validate {run}/track/track.tum ESTIMATE" in page.text
+    assert "zebro-lab import --legs" in page.text
+    for useless in ("predict", "calibrate", "validate data", f"validate {run} ", "track PHOTOS"):
+        assert f"zebro-lab {useless}" not in page.text
+    assert "none needs a slip curve" in page.text
+
+
+def test_a_track_alone_beside_a_walk_leaves_the_advice_for_the_walk(walk, tmp_path):
+    data = tmp_path / "data"
+    write_json(data / "alone" / "run.json", TRACK_ALONE)
+    (walk / "track").rename(data / "alone" / "track")
+    walk.rename(data / "walk")
+    page = made(data, calibration=tmp_path / "nowhere")
+    assert "zebro-lab calibrate" in page.text
+    assert f"zebro-lab track PHOTOS --camera camera.toml --floor floor.toml --run {data}/walk" in (
+        page.text
+    )
+
+
 def test_a_folder_of_runs_is_one_page(walk, tmp_path):
     data = tmp_path / "data"
     data.mkdir()

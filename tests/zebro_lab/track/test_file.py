@@ -54,6 +54,7 @@ def test_headings_are_unwrapped(tmp_path):
     [
         ("t,x\n0,0\n1,0\n2,0\n", "y_m or y"),
         ("t,x,y\n0,0,0\n1,0,0\n", "has 2 poses"),
+        ("t,x,y\n0,0,0\n", "has 1 pose; expected"),
         ("t,x,y\n0,0,0\n2,0,0\n1,0,0\n", "increasing"),
         ("t,x,y\n0,0,0\n1,,0\n2,0,0\n", "is empty; expected a finite number"),
     ],

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.counted import counted
 from model.poses import Poses
 from model.rigid_path import RigidPath, rotations_of_quaternions
 from model.slip.law import Array
@@ -165,8 +166,8 @@ def _times(
         raise SettingsError(f"{file} is not a file of one number a line", key="--times")
     if len(times.values) != count:
         raise SettingsError(
-            f"{file} has {len(times.values)} times, {numbers.file} has {count} poses; expected as "
-            "many of both",
+            f"{file} has {counted(len(times.values), 'time')}, {numbers.file} has "
+            f"{counted(count, 'pose')}; expected as many of both",
             key="--times",
         )
     t = times.values[:, 0]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.counted import counted
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import read_text
@@ -79,12 +80,12 @@ def _rows(path: Path, texts: Sequence[tuple[int, str]], separator: str | None) -
         words = _words(text, separator)
         numbers = _numbers(words)
         if numbers is None or len(numbers) != count:
-            found = f"{len(words)} words, not all numbers" if numbers is None else (
-                f"{len(words)} numbers"
+            found = f"{counted(len(words), 'word')}, not all numbers" if numbers is None else (
+                f"{counted(len(words), 'number')}"
             )  # fmt: skip
             raise DataError(
-                f"found {found}; expected {count} numbers as in the first line; correct or delete "
-                "the line",
+                f"found {found}; expected {counted(count, 'number')} as in the first line; "
+                "correct or delete the line",
                 file=path, row=row, line=line,
             )  # fmt: skip
         rows.append(numbers)

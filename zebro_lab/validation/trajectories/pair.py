@@ -6,11 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.counted import counted
 from model.metrics.matching import match_times
 from model.metrics.rigid_errors import RigidErrors, rigid_errors, round_distances
 from model.poses import Poses
 from model.rigid_path import RigidPath
 from zebro_lab.files.errors import DataError
+from zebro_lab.files.names import shortest_distinct
 from zebro_lab.track.trajectory.file import Trajectory
 
 FEWEST = 3  # two motions, so that an alignment leaves an error
@@ -52,6 +54,14 @@ class JudgedPair:
     tracked: Poses
     estimated: Poses
     notes: tuple[str, ...]
+
+    @property
+    def title(self) -> str:
+        """Both files by the fewest parts of their paths that tell them apart."""
+        files = [each.file.absolute() for each in (self.estimate, self.reference)]
+        if files[0] == files[1]:
+            return f"{files[0].name} against itself"
+        return " against ".join(shortest_distinct(files))
 
     @property
     def source(self) -> str:
@@ -123,8 +133,8 @@ def _matched(
     if not reference.timed:
         if len(a) != len(b):
             raise DataError(
-                f"has {len(b)} poses without times, the reference has {len(a)}; expected as many "
-                "of both, or the file of their times with --times",
+                f"has {counted(len(b), 'pose')} without times, the reference has {len(a)}; "
+                "expected as many of both, or the file of their times with --times",
                 file=estimate.file,
             )
         return a, b, ("poses are matched by their number: the files have no times",)
@@ -143,7 +153,7 @@ def _matched(
 
 def _too_few(count: int, a: RigidPath, b: RigidPath, most: float) -> str:
     return (
-        f"{count} poses have a reference pose within {most:g} s; expected {FEWEST} or more: the "
+        f"poses with a reference pose within {most:g} s: {count}; expected {FEWEST} or more: the "
         f"reference has times from {a.t[0]:.10g} to {a.t[-1]:.10g} s, this file from {b.t[0]:.10g} "
         f"to {b.t[-1]:.10g} s; try --max-difference, or --time-offset for another clock"
     )

@@ -23,7 +23,7 @@ def trajectories(judged: JudgedPair) -> Figure:
     """
     track, estimate, row = judged.tracked, judged.estimated, judged.rows[0]
     figure, above, panels = map_and_panels(
-        f"{judged.estimate.file.name} against {judged.reference.file.name}",
+        judged.title,
         simulated="sim:" in judged.source, height=5.0, names=_PANELS,
     )  # fmt: skip
     aligned = row.errors.alignment.apply(row.estimate.position)

@@ -48,9 +48,8 @@ def print_pair(console: Console, judged: JudgedPair, out: Path) -> None:
 
 
 def _table(judged: JudgedPair) -> Table:
-    title = f"{judged.estimate.file.name} against {judged.reference.file.name}"
     rows = [metrics(row) for row in judged.rows]
-    table = plain_table(title, ("", "unit"), [row.where for row in judged.rows])
+    table = plain_table(judged.title, ("", "unit"), [row.where for row in judged.rows])
     for name, unit, values in _lines(rows):
         if name == _NAMES["scale"] and all(value == 1 for value in values):
             continue

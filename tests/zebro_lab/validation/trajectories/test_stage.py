@@ -41,6 +41,16 @@ def test_a_shift_is_the_error_everywhere_and_gone_after_alignment(run_command, f
     assert set(manifest["inputs"]) == {str(file) for file in files}
 
 
+def test_files_of_one_name_are_told_apart_by_their_folders(run_command, files, tmp_path):
+    other = tmp_path / "other" / files[0].name
+    other.parent.mkdir()
+    files[1].rename(other)
+    ended = run_command("validate", files[0], other, "--out", tmp_path / "out")
+    assert f"other/truth.txt against {tmp_path.name}/truth.txt" in ended.out
+    ended = run_command("validate", files[0], files[0], "--out", tmp_path / "out")
+    assert "truth.txt against itself" in ended.out
+
+
 def test_a_flat_table_is_validated_in_the_plane_alone(run_command, files, tmp_path):
     frame = pd.DataFrame(
         np.column_stack([T, 1000 * POSITION[:, :2]]), columns=["when", "east", "north"]
@@ -63,7 +73,7 @@ def test_another_clock_is_set_by_the_offset(run_command, files, tmp_path):
     late = written(tmp_path / "late.txt", tum(T + 100, POSITION, ROTATION))
     ended = run_command("validate", files[0], late, "--out", tmp_path / "out")
     assert ended.code == 1
-    assert "late.txt: 0 poses have a reference pose within 0.01 s; expected 3 or more" in ended.err
+    assert "late.txt: poses with a reference pose within 0.01 s: 0; expected 3 or more" in ended.err
     assert not (tmp_path / "out").exists()
     ended = run_command("validate", files[0], late, "--time-offset", 100, "--out", tmp_path / "out")
     assert ended.code == 0, ended.err

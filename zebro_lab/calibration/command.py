@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Fit rig data for `calibrate-slip` and print the results."""
 
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
 import typer
 
 from zebro_lab.calibration.request import CalibrationRequest
@@ -24,7 +29,26 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
         with output.progress() as watcher:
             calibration, read = calibrate(request, watcher)
     except Stopped as stopped:
-        say(str(stopped), err=True)
+        if stopped.checkpoint is None:
+            say(str(stopped), err=True)
+        else:
+            say(
+                f"stopped; {stopped.checkpoint} keeps the fit; go on with: {_resuming(sys.argv)}",
+                err=True,
+            )
         raise typer.Exit(INTERRUPTED) from None
     print_calibration(output.console(), calibration, read, request.out)
     return calibration.verdict.converged
+
+
+def _resuming(words: Sequence[str]) -> str:
+    """Return the command line that resumes the fit of a command line.
+
+    >>> _resuming(["/bin/calibrate-slip", "my data", "--out", "c"])
+    "calibrate-slip 'my data' --out c --resume"
+    """
+    program, *given = words
+    if "--resume" not in given:
+        end_of_options = given.index("--") if "--" in given else len(given)
+        given.insert(end_of_options, "--resume")
+    return shlex.join([Path(program).name, *given])

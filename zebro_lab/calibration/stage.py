@@ -29,6 +29,7 @@ from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes, fingerprint
 from zebro_lab.files.result_folder import require_replaceable, result_folder
+from zebro_lab.terminal.stopping import StoppedBySignal
 
 CHECKPOINT_SECONDS = 5.0
 
@@ -44,7 +45,7 @@ class Stopped(ZebroLabError):
         super().__init__(
             "stopped before sampling began; nothing was written"
             if checkpoint is None
-            else f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on"
+            else f"stopped; {checkpoint} keeps the fit, and --resume goes on"
         )
         self.checkpoint = checkpoint
 
@@ -62,7 +63,8 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     Raises:
         ZebroLabError: Data, options, checkpoint or output folder are invalid.
         ModelError: The law is unknown or the fit failed; a checkpoint may have been written.
-        Stopped: The watcher requested a stop; a checkpoint was written if sampling had begun.
+        Stopped: The watcher requested a stop, or a signal stopped the fit after a checkpoint; one
+            was written if sampling had begun.
     """
     require_replaceable(request.out, CALIBRATION, inputs=request.inputs)
     watcher.step("reading", None)
@@ -85,10 +87,14 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
             earlier=earlier,
             keep=checkpoint.keep,
         )
+        watcher.step("drawing", None)
+        _write(request, calibration, inputs)
     except FitStopped as stopped:
         raise Stopped(checkpoint.save(stopped.chains)) from stopped
-    watcher.step("drawing", None)
-    _write(request, calibration, inputs)
+    except StoppedBySignal as stopped:  # at once, in a step that hears no wish to stop
+        if checkpoint.exists or request.resume:
+            raise Stopped(request.out / CHECKPOINT) from stopped
+        raise
     if calibration.convergence.converged:
         (request.out / CHECKPOINT).unlink(missing_ok=True)
     else:
@@ -97,10 +103,15 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
 
 
 class _Checkpoint:
-    """Writes the checkpoint of a fit at intervals of `CHECKPOINT_SECONDS`."""
+    """Writes the checkpoint of a fit at intervals of `CHECKPOINT_SECONDS`.
+
+    Attributes:
+        exists: Whether a checkpoint of this fit has been written.
+    """
 
     def __init__(self, folder: Path, mark: str) -> None:
         self._folder, self._mark, self._saved = folder, mark, time.monotonic()
+        self.exists = False
 
     def keep(self, chains: Chains) -> None:
         """Write the chains if the last write, or the start, is over `CHECKPOINT_SECONDS` ago."""
@@ -112,7 +123,9 @@ class _Checkpoint:
         if chains is None:
             return None
         self._saved = time.monotonic()
-        return save_checkpoint(self._folder, chains, fingerprint=self._mark)
+        file = save_checkpoint(self._folder, chains, fingerprint=self._mark)
+        self.exists = True
+        return file
 
 
 def _sampler(request: CalibrationRequest) -> SamplerSettings:

@@ -2,6 +2,7 @@
 """`calibrate-slip` as its user meets it: a process with arguments, streams and an exit code."""
 
 import json
+import shlex
 import signal
 import subprocess
 import sys
@@ -179,10 +180,11 @@ def stopped(request, sweep, tmp_path) -> tuple[tuple[object, ...], Path, tuple[i
 
 
 def test_stopped_fit_exits_130_with_a_checkpoint_alone_and_says_how_to_go_on(stopped):
-    _, out, ending = stopped
+    arguments, out, ending = stopped
     checkpoint = out / "checkpoint.npz"
-    message = f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on\n"
-    assert (*ending[:2], last_line(ending[2])) == (130, "", message)
+    message, command = last_line(ending[2]).split("; go on with: ")
+    assert (*ending[:2], message) == (130, "", f"stopped; {checkpoint} keeps the fit")
+    assert shlex.split(command)[1:] == [*map(str, arguments), "--resume"]
     assert names(out) == {"checkpoint.npz"}
     with np.load(checkpoint, allow_pickle=False) as stored:
         assert np.isfinite(stored["z"]).all()

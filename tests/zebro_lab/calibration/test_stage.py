@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The stage without the command: the same numbers again, after a stop, beside foreign files."""
 
+import signal
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -17,6 +18,7 @@ from zebro_lab.calibration.folder import read_slip
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.stage import Stopped, calibrate
 from zebro_lab.files.errors import AlreadyExists, SettingsError
+from zebro_lab.terminal.stopping import StoppedBySignal
 
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
 TABLES = {"slip.toml", "summary.csv", "posterior.nc", "manifest.json"}
@@ -147,6 +149,24 @@ def test_stop_before_sampling_writes_nothing(request_for, tmp_path):
         calibrate(request_for(tmp_path / "out"), Watcher(stop_at=1))
     assert stopped.value.checkpoint is None
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("sampled_long", [True, False])
+def test_a_signal_while_drawing_tells_of_a_checkpoint_if_there_is_one(
+    request_for, tmp_path, monkeypatch, sampled_long
+):
+    def signalled(*_):
+        raise StoppedBySignal(signal.SIGINT)
+
+    monkeypatch.setattr(stage, "draw_calibration", signalled)
+    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", 0.0 if sampled_long else 1e9)
+    out = tmp_path / "out"
+    with pytest.raises(Stopped if sampled_long else StoppedBySignal) as stopped:
+        calibrate(request_for(out, max_steps=50), Watcher())
+    assert getattr(stopped.value, "checkpoint", None) == (
+        out / "checkpoint.npz" if sampled_long else None
+    )
+    assert out.is_dir() == sampled_long
 
 
 def test_checkpoint_of_other_settings_is_refused(uninterrupted, request_for):

@@ -21,11 +21,12 @@ _LONGEST_TEXT: Final = 90
 
 
 @styled
-def raw_streams(run: RunSignals) -> Figure:
+def raw_streams(run: RunSignals, at: Sequence[float] = ()) -> Figure:
     """Draw every stream of a run, one panel per quantity, above them the events; return the figure.
 
     Args:
         run: Signals; a panel without any finite value is left out, ValueError if none is drawn.
+        at: Times to mark in every panel [s].
     """
     drawn = [panel for panel in run.panels if _known(panel)]
     rows = len(drawn) + bool(run.events)
@@ -41,6 +42,7 @@ def raw_streams(run: RunSignals) -> Figure:
         for event in run.events:
             if event.warning:
                 axes.axvline(event.t, color=RED, lw=0.7, ls=":")
+        _mark(axes, at)
     begin = min(panel.t[0] for panel in drawn)
     end = max(panel.t[-1] for panel in drawn)
     grid[-1].set(xlabel="time of the run [s]", xlim=(begin, end if end > begin else begin + 1))
@@ -93,6 +95,16 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     axes.set_ylabel(f"[{panel.unit}]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=1.0)
     axes.grid(color="0.92", lw=0.6)
+
+
+def _mark(axes: Axes, at: Sequence[float]) -> None:
+    """Draw a line at each time, with the time at its upper end."""
+    for t in at:
+        axes.axvline(t, color="black", lw=0.8)
+        axes.annotate(
+            f"{t:g} s", (t, 1.0), xycoords=("data", "axes fraction"), xytext=(2, -2),
+            textcoords="offset points", ha="left", va="top", fontsize=7,
+        )  # fmt: skip
 
 
 def _broken(t: Array, values: Array, gaps: Array) -> tuple[Array, Array]:

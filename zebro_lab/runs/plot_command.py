@@ -9,7 +9,7 @@ import typer
 from model.counted import counted
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.terminal.output import TEXT, Output
-from zebro_lab.terminal.picture_options import Window, parse_window
+from zebro_lab.terminal.picture_options import Instants, Window, parse_instants, parse_window
 from zebro_lab.terminal.request_command import request_command
 
 EPILOG = """
@@ -19,7 +19,7 @@ zebro-lab plot data/20260304T050607Z_walk_circle
 
 zebro-lab plot data/20260304T050607Z_walk_circle --out circle.png
 
-zebro-lab plot data/20260304T050607Z_walk_circle --format pdf --window 20:24
+zebro-lab plot data/20260304T050607Z_walk_circle --format pdf --window 20:24 --at 21.5,22
 """
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
@@ -39,16 +39,31 @@ Shown = Annotated[
 ]  # fmt: skip
 
 
+Marked = Annotated[
+    Instants | None,
+    typer.Option(
+        parser=parse_instants, metavar="T1,T2,…",
+        help="Times of the run to mark with a line in every panel [s].",
+    ),
+]  # fmt: skip
+
+
 @request_command()
 def plot(
-    run: Run, out: Out = None, form: Form = None, window: Shown = None, output: Output = TEXT
+    run: Run,
+    out: Out = None,
+    form: Form = None,
+    at: Marked = None,
+    window: Shown = None,
+    output: Output = TEXT,
 ) -> None:
     """Plot all recorded streams of a run over time in one picture; mark gaps and events."""
     from zebro_lab.runs.plot_stage import plot_run
 
     with output.progress() as watcher:
         watcher.step("drawing", None)
-        drawn = plot_run(run, out=out, form=form, window=window)
+        marked = () if at is None else at.t
+        drawn = plot_run(run, out=out, form=form, at=marked, window=window)
     for note in drawn.signals.notes:
         output.say(note)
     for panel in drawn.signals.panels:

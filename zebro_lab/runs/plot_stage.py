@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab plot`: read a run and draw all its streams in one picture."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -35,6 +36,7 @@ def plot_run(
     *,
     out: Path | None = None,
     form: PictureFormat | None = None,
+    at: Sequence[float] = (),
     window: Window | None = None,
 ) -> Drawn:
     """Draw every stream of a run and write the picture atomically.
@@ -43,11 +45,12 @@ def plot_run(
         folder: The run folder.
         out: Picture to write; when None, `RUN.png` (or of the format) beside the run folder RUN.
         form: Format of the picture; when None, as `out` ends.
+        at: Times of the run to mark [s].
         window: Time of the run to draw; None for all.
 
     Raises:
         SettingsError: `out` has the suffix of no format or of another one than `form`, or is a
-            folder; or no sample lies in the window.
+            folder; or no sample lies in the window, or a time to mark is not in what is drawn.
         AlreadyExists: `out` exists and is not a picture of this command, or is part of a result.
         NotFound: The folder is not a run folder, or the log or the picture's folder is missing.
         DataError: The run cannot be read, or holds no samples.
@@ -60,11 +63,12 @@ def plot_run(
     signals = read_signals(folder)
     if window is not None:
         signals = signals.within(*window)
+    signals.require_within(at, key="--at")
     from zebro_lab.plots.sheet import save
     from zebro_lab.runs.pictures import raw_streams  # matplotlib: only where all is read
 
     drawn = BytesIO()
-    save(raw_streams(signals), drawn, command=PLOT.command, form=own)
+    save(raw_streams(signals, at), drawn, command=PLOT.command, form=own)
     atomic_write_bytes(target, drawn.getvalue())
     return Drawn(file, signals)
 

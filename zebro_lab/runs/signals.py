@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read all streams of a run as curves in the units of a picture, with gaps and events."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -97,6 +97,30 @@ class RunSignals:
     events: tuple[Event, ...]
     notes: tuple[str, ...] = ()
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last time of a sample of any stream [s]."""
+        seen = [panel.t for panel in self.panels if len(panel.t)]
+        return min(float(t[0]) for t in seen), max(float(t[-1]) for t in seen)
+
+    def require_within(self, at: Sequence[float], *, key: str) -> None:
+        """Check that times lie within the curves.
+
+        Args:
+            at: The times [s].
+            key: Option that gave them, for the message.
+
+        Raises:
+            SettingsError: A time lies before or after all samples.
+        """
+        first, last = self.span
+        for t in at:
+            if not first <= t <= last:
+                raise SettingsError(
+                    f"found {t:g} s; expected times of what is drawn, {first:.3f} to {last:.3f} s",
+                    key=key,
+                )
+
     def within(self, begin: float, end: float) -> "RunSignals":
         """Return curves and events from `begin` to `end` [s]; streams with no sample there go.
 
@@ -106,8 +130,7 @@ class RunSignals:
         panels = [panel.within(begin, end) for panel in self.panels]
         drawn = tuple(panel for panel in panels if len(panel.t))
         if not drawn:
-            first = min(panel.t[0] for panel in self.panels if len(panel.t))
-            last = max(panel.t[-1] for panel in self.panels if len(panel.t))
+            first, last = self.span
             raise SettingsError(
                 f"found {begin:g}:{end:g} s; expected a time of the run, {first:.3f} to "
                 f"{last:.3f} s",

@@ -54,3 +54,12 @@ def test_a_thinned_curve_keeps_its_extremes_and_its_order(values, columns):
     assert (thin.min(), thin.max()) == (values.min(), values.max())
     assert np.all(np.diff(thin_t) >= 0)
     assert np.array_equal(thin, values[thin_t.astype(int)])
+
+
+def test_times_to_mark_are_named_and_drawn_in_every_panel():
+    figure = raw_streams(signals(), at=[1.5, 4.0])
+    for axes in figure.axes:
+        assert [line.get_xdata()[0] for line in axes.lines if line.get_color() == "black"] == [
+            1.5, 4.0,
+        ]  # fmt: skip
+        assert [text.get_text() for text in axes.texts] == ["1.5 s", "4 s"]

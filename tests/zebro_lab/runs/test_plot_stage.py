@@ -53,3 +53,12 @@ def test_a_window_cuts_every_stream(tmp_path):
     for panel in plot_run(run, window=Window(float(begin), float(end))).signals.panels:
         assert begin <= panel.t[0] <= panel.t[-1] <= end
         assert all(len(line) == len(panel.t) for line in panel.lines.values())
+
+
+def test_times_to_mark_lie_in_what_is_drawn(tmp_path):
+    run = make_run(tmp_path)
+    t = plot_run(run).signals.panels[0].t
+    window = Window(float(t[3]), float(t[8]))
+    plot_run(run, at=[float(t[5])], window=window)
+    with pytest.raises(SettingsError, match=r"--at.*found .* s; expected times of what is drawn"):
+        plot_run(run, at=[float(t[5]), float(t[20])], window=window)

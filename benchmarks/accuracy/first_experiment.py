@@ -1,24 +1,36 @@
 # SPDX-License-Identifier: MIT
 """A first experiment of 2 loads x 12 slips on a simulated rig, its verdict, then what it advises.
 
-python -m benchmarks.accuracy.first_experiment [SEEDS] [FIRST]
+python -m benchmarks.accuracy.first_experiment [SEEDS] [FIRST] [TRUTH] [SLIPS]
 
 By commands alone and with default options: `rig run` and `calibrate-slip`; then the lines of a plan
 that the advice holds, put into a copy of the plan, run into another folder, and both folders fitted
-together. Each seed, from FIRST on, is a rig of its own, load cell and all. Prints whether the 90 %
-intervals of slip stiffness and friction hold the truth and what the verdict says, before and after.
+together. Each seed, from FIRST on, is a rig of its own, load cell and all. TRUTH is the rig's slip
+curve: `thesis` or `steep`, which no command simulates, so that the plan is run by the command's own
+function. SLIPS of the first plan are `even` over 0 to 1, or `rise`, crowded where the curve rises.
+Prints whether the 90 % intervals of slip stiffness and friction hold the truth and what the verdict
+says, before and after.
 """
 
 import sys
 import tempfile
 import tomllib
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from unittest.mock import patch
 
 import tomlkit
 
 from benchmarks.accuracy.calibrated_experiments import BIN, NAMES, run
-from model.slip.thesis import THESIS_VALUES
+from model.slip.law import Values
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.experiment.control import Control
+from rig.experiment.watcher import ExperimentWatcher
+from rig.slip_rig.simulated import SimulatedRig
+from zebro_lab.experiment import rig_at_hand
+from zebro_lab.experiment.request import RigRunRequest
+from zebro_lab.experiment.stage import run_experiment
 
 PLAN = """
 schema = 1
@@ -26,7 +38,7 @@ name = "first experiment"
 material = "leg on ground"
 [points]
 loads = [5.0, 10.0]
-slips = { first = 0.0, last = 1.0, count = 12 }
+slips = SLIPS
 omega_leg = 12.0
 length = "duration"
 duration = 1.0
@@ -52,7 +64,15 @@ traction_force = 15.0
 speed_error = 4.0
 """
 JUDGED = ("slip_stiffness", "friction")
-TRUTH = dict(zip(NAMES, THESIS_VALUES, strict=True))
+SLIPS = {
+    "even": "{ first = 0.0, last = 1.0, count = 12 }",
+    "rise": "[0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.6, 0.9]",
+}
+TRUTHS = {
+    "thesis": THESIS_VALUES,
+    "steep": (2 * THESIS_VALUES[0], THESIS_VALUES[1], 0.6, THESIS_VALUES[3]),
+}
+"""True values of the law, in the order of `NAMES`; the steep curve also has the higher friction."""
 
 
 @dataclass(frozen=True)
@@ -77,14 +97,15 @@ class Found:
         return " | ".join((*held, self.headline))
 
 
-def read_found(folder: Path) -> Found:
-    """Read verdict and intervals of a calibration folder."""
+def read_found(folder: Path, truth: Values) -> Found:
+    """Read verdict of a calibration folder, and whether its intervals hold the truth."""
+    true = dict(zip(NAMES, truth, strict=True))
     content = tomllib.loads((folder / "slip.toml").read_text(encoding="utf-8"))
     ends = [(content["parameters"][name]["q05"], content["parameters"][name]["q95"])
             for name in JUDGED]  # fmt: skip
     verdict = content["verdict"]
     return Found(
-        covered=tuple(low < TRUTH[n] < high for n, (low, high) in zip(JUDGED, ends, strict=True)),
+        covered=tuple(low < true[n] < high for n, (low, high) in zip(JUDGED, ends, strict=True)),
         trustworthy=verdict["trustworthy"],
         headline=verdict["headline"],
         steps=tuple(verdict["next_steps"]),
@@ -110,36 +131,42 @@ def advised_plan(plan: str, steps: tuple[str, ...]) -> str | None:
     return None
 
 
-def measure(plan: str, seed: int, data: Path) -> None:
+def measure(plan: str, seed: int, data: Path, truth: Values) -> None:
     """Run a plan on the simulated rig of a seed into a folder."""
     file = data.with_suffix(".toml")
     file.write_text(plan, encoding="utf-8")
-    run(BIN / "zebro-lab", "rig", "run", file, "--rig", "sim", "--fast", "--seed", seed,
-        "--data", data)  # fmt: skip
+    if truth is THESIS_VALUES:
+        run(BIN / "zebro-lab", "rig", "run", file, "--rig", "sim", "--fast", "--seed", seed,
+            "--data", data)  # fmt: skip
+        return
+    request = RigRunRequest(file, "sim", data, fast=True, seed=seed)
+    with patch.object(rig_at_hand, "SimulatedRig", partial(SimulatedRig, THESIS_LAW, truth)):
+        run_experiment(request, ExperimentWatcher(), Control())
 
 
-def follow(seed: int, folder: Path) -> tuple[Found, Found | None]:
+def follow(seed: int, folder: Path, plan: str, truth: Values) -> tuple[Found, Found | None]:
     """Return what the first experiment says, and what it says after its advice, if that has any."""
     data, further = folder / "data", folder / "further"
-    measure(PLAN, seed, data)
+    measure(plan, seed, data, truth)
     run(BIN / "calibrate-slip", data, "--out", folder / "first")
-    first = read_found(folder / "first")
-    plan = advised_plan(PLAN, first.steps)
-    if plan is None:
+    first = read_found(folder / "first", truth)
+    advised = advised_plan(plan, first.steps)
+    if advised is None:
         return first, None
-    measure(plan, seed, further)
+    measure(advised, seed, further, truth)
     run(BIN / "calibrate-slip", data, further, "--out", folder / "after")
-    return first, read_found(folder / "after")
+    return first, read_found(folder / "after", truth)
 
 
-def main(seeds: int, first_seed: int = 0) -> None:
+def main(seeds: int, first_seed: int, truth: Values, slips: str) -> None:
     """Print the table, then how many of each kind there are."""
     print("| seed | K held | mu held | first verdict | K held, after | mu held, after | verdict |")
     print("|---|---|---|---|---|---|---|")
+    plan = PLAN.replace("SLIPS", slips)
     before, after = [], []
     for seed in range(first_seed, first_seed + seeds):
         with tempfile.TemporaryDirectory() as folder:
-            first, then = follow(seed, Path(folder))
+            first, then = follow(seed, Path(folder), plan, truth)
         before.append(first)
         after.append(then or first)
         cells = "| | no plan was advised" if then is None else then.cells()
@@ -158,4 +185,8 @@ COUNTS = {
 }
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:3] or (20,)))
+    given = dict(enumerate(sys.argv[1:]))
+    main(
+        int(given.get(0, 20)), int(given.get(1, 0)), TRUTHS[given.get(2, "thesis")],
+        SLIPS[given.get(3, "even")],
+    )  # fmt: skip

@@ -33,6 +33,7 @@ class Convergence:
         ess_bulk: Effective sample size of the bulk [-].
         ess_tail: Effective sample size of the 5 % and 95 % quantiles [-].
         mcse: Monte Carlo error of the mean over the posterior standard deviation [-].
+        thin: Sampler moves of a kept step.
     """
 
     burn_in: int
@@ -42,6 +43,12 @@ class Convergence:
     ess_bulk: Array
     ess_tail: Array
     mcse: Array
+    thin: int = 1
+
+    @property
+    def moves(self) -> int:
+        """Number of sampler moves so far."""
+        return (self.burn_in + self.length) * self.thin
 
     def failures(self) -> list[str]:
         """List the unmet criteria as text, each with its worst value; empty when converged.
@@ -117,6 +124,7 @@ def assess(chains: Chains) -> Convergence:
         ess_bulk=_array(az.ess(walkers, method="bulk")),
         ess_tail=_array(az.ess(walkers, method="tail")),
         mcse=1 / np.sqrt(_array(az.ess(walkers, method="mean"))),
+        thin=chains.thin,
     )
 
 

@@ -14,6 +14,7 @@ from model.slip.law import Array, SlipLaw
 
 SLIP_BINS = 8
 LOAD_GAP = 1.1  # ratio of successive loads above which they are two levels
+FAR_SCORE = 2.0  # below, a run mean is not far out, however close the others are
 RARE_LEVEL = 0.05  # least share of the runs at a level
 MAX_LOAD_LEVELS = 8
 
@@ -129,6 +130,29 @@ def _run_scores(
     sizes = np.diff(blocks.run_starts())
     scatter = np.array([np.linalg.norm(L.sum(axis=0)) for L in factors]) / sizes
     return blocks.run_mean(residual) / np.hypot(scatter, run_spread)
+
+
+def far_runs(score: Array) -> NDArray[np.intp]:
+    """Find runs whose mean is far from those of the other runs, the farthest first.
+
+    The distance is that from the median score in robust standard deviations, 1.4826 times the
+    median absolute deviation: a few strange runs widen the predictive intervals of all, and then
+    lie inside their own. Where one is farther than 5 + 60 / n, which of n runs of white scores
+    happens less than once in 1,000, all that are half as far are returned; else none.
+
+    Args:
+        score: Score of each run, as `Residuals.run_score`, shape (n_runs,) [-].
+
+    >>> far_runs(np.append(np.linspace(-0.5, 0.5, 20), [-4.0, 0.6])).tolist()
+    [20]
+    """
+    distance = np.abs(score - np.median(score))
+    scale = 1.4826 * np.median(distance)
+    limit = (5 + 60 / len(score)) * scale
+    if not np.any((distance > limit) & (np.abs(score) > FAR_SCORE)):
+        return np.array([], dtype=np.intp)
+    order = np.argsort(-distance)
+    return order[distance[order] > limit / 2]
 
 
 def lag_correlation(values: Array, run: NDArray[np.intp], lag: int) -> tuple[float, int]:

@@ -10,8 +10,6 @@ from model.bayes.residuals import load_levels, nearest_level
 from model.slip.law import Array, SlipLaw
 
 SLIPS = 12  # slip ratios that are added at each load
-SECONDS = 2.0  # time of each
-ZERO_SECONDS = 10.0  # noise that remembers 0.05 s leaves a tenth of itself in such a zero
 _FIRST, _LAST = 0.15, 1.25  # of the peak's slip: where added slips begin and end
 
 
@@ -69,31 +67,3 @@ def _further(peaks: Array, slip: Array) -> Array:
     last = min(_LAST * float(high.max()), max(float(np.abs(slip).max()), first))
     side = 1.0 if slip.max() >= -slip.min() else -1.0
     return side * np.geomspace(first, last, SLIPS)
-
-
-def advice(rise: SampledRise, definition: str) -> str:
-    """Format what to measure, so that it can be followed to the letter.
-
-    Args:
-        rise: Tested and further slips.
-        definition: Name of the definition of the slip ratios.
-    """
-    loads = ", ".join(f"{load:.3g}" for load in rise.loads)
-    slips = ", ".join(dict.fromkeys(f"{slip:.2g}" for slip in rise.further))
-    count = slips.count(",") + 1
-    return (
-        f"slips between zero and the peak are missing: measure {count} more slip ratios "
-        f"({definition} definition), {SECONDS:g} s each, at {len(rise.loads)} load(s), the load "
-        f"cell zeroed for {ZERO_SECONDS:g} s before each load. In a copy of the plan, set these:\n"
-        f"[points]\n"
-        f"loads = [{loads}]\n"
-        f"slips = [{slips}]\n"
-        f'length = "duration"\n'
-        f"duration = {SECONDS:.1f}\n"
-        f"[controls]\n"
-        f"tare_every = {count}\n"
-        f"tare_duration = {ZERO_SECONDS:.1f}\n"
-        f"Run the copy into another folder, with the other options as before "
-        f"(zebro-lab rig run COPY --rig RIG --data FURTHER), then fit both "
-        f"(calibrate-slip DATA FURTHER)"
-    )

@@ -6,15 +6,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.bayes.advice import (
+    beyond_the_peak,
+    exclude_runs,
+    measure_slips,
+    try_laws,
+    zero_before_each,
+)
 from model.bayes.blocks import SlipBlocks
 from model.bayes.convergence import Convergence
 from model.bayes.likelihood import predict_blocks
-from model.bayes.residuals import Residuals, largest_slips, load_levels
-from model.bayes.rise import advice, sampled_rise
+from model.bayes.residuals import Residuals, far_runs, largest_slips, load_levels
+from model.bayes.rise import sampled_rise
 from model.slip.law import Array, SlipLaw
 
 RISE = "the rise of the curve is tested"  # name of a check of the data, not of the model
 MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
+INSIDE = 0.9  # expected share of run means inside their intervals
+MOST_NAMED = 3  # runs that evidence names
 MIN_P = 0.01  # p-value of the share of run means inside their intervals
 FEWEST_RUNS = 3  # with fewer, none of them inside has a p-value of 0.01 or more
 MAX_MISFIT = 0.05  # of the peak force
@@ -110,7 +119,7 @@ def judge(
     residuals: Residuals,
     offset_scale: float,
 ) -> Verdict:
-    """Check convergence, residuals, run means, curve shape, offsets, slips and identification.
+    """Check convergence, offsets, run means, residuals, curve shape, slips and identification.
 
     Args:
         blocks: The block means.
@@ -125,10 +134,10 @@ def judge(
     return Verdict(
         convergence=_convergence_checks(convergence),
         trust=(
-            _whiteness(residuals, blocks),
-            _run_means(residuals, blocks),
-            _shape(residuals, values, law, blocks),
             _offsets(blocks, law, values, offset_scale),
+            _run_means(residuals, blocks),
+            _whiteness(residuals, blocks, law),
+            _shape(residuals, values, law, blocks),
             _rise(blocks, law, values),
         ),
         weak=_weak(blocks, law, values, contraction),
@@ -141,14 +150,16 @@ def _not_testable(name: str, why: str) -> Check:
 
 def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
     """Return one failed check for each unmet criterion, or one passed check."""
-    advice = "sample longer: --resume with a larger --max-steps"
+    advice = (
+        f"sample longer: give the same command with --resume --max-steps {2 * convergence.moves}"
+    )
     failures = convergence.failures()
     if failures:
         return tuple(Check("sampler", False, failure, advice) for failure in failures)
     return (Check("sampler", True, convergence.summary(), advice),)
 
 
-def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
+def _whiteness(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Check:
     """Check that whitened residuals of successive blocks are hardly correlated.
 
     The limit is `MAX_LAG_ONE`, or more for few blocks; not testable if no run has two blocks.
@@ -164,9 +175,24 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
         name,
         abs(residuals.lag_one) < limit,
         f"lag-1 correlation of whitened residuals {residuals.lag_one:+.3f}, limit {limit:.2f}",
-        "residuals of successive blocks are correlated, so intervals are too narrow (too wide if "
-        "negative): look at residuals.png for what the law misses",
+        _whiteness_advice(residuals, blocks, law),
     )
+
+
+def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> str:
+    """Choose between another law and shorter runs: drift neither alternates nor repeats by slip."""
+    if residuals.lag_one < 0 or residuals.misfit_p < MISFIT_P:
+        return _law_advice(blocks, law)
+    return zero_before_each("forces drift within runs, so that intervals are too narrow")
+
+
+def _law_advice(blocks: SlipBlocks, law: SlipLaw) -> str:
+    """Advise another law; slips of both signs, beyond noise about zero, may need one each."""
+    smaller = min(blocks.slip.max(), -blocks.slip.min())
+    return try_laws(
+        "forces differ from the curve in the same way in all runs", law.name,
+        both_signs=bool(smaller > 0.1 * np.abs(blocks.slip).max()),
+    )  # fmt: skip
 
 
 def lag_one_limit(pairs: int) -> float:
@@ -186,13 +212,28 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
     name = "run means are predicted"
     if blocks.n_runs < FEWEST_RUNS:
         return _not_testable(name, f"runs: {blocks.n_runs}; expected {FEWEST_RUNS} or more")
+    far = [blocks.run_names[run] for run in far_runs(residuals.run_score)]
+    strange = f"; far from all others: {', '.join(far[:MOST_NAMED])}" if far else ""
+    more = f" and {len(far) - MOST_NAMED} more" if len(far) > MOST_NAMED else ""
     return Check(
         name,
-        residuals.inside_p > MIN_P,
+        residuals.inside_p > MIN_P and not far,
         f"{residuals.inside:.0%} of {blocks.n_runs} run means inside their 90 % interval "
-        f"(p = {residuals.inside_p:.2g}, expected above {MIN_P:g})",
-        "run means scatter more, or less, than the model predicts: look for runs of another "
-        "material or with a lost zero",
+        f"(p = {residuals.inside_p:.2g}, expected above {MIN_P:g}){strange}{more}",
+        _run_advice(residuals, far),
+    )
+
+
+def _run_advice(residuals: Residuals, far: list[str]) -> str:
+    """Choose what to do about run means: leave runs out, measure again, or state the load cell."""
+    if far:
+        return exclude_runs("these runs do not belong to the others", far)
+    if residuals.inside < INSIDE:
+        return zero_before_each("run means scatter more than the model predicts")
+    return (
+        "run means scatter less than the model predicts, so that intervals are too wide: weigh the "
+        "load cell (zebro-lab rig weigh --rig RIG --masses KG,KG --data DATA), state its "
+        "zero_stability there in columns.toml, and give the same command again"
     )
 
 
@@ -210,8 +251,7 @@ def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks
         not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
         f"the misfit that all runs share is {residuals.misfit:.1%} of the peak force, limit "
         f"{MAX_MISFIT:.0%} where p is below {MISFIT_P:g} (p = {residuals.misfit_p:.2g})",
-        "the law does not fit: all runs deviate from the curve in the same way; check the slip "
-        "definition, fit driving and braking apart, or try another --law",
+        _law_advice(blocks, law),
     )
 
 
@@ -229,8 +269,7 @@ def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> C
         share <= MAX_OFFSET_SHARE and tau <= MAX_OFFSET_RATIO * scale,
         f"they explain {share:.0%} of the force variance, limit {MAX_OFFSET_SHARE:.0%}; their "
         f"standard deviation is {tau:.3g} N, limit {MAX_OFFSET_RATIO * scale:.3g} N",
-        "zero offsets between runs are too large, or cannot be separated from the curve: tare "
-        "before each run and give --zero-stability, or vary slip within runs",
+        zero_before_each("zero offsets between runs are too large to be told from the curve"),
     )
 
 
@@ -247,8 +286,11 @@ def _rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
         rise.gap <= MAX_RISE_GAP,
         f"between zero and the peak tested slips lie up to {rise.gap:.2f} of the peak's slip apart"
         f", limit {MAX_RISE_GAP:g}",
-        advice(rise, blocks.definition),
-    )
+        measure_slips(
+            "slips between zero and the peak are missing", loads=rise.loads, slips=rise.further,
+            definition=blocks.definition,
+        ),
+    )  # fmt: skip
 
 
 def _weak(
@@ -271,8 +313,12 @@ def _weak(
         reason = (
             f"shape C and peak factor D cannot be separated: slip ends at {reach:.1f} times the "
             f"peak's slip (0 without a peak), {MIN_REACH:g} are needed; use F_max and BCD, peak "
-            "force and initial slope, instead"
+            "force and initial slope, instead, or measure larger slips"
         )
+        reason = measure_slips(
+            reason, loads=load_levels(blocks), definition=blocks.definition,
+            slips=beyond_the_peak(_peaks(blocks, law, values), blocks.slip),
+        )  # fmt: skip
         weak |= {"shape": reason, "friction": reason}
     return weak
 
@@ -287,6 +333,10 @@ def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
         law: The slip law, of k parameters.
         values: Posterior draws of law and measurement parameters, shape (w, k + 8).
     """
+    return float(np.max(largest_slips(blocks) / _peaks(blocks, law, values)))
+
+
+def _peaks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
+    """Return the slip of the median curve's peak at each load level, or one for all [-]."""
     k = len(law.parameters)
-    peak = np.median(law.peak_slip(load_levels(blocks), values[:, :k].T[:, :, None]), axis=0)
-    return float(np.max(largest_slips(blocks) / peak))
+    return np.median(law.peak_slip(load_levels(blocks), values[:, :k].T[:, :, None]), axis=0)

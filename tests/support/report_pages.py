@@ -24,7 +24,7 @@ SLIP = """
 slip_definition = "material"
 [verdict]
 headline = "weak: <shape>"
-next_steps = ["slip more"]
+next_steps = ["slip more:\\n[points]\\nslips = [0.01]"]
 [law]
 name = "magic-formula"
 [tested]

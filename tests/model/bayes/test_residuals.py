@@ -14,6 +14,7 @@ from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import least_squares_values
 from model.bayes.residuals import (
     analyse_residuals,
+    far_runs,
     lag_correlation,
     largest_slips,
     load_levels,
@@ -292,3 +293,20 @@ def test_the_largest_slip_of_each_load_is_taken_in_size_and_by_itself():
         run_names=light.run_names + heavy.run_names,
     )
     np.testing.assert_allclose(largest_slips(both), [0.6, 0.3], atol=0.02)
+
+
+@pytest.mark.parametrize("n", [8, 12, 24, 60, 250])
+def test_runs_of_one_kind_are_hardly_ever_far_from_the_others(n):
+    scores = np.random.default_rng(n).standard_normal((500, n))
+    assert sum(len(far_runs(score)) > 0 for score in scores) <= 2
+
+
+def test_runs_of_another_kind_are_far_even_where_they_lie_within_their_own_intervals():
+    rng = np.random.default_rng(1)
+    score = np.append(0.3 * rng.standard_normal(24), [-1.3, -1.4, -2.0, -3.8])
+    assert set(far_runs(score)) == {24, 25, 26, 27}
+    assert far_runs(score)[0] == 27
+
+
+def test_scores_that_are_all_small_are_not_far_however_close_the_others_are():
+    assert len(far_runs(np.append(1e-3 * np.arange(20), 1.5))) == 0

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Gaps in the tested slips below the peak, and the slips that fill them."""
 
-import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from model.bayes.blocks import SlipBlocks
-from model.bayes.rise import SECONDS, SLIPS, advice, sampled_rise
+from model.bayes.rise import SLIPS, sampled_rise
 from model.slip import Brush, MagicFormula
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
@@ -101,15 +100,3 @@ def test_a_curve_without_a_peak_has_neither_gap_nor_further_slips():
     rise = sampled_rise(blocks_at([0.0, 0.9]), Brush(), draws(20.0, 0.38))
     assert rise.gap == 0.0
     assert len(rise.further) == 0
-
-
-def test_the_advice_holds_lines_of_a_plan():
-    rise = rise_of(np.linspace(0.0, 1.0, 12))
-    lines = advice(rise, SlipDefinition.MATERIAL).splitlines()
-    plan = tomllib.loads("\n".join(lines[1:-1]))
-    assert plan["points"]["loads"] == list(LOADS)
-    np.testing.assert_allclose(plan["points"]["slips"], rise.further, rtol=0.06)
-    assert plan["points"]["duration"] == SECONDS
-    assert plan["controls"]["tare_every"] == len(plan["points"]["slips"])
-    assert "material definition" in lines[0]
-    assert "calibrate-slip DATA FURTHER" in lines[-1]

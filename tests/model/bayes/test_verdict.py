@@ -96,18 +96,19 @@ def test_broken_rule_of_convergence_is_named_with_its_figure(evidence):
     assert not verdict.trustworthy
     assert [check.evidence.startswith(evidence) for check in failed(verdict)] == [True]
     assert verdict.headline().startswith("NOT CONVERGED")
-    assert "--resume" in verdict.next_steps()[0]
+    moves = 2 * replace(CONVERGED, **CONVERGENCE_FAULTS[evidence]).moves
+    assert f"--resume --max-steps {moves}" in verdict.next_steps()[0]
 
 
 TRUST_FAULTS = {
-    "residuals are white": ({"lag_one": 0.5}, "intervals are too narrow"),
+    "residuals are white": ({"lag_one": 0.5}, "forces drift within runs"),
     "run means are predicted": (
         {"inside": 0.4, "inside_p": 1e-4},
-        "another material or with a lost zero",
+        "run means scatter more than the model predicts",
     ),
     "the law fits the shape of the curve": (
         {"misfit": 0.12, "misfit_p": 1e-6},
-        "the law does not fit",
+        "forces differ from the curve in the same way",
     ),
 }
 
@@ -121,6 +122,27 @@ def test_fault_in_the_residuals_costs_the_trust_but_not_the_convergence(check):
     assert not verdict.trustworthy
     assert "NOT TRUSTWORTHY" in verdict.headline()
     assert advice in verdict.next_steps()[0]
+
+
+@pytest.mark.parametrize("changes", [{"lag_one": -0.6}, {"lag_one": 0.6, "misfit_p": 1e-4}])
+def test_correlation_that_is_no_drift_is_answered_by_another_law(changes):
+    (step,) = verdict_on(residuals=replace(CLEAN, **changes)).next_steps()
+    assert "--law brush" in step
+
+
+def test_runs_that_do_not_belong_to_the_others_cost_the_trust_and_are_named():
+    score = np.append(np.linspace(-0.5, 0.5, 11), -5.0)
+    verdict = verdict_on(residuals=replace(CLEAN, run_score=score, inside_p=1.0))
+    (check,) = failed(verdict)
+    assert check.name == "run means are predicted"
+    assert check.evidence.endswith("far from all others: l")
+    assert "zebro-lab exclude DATA/l --why REASON" in verdict.next_steps()[0]
+
+
+def test_run_means_that_scatter_too_little_ask_for_a_known_load_cell():
+    residuals = replace(CLEAN, inside=1.0, inside_p=1e-3)
+    (step,) = verdict_on(residuals=residuals).next_steps()
+    assert "zebro-lab rig weigh" in step
 
 
 @pytest.mark.parametrize("sign", [-1, 1])
@@ -151,7 +173,7 @@ def test_offsets_as_large_as_the_curve_carry_it():
     (check,) = failed(verdict)
     assert check.name == "zero offsets between runs are small"
     assert "standard deviation is 1.8 N" in check.evidence
-    assert "cannot be separated from the curve" in verdict.next_steps()[0]
+    assert "tare_every = 1" in verdict.next_steps()[0]
 
 
 def test_offsets_far_beyond_the_load_cells_stability_are_not_believed():
@@ -306,4 +328,4 @@ def test_typical_rig_is_trusted():
 def test_offsets_that_swallow_the_curve_are_found_under_any_prior(zero_stability):
     verdict = verdict_on_sweep(offset_sd=1.5, zero_stability=zero_stability)
     assert not verdict.trustworthy
-    assert any("cannot be separated from the curve" in step for step in verdict.next_steps())
+    assert any("tare_every = 1" in step for step in verdict.next_steps())

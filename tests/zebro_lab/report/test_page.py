@@ -5,7 +5,9 @@ import base64
 import hashlib
 import json
 import re
+from pathlib import Path
 
+import zebro_lab.report
 from support.report_pages import HOSTILE, MADE, made
 from zebro_lab.report.page import render_report
 from zebro_lab.report.sources import find_sources
@@ -58,6 +60,14 @@ def test_simulated_sources_stand_in_the_title_and_on_top(walk):
     title = (walk.parent / "report.html").read_text().split("<title>")[1]
     assert title.startswith("SIMULATED")
     assert "SIMULATED: sim:robot, sim:test" in page.text
+
+
+def test_lines_of_advice_stay_lines_that_can_be_copied(walk):
+    page = made(walk)
+    assert "slip more:\n[points]\nslips = [0.01]" in page.text
+    assert [attrs for attrs in page.all("li") if attrs.get("class") == "step"]
+    style = (Path(zebro_lab.report.__file__).parent / "pages/report.css").read_text()
+    assert re.search(r"\.step \{ white-space: pre-line;", style)
 
 
 def test_pages_tell_their_parts_to_readers_and_screen_readers(walk):

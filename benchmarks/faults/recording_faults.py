@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """What `zebro-lab record` does where its folder goes, its disk is slow, or its viewer stops.
 
-python -m benchmarks.faults.recording_faults [TRIALS [SECONDS]]
+python -m benchmarks.faults.recording_faults [TRIALS [SECONDS [FSYNC]]]
 
 Each recording is the real command in a process of its own, with simulated legs and IMU:
 
 * the run folder is removed while it records: time until the line on stderr that says so, and until
   the process has ended;
-* every fsync takes 3 s: time from the first to the last sample against the one asked;
+* every fsync takes FSYNC seconds, 3 by default: time from the first to the last sample against the
+  one asked;
 * its terminal is stopped (Ctrl-S), or its pipe is full and nobody reads it: samples lost, and the
   time from the first to the last.
 """
@@ -126,9 +127,9 @@ def removed(place: Path, rng: np.random.Generator) -> tuple[float, float]:
     return noticed, ended
 
 
-def slow_disk(place: Path, seconds: float) -> Recorded:
-    """Record for a while on a disk that takes 3 s to synchronise a file."""
-    with recording(place, "--duration", str(seconds), fsync=SLOW_FSYNC) as process:
+def slow_disk(place: Path, seconds: float, fsync: float) -> Recorded:
+    """Record for a while on a disk that takes some time to synchronise a file [s]."""
+    with recording(place, "--duration", str(seconds), fsync=fsync) as process:
         code = process.wait(seconds + 120)
     return result(next(place.iterdir()), code)
 
@@ -181,7 +182,7 @@ def row(what: str, asked: float, runs: Sequence[Recorded]) -> str:
     )
 
 
-def main(trials: int, seconds: float, *, seed: int = 1) -> None:
+def main(trials: int, seconds: float, fsync: float = SLOW_FSYNC, *, seed: int = 1) -> None:
     """Print both tables."""
     rng = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as ground:
@@ -194,8 +195,8 @@ def main(trials: int, seconds: float, *, seed: int = 1) -> None:
         print("\n| what | asked [s] | trials | off, median | off, worst | samples | lost |")
         print("|---|---|---|---|---|---|---|", flush=True)
         for asked in (seconds, 2 * seconds):
-            runs = [slow_disk(next(places), asked) for _ in range(few)]
-            print(row("fsync takes 3 s", asked, runs), flush=True)
+            runs = [slow_disk(next(places), asked, fsync) for _ in range(few)]
+            print(row(f"fsync takes {fsync:g} s", asked, runs), flush=True)
         runs = [stopped_terminal(next(places), seconds) for _ in range(few)]
         print(row("terminal stopped", seconds, runs), flush=True)
         runs = [full_pipe(next(places), seconds) for _ in range(few)]
@@ -206,4 +207,5 @@ if __name__ == "__main__":
     main(
         int(sys.argv[1]) if len(sys.argv) > 1 else 20,
         float(sys.argv[2]) if len(sys.argv) > 2 else 5.0,
+        float(sys.argv[3]) if len(sys.argv) > 3 else SLOW_FSYNC,
     )

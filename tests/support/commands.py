@@ -43,16 +43,19 @@ def within_process(monkeypatch, capsys) -> Callable[..., Ended]:
 
 
 @contextlib.contextmanager
-def started(*arguments: object, **options) -> Iterator[subprocess.Popen[str]]:
-    """Run the command beside this process; kill it at the latest when the body ends.
+def started(
+    *arguments: object, command: str = "zebro-lab", **options
+) -> Iterator[subprocess.Popen[str]]:
+    """Run a command beside this process; kill it at the latest when the body ends.
 
     Args:
         arguments: Its arguments, as on a command line.
+        command: Its name.
         options: Options of `subprocess.Popen`.
     """
     process = subprocess.Popen(
-        [COMMAND, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        **options,
+        [Path(COMMAND).with_name(command), *map(str, arguments)],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options,
     )  # fmt: skip
     try:
         yield process

@@ -8,14 +8,12 @@ example of what it refuses in `REFUSED_TEXTS`, if its metavar is no plain word o
 import inspect
 import io
 import re
-from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 import pytest
-from typer.main import get_command
 
-from zebro_lab.main import app, slip_app
+from support.command_tree import LEAVES, ROOTS, TREE, Found, named
 from zebro_lab.terminal import ending
 from zebro_lab.terminal.option_display import value_types
 
@@ -56,29 +54,6 @@ NO_DOCUMENT = {
 }
 """Commands without `--json`, and why."""
 NUMBER = r"(-?[\d.e+-]+)"
-
-
-class Found(NamedTuple):
-    """A command in the tree: the words that call it, and Typer's object."""
-
-    words: tuple[str, ...]
-    command: Any
-
-
-def commands(of: Any, *words: str) -> Iterator[Found]:
-    """Yield a command and all commands below it."""
-    yield Found(words, of)
-    for name, inner in getattr(of, "commands", {}).items():
-        yield from commands(inner, *words, name)
-
-
-ROOTS = {"zebro-lab": get_command(app), "calibrate-slip": get_command(slip_app)}
-TREE = [found for name, root in ROOTS.items() for found in commands(root, name)]
-LEAVES = [found for found in TREE if not hasattr(found.command, "commands")]
-
-
-def named(found: Found) -> str:
-    return " ".join(found.words)
 
 
 def options(of: Any) -> list[Any]:

@@ -64,10 +64,14 @@ def test_validate_of_two_trajectories_has_their_errors(run_command, tmp_path):
     assert "absolute error (ATE), rms" in ended.err
 
 
-def test_a_fit_of_few_steps_has_its_verdict_and_exit_code_inside(run_command, sweep, tmp_path):
+def test_a_fit_of_few_steps_has_its_verdict_and_exit_code_inside(
+    run_command, sweep, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("model.bayes.calibrate.FIRST_LOOK", 20)
+    monkeypatch.setattr("zebro_lab.calibration.stage.draw_calibration", lambda *_: None)
     ended = run_command(
         "calibrate-slip", sweep, "--out", tmp_path / "out", "--law", "coulomb-stribeck",
-        "--block-length", 150, "--max-steps", 100, "--threads", 1, "--json", "--quiet",
+        "--block-length", 150, "--max-steps", 1, "--threads", 1, "--json", "--quiet",
     )  # fmt: skip
     found = document(ended, "calibrate-slip", {"folder", "calibration"}, code=3)
     assert found["simulated"]

@@ -11,8 +11,7 @@ import typer
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.output import TEXT, Output
-
-INTERRUPTED = 130
+from zebro_lab.terminal.stopping import STOPPED
 
 
 def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
@@ -36,7 +35,7 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
                 f"stopped; {stopped.checkpoint} keeps the fit; go on with: {_resuming(sys.argv)}",
                 err=True,
             )
-        raise typer.Exit(INTERRUPTED) from None
+        raise typer.Exit(STOPPED) from None
     print_calibration(output.console(), calibration, read, request.out)
     return calibration.verdict.converged
 

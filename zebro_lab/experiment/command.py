@@ -10,6 +10,7 @@ from zebro_lab.experiment.request import Data, RigRunRequest, WeighRequest
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
+from zebro_lab.terminal.stopping import STOPPED
 
 if TYPE_CHECKING:
     from rig.experiment.control import Control
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from rig.experiment.weigh import GainCheck, Weighing
     from zebro_lab.experiment.plan_stage import Foreseen
 
-STOPPED = 130
 REFUSED = 3
 
 app = Application(

@@ -10,6 +10,7 @@ import typer
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
+from zebro_lab.terminal.stopping import STOPPED
 
 if TYPE_CHECKING:
     from zebro_lab.recording.stage import Recorded
@@ -25,7 +26,6 @@ zebro-lab record --zebro zebro-100-serial@/dev/ttyUSB0 --play walk/path.csv --la
 zebro-lab record --rig rig-odrive-netft@socketcan:can0 --label "POM on steel" --material
 "POM on steel" --data data
 """
-STOPPED = 130
 
 
 @request_command()

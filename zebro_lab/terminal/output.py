@@ -4,12 +4,14 @@
 import json
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, redirect_stdout
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
+
+from zebro_lab.terminal.stopping import STOPPED, StoppedBySignal
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,11 +33,25 @@ class Output:
         bool, typer.Option("--quiet", help="Print errors alone, and the document of --json.")
     ] = False
 
-    def progress(self) -> "AbstractContextManager[ProgressBar]":
-        """Show progress as `progress_bar` does, unless quiet; stop signals are heard either way."""
+    @contextmanager
+    def progress(self, *stopped: type[Exception]) -> "Iterator[ProgressBar]":
+        """Show progress as `progress_bar` does, unless quiet; stop signals are heard either way.
+
+        Args:
+            stopped: Errors with which a stage ends that was asked to stop.
+
+        Raises:
+            Exit: The body ended with one of them, with exit code `STOPPED`; its message is said.
+        """
+        from zebro_lab.terminal.messages import say
         from zebro_lab.terminal.progress import progress_bar
 
-        return progress_bar(quiet=self.quiet)
+        try:
+            with progress_bar(quiet=self.quiet) as watcher:
+                yield watcher
+        except stopped as asked:
+            say(str(asked), err=True)
+            raise typer.Exit(STOPPED) from None
 
     def console(self) -> "Console":
         """Create the console for results as text: on stdout, or stderr beside a JSON document."""
@@ -77,6 +93,9 @@ class Output:
         try:
             with redirect_stdout(sys.stderr):
                 yield
+        except StoppedBySignal:
+            sys.stderr.write("\n")
+            raise
         except typer.Abort:
             sys.stderr.write("\n")
             raise SettingsError(

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.request import TrackRequest
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
     from tracking.photos.preview import Preview
     from zebro_lab.track.stage import TrackResult
 
-INTERRUPTED = 130
 _MOST_LISTED = 10
 
 EPILOG = """
@@ -61,11 +59,8 @@ def _track(request: TrackRequest, output: Output) -> None:
     from zebro_lab.track.stage import track as run_stage
 
     try:
-        with output.progress() as watcher:
+        with output.progress(TrackStopped) as watcher:
             result = run_stage(request, watcher)
-    except TrackStopped as stopped:
-        say(str(stopped), err=True)
-        raise typer.Exit(INTERRUPTED) from None
     except HowMergedUnknown as unknown:
         raise typer.BadParameter(unknown.problem, param_hint="'--merged'") from unknown
     for line in track_lines(result):

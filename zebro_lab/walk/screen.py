@@ -5,7 +5,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -13,7 +12,7 @@ from rich.text import Text
 from model.gait import CyclicReference
 from model.progress import Watcher
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.terminal.messages import plain, say
+from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.walk.folder import FILES
@@ -21,7 +20,6 @@ from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.summary import WalkSummary, summarise
 from zebro_lab.walk.walking import Walked
 
-INTERRUPTED = 130
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
@@ -39,12 +37,8 @@ def run_and_report(
     Raises:
         Exit: The walk was stopped (exit code 130); other errors of the stage pass.
     """
-    try:
-        with output.progress() as watcher:
-            walked = run(watcher)
-    except WalkStopped as stopped:
-        say(str(stopped), err=True)
-        raise typer.Exit(INTERRUPTED) from None
+    with output.progress(WalkStopped) as watcher:
+        walked = run(watcher)
     print_walk(output.console(), walked, folder)
     output.document(command, {**walk_document(walked), "folder": folder})
 

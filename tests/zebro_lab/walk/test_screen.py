@@ -13,9 +13,9 @@ from rich.console import Console
 from model.gait import tripod_angles, tripod_reference
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.robot.robot_file import RobotFile
+from zebro_lab.terminal.stopping import STOPPED
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.screen import (
-    INTERRUPTED,
     gait_table,
     print_walk,
     run_and_report,
@@ -94,5 +94,5 @@ def test_a_stopped_walk_is_one_line_and_exit_130(capsys):
 
     with pytest.raises(typer.Exit) as ended:
         run_and_report("walk", stop, Path("out"))
-    assert ended.value.exit_code == INTERRUPTED
+    assert ended.value.exit_code == STOPPED
     assert capsys.readouterr() == ("", "stopped; nothing was written\n")

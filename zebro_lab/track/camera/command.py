@@ -52,9 +52,10 @@ def kit(
 @request_command()
 def calibrate(request: CameraRequest, output: Output = TEXT) -> None:
     """Calibrate the lens from photographs of a board: camera.toml."""
+    from tracking.errors import TrackStopped
     from zebro_lab.track.camera.stage import calibrate_camera
 
-    with output.progress() as watcher:
+    with output.progress(TrackStopped) as watcher:
         result = calibrate_camera(request, watcher)
     for line in calibration_lines(result):
         output.say(line)

@@ -4,7 +4,7 @@
 import json
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
@@ -38,6 +38,7 @@ from zebro_lab.files.errors import (
     SettingsError,
     ZebroLabError,
 )
+from zebro_lab.files.new_folders import removing_new_folders
 from zebro_lab.runs.manifest import MANIFEST_FILE, RunManifest
 
 CONTROL_FILE: Final = "control.json"
@@ -69,7 +70,7 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
     ) as rig:
         require_allowed(plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)
-        with _owned(request.data):
+        with removing_new_folders(request.data), _owned(request.data):
             journal, finished = _begin(request, source=rig.bench.source)
             for notice in finished.notices:
                 watcher.notice(notice)
@@ -171,7 +172,6 @@ def _require_same_source(data: Path, source: str) -> None:
 @contextmanager
 def _owned(data: Path) -> Iterator[None]:
     """Create and lock the experiment's folder; undo it after a ZebroLabError without a journal."""
-    new = not data.exists()
     try:
         data.mkdir(parents=True, exist_ok=True)
         lock = Exclusive(data / LOCK_FILE, what=f"the experiment in {data}")
@@ -187,9 +187,6 @@ def _owned(data: Path) -> Iterator[None]:
     except ZebroLabError:
         if not (data / JOURNAL_FILE).exists():
             (data / LOCK_FILE).unlink(missing_ok=True)
-            with suppress(OSError):
-                if new:
-                    data.rmdir()
         raise
     finally:
         lock.release()

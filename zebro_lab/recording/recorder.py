@@ -21,6 +21,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.sample_queue import SampleQueue
 from zebro_lab.files.errors import RecordingError
+from zebro_lab.files.new_folders import removing_new_folders
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.ros_messages import INFO
 from zebro_lab.recording.place import require_space
@@ -185,22 +186,23 @@ class RunRecorder:
         began = datetime.now(UTC)
         self.start = self._clock.now()
         self._manifest = given = replace(self._manifest, start=began.isoformat())
-        self.folder = new_run_folder(
-            self._data_dir, kind=given.kind, label=given.label, start=began
-        )
-        try:
-            require_space(self._data_dir, self._least_free)
-            self._files = RunFiles(self.folder, given, profiles=self._texts, start=self.start)
-            for name in self._files.streams:
-                self._queues[name] = SampleQueue(limit=self._limit)
-                self._counters[name] = Counters()
-            for task in (self._write_loop, self._sync_loop, self._check_loop):
-                self._start_thread(task, self._files)
-        except BaseException as error:
-            self._undo()
-            if isinstance(error, OSError) and not isinstance(error, RecordingError):
-                raise RecordingError(f"cannot write {self.folder}: {error.strerror}") from error
-            raise
+        with removing_new_folders(self._data_dir):
+            self.folder = new_run_folder(
+                self._data_dir, kind=given.kind, label=given.label, start=began
+            )
+            try:
+                require_space(self._data_dir, self._least_free)
+                self._files = RunFiles(self.folder, given, profiles=self._texts, start=self.start)
+                for name in self._files.streams:
+                    self._queues[name] = SampleQueue(limit=self._limit)
+                    self._counters[name] = Counters()
+                for task in (self._write_loop, self._sync_loop, self._check_loop):
+                    self._start_thread(task, self._files)
+            except BaseException as error:
+                self._undo()
+                if isinstance(error, OSError) and not isinstance(error, RecordingError):
+                    raise RecordingError(f"cannot write {self.folder}: {error.strerror}") from error
+                raise
         return self
 
     def __exit__(

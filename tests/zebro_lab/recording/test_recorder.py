@@ -148,6 +148,14 @@ def test_a_disk_with_too_little_room_is_refused_before_it_begins(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_run_that_cannot_begin_leaves_no_new_folder_for_runs(tmp_path):
+    (tmp_path / "old").mkdir()
+    for data in ("new", "old/new/newer", "old"):
+        with pytest.raises(RecordingError, match="MB free; expected at least"):
+            recorder(tmp_path / data, least_free=1 << 62).__enter__()
+    assert [path.name for path in tmp_path.rglob("*")] == ["old"]
+
+
 def test_a_place_that_takes_no_folder_is_named(tmp_path):
     (tmp_path / "data").write_text("a file")
     with pytest.raises(RecordingError, match="Not a directory; choose another folder with --data"):

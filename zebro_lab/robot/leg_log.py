@@ -10,14 +10,13 @@ import numpy as np
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
 from model.slip.law import Array
-from model.told_apart import told_apart
 from zebro_lab.files.errors import DataError
+from zebro_lab.robot.leg_gaps import bridged_gaps
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
 
 ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
 LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
-_WIDEST_GAP = 5.0  # median sample intervals; interpolation over a longer gap is not valid
 _LONGEST_TURN = 2.5  # rad between samples; from pi on the direction of rotation is ambiguous
 _ADVICE = "fill in the cell, or delete all rows up to it or from it on"
 _LONGEST_WRAPPED = np.pi / 2  # the same where a whole turn may have been cut off between samples
@@ -46,6 +45,7 @@ def legs_of_table(
     *,
     files: Sequence[Path],
     leg_sign: Sequence[int] = (1,) * N_LEGS,
+    mending: str = "split the file before this row, use each part alone",
 ) -> LegLog:
     """Check and unwrap the leg angles of a table.
 
@@ -54,10 +54,11 @@ def legs_of_table(
         mapping: Column map with the canonical names of `LEG_UNITS`.
         files: Files that the table was read from.
         leg_sign: Factor 1 or -1 for the angle of each leg, shape (6,).
+        mending: What to do about a gap that cannot be bridged, for the message.
 
     Raises:
         DataError: A column or value is missing, there are fewer than two rows, time does not
-            increase or has a gap over 5 median intervals, or a leg turns by more than 2.5 rad
+            increase or has a gap that `bridged_gaps` refuses, or a leg turns by more than 2.5 rad
             between samples, or by more than pi/2 where angles are wrapped to one turn, or jumps by
             more than a turn; names the cell.
     """
@@ -67,35 +68,20 @@ def legs_of_table(
     if len(t) < 2:
         raise DataError(f"has {len(t)} row; expected two or more rows", file=files[0])
     table.require_increasing(time_column, t)
-    _require_no_gap(table, time_column, t)
     raw = np.column_stack(angles) * np.asarray(leg_sign, dtype=float)
     theta = np.unwrap(raw, axis=0)
+    bridged = bridged_gaps(table, time_column, t, theta, advice=mending)
     _require_unwrapped(table, mapping, raw, theta)
     return LegLog(
         SampledReference(t, theta),
         source=mapping.source or table.source or "unknown",
         files=(*files, *([mapping.file] if mapping.file else [])),
-        notes=(*table.notes, *_notes(t, raw, theta)),
+        notes=(*table.notes, *bridged, *_notes(t, raw, theta)),
     )
 
 
 def _angle(table: RawTable, name: str, columns: MappedColumns) -> Array:
     return columns.numbers(table, name, what=f"angle of leg {name[-1]}", advice=_ADVICE)
-
-
-def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
-    steps = np.diff(t)
-    usual = float(np.median(steps))
-    wide = steps > _WIDEST_GAP * usual
-    if wide.any():
-        index = int(np.argmax(wide)) + 1
-        before, now = told_apart(t[index - 1], t[index])
-        raise table.fault(
-            f"time jumps from {before} to {now} s; expected at most {_WIDEST_GAP:g} "
-            f"times the usual {usual:.4g} s: split the file before this row, use each part alone",
-            column,
-            index,
-        )
 
 
 def _require_unwrapped(table: RawTable, columns: MappedColumns, raw: Array, theta: Array) -> None:

@@ -19,6 +19,11 @@ from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
 
+_IN_A_RUN = (
+    "use the part before or after it alone: write the run as tables (zebro-lab export RUN --out "
+    "TABLES), delete the other part's rows in legs.csv, and predict from that file"
+)
+
 
 @dataclass(frozen=True)
 class LegNames:
@@ -57,13 +62,13 @@ def read_leg_log(
         NotFound: A file does not exist.
         SettingsError: The `columns.toml` has an invalid value.
         DataError: The file or run cannot be read, a leg is missing, a cell holds no finite number,
-            there are not two rows, time does not increase or has a gap of over 5 median intervals,
-            or a leg turns by more than 2.5 rad between samples; names the cell, if it is one.
+            there are not two rows, time does not increase or has a gap that is not bridged, or a
+            leg turns by more than 2.5 rad between samples; names the cell, if it is one.
     """
     if is_recorded(path):
         table, files = read_recorded_legs(path)
         mapping = canonical_columns(LEG_UNITS)
-        return legs_of_table(table, mapping, files=files, leg_sign=leg_sign)
+        return legs_of_table(table, mapping, files=files, leg_sign=leg_sign, mending=_IN_A_RUN)
     file = path if is_ros_log(path) else _table_of(path)
     mapping, topic = _read_columns(_columns_file(file, columns))
     names = replace(names or LegNames(), topic=topic)

@@ -4,6 +4,7 @@
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.slip.law import Array
 from model.told_apart import told_apart
@@ -61,7 +62,7 @@ def bridged_gaps(
     return tuple(notes)
 
 
-def _why_not(t: Array, theta: Array, at: int, gaps: Array) -> str | None:
+def _why_not(t: Array, theta: Array, at: int, gaps: NDArray[np.intp]) -> str | None:
     """Return why the gap after sample `at` is not bridged; None if it is."""
     length = t[at + 1] - t[at]
     if length > LONGEST_BRIDGED:

@@ -17,11 +17,11 @@ from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.tables.column_sections import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.tables.columns import CANONICAL
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.track.foreign import TRACK_UNITS
+from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 UNITS: Final[Mapping[str, Mapping[str, str | None]]] = {
     RIG: {name: column.unit for name, column in CANONICAL.items()},
-    LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: TRACK_UNITS,
+    LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: MAPPED_UNITS,
 }  # fmt: skip
 """SI unit of each canonical column, None for text, by kind of table."""
 _SHORT: Final = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw"}
@@ -112,16 +112,23 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
         if fitting:
             guesses[canonical] = _guess(table, canonical, kind, fitting, ours=ours)
             taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
-    return _of_one_mind(_with_axes(guesses))
+    return _of_one_mind(_with_axes(_whole_quaternion(guesses)))
+
+
+def _whole_quaternion(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
+    """Return the guesses without a part of a quaternion, which are angles about the axes."""
+    if set(_QUATERNION) <= guesses.keys():
+        return guesses
+    return {name: guess for name, guess in guesses.items() if name not in _QUATERNION}
 
 
 def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
     """Return the guesses with a doubt of the axes of a path in space: y may be up."""
     if "z_m" not in guesses:
         return guesses
-    doubt = "the file does not say which axis is up"
+    doubt = "the file does not say which axis is up; if not z, give import --track the --plane"
     return {
-        canonical: replace(guess, name_doubt=guess.name_doubt or doubt)
+        canonical: replace(guess, name_doubt=f"{guess.name_doubt}; {doubt}".lstrip("; "))
         if canonical in _AXES and not _is_upright(guess.name, canonical) else guess
         for canonical, guess in guesses.items()
     }  # fmt: skip
@@ -231,6 +238,8 @@ def _guess(
         return ColumnGuess(name, name_doubt=doubt)
     numbers = numbers_or_none(table, name)
     unit = UnitGuess("s", "") if nanoseconds else guess_unit(table, name, si_unit, si=known)
+    if canonical in _QUATERNION:
+        unit = UnitGuess(si_unit, "")
     sign, sign_doubt = _sign(canonical, numbers, known=known or bool(_UPRIGHT.fullmatch(name)))
     zero = "90 deg must be where the centre of the leg's arc is straight below the hip"
     return ColumnGuess(

@@ -70,6 +70,7 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
         "y_m": _position("y", "north(ing)?|hochwert"),
         "yaw_rad": r"(.*_)?(yaw|heading|psi|gierwinkel|kurs(winkel)?)(_angle)?|angle|winkel",
         "z_m": _position("z", "height|h(ö|oe)he"),
+        **{f"q{a}": rf"{_ORIENTATION}{a}|(.*_)?rot(ation)?_?{a}|q_rs_{a}" for a in "wxyz"},
     },
 })  # fmt: skip
 """Names of each canonical column: a regular expression of `plain_name`, by kind of table."""

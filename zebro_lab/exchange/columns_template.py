@@ -15,6 +15,7 @@ from zebro_lab.exchange.column_guesses import (
 from zebro_lab.tables.column_sections import DOUBT, IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.track.trajectory.table import QUATERNION
 
 _READS: Final = {
     RIG: "calibrate-slip and import --rig read", LEGS: "predict and import --legs read",
@@ -132,6 +133,8 @@ def _meaning(name: str, kind: str) -> str:
         return CANONICAL[name].meaning
     if kind == LEGS and name != "t":
         return f"angle of leg {name[-1]}, growing as the robot walks forward"
+    if name in QUATERNION:
+        return "of the quaternion from the body's frame to that of the positions"
     return _MEANINGS.get(name, "of the body, in its frame" if kind == IMU else "covariance")
 
 

@@ -12,10 +12,10 @@ from zebro_lab.robot.leg_log import LEG_UNITS
 from zebro_lab.tables.column_sections import IMU, LEGS, TRACK, read_section
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns, parse_columns
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
-from zebro_lab.track.foreign import TRACK_UNITS
+from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 SERIES: Final[Mapping[str, Mapping[str, str]]] = {
-    LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: TRACK_UNITS,
+    LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: MAPPED_UNITS,
 }  # fmt: skip
 """SI unit of each column: by kind of time series, then by the column's canonical name."""
 
@@ -65,7 +65,9 @@ class ForeignColumns:
         return Columns() if self.table is None else parse_columns(self.table)
 
 
-def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumns:
+def foreign_columns(
+    what: str, table: Path, named: Path | None, *, alone: bool = False
+) -> ForeignColumns:
     """Read the `columns.toml` for an imported file: the section of its kind.
 
     Without any section, all entries apply to leg and rig files, and only `source` to the others.
@@ -74,6 +76,8 @@ def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumn
         what: Kind of file: `legs`, `imu`, `track` or `rig`.
         table: Path of the imported file.
         named: A `columns.toml` instead of the one beside the file, if any; None for that.
+        alone: Whether this is the only file that is imported: all entries of a named
+            `columns.toml` without sections are for it.
 
     Raises:
         NotFound: The named `columns.toml` does not exist.
@@ -84,4 +88,4 @@ def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumn
     file = named or (beside if beside.is_file() else None)
     if file is None:
         return ForeignColumns()
-    return ForeignColumns(read_section(what, file))
+    return ForeignColumns(read_section(what, file, alone=alone and named is not None))

@@ -56,6 +56,14 @@ class ImportRequest:
     topic: Annotated[tuple[str, ...], Option(metavar="NAME", help=TOPIC)] = ()
     label: Annotated[str | None, Option(help=_LABEL)] = None
     start: Annotated[datetime | None, Option(metavar="TIME", parser=_moment, help=_START)] = None
+    track_offset: Annotated[
+        float,
+        Option(
+            metavar="SECONDS",
+            help="Time by which the track's clock is behind that of the legs, added to its times "
+            "[s]; validate RUN --estimate-offset finds what is left.",
+        ),
+    ] = 0.0
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the person who recorded.")] = "unknown"
     trajectory: TrajectoryRequest = field(default_factory=TrajectoryRequest)

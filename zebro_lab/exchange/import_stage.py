@@ -34,12 +34,12 @@ from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import (
-    TRACK_UNITS,
     ForeignTrack,
     read_foreign_track,
     track_of_foreign_table,
 )
 from zebro_lab.track.trajectory.request import TrajectoryRequest
+from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 _UNIX: Final = 1e9
 """First time that counts as Unix time, since no run lasts for 30 years [s]."""
@@ -102,6 +102,9 @@ def _require_something(request: ImportRequest) -> None:
     if request.track is None and request.trajectory != TrajectoryRequest():
         raise SettingsError("--plane, --forward, --times and --layout say how a track is read; add "
                             "its file", key="--track")  # fmt: skip
+    if request.track_offset and (request.track is None or request.legs is None):
+        raise SettingsError("brings a track to the clock of the legs; give the files of both",
+                            key="--track-offset")  # fmt: skip
     if request.legs is None:
         for name in (IMU, "robot"):
             if getattr(request, name) is not None:
@@ -127,7 +130,7 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     imu, imu_topic = (None, None) if request.imu is None else _imu(request.imu, request)
     require_used(request.topic, (legs_topic, imu_topic, track_topic))
     start, zero, note = _start(request.start, _first_time(legs, track))
-    track = None if track is None else track.since(zero)
+    track = None if track is None else track.since(zero - request.track_offset)
     suspected: tuple[str, ...] = ()
     if legs is not None:
         suspected = leg_warnings(
@@ -194,7 +197,8 @@ def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
 
 
 def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:
-    columns = foreign_columns(TRACK, path, request.columns)
+    alone = request.legs is None and request.rig is None
+    columns = foreign_columns(TRACK, path, request.columns, alone=alone)
     series = columns.series(TRACK)
     if is_ros_log(path):
         if request.trajectory != TrajectoryRequest():
@@ -202,7 +206,7 @@ def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None
                 f"{path} is a ROS log; leave out --plane, --forward, --times and --layout",
                 key="--track",
             )
-        own = replace(series, mapped=canonical_columns(TRACK_UNITS).mapped)  # without headers
+        own = replace(series, mapped=canonical_columns(MAPPED_UNITS).mapped)  # without headers
         found = read_pose_log(path, topic=columns.topic, topics=request.topic)
         track = track_of_foreign_table(found.table, own)
         return replace(track, files=(*bag_files(path), *track.files[1:])), found.topic
@@ -262,9 +266,11 @@ def _require_shared_time(
             continue
         times, file = other
         first, last, start, end = told_apart(*(times[[0, -1]] + zero), *(t[[0, -1]] + zero))
+        offset = f"add --track-offset {t[0] - times[0]:.10g} where both start together, or "
         raise DataError(
             f"times of the {name} go from {first} to {last} s, those of the legs from {start} to "
-            f"{end} s: no second is shared; bring both files to one clock",
+            f"{end} s: no second is shared; "
+            f"{offset if name == TRACK else ''}bring both files to one clock",
             file=file,
         )
 

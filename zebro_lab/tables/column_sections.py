@@ -20,7 +20,7 @@ DOUBT: Final = "?"
 _GUESSED: Final = ("columns", "constants", "runs")
 
 
-def read_section(kind: str, file: Path) -> SettingsTable:
+def read_section(kind: str, file: Path, *, alone: bool = False) -> SettingsTable:
     """Read the entries of a `columns.toml` that are for one kind of table.
 
     Without any section, all entries apply to leg and rig tables, and only `source` to the others.
@@ -28,6 +28,7 @@ def read_section(kind: str, file: Path) -> SettingsTable:
     Args:
         kind: One of `KINDS`.
         file: The `columns.toml`.
+        alone: Whether all entries of a file without sections are for this kind.
 
     Raises:
         NotFound: There is no such file.
@@ -41,7 +42,7 @@ def read_section(kind: str, file: Path) -> SettingsTable:
             if key not in (known := ("source", *KINDS)):
                 raise SettingsError(f"unknown key; {nearest(key, known)}", file=file, key=key)
         entries, path = document.get(kind, {}), kind
-    elif kind not in _PLAIN:
+    elif kind not in _PLAIN and not alone:
         entries = {}
     if not isinstance(entries, dict):
         raise SettingsError(f"found {entries!r}; expected a section [{kind}]", file=file, key=kind)

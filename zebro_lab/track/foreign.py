@@ -16,17 +16,19 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.file import TrackFile, track_of_table, tum_lines
 from zebro_lab.track.trajectory.file import Trajectory, number_lines_of, read_trajectory
-from zebro_lab.track.trajectory.headers import named_columns
 from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
-from zebro_lab.track.trajectory.table import QUATERNION, read_table_columns
+from zebro_lab.track.trajectory.table import (
+    COVARIANCE,
+    MAPPED_UNITS,
+    QUATERNION,
+    read_table_columns,
+    recognised,
+)
 
-_COVARIANCE: Final = {
-    "cov_xx": "m^2", "cov_xy": "m^2", "cov_xyaw": "m rad", "cov_yy": "m^2", "cov_yyaw": "m rad",
-    "cov_yawyaw": "rad^2",
-}  # fmt: skip
 TRACK_UNITS: Final[Mapping[str, str]] = {
-    "t_s": "s", "t_sigma": "s", "x_m": "m", "y_m": "m", "yaw_rad": "rad", **_COVARIANCE, "z_m": "m",
+    "t_s": "s", "t_sigma": "s", "x_m": "m", "y_m": "m", "yaw_rad": "rad", **COVARIANCE, "z_m": "m",
 }  # fmt: skip
+"""SI unit of each column of a path in the plane, in the order of `track.csv`."""
 _SIDEWAYS: Final = np.radians(45.0)
 """Median angle from the direction of travel beyond which a heading is told of."""
 
@@ -56,7 +58,7 @@ class ForeignTrack:
         if poses.has_yaw:
             known["yaw_rad"] = poses.yaw.tolist()
         if self.with_covariance:
-            upper = zip(_COVARIANCE, zip(*np.triu_indices(3), strict=True), strict=True)
+            upper = zip(COVARIANCE, zip(*np.triu_indices(3), strict=True), strict=True)
             known |= {name: self.track.covariance[:, i, j].tolist() for name, (i, j) in upper}
         known |= {name: column.tolist() for name, column in self.more.items()}
         return {name: known[name] for name in TRACK_UNITS if name in known}
@@ -90,7 +92,8 @@ def read_foreign_track(
     """
     if number_lines_of(path, request.layout_of(0)) is None and request.plane in (None, Plane.XY):
         table = read_table_file(path, sheet=mapping.sheet)
-        if not set(QUATERNION) <= set(named_columns(list(table.columns))):
+        columns = recognised(table, mapping)
+        if not all(columns.has(table, name) for name in QUATERNION):
             _require_unused(path, request)
             return track_of_foreign_table(table, mapping)
     trajectory = read_trajectory(path, request, mapping=mapping)
@@ -102,7 +105,7 @@ def read_foreign_track(
             "plane of the floor, such as xy or xz",
             key="--plane",
         )
-    own = replace(mapping, mapped=canonical_columns(TRACK_UNITS).mapped)  # without headers
+    own = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped)  # without headers
     track = track_of_foreign_table(_flat(trajectory), own)
     return replace(track, files=trajectory.files)
 
@@ -172,4 +175,4 @@ def track_of_foreign_table(table: RawTable, mapping: MappedColumns) -> ForeignTr
                        header_line=table.header_line)  # fmt: skip
     more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
     files = (table.path, *([mapping.file] if mapping.file else []))
-    return ForeignTrack(track_of_table(checked), more, set(_COVARIANCE) <= set(columns), files)
+    return ForeignTrack(track_of_table(checked), more, set(COVARIANCE) <= set(columns), files)

@@ -15,6 +15,7 @@ from zebro_lab.exchange.column_guesses import (
 )
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.tables.cells import unit_in_header
+from zebro_lab.tables.column_sections import TRACK
 from zebro_lab.tables.raw_table import RawTable
 
 
@@ -161,3 +162,15 @@ def test_numbers_are_none_for_texts_and_empty_columns():
     assert numbers_or_none(table, "a") is None
     assert numbers_or_none(table, "b") is None
     np.testing.assert_array_equal(numbers_or_none(table, "c"), [np.nan, 1.0])
+
+
+def test_a_quaternion_of_motion_capture_is_found_whole_or_not(tmp_path):
+    names = ["Time (Seconds)", *(f"Body Position {a}" for a in "XYZ")]
+    turned = [f"Body Rotation {a}" for a in "XYZW"]
+    values = pd.DataFrame(np.eye(8), columns=[*names, *turned])
+    for columns, found in ((turned, {"qx", "qy", "qz", "qw"}), (turned[:3], set())):
+        table = RawTable(tmp_path / "take.csv", dict(values[[*names, *columns]].items()))
+        guesses = guess_columns(table, TRACK)
+        assert {name for name in guesses if name[0] == "q"} == found
+        assert "which axis is up" in guesses["y_m"].name_doubt
+        assert not any(guesses[name].doubts for name in found)

@@ -159,7 +159,7 @@ def test_what_cannot_be_taken_is_named_and_leaves_nothing(files, tmp_path, spoil
         ("0 0 0 0 0 0 0 x\n", "a line of words"),
         ("0 0 0 0 0 0 0 0\n", "length 0"),
         ("# nothing\n", "has no pose"),
-        ("0 0 0 0 0 0 0 1\n" * 3, "has 1 poses"),
+        ("0 0 0 0 0 0 0 1\n" * 3, "has 1 pose; expected 3"),
     ],
 )
 def test_a_trajectory_of_another_form_is_refused(files, tmp_path, text, message):
@@ -188,6 +188,55 @@ def test_a_trajectory_alone_makes_a_run_with_a_track(tmp_path, name, text, how):
     ahead = rotation.apply([1.0, 0.0, 0.0])
     np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
     assert read_manifest(folder).sources == {"track": f"import:{name}"}
+
+
+MOCAP = """
+[track.columns]
+t_s = "Time (Seconds)"
+""" + "".join(
+    f'{axis}_m = {{name = "Body Position {axis.upper()}", unit = "mm"}}\n' for axis in "xyz"
+) + "".join(f'q{axis} = "Body Rotation {axis.upper()}"\n' for axis in "xyzw")  # fmt: skip
+
+
+def motion_capture(folder):
+    """Write a drive as a motion-capture program does, with its column map; return the file."""
+    t, position, rotation = drive()
+    columns = {"Frame": np.arange(len(t)), "Time (Seconds)": t}
+    columns |= dict(zip(("Body Rotation X", "Body Rotation Y", "Body Rotation Z",
+                         "Body Rotation W"), rotation.as_quat().T, strict=True))  # fmt: skip
+    columns |= {f"Body Position {a}": 1e3 * p for a, p in zip("XYZ", position.T, strict=True)}
+    pd.DataFrame(columns).to_csv(folder / "take.csv", index=False)
+    written(folder / "columns.toml", MOCAP)
+    return folder / "take.csv"
+
+
+@pytest.mark.parametrize("how", [{}, {"plane": Plane.XY}])
+def test_mapped_quaternions_of_a_table_are_the_heading(tmp_path, how):
+    (folder,) = taken(
+        tmp_path, track=motion_capture(tmp_path), trajectory=TrajectoryRequest(**how)
+    ).folders
+    poses = read_track(folder / "track").poses
+    _, position, rotation = drive()
+    np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
+    ahead = rotation.apply([1.0, 0.0, 0.0])
+    np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
+
+
+def test_a_map_without_sections_is_for_the_only_file(tmp_path):
+    file = motion_capture(tmp_path)
+    plain = written(tmp_path / "own.toml", MOCAP.replace("[track.columns]", "[columns]"))
+    (folder,) = taken(tmp_path, track=file, columns=plain).folders
+    assert len(read_track(folder / "track").poses) == 60
+
+
+def test_a_track_of_another_clock_is_brought_to_that_of_the_legs(files, tmp_path):
+    table = pd.read_csv(files / "track.csv")
+    table.assign(t=table.t - 1000.0).to_csv(files / "track.csv", index=False)
+    both = {"legs": files / "legs.csv", "track": files / "track.csv"}
+    with pytest.raises(DataError, match="no second is shared; add --track-offset 1000 where both"):
+        taken(tmp_path, **both)
+    (folder,) = taken(tmp_path, **both, track_offset=1000.0).folders
+    np.testing.assert_allclose(read_track(folder / "track").poses.t, T[::20], atol=1e-9)
 
 
 def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
@@ -232,6 +281,7 @@ def test_what_a_trajectory_leaves_open_is_asked_for(tmp_path, how, error, messag
         ({"legs": "legs.csv", "start": datetime(2026, 1, 1)}, "no time zone"),
         ({"track": "track.csv", "imu": "imu.csv"}, "^--imu: belongs to a walk"),
         ({"legs": "legs.csv", "trajectory": TrajectoryRequest(plane=Plane.XY)}, "^--track: .*add"),
+        ({"track": "track.csv", "track_offset": 2.0}, "^--track-offset: .*files of both"),
     ],
 )
 def test_half_a_request_is_refused(files, tmp_path, changes, message):

@@ -13,6 +13,7 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.track.file import tum_lines
 from zebro_lab.track.foreign import TRACK_UNITS, read_foreign_track, track_of_foreign_table
 from zebro_lab.track.trajectory.request import Axis, TrajectoryRequest
+from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 NAMES = ("t_s", "x_m", "y_m", "yaw_rad", "z_m")
 COVARIANCE = {
@@ -31,7 +32,7 @@ def track_of(read: RawTable, zero: float = 0.0):
 
 
 def read(file: Path, **how):
-    return read_foreign_track(file, canonical_columns(TRACK_UNITS), TrajectoryRequest(**how))
+    return read_foreign_track(file, canonical_columns(MAPPED_UNITS), TrajectoryRequest(**how))
 
 
 def test_short_names_do_and_time_is_counted_from_the_zero_given(tmp_path):

@@ -8,7 +8,7 @@ from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import MappedColumns, parse_mapped_columns
-from zebro_lab.track.trajectory.table import TABLE_UNITS
+from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 SECTION = "track"
 
@@ -42,4 +42,4 @@ def trajectory_columns(file: Path, named: Path | None) -> MappedColumns | None:
 
 
 def _parsed(entries: dict[str, object], file: Path, section: str) -> MappedColumns:
-    return parse_mapped_columns(SettingsTable(entries, file=file, path=section), TABLE_UNITS)
+    return parse_mapped_columns(SettingsTable(entries, file=file, path=section), MAPPED_UNITS)

@@ -19,10 +19,17 @@ from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
 
 NEEDED: Final = ("t_s", "x_m", "y_m")
 QUATERNION: Final = ("qx", "qy", "qz", "qw")
-TABLE_UNITS: Final = {
+POSE_UNITS: Final = {
     "t_s": "s", "x_m": "m", "y_m": "m", "z_m": "m", "yaw_rad": "rad",
     **dict.fromkeys(QUATERNION, "dimensionless"),
 }  # fmt: skip
+"""SI unit of each column of poses, by canonical name."""
+COVARIANCE: Final = {
+    "cov_xx": "m^2", "cov_xy": "m^2", "cov_xyaw": "m rad", "cov_yy": "m^2", "cov_yyaw": "m rad",
+    "cov_yawyaw": "rad^2",
+}  # fmt: skip
+MAPPED_UNITS: Final[Mapping[str, str]] = {**POSE_UNITS, "t_sigma": "s", **COVARIANCE}
+"""SI unit of each column that `[track.columns]` maps; not every command reads all of them."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +64,9 @@ def read_table_trajectory(path: Path, mapping: MappedColumns | None) -> TableTra
         DataError: The table is damaged, time, x or y is missing, a cell is no finite number, or
             a stamp is earlier than the one before or repeated with another pose.
     """
-    mapping = mapping or canonical_columns(TABLE_UNITS)
+    mapping = mapping or canonical_columns(MAPPED_UNITS)
     table = read_table_file(path, sheet=mapping.sheet)
-    read = read_table_columns(table, mapping, TABLE_UNITS)
+    read = read_table_columns(table, mapping, POSE_UNITS)
     columns = read.columns
     t = columns["t_s"]
     position = np.column_stack(

@@ -31,7 +31,9 @@ from benchmarks.faults.fuzzed_readers.manifests import of_manifests, of_reports
 from benchmarks.faults.fuzzed_readers.pictures import of_pictures
 from benchmarks.faults.fuzzed_readers.reader import Reader
 from benchmarks.faults.fuzzed_readers.settings import of_settings
-from benchmarks.faults.fuzzed_readers.tables import of_tables
+from benchmarks.faults.fuzzed_readers.tables import every_column, of_tables
+from benchmarks.faults.fuzzed_readers.trajectories import of_trajectories
+from benchmarks.faults.fuzzed_readers.workbooks import of_workbooks
 from model.errors import ModelError
 from rig.errors import RigError
 from tracking.errors import TrackingError
@@ -148,7 +150,7 @@ def readers() -> dict[str, Reader]:
     """Return all readers by name, those first that take the least time."""
     return {
         **of_settings(), **of_manifests(), **of_archives(), **of_logs(), **of_tables(),
-        **of_reports(), **of_pictures(),
+        **of_trajectories(), **of_workbooks(every_column), **of_reports(), **of_pictures(),
     }  # fmt: skip
 
 

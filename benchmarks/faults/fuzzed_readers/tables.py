@@ -35,7 +35,8 @@ from zebro_lab.track.foreign import read_foreign_track
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 
-def _numbers(file: Path) -> None:
+def every_column(file: Path) -> None:
+    """Read every column of a table as numbers, where they are."""
     table = read_table_file(file)
     for name in table.columns:
         with suppress(ZebroLabError):
@@ -58,15 +59,15 @@ def of_tables() -> Mapping[str, Reader]:
     imu = {"t": t, "roll": t, "pitch": t, "yaw": t, "rate_x": t}
     imu_map = ForeignColumns().series("imu")
     readers: dict[str, Reader] = {
-        "CSV, every column": Reader("x.csv", _numbers, tables(rig), csv_check),
+        "CSV, every column": Reader("x.csv", every_column, tables(rig), csv_check),
         "CSV of a rig": Reader("x.csv", lambda f: read_rig_data([f]), tables(rig), csv_check),
         "CSV of legs": Reader("x.csv", read_leg_log, tables(legs), csv_check),
         "CSV of a track": Reader("x.csv", read_track, tables(track), csv_check),
         "CSV of an IMU": Reader("x.csv", lambda f: imu_of_table(read_table_file(f), imu_map),
                                 tables(imu), csv_check),
-        "CSV.gz": Reader("x.csv.gz", _numbers, tables(rig, packed=True),
+        "CSV.gz": Reader("x.csv.gz", every_column, tables(rig, packed=True),
                          lambda d: csv_check(gzip.decompress(d)), special=csv_bombs),
-        "Parquet": Reader("x.parquet", _numbers, parquets(), _parquet_check),
+        "Parquet": Reader("x.parquet", every_column, parquets(), _parquet_check),
         "TUM": Reader("x.tum", _foreign_track, _tum, text_check),
         "times of photographs": Reader("x.csv", lambda f: times_from_table(f, [Path("a.jpg")]),
                                        tables({"photo": ["a.jpg", "b.jpg"], "t_s": [0, 1]}),

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from zebro_lab.terminal.bad_values import values_named
+from zebro_lab.terminal.near_names import near_command, near_option
 
 SETTINGS: Final = {"help_option_names": ["-h", "--help"]}
 
@@ -24,8 +25,8 @@ class Command(TyperCommand):
         Raises:
             BadParameter: An option that takes one value is given more than once.
         """
-        _require_single(self, ctx, args)
-        with values_named():
+        with near_option(_options(self, ctx)), values_named():
+            _require_single(self, ctx, args)
             return super().parse_args(ctx, args)
 
     def get_short_help_str(self, limit: int = 45) -> str:
@@ -55,7 +56,12 @@ class Command(TyperCommand):
 
 
 class Group(TyperGroup):
-    """Group of commands that lists them with whole summaries."""
+    """Group of commands that lists them with whole summaries, and offers one that was misspelt."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find a command as Typer does, with the name that an unknown one means in the message."""
+        with near_command(args[0], self.list_commands(ctx)):
+            return super().resolve_command(ctx, args)
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse arguments as Typer does, after a check that no option is given twice.
@@ -63,8 +69,8 @@ class Group(TyperGroup):
         Raises:
             BadParameter: An option that takes one value is given more than once.
         """
-        _require_single(self, ctx, args)
-        with values_named():
+        with near_option(_options(self, ctx)), values_named():
+            _require_single(self, ctx, args)
             return super().parse_args(ctx, args)
 
     def get_short_help_str(self, limit: int = 45) -> str:
@@ -83,6 +89,7 @@ class Application(typer.Typer):
         super().__init__(
             **{
                 "cls": Group,
+                "suggest_commands": False,  # it offers other commands as well
                 "context_settings": SETTINGS,
                 "rich_markup_mode": None,
                 "pretty_exceptions_enable": False,
@@ -93,6 +100,15 @@ class Application(typer.Typer):
     def command(self, name: str | None = None, **settings: Any) -> Callable[..., Any]:
         """Return the decorator that adds a function as a command, as `typer.Typer.command`."""
         return super().command(name, **{"cls": Command, "context_settings": SETTINGS, **settings})
+
+
+def _options(command: Any, ctx: Any) -> list[str]:
+    return [
+        name
+        for param in command.get_params(ctx)
+        for name in (*param.opts, *param.secondary_opts)
+        if name.startswith("-")
+    ]
 
 
 def _require_single(command: Any, ctx: Any, args: Sequence[str]) -> None:

@@ -8,10 +8,10 @@ the fitted one. Not modelled: temperature, wear, play, bending of the frame, sid
 import math
 from collections import deque
 from dataclasses import asdict, dataclass
+from itertools import accumulate, islice
 from typing import Final
 
 import numpy as np
-from scipy.signal import lfilter
 
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
@@ -323,5 +323,7 @@ def _continue_ar1(rho: float, last: float, rng: np.random.Generator, n: int) -> 
         The new values, shape (n,), and the last of them.
     """
     shock = np.sqrt(1 - rho**2) * rng.standard_normal(n)
-    path, _ = lfilter([1.0], [1.0, -rho], shock, zi=np.array([rho * last]))
-    return np.asarray(path), float(path[-1])
+    # Not by scipy.signal, for whose import every command with a twin would wait.
+    steps = accumulate(shock.tolist(), lambda before, step: rho * before + step, initial=last)
+    path = np.fromiter(islice(steps, 1, None), dtype=float, count=n)
+    return path, float(path[-1])

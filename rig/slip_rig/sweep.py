@@ -7,11 +7,11 @@ saturation, temperature drift within a run, wear, play, and the transients betwe
 """
 
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from model.bayes.samples import SlipSamples
 from model.errors import DomainError
@@ -246,4 +246,5 @@ def _stationary_ar1(rho: float, plan: SweepPlan, rng: np.random.Generator) -> Ar
     """Draw a stationary AR(1) path of unit variance for each run, shape (runs, samples) [-]."""
     shock = rng.standard_normal((plan.n_runs, plan.n_samples))
     shock[:, 1:] *= np.sqrt(1 - rho**2)  # the first sample already has the marginal variance
-    return np.asarray(lfilter([1.0], [1.0, -rho], shock, axis=1))
+    steps = accumulate(shock.T, lambda before, step: rho * before + step)
+    return np.stack(list(steps), axis=1)

@@ -3,6 +3,7 @@
 
 import json
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -176,12 +177,17 @@ def start_and_signal(number: signal.Signals, command: list[str], out: Path) -> t
     return process.returncode, stdout, stderr
 
 
-@pytest.fixture(params=[signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
-def stopped(request, sweep, tmp_path) -> tuple[tuple[object, ...], Path, tuple[int, str, str]]:
+@pytest.fixture(
+    scope="module", params=[signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name
+)
+def stopped(
+    request, sweep, tmp_path_factory
+) -> tuple[tuple[object, ...], Path, tuple[int, str, str]]:
     """Return the arguments of a fit that was asked to stop, its folder and how it ended."""
-    out = tmp_path / "out"
+    out = tmp_path_factory.mktemp("stopped") / "out"
     arguments = (sweep, "--out", out, *SMALL_FIT)
-    return arguments, out, start_and_signal(request.param, patched(LOOK_OFTEN, *arguments), out)
+    command = patched(LOOK_OFTEN + JUDGED_EARLY, *arguments)
+    return arguments, out, start_and_signal(request.param, command, out)
 
 
 def test_stopped_fit_exits_130_with_a_checkpoint_alone_and_says_how_to_go_on(stopped):
@@ -195,10 +201,12 @@ def test_stopped_fit_exits_130_with_a_checkpoint_alone_and_says_how_to_go_on(sto
         assert np.isfinite(stored["z"]).all()
 
 
-@pytest.mark.parametrize("stopped", [signal.SIGINT], indirect=True)
-def test_stopped_fit_resumes_to_convergence(stopped):
-    arguments, out, _ = stopped
-    resumed = run(patched(EASILY_PLEASED, *arguments, "--resume"))
+@pytest.mark.parametrize("stopped", [signal.SIGINT], indirect=True, ids=["SIGINT"])
+def test_stopped_fit_resumes_to_convergence(stopped, sweep, tmp_path):
+    out = tmp_path / "out"
+    shutil.copytree(stopped[1], out)
+    arguments = (sweep, "--out", out, *SMALL_FIT, "--resume")
+    resumed = run(patched(EASILY_PLEASED, *arguments))
     assert resumed.returncode == 0
     assert "error" not in resumed.stderr
     assert names(out) == FILES
@@ -208,7 +216,7 @@ def test_stopped_fit_resumes_to_convergence(stopped):
 def test_killed_fit_leaves_a_checkpoint_that_resumes(sweep, tmp_path):
     out = tmp_path / "out"
     arguments = (sweep, "--out", out, *SMALL_FIT)
-    code, *_ = start_and_signal(signal.SIGKILL, patched(LOOK_OFTEN, *arguments), out)
+    code, *_ = start_and_signal(signal.SIGKILL, patched(LOOK_OFTEN + JUDGED_EARLY, *arguments), out)
     assert code == -signal.SIGKILL
     resumed = run(patched(JUDGED_EARLY, *arguments, "--resume", "--max-steps", 1))
     assert resumed.returncode == 3

@@ -11,6 +11,8 @@ def test_zebro_check_fixes_order_and_writes_a_profile(run_command, monkeypatch, 
     file = tmp_path / "mine.toml"
     answers = ["1", "y", "2", "y", "9", "3", "n", "5", "y", "4", "y", "6", "y", "", ""]
     monkeypatch.setattr("sys.stdin", io.StringIO("\n".join(answers)))
+    for wait in ("DURATION", "SETTLING"):
+        monkeypatch.setattr(f"rig.zebro.check.{wait}", 0.25)
     code, out, err = run_command("zebro", "check", "sim", "--save", file, "--json")
     assert code == 0, err
     assert "channel 1 was moved; which leg turned" in err

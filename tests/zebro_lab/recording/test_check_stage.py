@@ -28,6 +28,14 @@ class Person:
         self.held += 1
 
 
+@pytest.fixture
+def quick(monkeypatch):
+    """Move each leg in half the time, and wait for half as long."""
+    monkeypatch.setattr("rig.zebro.check.DURATION", 0.25)
+    monkeypatch.setattr("rig.zebro.check.SETTLING", 0.25)
+
+
+@pytest.mark.usefixtures("quick")
 def test_what_the_person_saw_is_in_the_profile(tmp_path):
     person, file = Person(), tmp_path / "mine.toml"
     checked = check_zebro(CheckRequest("sim", file), person)
@@ -64,6 +72,7 @@ def test_counts_of_a_full_turn_are_the_set_point_of_none():
     assert latest_counts_as_targets(Robot()) == (0, 1, 2, 3, 4, 5)
 
 
+@pytest.mark.usefixtures("quick")
 def test_lift_off_is_where_the_hip_is_as_high_as_at_touchdown(tmp_path, monkeypatch):
     class Measuring(Person):
         def measure_height(self, theta_deg):

@@ -89,6 +89,7 @@ def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
 def _velocity(path: Poses, t: Array) -> Array:
     """Compute rates of x, y [m/s] and yaw [rad/s] at times t by differences, shape (n, 3)."""
     before, after = (np.clip(t + step, path.t[0], path.t[-1]) for step in (-_STEP, _STEP))
-    span = np.maximum(after - before, _STEP)[:, None]
-    a, b = path.at(before), path.at(after)
-    return np.column_stack([b.position - a.position, b.yaw - a.yaw]) / span
+    span = np.maximum(after - before, _STEP)
+    columns = (*path.position.T, path.yaw)
+    moved = [np.interp(after, path.t, c) - np.interp(before, path.t, c) for c in columns]
+    return np.column_stack(moved) / span[:, None]

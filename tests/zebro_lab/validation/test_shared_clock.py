@@ -87,3 +87,20 @@ def test_an_estimated_offset_widens_the_covariance_along_the_path(tmp_path):
     np.testing.assert_allclose(wider[moved.poses.t < 1.5], 0.0, atol=1e-12)
     rate = wider[moving, 2, 2] / speed[moving]
     np.testing.assert_allclose(rate, 1 / 1.5**2, rtol=1e-3)  # of the circle that it walks
+
+
+def test_a_dense_track_that_begins_before_the_path_and_ends_after_it_is_shifted(tmp_path):
+    file, _ = standing_walk(tmp_path, behind=0.0)
+    walk = pd.read_csv(file)
+    whole = Poses(walk.t.to_numpy(), walk[["x", "y"]].to_numpy(), walk.yaw.to_numpy())
+    path = whole.part((whole.t > 1.0) & (whole.t < 23.0))
+    t = np.arange(0.0, 23.9, 0.01)
+    noise = np.random.default_rng(1).normal(0.0, 1e-4, (len(t), 2))
+    seen = whole.at(t)
+    tracked = TrackFile(
+        replace(seen, t=t - 3.0, position=seen.position + noise), "sim:test", Path("a.csv")
+    )
+    moved, offset = estimated_clock(tracked, path)
+    assert offset == pytest.approx(3.0, abs=0.02)
+    still = moved.covariance[[0, -1]]
+    np.testing.assert_allclose(still, tracked.covariance[[0, -1]], atol=1e-12)

@@ -16,8 +16,10 @@ from zebro_lab.terminal.near_names import near_command, near_option
 SETTINGS: Final = {"help_option_names": ["-h", "--help"]}
 
 
-class Command(TyperCommand):
-    """Command that refuses an option given twice and shows plain metavars in its help."""
+class _Strict:
+    """What commands and groups share: options are given once, and summaries are whole."""
+
+    help: str | None
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse arguments as Typer does, after a check that no option is given twice.
@@ -27,11 +29,16 @@ class Command(TyperCommand):
         """
         with near_option(_options(self, ctx)), values_named():
             _require_single(self, ctx, args)
-            return super().parse_args(ctx, args)
+            typer_class: Any = super()  # comes after this class among the bases
+            return typer_class.parse_args(ctx, args)
 
     def get_short_help_str(self, limit: int = 45) -> str:
         """Return the first sentence of the help, not shortened to `limit` characters."""
         return _summary(self.help)
+
+
+class Command(_Strict, TyperCommand):
+    """Command that refuses an option given twice and shows plain metavars in its help."""
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """Return the parts of the usage line, without braces around required arguments."""
@@ -55,27 +62,13 @@ class Command(TyperCommand):
                     formatter.write_dl(rows)
 
 
-class Group(TyperGroup):
+class Group(_Strict, TyperGroup):
     """Group of commands that lists them with whole summaries, and offers one that was misspelt."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find a command as Typer does, with the name that an unknown one means in the message."""
         with near_command(args[0], self.list_commands(ctx)):
             return super().resolve_command(ctx, args)
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse arguments as Typer does, after a check that no option is given twice.
-
-        Raises:
-            BadParameter: An option that takes one value is given more than once.
-        """
-        with near_option(_options(self, ctx)), values_named():
-            _require_single(self, ctx, args)
-            return super().parse_args(ctx, args)
-
-    def get_short_help_str(self, limit: int = 45) -> str:
-        """Return the first sentence of the help, not shortened to `limit` characters."""
-        return _summary(self.help)
 
 
 class Application(typer.Typer):

@@ -69,11 +69,10 @@ def test_help_loads_nothing_heavy():
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("closed", ["<&-", ">&-"])
-def test_a_stream_that_a_shell_has_closed_is_no_fault(plan, tmp_path, closed):
+def test_streams_that_a_shell_has_closed_are_no_fault(plan, tmp_path):
     command = (
         f"{sys.executable} -c 'from zebro_lab.main import main; main()' rig run {plan} --rig sim "
-        f"--fast --data {tmp_path / 'data'} {closed}"
+        f"--fast --data {tmp_path / 'data'} <&- >&-"
     )
     done = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE, text=True, timeout=120)
     assert (done.returncode, done.stderr) == (0, "")

@@ -32,7 +32,7 @@ def within_process(monkeypatch, capsys) -> Callable[..., Ended]:
 
     def run_with(*arguments: object) -> Ended:
         words, command = [COMMAND, *map(str, arguments)], app
-        if words[1] == "calibrate-slip":
+        if words[1:2] == ["calibrate-slip"]:
             words, command = words[1:], slip_app
         monkeypatch.setattr(sys, "argv", words)
         with pytest.raises(SystemExit) as ended:

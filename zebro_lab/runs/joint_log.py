@@ -4,23 +4,28 @@
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
+from zebro_lab.files.units import factor_to_si
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, read_topic
 from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_messages import JOINT_STATE
 from zebro_lab.robot.joint_names import legs_of_joints
 from zebro_lab.robot.leg_log import ANGLES
+from zebro_lab.runs.joined_readings import joined_readings
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
 
 if TYPE_CHECKING:
     import pandas as pd
 
+DYNAMIC: Final = "control_msgs/msg/DynamicJointState"
+"""Message of ros2_control, which names the interfaces of each joint."""
 _ORDER = "front left, front right, middle left, middle right, rear left, rear right"
 
 
@@ -61,7 +66,7 @@ def read_joint_log(
         DataError: No ROS log, no joint positions (on `topic`), or several topics and none chosen.
     """
     found = read_topic(
-        path, (JOINT_STATE.name,), what="joint positions", topic=topic, topics=topics,
+        path, (JOINT_STATE.name, DYNAMIC), what="joint positions", topic=topic, topics=topics,
         parts=_with_positions,
     )  # fmt: skip
     with parsing(path, OTHER_FIELDS):
@@ -97,7 +102,9 @@ def joint_table(log: JointLog, columns: MappedColumns) -> RawTable:
             file=log.table.path,
         )
     used = {columns.mapped[name].name for name in ANGLES}
-    table = _with_legs(table, used)
+    used_by = [columns.mapped[name] for name in ANGLES]
+    turns = {each.name: 2 * np.pi / factor_to_si(each.unit, "rad") for each in used_by}
+    table = joined_readings(_with_legs(table, used), turns)
     told = {name: leg for name, leg in log.legs.items() if f"theta{leg}" in used & set(aliases)}
     return replace(table, notes=(*table.notes, *_told(told)))
 
@@ -116,8 +123,25 @@ def _with_legs(table: RawTable, legs: Collection[str]) -> RawTable:
 
 
 def _with_positions(message: LoggedMessage) -> Parts:
-    if len(message.content.position):
-        yield message.topic, message.content.header, message.content
+    content = message.content
+    if message.type == DYNAMIC:
+        content = _positions_of(content)
+    if len(content.position):
+        yield message.topic, message.content.header, content
+
+
+def _positions_of(state: Any) -> SimpleNamespace:
+    """Return names and positions of a `DynamicJointState`; joints without a position are left out.
+
+    Each joint has a list of the interfaces that it offers, and a value of each.
+    """
+    found = {
+        name: float(value)
+        for name, values in zip(state.joint_names, state.interface_values, strict=False)
+        for interface, value in zip(values.interface_names, values.values, strict=False)
+        if interface == "position"
+    }
+    return SimpleNamespace(name=[*found], position=[*found.values()])
 
 
 def _columns(

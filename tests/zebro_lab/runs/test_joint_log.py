@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Joint states of a ROS log are leg angles, by the names of the joints."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -61,7 +62,7 @@ def test_one_topic_of_several_is_named(tmp_path):
 def test_a_log_without_positions_says_what_is_expected(tmp_path):
     bag = write(tmp_path / "bag.mcap", ("/joints", 1.0, 1.0, {}))
     with pytest.raises(
-        DataError, match=r"holds no joint positions; expected .* of type sensor_msgs/msg"
+        DataError, match=r"holds no joint positions; expected .* of type control_msgs/msg"
     ):
         read_joint_log(bag)
 
@@ -95,3 +96,62 @@ def test_joints_are_never_legs_by_their_place_in_the_message(tmp_path):
     for leg, name in enumerate(ANGLES):
         columns = columns.called(name, f"motor_{5 - leg}")
     assert joint_table(log, columns).notes == ()
+
+
+def test_messages_of_one_leg_each_are_joined_in_the_unit_of_the_columns(tmp_path):
+    states = []
+    for i in range(200):
+        for leg in range(1, 7):
+            t = 1 + 0.01 * i + 0.001 * leg
+            states.append(("/joints", t, 1.0, {f"leg_{leg}": 200 * t % 360}))
+    columns = canonical_columns(LEG_UNITS)
+    degrees = {name: replace(columns.mapped[name], unit="deg") for name in ANGLES}
+    columns = replace(columns, mapped={**columns.mapped, **degrees})
+    table = joint_table(read_joint_log(write(tmp_path / "bag.mcap", *states)), columns)
+    t = table.numbers("t")
+    for name in ANGLES:
+        np.testing.assert_allclose((table.numbers(name) - 200 * t + 180) % 360, 180, atol=1e-4)
+    assert "the other legs interpolated" in table.notes[0]
+
+
+DYNAMIC = """
+std_msgs/Header header
+string[] joint_names
+control_msgs/InterfaceValue[] interface_values
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: control_msgs/InterfaceValue
+string[] interface_names
+float64[] values
+"""
+
+
+def test_positions_of_dynamic_joint_states_are_read(tmp_path):
+    from mcap_ros2.writer import Writer
+
+    with (tmp_path / "bag.mcap").open("wb") as out:
+        writer = Writer(out)
+        schema = writer.register_msgdef("control_msgs/msg/DynamicJointState", DYNAMIC.strip())
+        for i in range(3):
+            values = [
+                {"interface_names": ["velocity", "position"], "values": [9.0, 0.1 * i + leg]}
+                for leg in range(1, 7)
+            ]
+            message = {
+                "header": {"stamp": {"sec": 5, "nanosec": i * 10**8}, "frame_id": ""},
+                "joint_names": ["arm", *(f"leg_{leg}" for leg in range(1, 7))],
+                "interface_values": [{"interface_names": ["effort"], "values": [1.0]}, *values],
+            }
+            writer.write_message("/dynamic_joint_states", schema, message, log_time=i)
+        writer.finish()
+    log = read_joint_log(tmp_path / "bag.mcap")
+    assert log.joints == tuple(f"leg_{leg}" for leg in range(1, 7))
+    np.testing.assert_allclose(log.table.numbers("t"), [5.0, 5.1, 5.2])
+    np.testing.assert_allclose(log.table.numbers("leg_4"), [4.0, 4.1, 4.2])

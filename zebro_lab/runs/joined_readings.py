@@ -66,8 +66,8 @@ def _require_near(table: RawTable, name: str, t: Array, at: Array) -> None:
         raise DataError(
             f"messages hold some of the legs each, and {name} has no reading for "
             f"{steps[later[wide[0]] - 1]:.3g} s, from {begin - t[0]:.3f} s after its first; "
-            f"expected at most {WIDEST:g} times the usual {np.median(steps):.4g} s: cut the bag there, and "
-            "use each part alone",
+            f"expected at most {WIDEST:g} times the usual {np.median(steps):.4g} s: cut the bag "
+            "there, and use each part alone",
             file=table.path,
         )
 

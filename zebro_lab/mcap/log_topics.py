@@ -22,6 +22,10 @@ _TOLD: Final = '--topic NAME, or topic = "NAME" in the file\'s section of a colu
 Parts = Iterable[tuple[str, Any, Any]]
 
 
+class SeveralTopics(DataError):
+    """Several topics of a log have what is looked for, and none was asked for."""
+
+
 @dataclass(frozen=True)
 class TopicRows:
     """Messages of one topic.
@@ -72,8 +76,8 @@ def read_topic(
 
     Raises:
         NotFound: The log does not exist, or the package that reads it.
-        DataError: It cannot be read, or has no such message, or several topics and none is asked
-            for, or not the one that is.
+        SeveralTopics: It has several topics, and none is asked for.
+        DataError: It cannot be read, or has no such message, or not the topic that is asked for.
     """
     messages, damage = read_typed_messages(path, types)
     found: dict[str, list[tuple[float, str, Any]]] = {}
@@ -117,7 +121,9 @@ def _chosen(
     fitting = [each for each in found if each in topics] or list(found)
     if len(fitting) > 1:
         listed = _listed(fitting)
-        raise DataError(f"has {what} on the topics {listed}; choose one with {_TOLD}", file=path)
+        raise SeveralTopics(
+            f"has {what} on the topics {listed}; choose one with {_TOLD}", file=path
+        )
     return fitting[0]
 
 

@@ -3,16 +3,18 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.units import factor_to_si
-from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, read_topic
+from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, SeveralTopics, read_topic
 from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_messages import JOINT_STATE
 from zebro_lab.robot.joint_names import legs_of_joints
@@ -65,10 +67,16 @@ def read_joint_log(
         NotFound: The file does not exist, or the package that reads bags.
         DataError: No ROS log, no joint positions (on `topic`), or several topics and none chosen.
     """
-    found = read_topic(
-        path, (JOINT_STATE.name, DYNAMIC), what="joint positions", topic=topic, topics=topics,
-        parts=_with_positions,
-    )  # fmt: skip
+    asked = {"what": "joint positions", "topic": topic, "topics": topics}
+    types = (JOINT_STATE.name, DYNAMIC)
+    joints: dict[str, set[str]] = {}
+    try:
+        found = read_topic(path, types, parts=partial(_with_positions, joints=joints), **asked)
+    except SeveralTopics:
+        legs = _a_topic_a_leg(joints)
+        if not legs:
+            raise
+        found = read_topic(path, types, parts=partial(_with_positions, together=legs), **asked)
     with parsing(path, OTHER_FIELDS):
         rows = [dict(zip(state.name, state.position, strict=False)) for state in found.contents]
         table = RawTable(path, _columns(found.t, rows), notes=found.notes)
@@ -122,12 +130,40 @@ def _with_legs(table: RawTable, legs: Collection[str]) -> RawTable:
     return replace(table, columns=columns, notes=(*table.notes, f"{note}: skipped"))
 
 
-def _with_positions(message: LoggedMessage) -> Parts:
+def _a_topic_a_leg(joints: Mapping[str, Collection[str]]) -> frozenset[str]:
+    """Return the topics that hold all legs together, each leg on one of them; empty if none do.
+
+    Args:
+        joints: Names of the joints on each topic.
+    """
+    legs = {topic: list(legs_of_joints(names).values()) for topic, names in joints.items()}
+    listed = sorted(leg for each in legs.values() for leg in each)
+    together = frozenset(topic for topic, each in legs.items() if each)
+    return together if listed == [*range(1, N_LEGS + 1)] and len(together) > 1 else frozenset()
+
+
+def _with_positions(
+    message: LoggedMessage,
+    *,
+    joints: dict[str, set[str]] | None = None,
+    together: frozenset[str] = frozenset(),
+) -> Parts:
+    """Yield a message that has positions.
+
+    Args:
+        message: The message.
+        joints: Filled with the names of the joints on each topic.
+        together: Topics whose messages count as those of one topic; others are left out.
+    """
     content = message.content
     if message.type == DYNAMIC:
         content = _positions_of(content)
-    if len(content.position):
-        yield message.topic, message.content.header, content
+    if not len(content.position) or (together and message.topic not in together):
+        return
+    if joints is not None:
+        joints.setdefault(message.topic, set()).update(content.name)
+    name = ", ".join(sorted(together)) if together else message.topic
+    yield name, message.content.header, content
 
 
 def _positions_of(state: Any) -> SimpleNamespace:

@@ -114,6 +114,32 @@ def test_messages_of_one_leg_each_are_joined_in_the_unit_of_the_columns(tmp_path
     assert "the other legs interpolated" in table.notes[0]
 
 
+def a_topic_a_leg(topics):
+    return [
+        (topic, 1 + 0.01 * i + 0.001 * leg, 1.0, {f"leg_{leg}": 0.03 * i + 0.003 * leg})
+        for i in range(20)
+        for leg, topic in enumerate(topics, start=1)
+    ]
+
+
+def test_topics_of_one_leg_each_are_read_together(tmp_path):
+    states = a_topic_a_leg([f"/leg{leg}/state" for leg in range(1, 7)])
+    arm = [("/arm", 1 + 0.01 * i, 1.0, {"gripper": 0.1}) for i in range(20)]
+    log = read_joint_log(write(tmp_path / "bag.mcap", *states, *arm))
+    assert log.topic == ", ".join(f"/leg{leg}/state" for leg in range(1, 7))
+    table = joint_table(log, canonical_columns(LEG_UNITS))
+    for name in ANGLES:
+        np.testing.assert_allclose(table.numbers(name), 3 * (table.numbers("t") - 1), atol=1e-6)
+
+
+def test_topics_that_share_a_leg_or_lack_one_are_not_mixed(tmp_path):
+    topics = [f"/leg{leg}" for leg in range(1, 7)]
+    again = [("/copy", 1.0, 1.0, {"leg_3": 0.1})]
+    for states in (a_topic_a_leg(topics[:5]), [*a_topic_a_leg(topics), *again]):
+        with pytest.raises(DataError, match=r"joint positions on the topics .*; choose one with"):
+            read_joint_log(write(tmp_path / "bag.mcap", *states))
+
+
 DYNAMIC = """
 std_msgs/Header header
 string[] joint_names

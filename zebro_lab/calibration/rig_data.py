@@ -117,8 +117,8 @@ def _of_the_rig(sources: Sequence[DataSource]) -> tuple[list[DataSource], tuple[
     found = f"runs of another kind than {RIG_KIND}: {names}"
     if len(others) == len(sources):
         raise DataError(
-            f"no rig data, only {found}; name tables or runs of the rig, and tracked walks as "
-            "--walks RUN"
+            f"no rig data, only {found}; name tables or runs of the rig (tracked walks are "
+            "for calibrate-slip DATA --walks RUN)"
         )
     return [s for s in sources if s not in others], (f"left out, {found}",)
 

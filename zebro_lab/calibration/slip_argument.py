@@ -68,7 +68,10 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
         return NamedSlip(VelocityCoulomb(*numbers), "assumed", text)
     path = settle(Path(text))
     if not path.exists():
-        raise NotFound(f"--slip: '{text}' is not a file or folder; expected {EXPECTED_SLIP}")
+        raise NotFound(
+            f"--slip: '{text}' is not a file or folder; expected {EXPECTED_SLIP}; "
+            "calibrate-slip DATA writes such a folder, unless it was stopped"
+        )
     return _calibrated(text, path, with_walks=with_walks)
 
 
@@ -76,7 +79,7 @@ def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
     read = read_slip_file(path)
     notes = []
     if read.doubt is not None:
-        notes.append(f"slip: the calibration is not trustworthy: {read.doubt}")
+        notes.append(f"WARNING: the calibration is not trustworthy: {read.doubt}")
     if read.curve.definition is not SlipDefinition.MATERIAL:
         notes.append(f"slip: fitted to '{read.curve.definition}' slip, converted when evaluated")
     walks = read_stored_walks(read.file) if with_walks else None

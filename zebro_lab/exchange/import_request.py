@@ -2,12 +2,13 @@
 """Options of an import."""
 
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 from typer import BadParameter, Option
 
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
@@ -16,6 +17,9 @@ _START = (
     "Date, time and time zone at which the files' time is 0, such as 2026-03-04T05:06:07+00:00; "
     "default: 1970 for times of 1e9 s and more, else now."
 )
+FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
+LAST: Final = datetime(2038, 1, 19, tzinfo=UTC)
+"""Before it a run starts and ends: the ROS stamps of a log hold seconds since 1970 in 32 bits."""
 
 
 def _moment(text: str) -> datetime:
@@ -28,7 +32,7 @@ def _moment(text: str) -> datetime:
 
 @dataclass(frozen=True)
 class ImportRequest:
-    """Options of `zebro-lab import`."""
+    """Options of `zebro-lab import`; `start` has a time zone, and lies from `FIRST` to `LAST`."""
 
     data: Annotated[Path, Option(metavar="DIR", help="Folder in which to create run folders.")]
     legs: Annotated[
@@ -69,5 +73,21 @@ class ImportRequest:
     trajectory: TrajectoryRequest = field(default_factory=TrajectoryRequest)
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for `--joints` that are not six different names."""
+        """Raise `SettingsError` for a wrong `--start`, or `--joints` that are not six names."""
         joint_names(self.joints)
+        if self.start is not None:
+            _require_start(self.start)
+
+
+def _require_start(start: datetime) -> None:
+    if start.tzinfo is None:
+        raise SettingsError(
+            f"{start.isoformat()} has no time zone; append it, such as +00:00 for UTC or +01:00",
+            key="--start",
+        )
+    if not FIRST <= start < LAST:
+        raise SettingsError(
+            f"found {start.isoformat()}; expected a time from 1970 to {LAST:%Y-%m-%d}, since the "
+            "ROS stamps of a log hold seconds in 32 bits",
+            key="--start",
+        )

@@ -13,7 +13,7 @@ from model.progress import Watcher
 from model.slip.law import Array
 from model.told_apart import told_apart
 from zebro_lab.exchange.import_columns import foreign_columns
-from zebro_lab.exchange.import_request import ImportRequest
+from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
 from zebro_lab.exchange.imu_messages import read_imu_messages
@@ -43,8 +43,6 @@ from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 _UNIX: Final = 1e9
 """First time that counts as Unix time, since no run lasts for 30 years [s]."""
-_FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
-_LAST: Final = datetime(2262, 1, 1, tzinfo=UTC)  # largest time in nanoseconds in 64 bits
 
 
 @dataclass(frozen=True)
@@ -110,17 +108,6 @@ def _require_something(request: ImportRequest) -> None:
             if getattr(request, name) is not None:
                 raise SettingsError("belongs to a walk; give the leg angles, too, with --legs",
                                     key=f"--{name}")  # fmt: skip
-    if request.start is not None and request.start.tzinfo is None:
-        raise SettingsError(
-            f"{request.start.isoformat()} has no time zone; append it, such as +00:00 for UTC or "
-            "+01:00",
-            key="--start",
-        )
-    if request.start is not None and not _FIRST <= request.start < _LAST:
-        raise SettingsError(
-            f"found {request.start.isoformat()}; expected a time from 1970 to the end of 2261",
-            key="--start",
-        )
 
 
 def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
@@ -129,7 +116,7 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     track, track_topic = (None, None) if request.track is None else _track(request.track, request)
     imu, imu_topic = (None, None) if request.imu is None else _imu(request.imu, request)
     require_used(request.topic, (legs_topic, imu_topic, track_topic))
-    start, zero, note = _start(request.start, _first_time(legs, track))
+    start, zero, note = _start(request.start, *_period(legs, track))
     track = None if track is None else track.since(zero - request.track_offset)
     suspected: tuple[str, ...] = ()
     if legs is not None:
@@ -145,11 +132,14 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     return walk, (*note, *(line for part in parts for line in part))
 
 
-def _first_time(legs: LegLog | None, track: ForeignTrack | None) -> float:
-    """Return the first time of the legs, or of the track where there are none [s]."""
+def _period(legs: LegLog | None, track: ForeignTrack | None) -> tuple[float, float, Path]:
+    """Return first and last time [s] and file of the legs, or of the track without legs."""
     if legs is not None:
-        return float(legs.reference.t[0])
-    return 0.0 if track is None else float(track.track.poses.t[0])
+        return float(legs.reference.t[0]), float(legs.reference.t[-1]), legs.files[0]
+    if track is not None:
+        t = track.track.poses.t
+        return float(t[0]), float(t[-1]), track.track.file
+    return 0.0, 0.0, Path()
 
 
 def _sources(
@@ -220,21 +210,37 @@ def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
     runs, notes = rig_runs(
         path, columns, label=label, material=request.material, operator=request.operator
     )
-    start, zero, note = _start(request.start, float(runs[0].table.t[0]))
+    start, zero, note = _start(request.start, float(runs[0].table.t[0]), _last(runs), path)
     return [run.begun(start, zero) for run in runs], (*note, *notes)
 
 
-def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple[str, ...]]:
+def _last(runs: Sequence[RigRun]) -> float:
+    return max(float(run.table.t[-1]) for run in runs)
+
+
+def _start(
+    given: datetime | None, first: float, last: float, file: Path
+) -> tuple[datetime, float, tuple[str, ...]]:
     """Return the start date of a run, the files' time at that date [s], and notes.
 
-    The date is `given`, for time 0; else `first`, the first time in the file [s], as Unix time if
+    The date is `given`, for time 0; else `first`, the first time in `file` [s], as Unix time if
     it is `_UNIX` or later; else now, for time 0.
 
     Raises:
         SettingsError: A date is given, but `first` is a Unix time.
+        DataError: The run would end, with the time `last` [s], after `LAST`.
     """
-    began = _FIRST + timedelta(seconds=first) if first >= _UNIX else None
-    if given is not None and began is not None:
+    is_unix = first >= _UNIX
+    start = FIRST if is_unix else given or datetime.now(UTC)
+    if start.timestamp() + last >= LAST.timestamp():
+        raise DataError(
+            f"times go from {first:.10g} to {last:.10g} s, which is beyond {LAST:%Y-%m-%d}, the "
+            "last day that a log can hold; expected seconds from 0 or since 1970: correct them, or "
+            "state their unit in columns.toml",
+            file=file,
+        )
+    began = FIRST + timedelta(seconds=first)
+    if given is not None and is_unix:
         raise SettingsError(
             f"times in the file are seconds since 1970 already: the first is {began.isoformat()}; "
             "leave out --start, or count times from 0",
@@ -242,11 +248,10 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
         )
     if given is not None:
         return given.astimezone(UTC), 0.0, ()
-    if began is not None:
+    if is_unix:
         return began, first, (f"times are read as Unix time: the run starts {began.isoformat()}",)
-    now = datetime.now(UTC)
-    note = f"the date of the recording is not known; time 0 is set to now, {now.isoformat()}"
-    return now, 0.0, (f"{note} (give the date with --start)",)
+    note = f"the date of the recording is not known; time 0 is set to now, {start.isoformat()}"
+    return start, 0.0, (f"{note} (give the date with --start)",)
 
 
 def _require_shared_time(

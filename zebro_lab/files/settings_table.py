@@ -11,6 +11,8 @@ from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import factor_to_si, quantity_to_si
 
 _NO_UNIT: Final = "dimensionless"
+_SMALLER: Final = {"m": ("cm", "mm"), "kg": ("g", "g")}
+"""Units that a number beyond the usual may be meant in: up to ten times beyond, and farther."""
 
 
 class SettingsTable(TomlTable):
@@ -29,7 +31,8 @@ class SettingsTable(TomlTable):
         return SettingsError(problem, file=self.file, key=self.dotted(key))
 
     def quantity(self, key: str, unit: str, *, default: float | None = None,
-                 above: float = -math.inf, least: float = -math.inf) -> float:  # fmt: skip
+                 above: float = -math.inf, least: float = -math.inf,
+                 usual: float = math.inf) -> float:  # fmt: skip
         """Read a quantity: a number in SI, or a string with a unit such as "30 mm".
 
         Args:
@@ -38,35 +41,42 @@ class SettingsTable(TomlTable):
             default: Value if the key is missing, in SI; None if the key is required.
             above: Exclusive lower limit, in SI; holds for the default too.
             least: Inclusive lower limit, in SI; holds for the default too.
+            usual: Largest absolute value of a number without a unit; a larger one is taken for a
+                number in another unit. With its unit it is accepted.
 
         Raises:
             SettingsError: The value is missing without a default, not a finite number (with a known
-                unit of this quantity, if it is a string), or below a limit.
+                unit of this quantity, if it is a string), below a limit, or beyond `usual`.
         """
-        number = self._to_si(key, self.value(key, default), unit)
+        found = self.value(key, default)
+        number = self._to_si(key, found, unit, usual)
         if number <= above:
             raise self.fault(f"is {_with_unit(number, unit)}; expected more than {above:g}", key)
         if number < least:
             raise self.fault(f"is {_with_unit(number, unit)}; expected {least:g} or more", key)
         return number
 
-    def quantities(self, key: str, count: int, unit: str) -> tuple[float, ...]:
+    def quantities(
+        self, key: str, count: int, unit: str, *, usual: float = math.inf
+    ) -> tuple[float, ...]:
         """Read a list of quantities, each in SI or a string with a unit.
 
         Args:
             key: Key of the list.
             count: Expected number of elements.
             unit: SI unit of the result.
+            usual: As in `quantity`, of each element.
 
         Returns:
             The numbers in SI.
 
         Raises:
             SettingsError: The list is missing, of another length, or has an element that is not a
-                finite number or a string with one in a known unit of this quantity.
+                finite number or a string with one in a known unit of this quantity, or is beyond
+                `usual`.
         """
         found = self._list(key, count)
-        return tuple(self._to_si(f"{key}[{i}]", each, unit) for i, each in enumerate(found))
+        return tuple(self._to_si(f"{key}[{i}]", each, unit, usual) for i, each in enumerate(found))
 
     def factor(self, key: str, unit: str) -> tuple[str, float]:
         """Read the name of a unit and compute its conversion factor to an SI unit.
@@ -88,14 +98,31 @@ class SettingsTable(TomlTable):
         except UnitError as error:
             raise self.fault(str(error), key) from error
 
-    def _to_si(self, key: str, found: object, unit: str) -> float:
+    def _to_si(self, key: str, found: object, unit: str, usual: float) -> float:
         if isinstance(found, bool) or not isinstance(found, (int, float, str)):
             named = "" if unit == _NO_UNIT else f" in {unit} or a text such as '1 {unit}'"
             raise self.fault(f"found {found!r}; expected a number{named}", key)
         try:
-            return quantity_to_si(found, unit)
+            number = quantity_to_si(found, unit)
         except UnitError as error:
             raise self.fault(str(error), key) from error
+        if abs(number) > usual and (not isinstance(found, str) or _is_number(found)):
+            smaller = _SMALLER.get(unit, (unit, unit))[abs(number) >= 10 * usual]
+            raise self.fault(
+                f"is {_with_unit(number, unit)}, which is improbable; expected at most "
+                f"{_with_unit(usual, unit)} from a number without a unit: write it with its unit, "
+                f'such as "{number:g} {smaller}" (or "{number:g} {unit}")',
+                key,
+            )
+        return number
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _with_unit(number: float, unit: str) -> str:

@@ -15,6 +15,7 @@ _STEERING = (
     "Stance angle of the outer legs by that of the inner legs, for tripod; default: 1, "
     " which is straight."
 )
+_OTHER_SIDE = "the side to turn to is --direction left or right"
 _SIDE = "Side to turn to, for tripod, suriana and maxplus; default: left."
 _TOUCHDOWN = (
     "Leg angle at touchdown, 0 ahead, 90 down [deg]; default: 50 for tripod and buehler, 45 for "
@@ -41,7 +42,9 @@ class GaitRequest:
     """Parameters of a gait; None for the gait's default."""
 
     name: Annotated[GaitName, Option("--gait", help="Gait: pattern of leg motion.")] = "tripod"
-    steering: Annotated[float | None, Option(help=_STEERING), Limits(above=0)] = None
+    steering: Annotated[
+        float | None, Option(help=_STEERING), Limits(above=0, advice=_OTHER_SIDE)
+    ] = None
     direction: Annotated[Side | None, Option(help=_SIDE)] = None
     touchdown_deg: Annotated[str | None, Option(metavar=_PAIR, help=_TOUCHDOWN)] = None
     liftoff_deg: Annotated[str | None, Option(metavar=_PAIR, help=_LIFTOFF)] = None

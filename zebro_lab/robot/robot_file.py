@@ -15,6 +15,8 @@ from zebro_lab.robot.marker_print import KIT_PRINT, MarkerPrint
 
 ROBOT_FILE = "robot.toml"
 _MOST_NUMBER = 999_999  # of a marker; its dictionary has far fewer
+_LARGEST, _HEAVIEST = 3.0, 100.0
+"""Largest length [m] and mass [kg] that a number without a unit can give a walking robot."""
 _FORWARD = (1,) * N_LEGS
 
 
@@ -61,8 +63,9 @@ def read_robot_file(file: Path) -> RobotFile:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: The file is not TOML, has an unknown key, an invalid value or unit, or a
-            marker without position, or no robot can have these values.
+        SettingsError: The file is not TOML, has an unknown key, an invalid value or unit, an
+            improbable length or mass without a unit, or a marker without position, or no robot can
+            have these values.
     """
     advice = f"zebro-lab walk --write-robot {file} creates a {ROBOT_FILE} to edit"
     top = read_settings(file, advice=advice)
@@ -154,13 +157,13 @@ def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
     """
     given: dict[str, Any] = {}
     if "mass" in top:
-        given["mass"] = top.quantity("mass", "kg")
+        given["mass"] = top.quantity("mass", "kg", usual=_HEAVIEST)
     if "body_size" in top:
-        given["body_size"] = top.quantities("body_size", 3, "m")
+        given["body_size"] = top.quantities("body_size", 3, "m", usual=_LARGEST)
     if "inertia" in top:
         given["inertia"] = top.quantities("inertia", 3, "kg m^2")
     if "radius" in legs:
-        given["leg_radius"] = legs.quantity("radius", "m")
+        given["leg_radius"] = legs.quantity("radius", "m", usual=_LARGEST)
     if "arc_deg" in legs:
         given["leg_arc"] = np.radians(legs.number("arc_deg"))
     if "offset_deg" in legs:
@@ -178,7 +181,7 @@ def _hips(hips: SettingsTable) -> np.ndarray:
     places = Robot().hips.copy()
     for leg in range(1, N_LEGS + 1):
         if str(leg) in hips:
-            places[leg - 1] = hips.quantities(str(leg), 3, "m")
+            places[leg - 1] = hips.quantities(str(leg), 3, "m", usual=_LARGEST)
     return places
 
 
@@ -187,14 +190,16 @@ def _marker(marker: SettingsTable) -> Marker:
         raise marker.fault(
             "is missing; give the marker's centre in the body frame as [x, y, z] in m", "position"
         )
-    x, y, z = marker.quantities("position", 3, "m")
+    x, y, z = marker.quantities("position", 3, "m", usual=_LARGEST)
     roll, pitch, yaw = np.radians(
         marker.numbers("roll_pitch_yaw_deg", 3) if "roll_pitch_yaw_deg" in marker else np.zeros(3)
     ).tolist()
-    height = marker.quantity("height", "m", above=0.0) if "height" in marker else None
+    height = None
+    if "height" in marker:
+        height = marker.quantity("height", "m", above=0.0, usual=_LARGEST)
     printed = MarkerPrint(
         marker.text("dictionary", KIT_PRINT.dictionary, least=1),
         marker.whole("id", KIT_PRINT.number, most=_MOST_NUMBER),
-        marker.quantity("side", "m", default=KIT_PRINT.side, above=0.0),
+        marker.quantity("side", "m", default=KIT_PRINT.side, above=0.0, usual=_LARGEST),
     )
     return Marker((x, y, z), (roll, pitch, yaw), height, printed)

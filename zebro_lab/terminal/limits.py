@@ -18,6 +18,7 @@ class Limits:
         most: Largest number of the range.
         above: Number that all numbers of the range exceed.
         below: Number that exceeds all numbers of the range.
+        advice: What to do about a number outside; empty for nothing.
 
     >>> str(Limits(least=90, below=360)), str(Limits(above=0)), str(Limits(least=1, most=6))
     ('90 or more and below 360', 'above 0', '1 to 6')
@@ -29,6 +30,7 @@ class Limits:
     most: float | None = None
     above: float | None = None
     below: float | None = None
+    advice: str = ""
 
     def hold(self, number: float) -> bool:
         """Return whether a number is finite and within the limits."""

@@ -76,7 +76,8 @@ def _check(limits: Limits, then: Callable[..., Any] | None) -> Callable[[Any], A
         for number in value if isinstance(value, list | tuple) else (value,):
             if number is not None and not limits.hold(number):
                 expected = str(limits) or "a finite number"
-                raise BadParameter(f"found {number:g}; expected {expected}")
+                advice = limits.advice and f"; {limits.advice}"
+                raise BadParameter(f"found {number:g}; expected {expected}{advice}")
         return value if then is None else then(value)
 
     return check

@@ -20,6 +20,8 @@ from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.summary import WalkSummary, summarise
 from zebro_lab.walk.walking import Walked
 
+_WARNING = "WARNING"
+_STEEP = 30.0  # deg; a body that stands on its legs sways by a few degrees
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
@@ -63,12 +65,12 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "largest_roll_rad": summary.largest_roll,
         "largest_pitch_rad": summary.largest_pitch,
         "mean_slip_m_per_s": summary.mean_slip,
-        "notes": [*slip_lines(walked, summary), *walked.notes],
+        "notes": _notes(walked, summary),
     }
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:
-    """Print title, gait table, summary, slip and notes of a finished walk, and the files written.
+    """Print title, gait, warnings, summary, slip and notes of a walk, and the files written.
 
     Args:
         console: Console to print to.
@@ -79,12 +81,34 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
     if isinstance(walked.reference, CyclicReference):
         console.print(gait_table(walked.reference))
     summary = summarise(walked.path)
-    for line in (*summary_lines(summary), *slip_lines(walked, summary), *walked.notes):
+    for line in _in_order([*summary_lines(summary), *_notes(walked, summary)]):
         console.print(plain(line))
     console.print(Text(f"\nwritten to {out}:"))
     for path in sorted(out.iterdir()):
         if path.name in (*FILES, MANIFEST):
             console.print(plain(f"  {path}"))
+
+
+def _notes(walked: Walked, summary: WalkSummary) -> list[str]:
+    lines = [*walked.notes, *tilt_lines(summary), *slip_lines(walked, summary)]
+    return _in_order(lines)
+
+
+def _in_order(lines: list[str]) -> list[str]:
+    """Return lines with the warnings first."""
+    return sorted(lines, key=lambda line: not line.startswith(_WARNING))
+
+
+def tilt_lines(summary: WalkSummary) -> list[str]:
+    """Return a warning if the body tilts farther than a body on its legs can; else nothing."""
+    roll, pitch = np.degrees([summary.largest_roll, summary.largest_pitch])
+    if max(roll, pitch) <= _STEEP:
+        return []
+    return [
+        f"{_WARNING}: the body overturns, with a roll of {roll:.0f} and a pitch of {pitch:.0f} "
+        f"deg; the model holds for a body on its legs, up to about {_STEEP:g} deg: check the robot "
+        "and the leg angles, and do not use this path"
+    ]
 
 
 def summary_lines(summary: WalkSummary) -> list[str]:
@@ -126,7 +150,7 @@ def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
         lines.append(f"slip: {walked.slip.text} is assumed, not measured")
     elif untested > _MANY_UNTESTED:
         lines.append(
-            f"WARNING: {untested:.0%} of the contacts carry less than {tested[0]:.3g} N, the "
+            f"{_WARNING}: {untested:.0%} of the contacts carry less than {tested[0]:.3g} N, the "
             "lowest load the slip law was tested at"
         )
     return lines

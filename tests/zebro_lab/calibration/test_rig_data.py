@@ -213,7 +213,9 @@ def test_a_run_that_ended_is_not_left_out_for_its_damage(mixed):
 
 def test_walks_alone_are_no_rig_data(mixed):
     _, runs = mixed
-    with pytest.raises(DataError, match=r"no rig data, only runs of another kind.*--walks RUN"):
+    with pytest.raises(
+        DataError, match=r"no rig data, only runs of another kind.*calibrate-slip DATA --walks RUN"
+    ):
         read_rig_data([runs["walked"]])
 
 

@@ -59,7 +59,13 @@ def test_title_has_no_path(calibration):
 def test_untrustworthy_calibration_is_said_to_be(calibration):
     text = SLIP_TOML.format(headline="NOT CONVERGED", trustworthy="false")
     (calibration / "slip.toml").write_text(text)
-    assert "NOT CONVERGED" in parse_slip(str(calibration)).notes[0]
+    (note,) = parse_slip(str(calibration)).notes
+    assert note == "WARNING: the calibration is not trustworthy: NOT CONVERGED"
+
+
+def test_a_calibration_that_does_not_exist_names_the_command_that_makes_one(tmp_path):
+    with pytest.raises(NotFound, match=r"is not a file or folder; .*; calibrate-slip DATA writes"):
+        parse_slip(str(tmp_path / "calibration"))
 
 
 @given(st.floats(1e-3, 2), st.floats(1e-6, 1))

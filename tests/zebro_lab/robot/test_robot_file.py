@@ -47,6 +47,7 @@ def test_units_are_converted_and_degrees_read(read):
 
 lengths = st.floats(0.01, 2.0)
 angles = st.floats(-10.0, 10.0)
+places = st.floats(-3.0, 3.0)
 
 
 @given(
@@ -54,7 +55,7 @@ angles = st.floats(-10.0, 10.0)
     offset=st.lists(angles, min_size=6, max_size=6),
     sign=st.tuples(*[st.sampled_from((1, -1))] * 6),
     inertia=st.none() | st.tuples(lengths, lengths, lengths),
-    marker=st.none() | st.builds(Marker, st.tuples(angles, angles, angles),
+    marker=st.none() | st.builds(Marker, st.tuples(places, places, places),
                                  st.tuples(angles, angles, angles), st.none() | lengths,
                                  st.builds(MarkerPrint, st.sampled_from(("4x4_50", "a\"b")),
                                            st.integers(0, 49), lengths)),
@@ -118,6 +119,29 @@ def test_fault_is_one_line_that_names_file_and_key(text, message, read):
     assert message in str(caught.value)
     assert "robot.toml" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[legs]\nradius = 35", r'radius: is 35 m, .* at most 3 m .* "35 mm" \(or "35 m"\)$'),
+        ('[legs]\nradius = "35"', r'radius: is 35 m, .* "35 mm"'),
+        ("[legs]\nradius = 3.5", r'"3.5 cm"'),
+        ("mass = 2170", r'mass: is 2170 kg, .* at most 100 kg .* "2170 g"'),
+        ("body_size = [0.2, 251, 0.07]", r'body_size\[1\]: is 251 m, .* "251 mm"'),
+        ("[hips]\n1 = [97, 115, 0]", r'"97 mm"'),
+        ("[marker]\nposition = [0, 0, -40]", r'is -40 m, .* "-40 mm"'),
+        ("[marker]\nposition = [0, 0, 0]\nheight = 80", r'height: is 80 m, .* "80 mm"'),
+    ],
+)
+def test_an_improbable_number_without_a_unit_is_asked_about(text, message, read):
+    with pytest.raises(SettingsError, match=message):
+        read(text)
+
+
+def test_an_improbable_size_with_its_unit_is_taken(read):
+    found = read('mass = "2170 kg"\n[legs]\nradius = "35 m"\n')
+    assert (found.robot.mass, found.robot.leg_radius) == (2170, 35)
 
 
 def test_missing_file_says_how_to_start_one(tmp_path):

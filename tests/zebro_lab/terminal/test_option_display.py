@@ -43,6 +43,14 @@ def test_limits_of_both_ways_to_state_them_are_shown_and_checked_in_every_number
             info.callback(wrong)
 
 
+def test_advice_on_a_number_outside_its_limits_stands_in_the_error_alone():
+    hint = completed(Annotated[float, typer.Option(help="It."), Limits(above=0, advice="turn")])
+    info = get_args(hint)[1]
+    assert info.help == "It. Allowed: above 0."
+    with pytest.raises(typer.BadParameter, match="found -1; expected above 0; turn$"):
+        info.callback(-1.0)
+
+
 def test_numbers_without_limits_are_finite():
     info = get_args(completed(Annotated[float, typer.Option(help="It.")]))[1]
     assert info.help == "It."

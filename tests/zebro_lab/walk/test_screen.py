@@ -21,6 +21,8 @@ from zebro_lab.walk.screen import (
     run_and_report,
     slip_lines,
     summary_lines,
+    tilt_lines,
+    walk_document,
 )
 from zebro_lab.walk.summary import summarise
 from zebro_lab.walk.walking import Walked
@@ -74,6 +76,25 @@ def test_assumed_slip_and_loads_below_the_tested_are_told(walked):
         "WARNING: 100% of the contacts carry less than 2.13 N, the lowest load the slip law was "
         "tested at"
     )
+
+
+@pytest.mark.parametrize(("axis", "degrees"), [(0, 179.0), (1, -89.0)])
+def test_a_body_that_overturns_is_warned_of_before_the_results(walked, axis, degrees):
+    orientation = walked.orientation.copy()
+    orientation[-1, axis] = np.radians(degrees)
+    assert tilt_lines(summarise(walked)) == []
+    (warning,) = tilt_lines(summarise(replace(walked, orientation=orientation)))
+    assert warning.startswith("WARNING: the body overturns")
+    assert f"{abs(degrees):.0f}" in warning
+
+
+def test_warnings_come_before_the_numbers_and_other_notes_after(walked, tmp_path):
+    doubted = replace(finished(walked), notes=("log: 3 samples", "WARNING: not trustworthy"))
+    console = Console(file=io.StringIO(), width=200)
+    print_walk(console, doubted, tmp_path)
+    text = console.file.getvalue()
+    assert text.index("WARNING") < text.index("after 4 s") < text.index("log: 3 samples")
+    assert walk_document(doubted)["notes"][0] == "WARNING: not trustworthy"
 
 
 def test_everything_is_printed_and_notes_are_no_markup(walked, tmp_path):

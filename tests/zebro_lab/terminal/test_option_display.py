@@ -47,7 +47,7 @@ def test_advice_on_a_number_outside_its_limits_stands_in_the_error_alone():
     hint = completed(Annotated[float, typer.Option(help="It."), Limits(above=0, advice="turn")])
     info = get_args(hint)[1]
     assert info.help == "It. Allowed: above 0."
-    with pytest.raises(typer.BadParameter, match="found -1; expected above 0; turn$"):
+    with pytest.raises(typer.BadParameter, match=r"^found -1; expected above 0; turn$"):
         info.callback(-1.0)
 
 

@@ -21,12 +21,15 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
         Exit: The fit was stopped (exit code 130); a line on stderr says so.
         ZebroLabError, ModelError: As in `zebro_lab.calibration.stage.calibrate`.
     """
-    from zebro_lab.calibration.screen import print_calibration
-    from zebro_lab.calibration.stage import Stopped, calibrate
+    from zebro_lab.calibration.screen import print_calibration, print_data
+    from zebro_lab.calibration.stage import Stopped, calibrate, read
 
+    with output.progress() as watcher:
+        data = read(request, watcher)
+    print_data(output.console(), data)  # before the fit, which takes a minute
     try:
         with output.progress() as watcher:
-            calibration, read = calibrate(request, watcher)
+            calibration, _ = calibrate(request, watcher, data)
     except Stopped as stopped:
         if stopped.checkpoint is None:
             say(str(stopped), err=True)
@@ -36,7 +39,7 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
                 err=True,
             )
         raise typer.Exit(STOPPED) from None
-    print_calibration(output.console(), calibration, read, request.out)
+    print_calibration(output.console(), calibration, request.out)
     return calibration.verdict.converged
 
 

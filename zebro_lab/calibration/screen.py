@@ -15,16 +15,34 @@ from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 
 
-def print_calibration(console: Console, calibration: Calibration, data: RigData, out: Path) -> None:
-    """Print data, parameters, curve at each load, quality and verdict of a fit, and files written.
+def print_data(console: Console, data: RigData) -> None:
+    """Print what was read: source, numbers of samples and runs, and notes.
+
+    Args:
+        console: Console to print to.
+        data: The rig data.
+    """
+    simulated = "sim:" in data.source
+    lines = [
+        f"{'SIMULATED data' if simulated else 'data'}, source '{data.source}': "
+        f"{counted(len(data.samples), 'sample')} in "
+        f"{counted(len(data.samples.run_names), 'run')}",
+        *data.notes,
+        f"slip definition: {data.samples.definition}",
+    ]
+    for line in lines:
+        console.print(plain(line))
+
+
+def print_calibration(console: Console, calibration: Calibration, out: Path) -> None:
+    """Print parameters, curve at each load, quality and verdict of a fit, and files written.
 
     Args:
         console: Console to print to.
         calibration: The finished fit.
-        data: Rig data that were fitted.
         out: The calibration folder, whose whole content is listed.
     """
-    _print_data(console, calibration, data)
+    _print_blocks(console, calibration)
     console.print(_parameter_table(calibration))
     console.print(_curve_table(calibration))
     _print_quality(console, calibration)
@@ -34,15 +52,10 @@ def print_calibration(console: Console, calibration: Calibration, data: RigData,
         console.print(plain(f"  {path}"))
 
 
-def _print_data(console: Console, calibration: Calibration, data: RigData) -> None:
+def _print_blocks(console: Console, calibration: Calibration) -> None:
     blocks, choice = calibration.posterior.blocks, calibration.fit.block_choice
     correlation = choice.correlation
-    kind = "SIMULATED data" if calibration.simulated else "data"
     lines = [
-        f"{kind}, source '{data.source}': {counted(len(data.samples), 'sample')} in "
-        f"{counted(blocks.n_runs, 'run')}",
-        *data.notes,
-        f"slip definition: {blocks.definition}",
         f"Samples are averaged in {len(blocks)} blocks of about {choice.length} ({choice.reason})"
         + (f"; the noise is correlated over {correlation:.0f} samples." if correlation else "."),
     ]

@@ -50,12 +50,32 @@ class Stopped(ZebroLabError):
         self.checkpoint = checkpoint
 
 
-def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibration, RigData]:
+def read(request: CalibrationRequest, watcher: Watcher) -> RigData:
+    """Read the rig data of a request, whose output folder can be written or replaced.
+
+    Args:
+        request: Options: data and output folder.
+        watcher: Receives progress.
+
+    Raises:
+        ZebroLabError: Data, options or output folder are invalid.
+    """
+    require_replaceable(request.out, CALIBRATION, inputs=request.inputs)
+    watcher.step("reading", None)
+    return read_rig_data(
+        request.data, columns=request.columns, slip_definition=request.slip_definition
+    )
+
+
+def calibrate(
+    request: CalibrationRequest, watcher: Watcher, data: RigData | None = None
+) -> tuple[Calibration, RigData]:
     """Fit a slip law to rig data; write the calibration folder, with a checkpoint if not converged.
 
     Args:
         request: Options: data, settings and output folder.
         watcher: Receives progress and may request a stop.
+        data: What `read` returned for the same request; None to read it here.
 
     Returns:
         The finished fit and the rig data that were fitted.
@@ -66,11 +86,7 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
         Stopped: The watcher requested a stop, or a signal stopped the fit after a checkpoint; one
             was written if sampling had begun.
     """
-    require_replaceable(request.out, CALIBRATION, inputs=request.inputs)
-    watcher.step("reading", None)
-    data = read_rig_data(
-        request.data, columns=request.columns, slip_definition=request.slip_definition
-    )
+    data = read(request, watcher) if data is None else data
     inputs = file_hashes(data.files)
     mark = fingerprint(inputs, request.decisive())
     earlier = load_checkpoint(request.out, fingerprint=mark) if request.resume else None

@@ -8,7 +8,7 @@ from rich.console import Console
 
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.calibration.screen import print_calibration
+from zebro_lab.calibration.screen import print_calibration, print_data
 
 
 @pytest.fixture(scope="module")
@@ -16,7 +16,8 @@ def printed(sweep, tmp_path_factory) -> str:
     out = tmp_path_factory.mktemp("calibration")
     (out / "[bold]slip.toml").touch()
     console = Console(file=io.StringIO(), width=160)
-    print_calibration(console, short_calibration(), read_rig_data([sweep]), out)
+    print_data(console, read_rig_data([sweep]))
+    print_calibration(console, short_calibration(), out)
     return console.file.getvalue()
 
 

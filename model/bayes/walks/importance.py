@@ -229,7 +229,7 @@ def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Ar
     for i, mode in enumerate(modes):
         w = np.where(case == i, weight, 0.0)
         share = float(w.sum())
-        if share > 0:
+        if w @ w > 0:  # the squares of the least weights are zero
             effective = share**2 / (w @ w)
             mean = w @ z / share
             away = z - mean

@@ -45,6 +45,13 @@ def test_cases_get_the_weight_of_their_evidence_whatever_was_guessed():
         assert np.std(shares) < 0.08
 
 
+def test_a_case_of_weights_whose_squares_are_zero_keeps_its_gaussian():
+    far = lambda z, case: -0.5 * ((z - 1.5) ** 2).sum(axis=1) - np.where(case == 1, 600.0, 0.0)  # noqa: E731
+    result = drawn(far)
+    assert 0 < result.weight[result.case == 1].sum() < 1e-200
+    np.testing.assert_allclose(result.weight @ result.z, 1.5, atol=0.2)
+
+
 def kinked(z, case):
     """A density that bends where two of its coordinates come to nothing together."""
     a, b = z[:, 0] + z[:, 1], z[:, 2] - z[:, 3]

@@ -67,7 +67,7 @@ def _is_stated(table: RigTable, name: str) -> bool:
     """Return whether file or column map state the unit of a column; recorded runs are in SI."""
     if table.raw.path.is_dir() or name in table.columns.columns:
         return True
-    return table.required(name).name in table.raw.units
+    return table.raw.unit_of(table.required(name).name, "N") is not None
 
 
 def _require_radii(table: RigTable) -> None:

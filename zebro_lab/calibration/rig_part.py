@@ -15,7 +15,7 @@ from zebro_lab.runs.data_paths import DataSource
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.manifest import RIG, TABLE
 from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
-from zebro_lab.tables.columns import CANONICAL, Columns, RunRule
+from zebro_lab.tables.columns import Columns, RunRule
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
 from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
@@ -114,7 +114,7 @@ def read_part(
         traction_force=traction,
         runs=runs,
         time=run_times(table, runs),
-        notes=(*raw.notes, *_conversions(table), *doubts),
+        notes=(*raw.notes, *table.conversions(), *doubts),
         files=files if columns.file is None else (*files, columns.file),
     )
 
@@ -140,11 +140,3 @@ def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns
     raw = RawTable(folder, series, source=run.manifest.source, notes=(*run.notes, *notes))
     own = replace(columns, source=None, columns={}, constants=run.manifest.constants, runs=rule)
     return raw, own, run.files
-
-
-def _conversions(table: RigTable) -> tuple[str, ...]:
-    return tuple(
-        f"{name}: '{column.name}' in {column.unit} times {column.factor:g}"
-        for name in CANONICAL
-        if (column := table.source_of(name)) and column.factor != 1.0
-    )

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
-from zebro_lab.tables.cells import unit_in_header
 from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
+from zebro_lab.tables.header_units import suffix_in_header, unit_in_header
 
 _TIME = (
     r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|time_?stamp|seconds|"
@@ -17,6 +17,9 @@ _TIME = (
 _SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschwindigkeit|angular_(speed|velocity))"
 _LEG_DISC = r"(l|leg|leg_?disc|wheel|bein|beinscheibe|rad)"
 _GROUND = r"(g|ground|ground_?disc|table|boden|bodenscheibe|teller|tisch|belt|road|fahrbahn)"
+_TURNS = "n_?(leg|leg_?disc|wheel|bein|beinscheibe|rad)"  # German for speed: n
+_GROUND_TURNS = "(n|drehzahl)_?(ground|ground_?disc|belt|boden|bodenscheibe|teller|tisch|scheibe)"
+_CELL = r"(_?(load_?cell|sensor|transducer|kraft(aufnehmer|sensor)|aufnehmer|messdose|kmd))?"
 _ORIENTATION = r"(.*_)?(orientation|quat(ernion)?|imu_orientation|q)_?"
 _RATE = r"(.*_)?(angular_velocity|gyro(scope)?|gyr|g|w|omega|drehrate|rate)_?"
 _FORCE = (
@@ -36,19 +39,19 @@ def _position(axis: str, others: str) -> str:
 NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
     RIG: {
         "t": _TIME,
-        "omega_leg": rf"{_SPEED}_?{_LEG_DISC}|{_LEG_DISC}_?{_SPEED}|drehzahl",
-        "omega_ground": rf"{_SPEED}_?{_GROUND}|{_GROUND}_?{_SPEED}",
+        "omega_leg": rf"{_SPEED}_?{_LEG_DISC}|{_LEG_DISC}_?{_SPEED}|{_TURNS}|drehzahl",
+        "omega_ground": rf"{_SPEED}_?{_GROUND}|{_GROUND}_?{_SPEED}|{_GROUND_TURNS}",
         "radius_leg": r"(radius|r)_(l|leg|bein)",
         "radius_ground": r"(radius|r)_(g|ground|boden)",
         "slip_ratio":
             r"(kappa|slip|l(ae|ä)ngsschlupf|schlupf)(_?(ratio|inst|long|x|percent|pct|prozent|wert)"
             r")?|sl|sr|(longitudinal|wheel)_slip(_ratio)?",
         "normal_force":
-            r"((avg|mean)_)?(fn|fz|f_n|f_z|load|normal|(normal|vertical)_?(force|load)|normalkraft|"
+            rf"((avg|mean)_)?((fn|fz|f_n|f_z){_CELL}|load|normal|(normal|vertical)_?(force|load)|normalkraft|"
             r"aufstandskraft|radlast|vertikalkraft|anpresskraft|last|kraft_?(z|n|normal)|"
             r"force_?(z|n))|kraft|force",
         "traction_force":
-            r"((avg|mean)_)?(ft|fx|f_t|f_x|(traction|tangential|longitudinal|friction|drive|driving)"
+            rf"((avg|mean)_)?((ft|fx|f_t|f_x){_CELL}|(traction|tangential|longitudinal|friction|drive|driving)"
             r"(_?force)?|zugkraft|traktionskraft|tangentialkraft|l(ä|ae)ngskraft|umfangskraft|"
             r"reibkraft|kraft_?(x|t|tangential)|force_?(x|t))",
         "run": r"run(_?(id|nr|no|number))?|versuch(s?_?(nr|nummer))?|lauf(_?nr)?",
@@ -75,7 +78,10 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
 })  # fmt: skip
 """Names of each canonical column: a regular expression of `plain_name`, by kind of table."""
 
-WEAK: Final = frozenset({"kraft", "force", "drehzahl", "angle", "winkel", "last", "load"})
+WEAK: Final = frozenset({
+    "kraft", "force", "drehzahl", "angle", "winkel", "last", "load", "n_scheibe",
+    "drehzahl_scheibe",
+})  # fmt: skip
 """Names that may well be another column: always a guess to check."""
 
 _SIDES = {"left": 0, "links": 0, "l": 0, "right": 1, "rechts": 1, "r": 1}
@@ -87,11 +93,6 @@ _NUMBERED = re.compile(
     r"(?:.*_)?(?:th|theta|leg|bein|angle|winkel|phi|q|joint|motor|position|pos|hip)_?(\d)"
     r"(?:_(?:angle|position|pos|joint|winkel|theta))?|(\d)|l(\d)"
 )
-_SUFFIXES: Final = {
-    "_rad_s": "rad/s", "_deg_s": "deg/s", "_m_s2": "m/s^2", "_rpm": "rpm", "_deg": "deg",
-    "_rad": "rad", "_percent": "%", "_pct": "%", "_prozent": "%", "_us": "us", "_ns": "ns",
-    "_ms": "ms", "_s": "s", "_kn": "kN", "_n": "N", "_mm": "mm", "_cm": "cm", "_m": "m",
-}  # fmt: skip
 _GREEK: Final = str.maketrans({
     "θ": "theta", "ϑ": "theta", "φ": "phi", "ψ": "psi", "ω": "omega", "κ": "kappa", "μ": "mu",
 })  # fmt: skip
@@ -130,9 +131,8 @@ def split_header(header: str) -> tuple[str, str | None]:
         before = header.rstrip("])> }").removesuffix(unit).rstrip()
         return _plain(re.sub(r"([\[(<{/,]|\bin)$", "", before.rstrip())), unit
     plain = _plain(header)
-    for suffix, suffix_unit in _SUFFIXES.items():
-        if plain.endswith(suffix) and len(plain) > len(suffix):
-            return plain.removesuffix(suffix), suffix_unit
+    if ending := suffix_in_header(header):
+        return plain.removesuffix(f"_{ending[0]}"), ending[1]
     return plain, None
 
 

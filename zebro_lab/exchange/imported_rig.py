@@ -110,6 +110,7 @@ def rig_runs(
     ]
     return made, (
         *raw.notes,
+        *table.conversions(),
         *_left_out(table),
         f"{counted(len(made), 'run')}, {runs.rule}",
     )

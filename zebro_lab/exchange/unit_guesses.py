@@ -7,15 +7,14 @@ from typing import Final
 
 import numpy as np
 
-from zebro_lab.exchange.column_names import plain_name, split_header
+from zebro_lab.exchange.column_names import plain_name
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.units import is_unit_of
+from zebro_lab.files.units import is_unit_of, may_be_gradian
 from zebro_lab.tables.cells import kind_of
 from zebro_lab.tables.date_cells import CLOCK
 from zebro_lab.tables.raw_table import RawTable
 
 _MEANT: Final = {
-    ("1/min", "rad/s"): "rpm", ("min-1", "rad/s"): "rpm", ("min^-1", "rad/s"): "rpm",
     ("Hz", "rad/s"): "rev/s", ("1/s", "rad/s"): "rad/s", ("kg", "N"): "kgf", ("g", "N"): "gf",
     ("lb", "N"): "lbf", ("lbs", "N"): "lbf", ("grad", "rad"): "deg", ("pix", "m"): "mm",
 }  # fmt: skip
@@ -51,10 +50,8 @@ def guess_unit(table: RawTable, name: str, si_unit: str, *, si: bool) -> UnitGue
     """
     if si_unit == "s" and (date := _date_unit(table, name)):
         return date
-    stated = table.units.get(name)
-    if stated is None and not si:
-        stated = split_header(name)[1]
-    if stated is not None and not _is_gradian(stated) and is_unit_of(stated, si_unit):
+    stated = table.units.get(name) if si else table.unit_of(name, si_unit)
+    if stated is not None and not may_be_gradian(stated) and is_unit_of(stated, si_unit):
         return UnitGuess(stated, "")
     if stated is not None:
         meant = _MEANT.get((stated.strip().casefold(), si_unit)) or _MEANT.get((stated, si_unit))
@@ -62,10 +59,6 @@ def guess_unit(table: RawTable, name: str, si_unit: str, *, si: bool) -> UnitGue
     if si:
         return UnitGuess(si_unit, "")
     return UnitGuess(_by_numbers(table, name, si_unit), "the file states none")
-
-
-def _is_gradian(unit: str) -> bool:
-    return unit.strip() == "grad"  # a gradian for pint, a degree for Germans
 
 
 def _date_unit(table: RawTable, name: str) -> UnitGuess | None:

@@ -19,6 +19,8 @@ _COMMON = (
 _NO_UNIT = {"", "-", "1", "–", "none", "ratio", "unitless"}  # how headers write that there is none
 _MISREAD = {"Grad": "deg", "Grad/s": "deg/s", "U/min": "rpm", "Upm": "rpm", "RPM": "rpm"}
 """Spellings in which pint would see another unit: gigarad for the German degree."""
+_TURNS = re.compile(r"1?/[Mm]in|[Mm]in(?:\^|\*\*)?-1|[Mm]in⁻¹")
+"""Revolutions per minute as machines are rated in them, DIN 1301: of an angular speed only."""
 _SPELLINGS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "sek": "s",
     "sekunde": "s", "sekunden": "s", "sek.": "s", "msec": "ms",
@@ -27,16 +29,19 @@ _SPELLINGS = {
     "deg/sec": "deg/s", "°/s": "deg/s", "newton": "N", "newtons": "N", "lbs": "lbf",
     "prozent": "%", "pct": "%", "deg c": "degC", "deg f": "degF", "°c": "degC", "inches": "in",
     "millimeter": "mm", "meter": "m",
+    "kp": "kgf", "p": "gf", "dps": "deg/s", "mdps": "mdeg/s", "rps": "rev/s",
 }  # fmt: skip
 """What strangers write for units that pint does not know, in lower case."""
 _BASES = (
-    r"s|[Ss]ecs?|[Ss]econds?|[Ss]ek|Sekunden|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs"
-    r"|m|mm|cm|km|um|in|inch|ft|[Mm]et(?:er|re)s?|N|kN|mN|lbf?|lbs|kgf?|kp|g|[Nn]ewtons?"
-    r"|rad|mrad|deg|degrees?|[Gg]rad|°|rev|turns?|rpm|RPM|Hz|kHz|mV|V|mA|A|W|kW|J|K"
+    r"s|[Ss]ecs?|[Ss]econds?|[Ss]ek|Sekunden?|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs"
+    r"|m|dm|mm|cm|km|um|µm|in|inch|ft|(?:[Mm]illi|[Cc]enti|[Kk]ilo)?[Mm](?:et(?:er|re)s?)"
+    r"|(?:[kMmcdµunGh]|da)?N|(?:[Kk]ilo|[Mm]illi)?[Nn]ewtons?|lbf?|lbs|ozf|oz|kgf?|gf|kp|p|mg|g|dyn"
+    r"|rad|[Rr]adians?|mrad|deg|[Dd]egrees?|[Gg]rad|°|rev|turns?|rpm|RPM|Upm|dps|mdps|rps"
+    r"|Hz|kHz|mV|µV|V|mA|A|W|kW|J|K"
     r"|°C|degC|deg ?[CF]|°F|C|F|Pa|kPa|hPa|MPa|bar|mbar|psi|%|percent|[Pp]rozent|Nm|N-m|N\*m|N m"
     r"|pix|px|pixels?|ticks|counts?|digits?|kph|mph|kmh|mps|U|G|T|uT|µT|mT|dB|ohm|Ohm|Ω|raw"
 )
-_POWER = r"(?:\^?-?[1-4]|[²³]|\*\*-?[1-4])?"
+_POWER = r"(?:\^?-?[1-4]|[²³]|⁻[¹²]|\*\*-?[1-4])?"
 _UNIT_TEXT = re.compile(rf"(?:1|{_BASES}){_POWER}(?:[/*·. ](?:{_BASES}){_POWER})*")
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
 
@@ -57,8 +62,9 @@ def shown_unit(unit: str) -> tuple[float, str]:
 def factor_to_si(unit: str, si_unit: str) -> float:
     """Compute the factor that converts numbers in a unit to numbers in an SI unit.
 
-    Angles count as a dimension here, although they are dimensionless in SI: otherwise "Hz" and
-    "1/min" would be accepted for an angular speed, which is wrong by a factor of 2 pi.
+    Angles count as a dimension here, although they are dimensionless in SI: otherwise "Hz" would be
+    accepted for an angular speed, which is wrong by a factor of 2 pi. Of an angular speed "1/min"
+    is revolutions per minute, see `counts_turns`.
 
     Args:
         unit: Unit as pint spells it; "", "-" and "1" mean dimensionless.
@@ -72,6 +78,10 @@ def factor_to_si(unit: str, si_unit: str) -> float:
     """
     if unit.strip() == "g" and si_unit == "m/s^2":
         unit = "g_0"  # of an acceleration never the gram
+    elif unit.strip() == "mg" and si_unit == "m/s^2":
+        unit = "mg_0"
+    elif counts_turns(unit, si_unit):
+        unit = "rpm"
     found, wanted = _in_root_units(unit), _in_root_units(si_unit)
     if found[1] != wanted[1]:
         raise UnitError(
@@ -80,6 +90,20 @@ def factor_to_si(unit: str, si_unit: str) -> float:
             unit=unit,
         )
     return found[0] / wanted[0]
+
+
+def counts_turns(unit: str, si_unit: str) -> bool:
+    """Return whether a unit such as "1/min" is one of angular speed, in revolutions per minute.
+
+    >>> counts_turns("1/min", "rad/s"), counts_turns("Hz", "rad/s"), counts_turns("1/min", "Hz")
+    (True, False, False)
+    """
+    return si_unit == "rad/s" and _TURNS.fullmatch(unit.replace(" ", "")) is not None
+
+
+def may_be_gradian(unit: str) -> bool:
+    """Return whether a unit is "grad", the gradian in SI but for many Germans the degree."""
+    return unit.strip() == "grad"
 
 
 def is_unit_text(text: str) -> bool:
@@ -183,7 +207,7 @@ def _respelled(unit: str) -> str:
     ['s', 'm/s^2', 'N*m', 'deg/s']
     """
     text = unit.replace("\u03bc", "u").replace("µ", "u").replace("·", "*")
-    text = text.replace("²", "^2").replace("³", "^3")
+    text = text.replace("²", "^2").replace("³", "^3").replace("⁻¹", "^-1").replace("⁻²", "^-2")
     text = re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)
     text = re.sub(r"(?<=[A-Za-z])(?=[234](?!\d))", "^", text)
     if text.casefold() in _SPELLINGS:

@@ -26,6 +26,7 @@ IMU_UNITS: Final[Mapping[str, str]] = {
     **dict.fromkeys(_FORCE, "m/s^2"),
 }
 _NORM_TOLERANCE: Final = 0.05
+_NEAR_G: Final = 0.15
 _ADVICE: Final = "delete such rows, or fill them"
 
 
@@ -65,12 +66,13 @@ def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
     table.require_increasing(mapping.mapped["t"].name, t)
     quaternion, notes = _orientation(table, mapping)
     rest = [_or_nan(table, mapping, name) for name in (*_RATE, *_FORCE)]
+    _require_no_multiples_of_g(table, mapping, rest[3:])
     return ImuLog(
         t,
         np.column_stack([quaternion, *rest]),
         mapping.source or table.source,
         (table.path, *([mapping.file] if mapping.file else [])),
-        (*table.notes, *notes),
+        (*table.notes, *mapping.conversions(table), *notes),
     )
 
 
@@ -102,6 +104,30 @@ def _or_nan(table: RawTable, mapping: MappedColumns, name: str) -> Array:
     if mapping.has(table, name):
         return _numbers(table, mapping, name)
     return np.full(len(table), np.nan)
+
+
+def _require_no_multiples_of_g(table: RawTable, mapping: MappedColumns, force: list[Array]) -> None:
+    """Raise if a specific force whose unit nobody states averages 1, as of a body in g."""
+    columns = [mapping.mapped[name] for name in _FORCE]
+    if any(c.unit_stated or table.unit_of(c.name, "m/s^2") is not None for c in columns):
+        return
+    usual = float(np.median(np.linalg.norm(np.array(force), axis=0)))
+    if is_in_g(usual):
+        raise table.fault(
+            f"the specific force is {usual:.3g} m/s^2 in the middle, if it is in m/s^2; expected "
+            f"about 9.81 of a body on the ground: state its unit, such as [{mapping.where}columns."
+            'force_x] unit = "g", and so for y and z, or "m/s^2" if that is right',
+            columns[0].name,
+        )
+
+
+def is_in_g(usual: float) -> bool:
+    """Return whether a median specific force is that of a body on the ground in multiples of g.
+
+    Args:
+        usual: Median length of the specific force in the file's unit; NaN is False.
+    """
+    return abs(usual - 1.0) < _NEAR_G
 
 
 def _require_unit(table: RawTable, mapping: MappedColumns, quaternion: Array) -> None:

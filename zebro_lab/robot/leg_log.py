@@ -76,7 +76,7 @@ def legs_of_table(
         SampledReference(t, theta),
         source=mapping.source or table.source or "unknown",
         files=(*files, *([mapping.file] if mapping.file else [])),
-        notes=(*table.notes, *bridged, *_notes(t, raw, theta)),
+        notes=(*table.notes, *mapping.conversions(table), *bridged, *_notes(t, raw, theta)),
     )
 
 

@@ -27,9 +27,6 @@ _DATE = re.compile(
 _COMMA_DECIMAL = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
 _POINT_DECIMAL = re.compile(r"[-+]?\d*\.\d+(?:[eE][-+]?\d+)?")
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:[.,]\d{3})+")
-_UNIT_AT_END = re.compile(
-    r"\[([^\[\]]*)\]\s*$|[(<{]([^(){}<>]*)[)>}]\s*$|(?:\s/\s*|,\s*|\sin\s)([^\s,]+(?:/\S+)?)\s*$"
-)
 
 Kind = Literal["empty", "value", "text"]
 
@@ -90,14 +87,3 @@ def bare_unit(cell: str) -> str:
     cell = cell.strip()
     bracketed = re.fullmatch(r"[\[(<{](.*)[\])>}]", cell)
     return bracketed[1].strip() if bracketed else cell
-
-
-def unit_in_header(header: str) -> str | None:
-    """Return the unit at the end of a header, as in `F [N]` or `F / N`; None without a known one.
-
-    >>> unit_in_header("FZ [N]"), unit_in_header("Zeit / ms"), unit_in_header("F (left)")
-    ('N', 'ms', None)
-    """
-    match = _UNIT_AT_END.search(header)
-    found = next((group.strip() for group in match.groups() if group), "") if match else ""
-    return found if found and found != "1" and is_unit_text(found) else None  # position[1]

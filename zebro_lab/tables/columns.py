@@ -17,9 +17,10 @@ from model.slip.definition import SlipDefinition
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.settings_table import SettingsTable
-from zebro_lab.files.units import factor_to_si
+from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
 from zebro_lab.tables.column_sections import RIG, read_section
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
+from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition, parse_row_condition
 
@@ -79,6 +80,7 @@ class MappedColumn:
         unit_stated: Whether the column map states the unit; else that of the file holds, if any.
         offset: Added to the numbers in SI: where zero is elsewhere than the canonical column's.
         nanoseconds: Header of a column of nanoseconds to add to a time; None without one.
+        scale: Multiplies the file's numbers to give numbers in the unit; contained in `factor`.
     """
 
     name: str
@@ -88,6 +90,15 @@ class MappedColumn:
     unit_stated: bool = False
     offset: float = 0.0
     nanoseconds: str | None = None
+    scale: float = 1.0
+
+    @property
+    def said(self) -> str:
+        """The header with the unit that its numbers are in: `'FT_mN' in mN times 0.001`."""
+        scale = f"{self.scale:g} " if self.scale != 1 else ""
+        turns = ", revolutions per minute," if counts_turns(self.unit, "rad/s") else ""
+        factor = f" times {self.factor:g}" if self.factor != 1 else ""
+        return f"'{self.name}' in {scale}{self.unit}{turns}{factor}"
 
     def in_si(self, table: RawTable) -> NDArray[np.float64]:
         """Return the column's numbers in SI with the canonical sign, shape (n,); NaN where empty.
@@ -119,13 +130,22 @@ class MappedColumn:
         Raises:
             DataError: The unit of the file is unknown or measures another quantity.
         """
-        unit = table.units.get(self.name)
-        if unit is None or self.unit_stated or si_unit is None:
+        if self.unit_stated or si_unit is None:
             return self
+        unit = table.unit_of(self.name, si_unit)
+        if unit is None:
+            return self
+        advice = f'state unit = "{si_unit}" or what it is in {COLUMNS_FILE}, {_scaled(si_unit)}'
+        if unit == unit_in_header(self.name) and not is_unit_text(unit):
+            problem = f"'{unit}' in the header is no unit that is known; {advice}"
+            raise table.fault(problem, self.name)
+        if may_be_gradian(unit):
+            problem = f"the file states 'grad', which may be degrees or gradians; {advice}"
+            raise table.fault(problem, self.name)
         try:
             factor = factor_to_si(unit, si_unit)
         except UnitError as error:
-            problem = f"the file states its unit: {error}; state another in {COLUMNS_FILE}"
+            problem = f"the file states its unit: {error}; {advice}"
             raise table.fault(problem, self.name) from error
         return replace(self, unit=unit, factor=math.copysign(factor, self.factor))
 
@@ -213,9 +233,9 @@ def parse_columns(table: SettingsTable) -> Columns:
 
 
 def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) -> MappedColumn:
-    """Parse header, unit and sign of one mapped column, and the definition of a slip ratio.
+    """Parse header, unit, scale and sign of one mapped column, and the definition of a slip ratio.
 
-    By default the header is the canonical name, the unit SI, the sign 1.
+    By default the header is the canonical name, the unit SI, scale and sign 1.
 
     Args:
         columns: Section with an entry for the column: a table, or only the header as a string.
@@ -223,7 +243,7 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
         si_unit: SI unit of the column; None if its cells are text.
 
     Raises:
-        SettingsError: Header, unit, sign or slip definition is invalid.
+        SettingsError: Header, unit, scale, sign or slip definition is invalid.
     """
     found = columns.value(name)
     if isinstance(found, str):  # t = "ET": only a header, in SI
@@ -231,7 +251,7 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
     table = columns.as_table(name, found, expected="a header, or a table with name, unit, sign")
     stated = si_unit is not None and "unit" in table
     unit, factor = _unit(table, si_unit) if si_unit else ("", 1.0)
-    sign = _sign(table) if si_unit else 1
+    sign, scale = (_sign(table), _scale(table, unit if stated else "")) if si_unit else (1, 1.0)
     offset = table.quantity("offset", si_unit) if si_unit and "offset" in table else 0.0
     is_time = si_unit == "s" and "nanoseconds" in table
     nanoseconds = table.text("nanoseconds", least=1) if is_time else None
@@ -240,7 +260,8 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
         key = table.dotted("definition") or ""
         definition = parse_definition(table.value("definition"), file=Path(table.file), key=key)
     header = table.text("name", name)
-    return MappedColumn(header, unit, sign * factor, definition, stated, offset, nanoseconds)
+    factor *= sign * scale
+    return MappedColumn(header, unit, factor, definition, stated, offset, nanoseconds, scale)
 
 
 def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
@@ -270,7 +291,22 @@ def _unit(table: SettingsTable, si_unit: str) -> tuple[str, float]:
     try:
         return unit, factor_to_si(unit, si_unit)
     except UnitError as error:
-        raise table.fault(str(error), "unit") from error
+        raise table.fault(f"{error}, {_scaled(si_unit)}", "unit") from error
+
+
+def _scaled(si_unit: str) -> str:
+    unit = "" if si_unit == "dimensionless" else f" {si_unit}"
+    return f'or scale = NUMBER, unit = "{si_unit}" if 1 in the file is NUMBER{unit}'
+
+
+def _scale(table: SettingsTable, unit: str) -> float:
+    """Read the number that converts the file's numbers to the unit, which must be stated then."""
+    if "scale" not in table:
+        return 1.0
+    if not unit or is_date_unit(unit):
+        found = f"the unit '{unit}'" if unit else "no unit"
+        raise table.fault(f'stands beside {found}; expected one, such as unit = "ms"', "scale")
+    return table.quantity("scale", "dimensionless", above=0.0)
 
 
 def _sign(table: SettingsTable) -> int:

@@ -9,7 +9,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from zebro_lab.tables.cells import bare_unit, is_units_row, kind_of, unit_in_header
+from zebro_lab.tables.cells import bare_unit, is_units_row, kind_of
+from zebro_lab.tables.header_units import unit_in_header
 
 Row = Sequence[str]
 
@@ -121,7 +122,10 @@ def made_header(
         notes: Notes on reading.
     """
     unique = unique_names(names)
-    units = {name: unit for name in unique if (unit := unit_in_header(name)) is not None}
+    units = {
+        name: unit for name, header in zip(unique, names, strict=True)
+        if (unit := unit_in_header(header)) is not None
+    }  # fmt: skip
     for name, cell in zip(unique, units_row or (), strict=False):
         if cell.strip():
             units[name] = bare_unit(cell)

@@ -48,6 +48,23 @@ class MappedColumns:
         header = self.mapped[name].name
         return header in table.columns or header in table.repeated
 
+    def conversions(self, table: RawTable) -> tuple[str, ...]:
+        """Return a note of the columns that are converted by the units that the file states.
+
+        Args:
+            table: Table with the columns.
+
+        Raises:
+            DataError: A unit of the file is unknown or measures another quantity.
+        """
+        found = [
+            column.in_unit_of(table, self.units[name])
+            for name, column in self.mapped.items()
+            if not column.unit_stated and self.has(table, name)
+        ]
+        said = ", ".join(column.said for column in found if abs(column.factor) != 1)
+        return (f"{table.path.name}: units are those that the file states: {said}",) * bool(said)
+
     def called(self, name: str, header: str) -> "MappedColumns":
         """Return a copy of the map with another header for a column; unit and sign are kept.
 
@@ -98,6 +115,8 @@ class MappedColumns:
         values = self.numbers(table, name, what="time", advice=advice)
         mapped = self.mapped[name]
         stated = mapped.unit_stated or mapped.name in table.units
+        if mapped.name != name:  # the ending of t_s itself is no statement of who wrote the file
+            stated = stated or table.unit_of(mapped.name, "s") is not None
         usual = float(np.median(np.diff(values))) if len(values) > 1 else 0.0
         if usual <= 0 or stated or INTERVALS[0] <= usual <= INTERVALS[1]:
             return values

@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING, Any
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
 from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO, read_unpacked
-from zebro_lab.tables.cells import unit_in_header
+from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 from zebro_lab.tables.cells import kind_of, may_be_thousands
+from zebro_lab.tables.header_units import suffix_unit
 
 _MINUS = "\u2212"  # as typesetters write it
 _BLOCK = 1 << 16  # cells converted to numbers at a time
@@ -74,6 +75,17 @@ class RawTable:
         row = None if index is None else index + 1
         line = None if row is None else self._line(row)
         return DataError(problem, file=self.path, column=column, row=row, line=line, **found)
+
+    def unit_of(self, name: str, si_unit: str) -> str | None:
+        """Return the unit that the file states for a column; None if it states none.
+
+        It stands in a row of units, in brackets, or at the end of the header as in `FT_mN`.
+
+        Args:
+            name: Header of the column.
+            si_unit: SI unit of what the column is used for.
+        """
+        return self.units[name] if name in self.units else suffix_unit(name, si_unit)
 
     def column(self, name: str) -> "pd.Series":
         """Return the column of a header as read: numbers, strings or dates.

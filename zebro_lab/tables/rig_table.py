@@ -45,6 +45,14 @@ class RigTable:
             return MappedColumn(name, si_unit or "").in_unit_of(self.raw, si_unit)
         return None
 
+    def conversions(self) -> tuple[str, ...]:
+        """Return a note for each column whose numbers are converted, with its unit and factor."""
+        found = {name: self.source_of(name) for name in CANONICAL}
+        return tuple(
+            f"{name}: {column.said}" for name, column in found.items()
+            if column and column.factor != 1
+        )  # fmt: skip
+
     def required(self, name: str) -> MappedColumn:
         """Return the mapping of a canonical column, header, unit and factor, or raise.
 
@@ -133,7 +141,7 @@ class RigTable:
             problem: Formats the message, given the cell's value with its unit.
         """
         source, row = self.required(name), int(self.rows[index])
-        si = is_date_unit(source.unit) or source.offset or source.nanoseconds
+        si = is_date_unit(source.unit) or source.offset or source.nanoseconds or source.scale != 1
         value = float((source.in_si(self.raw) if si else self.raw.numbers(source.name))[row])
         unit = CANONICAL[name].unit or "" if si else source.unit
         unit = "" if unit == "dimensionless" else unit

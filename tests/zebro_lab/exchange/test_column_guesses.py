@@ -14,8 +14,8 @@ from zebro_lab.exchange.column_guesses import (
     numbers_or_none,
 )
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.tables.cells import unit_in_header
 from zebro_lab.tables.column_sections import TRACK
+from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 
 
@@ -131,7 +131,7 @@ def test_set_point_is_what_changes_seldom():
         ("Slip Ratio", "slip_ratio", "%?"), ("FX [mm]", "traction_force", "N?"),
         ("Normalkraft / kN", "normal_force", "kN"), ("Zeit in ms", "t", "ms"),
         ("Schlupf [%]", "slip_ratio", "%"), ("slip_percent", "slip_ratio", "%"),
-        ("Drehzahl Bein", "omega_leg", "rpm?"), ("Drehzahl Boden [1/min]", "omega_ground", "rpm?"),
+        ("Drehzahl Bein", "omega_leg", "rpm?"), ("Drehzahl Boden [1/min]", "omega_ground", "1/min"),
         ("Längskraft (N)", "traction_force", "N"), ("ω_leg [rad/s]", "omega_leg", "rad/s"),
         ("FZ [lbs]", "normal_force", "lbf?"), ("Zugkraft_kN", "traction_force", "kN"),
     ],

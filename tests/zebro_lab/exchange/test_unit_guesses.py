@@ -21,7 +21,7 @@ def guess(si_unit, cells, *, stated=None, name="x", si=False):
     ("si_unit", "stated", "unit"),
     [
         ("s", "ms", "ms"), ("N", "kN", "kN"), ("rad", "°", "°"), ("m/s^2", "g", "g"),
-        ("N", "kg", "kgf?"), ("rad/s", "1/min", "rpm?"), ("rad/s", "Hz", "rev/s?"),
+        ("N", "kg", "kgf?"), ("rad/s", "1/min", "1/min"), ("rad/s", "Hz", "rev/s?"),
         ("rad", "grad", "deg?"), ("N", "V", "N?"), ("s", "Frame", "s?"),
     ],
 )  # fmt: skip

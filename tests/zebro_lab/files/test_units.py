@@ -18,6 +18,26 @@ from zebro_lab.files.units import factor_to_si, is_unit_of, quantity_to_si
         ("kN", "N", 1e3),
         ("rpm", "rad/s", 2 * math.pi / 60),
         ("rev/s", "rad/s", 2 * math.pi),
+        *(
+            (unit, "rad/s", 2 * math.pi / 60)
+            for unit in ("1/min", "min^-1", "min-1", "min⁻¹", "Upm")
+        ),
+        *(
+            (unit, "N", factor)
+            for unit, factor in (
+                ("daN", 10.0),
+                ("cN", 0.01),
+                ("MN", 1e6),
+                ("dyn", 1e-5),
+                ("gf", 9.80665e-3),
+                ("p", 9.80665e-3),
+                ("kp", 9.80665),
+            )
+        ),
+        ("dps", "rad/s", math.pi / 180),
+        ("mdps", "rad/s", math.pi / 180e3),
+        ("g", "m/s^2", 9.80665),
+        ("mg", "m/s^2", 9.80665e-3),
         ("deg/s", "rad/s", math.pi / 180),
         ("%", "dimensionless", 0.01),
         ("-", "dimensionless", 1.0),
@@ -30,7 +50,14 @@ def test_factor_takes_a_unit_to_si(unit, si_unit, factor):
 
 @pytest.mark.parametrize(
     ("unit", "si_unit"),
-    [("mm", "N"), ("kg", "N"), ("Hz", "rad/s"), ("1/min", "rad/s"), ("rad", "dimensionless")],
+    [
+        ("mm", "N"),
+        ("kg", "N"),
+        ("Hz", "rad/s"),
+        ("1/s", "rad/s"),
+        ("mg", "N"),
+        ("rad", "dimensionless"),
+    ],
 )
 def test_unit_of_another_dimension_is_refused(unit, si_unit):
     with pytest.raises(UnitError, match="cannot be converted"):

@@ -39,6 +39,28 @@ def test_angles_and_their_quaternion_are_the_same_orientation(roll, pitch, yaw):
     assert by_angles.notes == ()
 
 
+def test_a_specific_force_in_g_is_refused_unless_its_unit_is_stated():
+    level = {"roll": [0.0, 0.0], "pitch": [0.0, 0.0], "force_x": [0.0, 0.1], "force_y": [0.0, 0.0]}
+    with pytest.raises(DataError, match=r"force is 1.02 m/s\^2 in the middle.*unit = \"g\""):
+        read(**level, force_z=[1.02, 1.01])
+    assert read(**level, force_z=[9.8, 9.9]).notes == read(roll=[0.0, 0.0], pitch=[0.0, 0.0]).notes
+    stated = canonical_columns(IMU_UNITS)
+    for axis in "xyz":
+        stated = stated.called(f"force_{axis}", f"a{axis}_g")
+    table = {
+        "t": T,
+        "roll": [0, 0],
+        "pitch": [0, 0],
+        "ax_g": [0, 0],
+        "ay_g": [0, 0],
+        "az_g": [1, 1],
+    }
+    raw = RawTable(Path("imu.csv"), {name: pd.Series(cells) for name, cells in table.items()})
+    log = imu_of_table(raw, stated)
+    assert vars(log)["values"][:, 9].tolist() == [9.80665, 9.80665]
+    assert "'az_g' in g times 9.80665" in log.notes[0]
+
+
 def test_what_is_not_measured_is_nan_and_a_missing_yaw_is_noted():
     log = read(roll=[0.0, 0.0], pitch=[0.0, 0.0], rate_y=[1.0, 2.0], force_z=[9.8, 9.9])
     np.testing.assert_array_equal(orientation(log), [[1, 0, 0, 0]] * 2)

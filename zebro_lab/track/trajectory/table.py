@@ -121,9 +121,10 @@ def read_table_columns(
     def fault(problem: str, index: int) -> DataError:
         return table.fault(problem, time.name, index)
 
-    notes: tuple[str, ...] = ()
+    notes = said = mapping.conversions(table)
     if time.name not in table.units and time.factor == 1.0:
-        factor, notes = stamp_factor(columns["t_s"], "s", fault=fault)
+        factor, more = stamp_factor(columns["t_s"], "s", fault=fault)
+        notes = (*said, *more)
         columns["t_s"] = columns["t_s"] * factor
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
     kept, more = kept_stamps(columns["t_s"], poses, fault=fault)

@@ -105,7 +105,8 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
     guesses: dict[str, ColumnGuess] = {}
     taken: set[str] = set()
     first = min((leg[0] for name in table.columns if (leg := leg_of(name))), default=1)
-    ours = any(name in UNITS[kind] and name not in _EVERYBODYS for name in table.columns)
+    shared = (*_EVERYBODYS, *_QUATERNION)
+    ours = any(name in UNITS[kind] and name not in shared for name in table.columns)
     for canonical in UNITS[kind]:
         fitting = [n for n in table.columns if n not in taken and _fits(n, canonical, kind, first)]
         fitting.sort(key=lambda name: (not is_canonical(name, canonical), _is_weak(name)))

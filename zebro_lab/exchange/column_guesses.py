@@ -235,6 +235,8 @@ def _guess(
         sideways = name.replace("x", "y").replace("X", "Y")
         others = [sideways] if sideways != name and sideways in table.columns else []
     doubt = "" if is_canonical(name, canonical) else _name_doubt(name, canonical, others)
+    if name in table.repeated:
+        doubt = "several columns have this header: give each another in the file"
     if si_unit is None:
         return ColumnGuess(name, name_doubt=doubt)
     numbers = numbers_or_none(table, name)
@@ -267,10 +269,12 @@ def _name_doubt(name: str, canonical: str, others: list[str]) -> str:
 
 
 def _sign(canonical: str, numbers: Array | None, *, known: bool) -> tuple[int, str]:
+    pressed = canonical == "normal_force" or canonical.startswith("omega_")
     if numbers is None:
-        return 1, ""
+        open_sign = pressed or (canonical in _SIGNED and not known)
+        return 1, "its numbers cannot be read, which would show it" if open_sign else ""
     negative = float(np.nanmedian(numbers)) < 0
-    if canonical == "normal_force" or canonical.startswith("omega_"):
+    if pressed:
         return (-1, "negative in the file") if negative else (1, "")
     if canonical not in _SIGNED or known:
         return 1, ""

@@ -14,7 +14,7 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 from zebro_lab.tables.cells import NO_VALUE
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.row_checks import require_full_rows, require_no_footer
+from zebro_lab.tables.row_checks import require_full_rows
 from zebro_lab.tables.text_encoding import WINDOWS, decoded, possible_encodings
 from zebro_lab.tables.text_layout import (
     BLANKS,
@@ -68,7 +68,6 @@ def read_csv_file(path: Path) -> RawTable:
     table = _table(path, layout, frame, encoding)
     if layout.separator == BLANKS:
         require_full_rows(table)
-    require_no_footer(table)
     return table
 
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Check the rows of a text table that was read: none is short unseen, none is a line of means."""
+"""Check the rows of a table that was read: none is short unseen, none is a line of means."""
 
 import io
 import re
-from typing import Final
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.unpacking import open_unpacked
@@ -11,11 +12,16 @@ from zebro_lab.tables.cells import kind_of
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.text_layout import BLANKS, split_line
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 _FOOTER = re.compile(
     r"(?:mean|average|avg|std|sd|stdev|sum|total|minimum|min|maximum|max|median|count|end|eof|"
     r"mittel\w*|summe|stabw|standardabweichung|anzahl|ende)\b.*",
     re.IGNORECASE,
 )
+_NO_STATISTIC: Final = re.compile(r"(?:count|end|eof|anzahl|ende)\b.*", re.IGNORECASE)
+"""Words that a column of remarks may well end with."""
 _FOOTER_ROWS: Final = 10
 
 
@@ -45,16 +51,35 @@ def require_full_rows(table: RawTable) -> None:
 
 
 def require_no_footer(table: RawTable) -> None:
-    """Check that no column of numbers ends with a word such as "Mean": that row is no sample.
+    """Check that no column ends with a word such as "Mean": that row is no sample.
+
+    In a column of numbers, or of texts where the last rows alone have such words, each once.
 
     Raises:
         DataError: One does.
     """
     for name, cells in table.columns.items():
-        if cells.dtype.kind in "ifb" or len(cells) < 2:
+        if cells.dtype.kind in "ifbMm" or len(cells) < 2 or name in table.unreadable:
             continue
-        for index in range(max(1, len(cells) - _FOOTER_ROWS), len(cells)):
-            text = str(cells.iloc[index])
-            if _FOOTER.fullmatch(text.strip()) and kind_of(str(cells.iloc[0])) == "value":
-                problem = f"'{text}' stands below numbers; delete the lines below the table"
-                raise table.fault(problem, name, index)
+        first = max(1, len(cells) - _FOOTER_ROWS)
+        last = ["" if cell is None else str(cell).strip() for cell in cells.iloc[first:]]
+        found = [i for i, text in enumerate(last) if _FOOTER.fullmatch(text)]
+        known = cells.iloc[: first + found[0]].dropna() if found else cells.iloc[:0]
+        if not found or not (_are_values(known) or _are_statistics(last[found[0] :], known)):
+            continue
+        below = "numbers" if _are_values(known) else "the rows"
+        problem = f"'{last[found[0]]}' stands below {below}; delete the lines below the table"
+        raise table.fault(problem, name, first + found[0])
+
+
+def _are_values(cells: "pd.Series") -> bool:
+    return len(cells) > 0 and kind_of(str(cells.iloc[0])) == "value"
+
+
+def _are_statistics(last: Sequence[str], above: "pd.Series") -> bool:
+    """Return whether the last texts of a column are statistics, each once, and none above is."""
+    return (
+        len(set(last)) == len(last)
+        and all(_FOOTER.fullmatch(text) and not _NO_STATISTIC.fullmatch(text) for text in last)
+        and not any(_FOOTER.fullmatch(text.strip()) for text in set(map(str, above)))
+    )

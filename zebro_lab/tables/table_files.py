@@ -10,6 +10,7 @@ from zebro_lab.tables.csv_files import read_csv_file
 from zebro_lab.tables.excel_files import read_excel_file
 from zebro_lab.tables.parquet_files import read_parquet_file
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.row_checks import require_no_footer
 
 READERS: Final[Mapping[str, Callable[[Path], RawTable]]] = {
     ".csv": read_csv_file,
@@ -53,8 +54,9 @@ def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file has another suffix, no rows, is damaged, too large, or not a table; or
-            a workbook has no such sheet, or several and none is named.
+        DataError: The file has another suffix, no rows, a line of means below them, is damaged,
+            too large, or not a table; or a workbook has no such sheet, or several and none is
+            named.
     """
     if not path.exists():
         raise NotFound(f"{path}: no such file")
@@ -73,6 +75,7 @@ def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
         table = READERS[suffix.removesuffix(".gz")](path)
     if len(table) == 0:
         raise DataError("has a header but no rows", file=path)
+    require_no_footer(table)
     return table
 
 

@@ -174,3 +174,19 @@ def test_a_quaternion_of_motion_capture_is_found_whole_or_not(tmp_path):
         assert {name for name in guesses if name[0] == "q"} == found
         assert "which axis is up" in guesses["y_m"].name_doubt
         assert not any(guesses[name].doubts for name in found)
+
+
+def test_columns_whose_numbers_cannot_be_read_have_their_sign_in_doubt():
+    cells = {"FZ [mN]": ["4'976.7", "4'961.8"], "FX [mN]": ["439.6", "1'395.2"]}
+    raw = RawTable(Path("a.csv"), {name: pd.Series(texts) for name, texts in cells.items()})
+    assert [guess.doubts[-1] for guess in guess_columns(raw).values()] == ["sign", "sign"]
+
+
+def test_a_header_that_several_columns_have_is_in_doubt():
+    columns = {name: pd.Series([0.0, 1.0]) for name in ("t", "x", "y", "y (2)")}
+    raw = RawTable(Path("a.csv"), columns, repeated=frozenset({"y"}))
+    found = guess_columns(raw, TRACK)
+    assert "column" in found["y_m"].doubts
+    assert "several columns have this header" in found["y_m"].name_doubt
+    assert "sign" in found["y_m"].doubts
+    assert "column" not in found["x_m"].doubts

@@ -2,6 +2,7 @@
 """Rows that look like data and are none are refused."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from zebro_lab.files.errors import DataError
@@ -23,6 +24,29 @@ def test_a_line_of_means_below_the_numbers_is_named(tmp_path, footer):
     file.write_text(f"n;F\n1;2\n2;3\n{footer};2,5\n")
     with pytest.raises(DataError, match=r"column 'n', row 3 \(line 4\): .* stands below numbers"):
         read_table_file(file)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".xlsx", ".parquet"])
+@pytest.mark.parametrize("words", [["a", None, "b", "Mittelwert"], [None, None, "Mean", "std"]])
+def test_a_row_of_means_is_refused_by_its_word_in_a_column_of_texts(tmp_path, suffix, words):
+    if suffix == ".xlsx":
+        pytest.importorskip("openpyxl")
+    table = pd.DataFrame({"F": [1.0, 2.0, 3.0, 2.0], "Bemerkung": words})
+    write = {".csv": table.to_csv, ".xlsx": table.to_excel, ".parquet": table.to_parquet}[suffix]
+    write(tmp_path / f"a{suffix}", index=False)
+    with pytest.raises(DataError, match=r"column 'Bemerkung', row [34].*stands below the rows"):
+        read_table_file(tmp_path / f"a{suffix}")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["start", None, "x", "end"], ["low", "max", "low", "max"], ["a", "b", "mean", "mean"],
+     ["mean", "min", "max", "sum"], [None, None, None, None], ["mean", "x", None, "mean"]],
+)  # fmt: skip
+def test_remarks_that_end_otherwise_are_no_footer(tmp_path, words):
+    table = pd.DataFrame({"F": [1.0, 2.0, 3.0, 2.0], "what": words})
+    table.to_parquet(tmp_path / "a.parquet", index=False)
+    assert len(read_table_file(tmp_path / "a.parquet")) == 4
 
 
 def test_words_in_a_column_of_words_are_no_footer(tmp_path):

@@ -19,19 +19,29 @@ METADATA = "metadata.yaml"
 
 
 def is_bag(path: Path) -> bool:
-    """Return whether a path is a bag by its name: .db3, .bag, or a folder with metadata.yaml."""
-    return path.suffix.lower() in BAG_SUFFIXES or (path / METADATA).is_file()
+    """Return whether a path is a bag by its name: .db3, .bag, or the folder of a bag.
+
+    Such a folder holds metadata.yaml, or files .db3 where that is missing.
+    """
+    if path.suffix.lower() in BAG_SUFFIXES or (path / METADATA).is_file():
+        return True
+    return path.is_dir() and any(path.glob("*.db3"))
 
 
 def bag_files(path: Path) -> tuple[Path, ...]:
     """Return the files of a bag: itself, or those in its folder by name.
 
     Raises:
-        NotFound: There is no such file.
+        NotFound: There is no such file, or a folder lacks its metadata.yaml.
         DataError: One of them is not a regular file or cannot be opened.
     """
     files = (path,)
     if path.is_dir():
+        if not (path / METADATA).is_file():
+            raise NotFound(
+                f"{path}: {METADATA} of the bag is missing; copy the whole folder, or write it "
+                f"anew with: ros2 bag reindex {path}"
+            )
         logs = (f for f in sorted(path.iterdir()) if f.suffix.lower() in (".db3", ".mcap", ".zstd"))
         files = (path / METADATA, *logs)
     for file in files:

@@ -93,8 +93,11 @@ def read_predicted_walks(
         notes: Notes on what was left out before, for the first walk.
 
     Raises:
-        ZebroLabError: A file is missing or damaged; a missing or changed photograph is only a note.
+        ZebroLabError: A file is missing or damaged, or a pair is exchanged; a missing or changed
+            photograph is only a note.
     """
+    for pair in pairs:
+        _require_not_exchanged(*pair)
     pairs, repeated = first_of_each(pairs, key=_content)
     duplicates = duplicates_note("walks", [(one[0], other[0]) for one, other in repeated])
     names = numbered([_name(predicted) for predicted, _ in pairs])
@@ -114,6 +117,23 @@ def _read(name: str, predicted: Path, tracked: Path, duplicates: tuple[str, ...]
     except (NotFound, DataError, SettingsError) as error:
         not_shown = (f"photographs are not shown: {error}",)
     return PredictedWalk(name, prediction, track, tilt, photos, duplicates, not_shown)
+
+
+def _require_not_exchanged(predicted: Path, tracked: Path) -> None:
+    """Raise `SettingsError` if a prediction and a track are given for each other."""
+    if _is(predicted, TRACK_CSV, not_=PATH_CSV) and _is(tracked, PATH_CSV, not_=TRACK_CSV):
+        raise SettingsError(
+            f"{predicted} is a track and {tracked} a prediction; expected them the other way "
+            "round: exchange the two",
+            key="--predicted, --track",
+        )
+
+
+def _is(path: Path, name: str, *, not_: str) -> bool:
+    """Return whether a path is a file of a name, or a folder with it and without another."""
+    if path.is_dir():
+        return (path / name).is_file() and not (path / not_).is_file()
+    return path.name == name
 
 
 def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:

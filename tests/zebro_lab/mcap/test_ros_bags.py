@@ -35,6 +35,15 @@ def test_a_bag_is_read_from_its_folder_and_from_its_file_alone(bag, part):
     assert read_bag(bag / part, ("nav_msgs/msg/Odometry",)) == ([], None)
 
 
+def test_a_bag_that_was_copied_without_its_metadata_says_so(bag):
+    (bag / "metadata.yaml").unlink()
+    assert is_ros_log(bag)
+    with pytest.raises(
+        NotFound, match=r"walk: metadata.yaml of the bag is missing; copy .*reindex"
+    ):
+        read_bag(bag, (JOINT_STATE.name,))
+
+
 def test_a_ros_1_bag_is_read_too(tmp_path):
     file = write_ros1_bag(tmp_path / "walk.bag", joints(T, THETA))
     messages, damage = read_messages(file, schema=JOINT_STATE.name)

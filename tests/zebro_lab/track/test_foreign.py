@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.column_sections import read_section
+from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.track.file import tum_lines
 from zebro_lab.track.foreign import TRACK_UNITS, read_foreign_track, track_of_foreign_table
@@ -40,6 +41,22 @@ def test_short_names_do_and_time_is_counted_from_the_zero_given(tmp_path):
     np.testing.assert_array_equal(path.track.poses.t, [1, 3, 5])
     assert set(path.columns) == {"t_s", "x_m", "y_m", "z_m"}
     assert not path.with_covariance
+
+
+def test_headings_in_degrees_without_a_unit_are_asked_about(tmp_path):
+    angle = np.linspace(0, 1.5, 20)
+    file = tmp_path / "path.csv"
+    frame = {"t_s": angle, "x_m": np.sin(angle), "y_m": 1 - np.cos(angle)}
+    pd.DataFrame(frame | {"yaw_rad": np.degrees(angle)}).to_csv(file, index=False)
+    with pytest.raises(DataError, match=r"path.csv, column 'yaw_rad': .*85.94 rad .* unit = \"deg"):
+        read(file)
+    pd.DataFrame(frame | {"yaw [deg]": np.degrees(angle)}).to_csv(file, index=False)
+    np.testing.assert_allclose(read(file).track.poses.yaw, angle, atol=1e-9)
+    (tmp_path / "columns.toml").write_text('[track.columns.yaw_rad]\nunit = "rad"\n')
+    pd.DataFrame(frame | {"yaw_rad": np.degrees(angle)}).to_csv(file, index=False)
+    stated = parse_mapped_columns(read_section("track", tmp_path / "columns.toml"), MAPPED_UNITS)
+    track = read_foreign_track(file, stated, TrajectoryRequest())
+    np.testing.assert_allclose(np.sin(track.track.poses.yaw), np.sin(np.degrees(angle)))
 
 
 def test_a_covariance_comes_back_where_all_of_it_is_there(tmp_path):

@@ -6,7 +6,7 @@ import shutil
 import pytest
 
 from support.watchers import Nobody
-from zebro_lab.files.errors import NotFound
+from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.validation.predicted_walks import pairs_of_run, read_predicted_walks
 from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.stage import validate
@@ -44,6 +44,13 @@ def test_walks_of_one_name_are_numbered(walk, tmp_path):
     track.write_text("".join(track.read_text().splitlines(keepends=True)[:-1]))
     pairs = [pairs_of_run(tmp_path / place / "walk") for place in ("one", "other")]
     assert [found.name for found in read_predicted_walks(pairs)] == ["walk-1", "walk-2"]
+
+
+@pytest.mark.parametrize("files", [("", ""), ("track.csv", "path.csv")])
+def test_a_track_and_a_prediction_that_are_exchanged_are_told(walk, files):
+    pair = (walk / "track" / files[0], walk / "prediction" / files[1])
+    with pytest.raises(SettingsError, match=r"^--predicted, --track: .* exchange the two$"):
+        read_predicted_walks([pair])
 
 
 def test_a_pair_of_files_is_named_by_the_predicted_file(walk, tmp_path):

@@ -11,10 +11,12 @@ import numpy as np
 from model.rigid_path import RigidPath, rotations_of_quaternions
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
+from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.trajectory.headers import named_columns
+from zebro_lab.track.trajectory.heading_unit import are_degrees
 from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
 
 NEEDED: Final = ("t_s", "x_m", "y_m")
@@ -106,7 +108,8 @@ def read_table_columns(
 
     Raises:
         DataError: Time, x or y is missing, a cell is no finite number, or a stamp is earlier than
-            the one before or, in many rows, repeated with another pose.
+            the one before or, in many rows, repeated with another pose, or headings without a unit
+            fit the path in degrees alone.
     """
     mapping = recognised(table, mapping)
     columns = {
@@ -126,9 +129,27 @@ def read_table_columns(
         factor, more = stamp_factor(columns["t_s"], "s", fault=fault)
         notes = (*said, *more)
         columns["t_s"] = columns["t_s"] * factor
+    _require_radians(table, mapping, columns)
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
     kept, more = kept_stamps(columns["t_s"], poses, fault=fault)
     return TableColumns({n: column[kept] for n, column in columns.items()}, (*notes, *more))
+
+
+def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]) -> None:
+    heading = mapping.mapped.get("yaw_rad")
+    if "yaw_rad" not in columns or heading is None:
+        return
+    if heading.unit_stated or heading.name in table.units:
+        return
+    position = np.column_stack([columns["x_m"], columns["y_m"]])
+    if are_degrees(columns["yaw_rad"], position):
+        largest = float(np.abs(columns["yaw_rad"]).max())
+        raise table.fault(
+            f"the heading goes up to {largest:.4g} rad and fits the direction of travel only in "
+            f'degrees; state its unit in {COLUMNS_FILE}: [track.columns.yaw_rad] unit = "deg", or '
+            '"rad" if that is right',
+            heading.name,
+        )
 
 
 def recognised(table: RawTable, mapping: MappedColumns) -> MappedColumns:

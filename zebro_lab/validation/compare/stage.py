@@ -11,7 +11,7 @@ from zebro_lab.calibration.folder import SLIP_TOML
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.names import shortest_distinct
 from zebro_lab.files.picture_format import in_every_format
-from zebro_lab.files.provenance import file_hashes
+from zebro_lab.files.provenance import file_hash, file_hashes
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
 from zebro_lab.validation.compare.calibrations import compare_calibrations
@@ -41,8 +41,8 @@ def compare(request: CompareRequest) -> Compared:
     """Compare two calibrations or two runs and write the comparison folder.
 
     Raises:
-        ZebroLabError: The two are of different kinds, the same, cannot be read, have no quantity
-            in common, or the folder cannot be replaced.
+        ZebroLabError: The two are of different kinds, the same or copies, cannot be read, have no
+            quantity in common, or the folder cannot be replaced.
         ModelError: A draw is not a finite number.
     """
     require_replaceable(request.out, COMPARISON, inputs=(request.first, request.second))
@@ -55,6 +55,7 @@ def compare(request: CompareRequest) -> Compared:
         )
     by_kind = compare_calibrations if kind == "calibration" else compare_runs
     comparison = by_kind(request.first, request.second, names=names, rng=rng)
+    _require_different(request, comparison)
     done = Compared(comparison, tuple(each.difference(rng) for each in comparison.quantities))
     _write(request, done)
     return done
@@ -83,6 +84,20 @@ def _names(first: Path, second: Path) -> tuple[str, str]:
     if one == other:
         raise SettingsError(f"{first} is compared with itself; choose another folder as B")
     return one, other
+
+
+def _require_different(request: CompareRequest, comparison: Comparison) -> None:
+    """Raise `SettingsError` where the files that were read of both have the same content."""
+    read = []
+    for path in (request.first, request.second):
+        folder = path if path.is_dir() else path.parent
+        files = [file for file in comparison.files if folder in file.parents]
+        read.append({file_hash(file) for file in files})
+    if read[0] == read[1]:
+        raise SettingsError(
+            f"{request.second} is a copy of {request.first}, with the same content; choose another "
+            "folder as B"
+        )
 
 
 def _write(request: CompareRequest, done: Compared) -> None:

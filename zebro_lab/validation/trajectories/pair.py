@@ -2,7 +2,7 @@
 """Match an estimated trajectory with a reference and compute its errors."""
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,12 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.names import shortest_distinct
 from zebro_lab.track.trajectory.file import Trajectory
 
+_UNITS: Final = {
+    1000.0: "mm and m", 100.0: "cm and m", 10.0: "mm and cm", 25.4: "mm and inches",
+    39.37: "inches and m", 3.281: "feet and m", 57.296: "degrees and radians",
+}  # fmt: skip
+"""Units of which one number is larger than the other, by the factor between them."""
+_NEAR: Final = 0.05
 FEWEST = 3  # two motions, so that an alignment leaves an error
 
 
@@ -103,8 +109,28 @@ def judge_pair(
         pairs.append(("space", found, seen))
     rows = tuple(_errors(*pair, distances=distances, correct_scale=correct_scale) for pair in pairs)
     scaled = replace(estimated, position=rows[0].estimate.position)
-    notes = (*reference.notes, *estimate.notes, *notes)
+    sizes = () if correct_scale else _sizes(reference, estimate, seen, found)
+    notes = (*sizes, *reference.notes, *estimate.notes, *notes)
     return JudgedPair(reference, estimate, rows, tracked, scaled, notes)
+
+
+def _sizes(
+    reference: Trajectory, estimate: Trajectory, seen: RigidPath, found: RigidPath
+) -> tuple[str, ...]:
+    """Return a warning if the extents of both differ by about the factor between two units."""
+    spread = [float(np.linalg.norm(path.position.std(axis=0))) for path in (seen, found)]
+    if min(spread) <= 0:
+        return ()
+    ratio = spread[1] / spread[0]
+    factor = max(ratio, 1 / ratio)
+    units = next((pair for known, pair in _UNITS.items() if abs(factor / known - 1) < _NEAR), None)
+    if units is None:
+        return ()
+    large, small = (estimate, reference) if ratio > 1 else (reference, estimate)
+    return (
+        f"WARNING: {large.file} extends {factor:.4g} times as far as {small.file}, as {units} "
+        "differ: lengths are taken in m; convert one of them, or add --correct-scale",
+    )
 
 
 def _errors(

@@ -2,6 +2,7 @@
 """Two of a kind over each other: what differs is said, with how surely."""
 
 import json
+import shutil
 
 import pandas as pd
 import pytest
@@ -41,6 +42,15 @@ def test_what_cannot_be_compared_is_named(tmp_path):
     (tmp_path / "taken/manifest.json").write_text('{"kind": "track"}')
     with pytest.raises(AlreadyExists, match="another command"):
         compare(CompareRequest(slip, slip, tmp_path / "taken"))
+
+
+def test_a_copy_is_not_compared_as_if_it_were_independent(tmp_path):
+    for kind in (calibration, run_folder):
+        one = kind(tmp_path / kind.__name__ / "one")
+        other = shutil.copytree(one, tmp_path / kind.__name__ / "other")
+        with pytest.raises(SettingsError, match=r"other is a copy of .*one, .* choose another"):
+            compare(CompareRequest(one, other, tmp_path / "out"))
+        assert not (tmp_path / "out").exists()
 
 
 def test_two_files_of_trajectories_are_sent_to_validate(tmp_path):

@@ -41,6 +41,24 @@ def test_a_shift_is_the_error_everywhere_and_gone_after_alignment(run_command, f
     assert set(manifest["inputs"]) == {str(file) for file in files}
 
 
+@pytest.mark.parametrize(
+    ("factor", "units"),
+    [(1000, "mm and m"), (0.001, "mm and m"), (100, "cm and m"), (25.4, "mm and inches")],
+)
+def test_lengths_in_another_unit_are_asked_about(run_command, files, tmp_path, factor, units):
+    other = written(tmp_path / "b.tum", tum(T, factor * POSITION, ROTATION))
+    ended = run_command("validate", files[0], other, "--out", tmp_path / "out")
+    assert ended.code == 0
+    assert f"times as far as {files[0] if factor > 1 else other}, as {units} differ" in " ".join(
+        ended.out.split()
+    )
+    ended = run_command("validate", files[0], other, "--correct-scale", "--out", tmp_path / "out")
+    assert "WARNING" not in ended.out
+    twice = written(tmp_path / "c.tum", tum(T, 2 * POSITION, ROTATION))
+    ended = run_command("validate", files[0], twice, "--out", tmp_path / "out")
+    assert "WARNING" not in ended.out
+
+
 def test_files_of_one_name_are_told_apart_by_their_folders(run_command, files, tmp_path):
     other = tmp_path / "other" / files[0].name
     other.parent.mkdir()

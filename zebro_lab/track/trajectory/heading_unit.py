@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""Find headings that are taken for radians but fit their path in degrees."""
+
+from typing import Final
+
+import numpy as np
+
+from model.poses import Poses, travel_direction
+from model.slip.law import Array
+
+_FITS: Final = 0.9
+_FITS_NOT: Final = 0.7
+"""Alignments of heading and travel, above which a unit fits and below which it does not [-]."""
+
+
+def are_degrees(heading: Array, position: Array) -> bool:
+    """Return whether headings above 2 pi fit the direction of travel in degrees alone.
+
+    The alignment is the length of the mean of unit vectors at heading minus direction of travel:
+    1 where they differ by a constant, about 0 where they have nothing to do with one another.
+
+    Args:
+        heading: Headings as in the file, shape (n,).
+        position: Positions in the plane, shape (n, 2) [m].
+    """
+    if len(heading) == 0 or np.abs(heading).max() <= 2 * np.pi:
+        return False
+    travel = travel_direction(Poses(np.arange(len(heading), dtype=float), position, heading))
+    in_radians, in_degrees = (
+        np.abs(np.exp(1j * (each - travel)).mean()) for each in (heading, np.radians(heading))
+    )
+    return bool(in_radians < _FITS_NOT and in_degrees > _FITS)

@@ -18,6 +18,10 @@ LARGEST_SLIP: Final = 1.5
 FRICTION: Final = (0.01, 4.0)
 """Range of the ratio of traction to normal force [-]: ice has 0.02, racing tyres 2."""
 
+_SLIPPING: Final = 0.02  # slip ratio beyond which traction exceeds the zero error of a load cell
+_FEWEST: Final = 8  # rows that slip, to judge their sign
+_OPPOSED: Final = 0.9  # share of them
+
 
 def require_plausible(
     table: RigTable, slip: SlipColumn, normal_force: Array, traction_force: Array
@@ -36,11 +40,12 @@ def require_plausible(
     Raises:
         DataError: A radius is above `LARGEST_RADIUS`, most slip ratios computed from speeds are
             beyond `LARGEST_SLIP`, or the ratio of the forces is outside `FRICTION` and the unit of
-            one of them is not stated.
+            one of them is not stated; or the traction opposes the slip.
     """
     if slip.column == "omega_leg":
         _require_radii(table)
         _require_slip(table, slip.ratio)
+    _require_one_sign(table, slip.ratio, traction_force)
     ratio = float(np.quantile(np.abs(traction_force) / normal_force, 0.95))
     if FRICTION[0] <= ratio <= FRICTION[1]:
         return ()
@@ -99,4 +104,19 @@ def _require_slip(table: RigTable, ratio: Array) -> None:
     raise table.raw.fault(
         f"{found}; {advice}, or give the slip ratio itself as a column",
         table.required("omega_leg").name,
+    )
+
+
+def _require_one_sign(table: RigTable, ratio: Array, traction_force: Array) -> None:
+    """Raise `DataError` if the traction is negative where slip is positive, and the reverse."""
+    slipping = np.abs(ratio) > _SLIPPING
+    opposed = ratio[slipping] * traction_force[slipping] < 0
+    if len(opposed) < _FEWEST or np.mean(opposed) < _OPPOSED:
+        return
+    source = table.required("traction_force")
+    raise table.raw.fault(
+        f"the traction force opposes the slip in {np.mean(opposed):.0%} of the rows that slip; "
+        "expected both positive where the leg drives: set [columns.traction_force] sign = "
+        f"{-1 if source.factor > 0 else 1} in {COLUMNS_FILE}, or the sign of slip_ratio",
+        source.name,
     )

@@ -52,6 +52,10 @@ def test_a_plausible_sweep_is_read_without_a_doubt(table):
             r'normal_force.*is 0\.0044 times the normal force.*\[columns.normal_force\] unit = "N"',
         ),
         (
+            {"traction_force": lambda d: -d.traction_force},
+            r"traction_force.*opposes the slip in 100% of .*traction_force\] sign = -1",
+        ),
+        (
             {"traction_force": lambda d: 1000 * d.traction_force},
             r"normal_force.*the traction force is 4.+ times the normal force",
         ),

@@ -201,13 +201,16 @@ def _names(block: list[Row], above: list[Row], *, has_units: bool) -> tuple[list
                 "has two rows above the numbers that may be the header, "
                 f"'{_start(block[-2])}' and '{_start(block[-1])}'"
             )
+        if has_units and len(higher) >= len(names):
+            names = [name or over for name, over in zip(names, higher, strict=False)]
         return names, [*above, *block[:-1]]
     left = [*above, *block[:-1]]
     longer = names
     while left and _width(left[-1]) > 2:
-        parents = _filled(left.pop(), len(names))
-        longer = [f"{parent} {name}".strip() if name else "" for parent, name
-                  in zip(parents, longer, strict=False)]  # fmt: skip
+        row = left.pop()
+        own = [*(cell.strip() for cell in row), *[""] * len(names)]  # merged with the empty cell
+        longer = [f"{parent} {name}".strip() if name else cell for parent, name, cell
+                  in zip(_filled(row, len(names)), longer, own, strict=False)]  # fmt: skip
         if _distinct(longer):
             return longer, left
     return names, [*above, *block[:-1]]

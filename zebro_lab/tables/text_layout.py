@@ -4,7 +4,7 @@
 import csv
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from model.counted import counted
@@ -17,6 +17,7 @@ from zebro_lab.tables.header_rows import (
     find_header,
     made_header,
 )
+from zebro_lab.tables.stated_settings import after_lvm_header, stated_units
 
 BLANKS: Final = r"\s+"
 SEPARATORS: Final[Mapping[str, str]] = {
@@ -24,7 +25,7 @@ SEPARATORS: Final[Mapping[str, str]] = {
 }  # fmt: skip
 """Name of each separator, in the plural; the keys are those of `pandas.read_csv`."""
 _MARKS: Final = ("#", "%", "//")  # of comments
-_LVM_END: Final = "***End_of_Header***"
+_RECEIPT: Final = re.compile(r"\s*\d\d?:\d\d:\d\d(?:[.,]\d+)?\s*->")
 Line = tuple[int, str]
 
 
@@ -97,7 +98,9 @@ def find_layout(lines: Sequence[Line]) -> Layout:
     Raises:
         LayoutError: There is no header, or several layouts fit.
     """
-    body, comments = _without_comments(_after_lvm_header(lines))
+    _require_no_receipt(lines)
+    below = after_lvm_header(lines)
+    body, comments = _without_comments(below)
     if not body:
         raise LayoutError("is empty or all comments (#); expected a header and rows")
     tried = [_candidate(separator, body, comments) for separator in SEPARATORS]
@@ -107,7 +110,17 @@ def find_layout(lines: Sequence[Line]) -> Layout:
     best = _only_best(with_data)
     if best.header is None or best.data is None:
         raise _no_header(best, body)
-    return _layout(best, best.header, best.data, body)
+    above = [*lines[: len(lines) - len(below)], *body[: best.data.first]]
+    settings = [split_line(line, best.separator) for _, line in above]
+    return _layout(best, _with_units(best.header, settings), best.data, body)
+
+
+def _with_units(header: Header, settings: Sequence[Sequence[str]]) -> Header:
+    units = stated_units(settings, header.names)
+    if not units:
+        return header
+    note = "units are taken from the settings above the header"
+    return replace(header, units={**units, **header.units}, notes=(*header.notes, note))
 
 
 def split_line(line: str, separator: str) -> list[str]:
@@ -124,10 +137,15 @@ def split_line(line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in cells]
 
 
-def _after_lvm_header(lines: Sequence[Line]) -> Sequence[Line]:
-    """Return the lines below the last header of a LabVIEW measurement file."""
-    ends = [i for i, (_, line) in enumerate(lines) if line.strip().startswith(_LVM_END)]
-    return lines[ends[-1] + 1 :] if ends else lines
+def _require_no_receipt(lines: Sequence[Line]) -> None:
+    """Raise if a serial monitor put the time of receipt before each line."""
+    found = [match[0] for _, line in lines if (match := _RECEIPT.match(line))]
+    if len(found) <= len(lines) // 2:
+        return
+    raise LayoutError(
+        f"lines begin with the time at which a serial monitor received them, '{found[0]}', which "
+        "is no column; delete each line up to '->', or record with its timestamps switched off"
+    )
 
 
 def _without_comments(lines: Sequence[Line]) -> tuple[list[Line], list[Line]]:

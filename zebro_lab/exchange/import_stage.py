@@ -95,6 +95,9 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
 
 def _require_something(request: ImportRequest) -> None:
     if request.legs is None and request.track is None and request.rig is None:
+        if request.imu is not None:
+            raise SettingsError("is imported with the leg angles of its walk only; add --legs",
+                                key=f"--{IMU}")  # fmt: skip
         raise SettingsError("no file to import is given; add --legs, --track or --rig",
                             key="--legs, --track, --rig")  # fmt: skip
     if request.track is None and request.trajectory != TrajectoryRequest():
@@ -247,7 +250,8 @@ def _start(
             key="--start",
         )
     if given is not None:
-        return given.astimezone(UTC), 0.0, ()
+        late = (f"--start {given.isoformat()} is in the future; is the year right?",)
+        return given.astimezone(UTC), 0.0, late if given > datetime.now(UTC) else ()
     if is_unix:
         return began, first, (f"times are read as Unix time: the run starts {began.isoformat()}",)
     note = f"the date of the recording is not known; time 0 is set to now, {start.isoformat()}"

@@ -141,7 +141,9 @@ def profile_text(name: str) -> str:
 
 def _require_any(request: DevicesRequest) -> None:
     if request.zebro is None and request.rig is None and not request.imus:
-        raise SettingsError("no device to record is given; add --zebro, --imu or --rig")
+        raise SettingsError(
+            "no device to record is given; add one or more of them", key="--zebro, --imu, --rig"
+        )
     if request.play is not None and request.zebro is None:
         raise SettingsError("no robot to move is given; add --zebro or omit --play", key="--play")
 

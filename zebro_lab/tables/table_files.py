@@ -28,6 +28,7 @@ _OTHERS: Final = {
     ".xls": "save it as .xlsx or CSV", ".xlsm": "save it as .xlsx or CSV",
     ".ods": "save it as .xlsx or CSV", ".mat": "export its arrays as CSV or Parquet",
     ".tdms": "export it as CSV", ".c3d": "export it as CSV", ".h5": "export it as CSV or Parquet",
+    ".tum": "it is a trajectory, which import takes as --track",
     **dict.fromkeys((".zip", ".rar", ".7z", ".tar", ".tgz", ".tar.gz", ".bz2", ".xz"), _UNPACK),
 }  # fmt: skip
 

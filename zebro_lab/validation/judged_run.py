@@ -65,12 +65,25 @@ def judge_run(
             key="--anchor",
         )
     judgement = judge(predicted.prediction, track.poses, anchor=anchor, rng=rng)
-    left_out = len(track.poses) - int(inside.sum())
-    notes = (*track.notes, *predicted.notes)
-    if left_out:
-        notes += (f"{left_out} tracked poses lie outside the predicted time and are not scored",)
-    notes += tuple(_not_testable(judgement))
+    notes = (
+        *track.notes, *predicted.notes, *_outside(inside, predicted.prediction.path.t),
+        *_not_testable(judgement),
+    )  # fmt: skip
     return JudgedRun(judgement.track, judgement.rows, judgement.band, name, notes)
+
+
+def _outside(inside: np.ndarray, t: np.ndarray) -> Iterator[str]:
+    """Yield a note if tracked poses lie outside the predicted times `t`, a warning if most do."""
+    left_out, total = int((~inside).sum()), len(inside)
+    if 2 * left_out > total:
+        yield (
+            f"WARNING: the whole walk is not testable with these data: only {total - left_out} of "
+            f"{total} tracked poses lie within the predicted time, {t[0]:g} to {t[-1]:g} s; is it "
+            "the prediction of another walk? Predict the time of the track, or correct its clock "
+            "with --time-offset"
+        )
+    elif left_out:
+        yield f"{left_out} tracked poses lie outside the predicted time and are not scored"
 
 
 def _not_testable(judgement: Judgement) -> Iterator[str]:

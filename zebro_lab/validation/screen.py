@@ -24,7 +24,7 @@ _STATISTICS = {
 
 
 def print_validated(console: Console, validated: Validated, out: Path) -> None:
-    """Print errors, coverage, tilt and notes of each walk, means over walks, and output folder.
+    """Print warnings, errors, coverage, tilt, notes of each walk, means over walks, and the folder.
 
     Args:
         console: Console to print to.
@@ -34,8 +34,12 @@ def print_validated(console: Console, validated: Validated, out: Path) -> None:
     if "sim:" in validated.source:
         console.print(plain(f"SIMULATED: {validated.source}"))
     for run in validated.runs:
+        warnings = [note for note in run.notes if note.startswith("WARNING")]
+        for line in warnings:
+            console.print(plain(f"{run.name}: {line}"))
         console.print(_table(run))
-        for line in (*_verdict(run), *_tilt(run), *run.notes):
+        notes = [note for note in run.notes if note not in warnings]
+        for line in (*_verdict(run), *_tilt(run), *notes):
             console.print(plain(line))
     for each in validated.summary:
         mean, low, high = each.interval

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Files that others recorded become run folders that every stage reads like recorded ones."""
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pandas as pd
@@ -277,7 +277,7 @@ def test_what_a_trajectory_leaves_open_is_asked_for(tmp_path, how, error, messag
     ("changes", "message"),
     [
         ({}, "no file to import"),
-        ({"imu": "imu.csv"}, "belongs to a walk|no file to import"),
+        ({"imu": "imu.csv"}, "^--imu: is imported with the leg angles .*; add --legs$"),
         ({"legs": "legs.csv", "start": datetime(2026, 1, 1)}, "no time zone"),
         ({"track": "track.csv", "imu": "imu.csv"}, "^--imu: belongs to a walk"),
         ({"legs": "legs.csv", "trajectory": TrajectoryRequest(plane=Plane.XY)}, "^--track: .*add"),
@@ -288,6 +288,21 @@ def test_half_a_request_is_refused(files, tmp_path, changes, message):
     named = {k: files / v if isinstance(v, str) else v for k, v in changes.items()}
     with pytest.raises(SettingsError, match=message):
         taken(tmp_path, **named)
+
+
+def test_a_start_in_the_future_is_noted(files, tmp_path):
+    start = datetime.now(UTC) + timedelta(days=2)
+    notes = taken(tmp_path, legs=files / "legs.csv", start=start).notes
+    assert "is in the future; is the year right?" in notes[0]
+
+
+def test_a_trajectory_given_as_legs_is_told_apart(tmp_path):
+    file = written(tmp_path / "a.tum", tum(*drive()))
+    with pytest.raises(
+        DataError,
+        match=r"a\.tum: is not a table .*; it is a trajectory, which import takes as --track",
+    ):
+        taken(tmp_path, legs=file)
 
 
 @pytest.mark.parametrize(

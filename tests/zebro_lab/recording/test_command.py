@@ -125,7 +125,6 @@ def test_a_run_is_exported_as_tables(run_command, tmp_path):
 
 
 ERRORS = {
-    "no device": (("--label", "x"), "no device to record is given"),
     "no such port": (("--label", "x", "--zebro", "zebro-100-serial@/dev/no"), "cannot open port"),
     "no such profile": (("--label", "x", "--imu", "mine@sim"), "neither a file 'mine' nor a"),
     "nobody to play to": (("--label", "x", "--imu", "sim", "--play", "legs.csv"), "legs.csv"),
@@ -138,6 +137,16 @@ def test_an_error_is_one_line_and_nothing_is_written(options, message, run_comma
     assert (code, out) == (1, "")
     assert message in err
     assert err.count("\n") == 1
+    assert not (tmp_path / "data").exists()
+
+
+def test_a_device_is_required_like_any_other_option(run_command, tmp_path):
+    code, _, err = run_command("record", "--label", "x", "--data", tmp_path / "data")
+    assert code == 2
+    assert (
+        err
+        == "error: --zebro, --imu, --rig: no device to record is given; add one or more of them\n"
+    )
     assert not (tmp_path / "data").exists()
 
 

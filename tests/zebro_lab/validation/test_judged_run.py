@@ -60,11 +60,18 @@ def test_an_anchored_path_starts_at_the_first_tracked_pose():
 
 
 def test_poses_outside_the_predicted_time_are_left_out_and_noted():
-    found = judge(PATH.delayed(2.5))
-    assert found.rows[0].errors.poses == 4
-    assert found.notes[2].startswith("5 tracked poses lie outside the predicted time")
+    found = judge(PATH.delayed(2.0))
+    assert found.rows[0].errors.poses == 5
+    assert found.notes[2].startswith("4 tracked poses lie outside the predicted time")
     with pytest.raises(DataError, match="start from it: 1; expected two or more"):
         judge(PATH.delayed(3.2), anchor=True)
+
+
+def test_a_prediction_that_lasts_for_less_than_half_of_the_track_is_warned_of():
+    found = judge(PATH.delayed(2.5))
+    assert found.rows[0].errors.poses == 4
+    assert found.notes[2].startswith("WARNING: the whole walk is not testable")
+    assert "only 4 of 9 tracked poses lie within the predicted time, 0 to 4 s" in found.notes[2]
 
 
 def test_a_track_without_headings_cannot_start_a_prediction():

@@ -44,6 +44,14 @@ def rows(text: str) -> dict[str, list[str]]:
     return {line.split()[0]: line.split() for line in text.splitlines() if line.strip()}
 
 
+def test_a_warning_stands_before_the_errors_it_is_about():
+    warned = replace(RUN, notes=("tracked", "WARNING: not testable"))
+    text = printed(warned)
+    assert text.startswith("one: WARNING: not testable\n")
+    assert text.count("WARNING") == 1
+    assert "tracked" in text
+
+
 def test_every_model_has_its_errors_in_millimetres_and_degrees():
     text = printed()
     assert f"one: {RUN.rows[0].errors.poses} poses, 0.400 m" in text

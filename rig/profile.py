@@ -13,6 +13,10 @@ from rig.toml_text import MOST_BYTES, parse_toml
 
 SCHEMA: Final = 1
 """Version of the layout of profiles; a file with another one is an error."""
+_PLACES: Final = {
+    "legs": "--zebro or sim zebro", "imu": "--imu or sim imu", "slip-rig": "--rig or sim rig",
+}  # fmt: skip
+"""Where a profile of each kind of device is named on a command line."""
 
 
 def open_profile(name: str, *, device: str) -> TomlTable:
@@ -38,7 +42,11 @@ def open_profile(name: str, *, device: str) -> TomlTable:
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     found = table.text("device")
     if found != device:
-        raise table.fault(f"found '{found}'; expected a profile of the device '{device}'", "device")
+        place = _PLACES.get(found)
+        advice = f"; this profile belongs to {place}" if place else ""
+        raise table.fault(
+            f"found '{found}'; expected a profile of the device '{device}'{advice}", "device"
+        )
     return table
 
 

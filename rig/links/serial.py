@@ -62,8 +62,9 @@ class SerialLink:
         except (OSError, ValueError) as problem:
             self._lock.release()
             raise LinkError(
-                f"cannot open port {self.port}: {problem}; check the cable and the name of the "
-                "port, that no other program uses it, and on Linux that your user is in its group"
+                f"cannot open port {self.port}: {_reason(problem)}; check the cable and the name "
+                "of the port, that no other program uses it, and on Linux that your user is in its "
+                "group"
             ) from problem
 
     def close(self) -> None:
@@ -181,3 +182,9 @@ def _readable(port: serial.Serial, timeout: float) -> bool:
     while not port.in_waiting and time.monotonic() < end:
         time.sleep(0.001)
     return bool(port.in_waiting)
+
+
+def _reason(problem: OSError | ValueError) -> str:
+    """Return the system's words for an error that has a number: pyserial's repeat it."""
+    number = problem.errno if isinstance(problem, OSError) else None
+    return str(problem) if number is None else os.strerror(number)

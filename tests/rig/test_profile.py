@@ -22,3 +22,8 @@ def test_every_shipped_profile_has_a_device():
 def test_half_an_address_is_refused(address):
     with pytest.raises(ProfileError, match="PROFILE@PORT"):
         split_address(address)
+
+
+def test_a_profile_of_another_device_says_where_it_belongs():
+    with pytest.raises(ProfileError, match=r"found 'imu'; .* belongs to --imu or sim imu$"):
+        open_profile("imu-quaternion-serial", device="legs")

@@ -71,7 +71,9 @@ class CalibrationRequest:
     max_steps: Annotated[
         int,
         Option(
-            min=1, help="Largest number of sampler moves; a fit that has not converged ends then."
+            min=1,
+            help="Largest number of sampler moves; a fit that has not converged ends then, but not "
+            "before its first look at 500 moves.",
         ),
     ] = 30_000
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1

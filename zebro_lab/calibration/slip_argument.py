@@ -12,6 +12,7 @@ from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.calibration.folder import SLIP_TOML, read_slip_file
 from zebro_lab.calibration.walks_folder import StoredWalks, read_stored_walks
 from zebro_lab.files.errors import NotFound
+from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.replacement import settle
 
 THESIS = "thesis"
@@ -26,7 +27,8 @@ class NamedSlip(Slip):
         text: The value of `--slip`, as given.
         files: Files that were read, the `slip.toml` first, then those of `walks/`; empty for a law
             without a file. `posterior.nc`, read later for draws, is not among them.
-        notes: Notes, one line each: an untrustworthy fit, a slip definition to convert.
+        notes: Notes, one line each: a changed file, an untrustworthy fit, a slip definition to
+            convert.
         walks: Posterior of legs and floor after tracked walks; None if no walks were fitted, or
             they were not read.
     """
@@ -77,7 +79,7 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
 
 def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
     read = read_slip_file(path)
-    notes = []
+    notes = [f"WARNING: {each}" for each in changed_output(read.file)]
     if read.doubt is not None:
         notes.append(f"WARNING: the calibration is not trustworthy: {read.doubt}")
     if read.curve.definition is not SlipDefinition.MATERIAL:

@@ -35,9 +35,10 @@ def export(run: RunFolder, out: Out, to: To = "csv", output: Output = TEXT) -> N
         content = {"messages": dict(exported.topics), "notes": list(exported.notes)}
         output.document("export", {**content, "written": [exported.file]})
         return
-    from zebro_lab.exchange.export_stage import export_run
+    from zebro_lab.exchange.export_stage import export_run, unended_notes
 
     files = list(export_run(run, to=to, out=out))
-    for file in files:
-        output.say(f"wrote {file}")
-    output.document("export", {"written": files})
+    notes = list(unended_notes(run))
+    for line in (*notes, *(f"wrote {file}" for file in files)):
+        output.say(line)
+    output.document("export", {"written": files, "notes": notes})

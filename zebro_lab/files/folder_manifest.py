@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from zebro_lab.files.documents import read_json_document, require_object
 from zebro_lab.files.errors import DataError, NotFound, ZebroLabError
+from zebro_lab.files.provenance import file_hash
 
 MANIFEST: Final = "manifest.json"
 
@@ -55,6 +56,25 @@ def read_folder_manifest(
             file=file,
         )
     return content
+
+
+def changed_output(file: Path) -> tuple[str, ...]:
+    """Return one sentence if a file of a result folder is not as it was written; else nothing.
+
+    The manifest beside it tells, by the SHA-256 under `outputs`. Nothing is said of a file that no
+    readable manifest lists, or that is missing.
+    """
+    try:
+        listed = read_json_object(file.parent / MANIFEST, of="result folder").get("outputs")
+    except ZebroLabError:
+        return ()
+    digest = listed.get(file.name) if isinstance(listed, Mapping) else None
+    if not isinstance(digest, str) or not file.is_file() or file_hash(file) == digest:
+        return ()
+    return (
+        f"{file} was changed after it was written: its SHA-256 differs from that in {MANIFEST}; "
+        "restore it, or run the command that writes it again",
+    )
 
 
 def result_kind(folder: Path) -> str | None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Say which results of a report do not belong together, by the hashes in their manifests."""
+"""Say which results of a report were changed or do not belong together, by manifests' hashes."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from pathlib import Path
 
 from zebro_lab.calibration.folder import SLIP_TOML
 from zebro_lab.calibration.walks_folder import WALKS_TOML
+from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.names import PATH_CSV, TRACK
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.report.pictures import VALIDATION, lies_in
@@ -23,7 +24,8 @@ class Belonging:
     """Whether the results of a report were made from one another.
 
     Attributes:
-        notices: What does not belong together, one sentence each; empty if nothing is known to.
+        notices: What was changed or does not belong together, one sentence each; empty if
+            nothing is known to.
         calibration_used: Whether a prediction was made with the calibration as it is now, or there
             is no prediction to say so.
     """
@@ -45,6 +47,7 @@ def belonging(sources: Sources) -> Belonging:
     notices += [notice for run in sources.runs for notice in _walk(run)]
     notices += _of_walks(sources, law)
     notices += _together(sources)
+    notices += _changed(sources)
     return Belonging(tuple(dict.fromkeys(notices)), used)
 
 
@@ -132,6 +135,13 @@ def _together(sources: Sources) -> Iterator[str]:
     for run in sources.runs:
         if run.name in judged:
             yield from _judged(run, together)
+
+
+def _changed(sources: Sources) -> Iterator[str]:
+    """Say which of the files that others are made from are not as they were written."""
+    for part in sources.parts:
+        for name in (SLIP_TOML, WALKS_TOML, PATH_CSV, TRACK_CSV):
+            yield from changed_output(part.folder / name)
 
 
 def _leg_files(run: ReportedRun) -> Mapping[str, str]:

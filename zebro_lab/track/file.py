@@ -12,6 +12,7 @@ from model.errors import DomainError
 from model.poses import Poses
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
+from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.replacement import settle
 from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.raw_table import RawTable
@@ -63,7 +64,9 @@ def read_track(path: Path) -> TrackFile:
     """
     settle(path)
     file = path / TRACK_CSV if path.is_dir() else path
-    return track_of_table(read_table_file(file))
+    track = track_of_table(read_table_file(file))
+    changed = (f"WARNING: {each}" for each in changed_output(file))
+    return replace(track, notes=(*changed, *track.notes))
 
 
 def track_of_table(table: RawTable) -> TrackFile:

@@ -15,6 +15,7 @@ from model.robot import Robot
 from model.walk.path import WalkPath
 from model.walk_models import baseline_paths
 from zebro_lab.files.errors import DataError
+from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.track.file import read_poses
@@ -68,11 +69,16 @@ def read_prediction(path: Path) -> PredictionFile:
     draws = read_draws(folder) if has_draws else None
     walk = WalkedPath(read_walk(folder), robot_of_walk(manifest, folder))
     baselines, notes = _baselines(walk, manifest)
+    changed = (f"WARNING: {each}" for each in changed_output(file))
     return PredictionFile(
         Prediction(poses, draws, baselines),
         str(manifest.get("source", "unknown")),
         (file, *([folder / DRAWS] if has_draws else [])),
-        (*notes, *(() if has_draws else ("no draws, so no band: run predict with --draws 500",))),
+        (
+            *changed,
+            *notes,
+            *(() if has_draws else ("no draws, so no band: run predict with --draws 500",)),
+        ),
         walk,
     )
 

@@ -2,6 +2,7 @@
 """`--slip`: everything it may name, and every way in which it may name nothing."""
 
 import dataclasses
+import json
 import re
 
 import numpy as np
@@ -16,6 +17,7 @@ from model.walk.traction import VelocityCoulomb
 from support.bounded_reading import refusal
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.provenance import file_hash
 
 SLIP_TOML = """
 schema = 1
@@ -61,6 +63,16 @@ def test_untrustworthy_calibration_is_said_to_be(calibration):
     (calibration / "slip.toml").write_text(text)
     (note,) = parse_slip(str(calibration)).notes
     assert note == "WARNING: the calibration is not trustworthy: NOT CONVERGED"
+
+
+def test_a_calibration_that_was_edited_by_hand_is_told(calibration):
+    file = calibration / "slip.toml"
+    outputs = {"slip.toml": file_hash(file)}
+    (calibration / "manifest.json").write_text(json.dumps({"outputs": outputs}))
+    assert parse_slip(str(calibration)).notes == ()
+    file.write_text(file.read_text() + "# mine\n")
+    (note,) = parse_slip(str(calibration)).notes
+    assert note.startswith(f"WARNING: {file} was changed after it was written")
 
 
 def test_a_calibration_that_does_not_exist_names_the_command_that_makes_one(tmp_path):

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab export` names every file that it writes."""
 
+import os
 from pathlib import Path
 
 import pytest
 
-from support.written_runs import make_run
+from support.written_runs import edit, make_run
 from zebro_lab.exchange import export_mcap_stage
 from zebro_lab.exchange.export_mcap_stage import Exported
 
@@ -18,6 +19,17 @@ def test_every_table_is_named(tmp_path, run_command, form):
     files = sorted(f"wrote {file}" for file in out.iterdir() if file.suffix == f".{form}")
     assert len(files) == 2
     assert sorted(line for line in ended.out.splitlines() if line.endswith(form)) == files
+
+
+def test_a_run_that_did_not_end_is_exported_with_its_state(tmp_path, run_command):
+    folder = make_run(tmp_path)
+    edit(folder, exit_status="recording")
+    os.utime(folder / "log.mcap", (0, 0))
+    ended = run_command("export", folder, "--out", tmp_path / "out")
+    assert ended.out.startswith("WARNING: the run has not ended, state 'recovered': ")
+    assert "recovered" in run_command("runs", tmp_path).out
+    edit(folder, exit_status="completed")
+    assert "WARNING" not in run_command("export", folder, "--out", tmp_path / "more").out
 
 
 def test_topics_of_a_log_for_viewers_are_counted(tmp_path, run_command, monkeypatch):

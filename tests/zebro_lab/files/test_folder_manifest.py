@@ -6,7 +6,8 @@ import json
 import pytest
 
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.files.folder_manifest import read_folder_manifest, read_json_object
+from zebro_lab.files.folder_manifest import changed_output, read_folder_manifest, read_json_object
+from zebro_lab.files.result_folder import ResultKind, result_folder
 
 
 def read(file):
@@ -49,3 +50,25 @@ def test_a_manifest_of_another_kind_or_schema_is_refused(file, content, message)
 def test_a_folder_without_its_file_is_none_of_the_kind(file):
     with pytest.raises(NotFound, match=r"is not a run folder: manifest\.json is missing"):
         read_json_object(file, of="run folder")
+
+
+def test_a_file_that_was_changed_after_it_was_written_is_told(tmp_path):
+    with result_folder(tmp_path / "walk", ResultKind("walk", "walk", ("a",)), content={}) as draft:
+        (draft / "a").write_text("1")
+    file = tmp_path / "walk" / "a"
+    assert changed_output(file) == ()
+    file.write_text("2")
+    (told,) = changed_output(file)
+    assert told.startswith(f"{file} was changed after it was written")
+    (tmp_path / "walk" / "b").write_text("mine")
+    assert changed_output(tmp_path / "walk" / "b") == ()
+    file.unlink()
+    assert changed_output(file) == ()
+
+
+@pytest.mark.parametrize("manifest", [None, "no JSON", "[]", '{"outputs": ["a"]}'])
+def test_nothing_is_said_of_files_that_no_manifest_lists(file, tmp_path, manifest):
+    if manifest is not None:
+        file.write_text(manifest)
+    (tmp_path / "a").write_text("1")
+    assert changed_output(tmp_path / "a") == ()

@@ -30,7 +30,11 @@ def test_a_board_is_data_for_a_calibration(tmp_path):
         ({"rig": "sim", "duration": 0.0}, SettingsError, "expected more than 0"),
         ({"zebro": "zebro-100-serail@sim"}, ProfileError, "did you mean 'zebro-100-serial'"),
         ({"zebro": "zebro-100-serial"}, SettingsError, "expected PROFILE@PORT"),
-        ({"zebro": "zebro-100-serial@/dev/nowhere"}, ConnectionError, "cannot open port"),
+        (
+            {"zebro": "zebro-100-serial@/dev/nowhere"},
+            ConnectionError,
+            "cannot open port /dev/nowhere: No such file or directory; check",
+        ),
     ],
 )
 def test_what_cannot_be_recorded_leaves_nothing(tmp_path, changes, error, message):

@@ -7,6 +7,7 @@ import json
 import pytest
 
 from support.report_pages import made, write_json
+from zebro_lab.files.provenance import file_hash
 from zebro_lab.report.belonging import belonging
 from zebro_lab.report.sources import find_sources
 
@@ -106,6 +107,14 @@ def test_each_result_that_is_not_of_the_others_is_named_on_page_and_line(
     page = made(whole)
     assert "These results do not belong together" in page.text
     assert notice in page.text
+
+
+def test_a_result_that_was_edited_by_hand_is_named(whole):
+    manifest, file = whole / "prediction/manifest.json", whole / "prediction/path.csv"
+    edit(manifest, outputs={"path.csv": file_hash(file)})
+    assert notices(whole) == ()
+    edit(manifest, outputs={"path.csv": digest("before")})
+    assert notices(whole)[-1].startswith(f"{file} was changed after it was written")
 
 
 def test_a_prediction_from_the_table_that_was_imported_is_of_the_run(whole):

@@ -12,7 +12,7 @@ from model.slip.law import Array
 from zebro_lab.exchange.column_names import NAMES, WEAK, leg_of, plain_name, split_header
 from zebro_lab.exchange.unit_guesses import UnitGuess, guess_unit
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.robot.imu_log import IMU_UNITS
+from zebro_lab.robot.imu_log import IMU_UNITS, is_in_g
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.tables.column_sections import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.tables.columns import CANONICAL
@@ -40,6 +40,7 @@ _AXES = ("x_m", "y_m", "z_m")
 _EVERYBODYS: Final = frozenset(("t", "x", "y", "z", "roll", "pitch", "yaw"))
 """Canonical names that other programs use, too, in other units."""
 _MOST_SET_POINTS = 200
+_FORCES = ("force_x", "force_y", "force_z")
 _QUATERNION = ("qw", "qx", "qy", "qz")
 
 
@@ -113,7 +114,21 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
         if fitting:
             guesses[canonical] = _guess(table, canonical, kind, fitting, ours=ours)
             taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
-    return _of_one_mind(_with_axes(_whole_quaternion(guesses)))
+    return _of_one_mind(_in_multiples_of_g(table, _with_axes(_whole_quaternion(guesses))))
+
+
+def _in_multiples_of_g(table: RawTable, guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
+    """Return the guesses with g for a specific force that averages 1 without a stated unit."""
+    forces = {name: guesses[name] for name in _FORCES if name in guesses}
+    numbers = [numbers_or_none(table, guess.name) for guess in forces.values()]
+    found = [values for values in numbers if values is not None]
+    stated = any(table.unit_of(guess.name, "m/s^2") for guess in forces.values())
+    if stated or len(found) < len(_FORCES):
+        return guesses
+    if not is_in_g(float(np.nanmedian(np.linalg.norm(np.array(found), axis=0)))):
+        return guesses
+    unit = UnitGuess("g", "the file states none, and its length is about 1")
+    return guesses | {name: replace(guess, unit=unit) for name, guess in forces.items()}
 
 
 def _whole_quaternion(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
@@ -264,7 +279,7 @@ def _name_doubt(name: str, canonical: str, others: list[str]) -> str:
     if others:
         return f"could also be {', '.join(map(repr, others))}"
     if canonical in ANGLES and not (leg_of(name) or (0, False))[1]:
-        return "the file may number the legs in another order, see docs/conventions.md"
+        return "the file may number or name the legs otherwise, see docs/conventions.md"
     return "the name may mean another column" if _is_weak(name) else ""
 
 

@@ -12,7 +12,7 @@ from zebro_lab.tables.header_units import suffix_in_header, unit_in_header
 _TIME = (
     r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|time_?stamp|seconds|"
     r"zeit(stempel|punkt|achse)?|messzeit|sekunden|uhrzeit|datum(_?(und_?)?(uhr)?zeit)?|"
-    r"date(_?(and_?)?time)?|x_value|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|rosbagtimestamp"
+    r"date(_?(and_?)?time)?|x_value|millis|micros|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|rosbagtimestamp"
 )
 _SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschwindigkeit|angular_(speed|velocity))"
 _LEG_DISC = r"(l|leg|leg_?disc|wheel|bein|beinscheibe|rad)"
@@ -89,9 +89,11 @@ _ENDS = {
     "front": 0, "fore": 0, "vorn": 0, "vorne": 0, "f": 0, "v": 0, "middle": 1, "mid": 1, "mitte": 1,
     "m": 1, "rear": 2, "back": 2, "hind": 2, "hinten": 2, "b": 2, "h": 2,
 }  # fmt: skip
-_NUMBERED = re.compile(
-    r"(?:.*_)?(?:th|theta|leg|bein|angle|winkel|phi|q|joint|motor|position|pos|hip)_?(\d)"
-    r"(?:_(?:angle|position|pos|joint|winkel|theta))?|(\d)|l(\d)"
+_BEFORE = r"(?:.*_)?(?:th|theta|leg|bein|angle|winkel|phi|q|joint|motor|position|pos|hip)_?"
+_AFTER = r"(?:_(?:angle|position|pos|joint|winkel|theta))?"
+_NUMBERED = re.compile(rf"{_BEFORE}(\d){_AFTER}|(\d)|l(\d)")
+_LETTERED = re.compile(
+    rf"(?:{_BEFORE})?(?:(?P<end>[fvmrhb])(?P<side>[lr])|(?P<side2>[lr])(?P<end2>[fmhb])){_AFTER}"
 )
 _GREEK: Final = str.maketrans({
     "θ": "theta", "ϑ": "theta", "φ": "phi", "ψ": "psi", "ω": "omega", "κ": "kappa", "μ": "mu",
@@ -102,10 +104,12 @@ def leg_of(header: str) -> tuple[int, bool] | None:
     """Return the leg that a header names, 1 to 6, and whether it names it by its place.
 
     None if it names none. A number is that of the program that wrote the file, whose order of legs
-    may be another; one from 0 on is returned as it is.
+    may be another; one from 0 on is returned as it is. Letters may stand for other places.
 
     >>> leg_of("leg_front_left_joint"), leg_of("Winkel Bein 3 [°]"), leg_of("position[0]")
     ((1, True), (3, False), (0, False))
+    >>> leg_of("hip_FL"), leg_of("HR"), leg_of("torque_FL")
+    ((1, False), (6, False), None)
     """
     plain = split_header(header)[0]
     words = plain.split("_")
@@ -115,6 +119,9 @@ def leg_of(header: str) -> tuple[int, bool] | None:
         return 2 * ends.pop() + sides.pop() + 1, True
     if match := _NUMBERED.fullmatch(plain):
         return int(next(group for group in match.groups() if group is not None)), False
+    if match := _LETTERED.fullmatch(plain):
+        end, side = match["end"] or match["end2"], match["side"] or match["side2"]
+        return 2 * (2 if end == "r" else _ENDS[end]) + _SIDES[side] + 1, False
     return None
 
 
@@ -128,8 +135,11 @@ def split_header(header: str) -> tuple[str, str | None]:
     """
     unit = unit_in_header(header)
     if unit is not None:
-        before = header.rstrip("])> }").removesuffix(unit).rstrip()
-        return _plain(re.sub(r"([\[(<{/,]|\bin)$", "", before.rstrip())), unit
+        bracketed = rf"[\[(<{{]\s*{re.escape(unit)}\s*[\])>}}]"
+        if re.search(bracketed, header):
+            return _plain(re.sub(bracketed, " ", header)), unit
+        before = header.removesuffix(unit).rstrip()
+        return _plain(re.sub(r"([/,]|\bin)$", "", before)), unit
     plain = _plain(header)
     if ending := suffix_in_header(header):
         return plain.removesuffix(f"_{ending[0]}"), ending[1]

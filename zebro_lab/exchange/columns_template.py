@@ -52,6 +52,9 @@ _MEANINGS: Final = {
     "y_m": "position, to the left of x", "z_m": "height", "yaw_rad": "positive to the left",
     "roll": "positive with the left side up", "pitch": "positive with the nose down",
     "yaw": "positive to the left",
+    **{f"q{axis}": "orientation, a part of a quaternion [-]" for axis in "wxyz"},
+    **{f"rate_{axis}": "angular rate of the body, in its frame" for axis in "xyz"},
+    **{f"force_{axis}": "specific force (9.81 m/s^2 upwards at rest)" for axis in "xyz"},
 }  # fmt: skip
 
 
@@ -76,7 +79,7 @@ def render_columns(
     """
     at = f"{kind}." if sectioned else ""
     used = {guess.name for guess in guesses.values()}
-    others = [name for name in table.columns if name not in used]
+    others = {name: table.units.get(name) for name in table.columns if name not in used}
     head = _TOP.format(file=table.path.name, reads=_READS[kind], columns_file=COLUMNS_FILE)
     text = head + ("" if appended else _SOURCE)
     text += f"\n[{kind}]\n" if sectioned else ""
@@ -86,7 +89,10 @@ def render_columns(
         column = _bare(next(iter(table.columns)))
         text += _CONSTANTS.format(at=at) + _runs(table, guesses, at)
         text += _ROWS.format(at=at, column=column) + _LOAD_CELL.format(at=at)
-    listed = "".join(f"#   {_quoted(name)}: {_summary(table, name)}\n" for name in others)
+    listed = "".join(
+        f"#   {_quoted(name)}: {_summary(table, name)}{f', in {unit}' if unit else ''}\n"
+        for name, unit in others.items()
+    )
     return text + ("\n# Columns not used:\n" + listed if others else "")
 
 

@@ -56,6 +56,9 @@ def _to_check(written: "WrittenColumns") -> list[str]:
     found = set(written.guesses)
     doubts = sum(len(guess.doubts) for guess in written.guesses.values())
     advice = ["the names, units and signs above; comments in columns.toml explain them"]
+    if not found:
+        advice = ["no column was recognised; map each by hand in columns.toml, which lists all "
+                  "columns of the table at its end"]  # fmt: skip
     if doubts:
         advice = [f'the {doubts} values that end in "?" in columns.toml: correct each and delete '
                   'its "?"; until then no command reads the table']  # fmt: skip

@@ -21,6 +21,7 @@ _MEANT: Final = {
 """What a unit that measures another quantity probably means, by unit and SI unit."""
 _EPOCH: Final = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"))
 """Units of seconds since 1970, by the least number that they give."""
+_CLOCKS: Final = {"millis": "ms", "micros": "us"}  # named by functions of Arduino
 _RATIO: Final = 1.5  # a slip ratio beyond is a percentage
 _RADIANS: Final = 90.0  # an angle beyond is probably in degrees
 _ZONE = re.compile(r".*(Z|[+-]\d\d:?\d\d)")
@@ -87,6 +88,8 @@ def _by_numbers(table: RawTable, name: str, si_unit: str) -> str:
     except DataError:
         return si_unit
     largest = float(np.nanmax(np.abs(numbers), initial=0.0))
+    if si_unit == "s" and plain in _CLOCKS:
+        return _CLOCKS[plain]
     if si_unit == "s":
         return next((unit for least, unit in _EPOCH if largest >= least), si_unit)
     if si_unit == "dimensionless" and largest > _RATIO:

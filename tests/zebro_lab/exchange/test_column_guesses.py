@@ -14,7 +14,7 @@ from zebro_lab.exchange.column_guesses import (
     numbers_or_none,
 )
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.tables.column_sections import TRACK
+from zebro_lab.tables.column_sections import IMU, TRACK
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 
@@ -190,3 +190,20 @@ def test_a_header_that_several_columns_have_is_in_doubt():
     assert "several columns have this header" in found["y_m"].name_doubt
     assert "sign" in found["y_m"].doubts
     assert "column" not in found["x_m"].doubts
+
+
+@pytest.mark.parametrize(("up", "unit"), [(1.02, "g?"), (9.8, "m/s^2?"), (0.3, "m/s^2?")])
+def test_a_specific_force_that_averages_one_is_taken_for_multiples_of_g(up, unit):
+    cells = {"t": [0.0, 1.0], "ax": [0.0, 0.1], "ay": [0.0, 0.0], "az": [up, up]}
+    raw = RawTable(Path("a.csv"), {name: pd.Series(values) for name, values in cells.items()})
+    found = [guess_columns(raw, IMU)[f"force_{axis}"].unit for axis in "xyz"]
+    assert {each.unit + "?" * bool(each.doubt) for each in found if each} == {unit}
+
+
+def test_units_that_a_file_states_for_a_force_are_no_doubt():
+    cells = {"ax_g": [0.0, 0.1], "ay_g": [0.0, 0.0], "az_g": [1.0, 1.0], "gx_dps": [12.5, 12.5]}
+    raw = RawTable(Path("a.csv"), {name: pd.Series(values) for name, values in cells.items()})
+    units = {name: guess.unit for name, guess in guess_columns(raw, IMU).items()}
+    assert {name: (each.unit, each.doubt) for name, each in units.items() if each} == {
+        "rate_x": ("deg/s", ""), **{f"force_{axis}": ("g", "") for axis in "xyz"},
+    }  # fmt: skip

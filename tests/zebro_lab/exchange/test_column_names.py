@@ -14,7 +14,8 @@ from zebro_lab.robot.leg_log import ANGLES
         ("FZ [N]", "fz", "N"), ("Zeit / ms", "zeit", "ms"), ("Kraft, kN", "kraft", "kN"),
         ("Weg in mm", "weg", "mm"), ("Slip (%)", "slip", "%"), ("t_ms", "t", "ms"),
         ("omega_l_rad_s", "omega_l", "rad/s"), ("position[0]", "position_0", None),
-        ("F (left)", "f_left", None), ("θ_1 [°]", "theta_1", "°"), ("__time", "__time", None),
+        ("F (left)", "f_left", None), ("FZ [kN] (left)", "fz_left", "kN"),
+        ("[daN] FZ", "fz", "daN"), ("θ_1 [°]", "theta_1", "°"), ("__time", "__time", None),
         ("/imu/orientation/x", "imu_orientation_x", None),
     ],
 )  # fmt: skip
@@ -29,7 +30,11 @@ def test_a_header_has_a_name_and_a_unit(header, name, unit):
         ("leg_front_left_joint", (1, True)), ("Hip rear right [deg]", (6, True)),
         ("vorne rechts", (2, True)), ("Bein mitte links", (3, True)), ("th4", (4, False)),
         ("joint_states/leg_5/position", (5, False)), ("2", (2, False)), ("fn1", None),
-        ("leg_1_velocity", None), ("left", None), ("front", None),
+        ("leg_1_velocity", None),
+        ("hip_FL", (1, False)), ("MR", (4, False)), ("leg HL angle", (5, False)),
+        ("RF", (2, False)),
+        ("RL", (5, False)), ("RR", (6, False)), ("torque_FL", None), ("HTML", None),
+        ("left", None), ("front", None),
     ],
 )  # fmt: skip
 def test_a_header_names_a_leg_by_place_or_number(header, leg):

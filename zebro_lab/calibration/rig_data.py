@@ -15,7 +15,12 @@ from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.rig_part import RigPart, read_part
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
-from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
+from zebro_lab.runs.counted_once import (
+    content_hash,
+    duplicates_note,
+    first_of_each,
+    named_like_a_copy,
+)
 from zebro_lab.runs.data_paths import DataSource, find_sources
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
@@ -74,7 +79,7 @@ def read_rig_data(
     named, others = _of_the_rig(find_sources(paths))
     excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
     counted = [source for source in named if source not in excluded]
-    sources, repeated = first_of_each(counted, key=_bytes_of) if len(counted) > 1 else (counted, [])
+    sources, repeated = _distinct(counted)
     wanted = slip_definition
     if wanted is not None:
         wanted = parse_definition(wanted, file=None, key="slip definition")
@@ -100,6 +105,17 @@ def read_rig_data(
         notes=(*_notes(parts), *others, *skipped, *duplicates),
         load_cell=_joined_load_cell(parts),
         repeated=duplicates,
+    )
+
+
+def _distinct(
+    sources: list[DataSource],
+) -> tuple[list[DataSource], list[tuple[DataSource, DataSource]]]:
+    """Return the sources without copies, and pairs of a copy and its original."""
+    if len(sources) < 2:  # nothing to compare, so that nothing is hashed
+        return sources, []
+    return first_of_each(
+        sources, key=_bytes_of, is_copy=lambda source: named_like_a_copy(source.path)
     )
 
 

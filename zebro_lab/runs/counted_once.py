@@ -3,6 +3,7 @@
 
 import gzip
 import hashlib
+import re
 import zlib
 from collections.abc import Callable, Hashable, Sequence
 from pathlib import Path
@@ -19,6 +20,7 @@ FEWEST: Final = 20
 _MOST: Final = 1 << 30  # bytes that are unpacked to be compared; a larger file is compared packed
 _CHUNK: Final = 1 << 20
 _SHOWN: Final = 3
+_COPY: Final = re.compile(r"\b(copy|kopie|copie|copia)\b|\(\d+\)$", re.IGNORECASE)
 _T = TypeVar("_T")
 
 
@@ -76,14 +78,27 @@ def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tup
     return tuple(keys)
 
 
+def named_like_a_copy(path: Path) -> bool:
+    """Return whether a file or folder has a name as computers give to copies.
+
+    >>> [named_like_a_copy(Path(n)) for n in ("b - Kopie.csv", "b (1).csv", "b copy 2", "b.csv")]
+    [True, True, True, False]
+    """
+    return _COPY.search(path.name.split(".")[0]) is not None
+
+
 def first_of_each(
-    items: Sequence[_T], *, key: Callable[[_T], Hashable]
+    items: Sequence[_T],
+    *,
+    key: Callable[[_T], Hashable],
+    is_copy: Callable[[_T], bool] = lambda _: False,
 ) -> tuple[list[_T], list[tuple[_T, _T]]]:
-    """Remove duplicates, keeping the first item of each key.
+    """Remove duplicates, keeping the first item of each key, of which `is_copy` is not true if any.
 
     Args:
         items: Items in order; the same object again is dropped without a pair.
         key: Returns the key by which two items are duplicates.
+        is_copy: Returns whether an item is rather the duplicate; the kept one takes its place.
 
     Returns:
         The items kept, and pairs (duplicate, item kept), both in order.
@@ -95,8 +110,12 @@ def first_of_each(
     repeated: list[tuple[_T, _T]] = []
     for item in items:
         known = first.setdefault(key(item), item)
-        if known is not item:
-            repeated.append((item, known))
+        if known is item:
+            continue
+        if is_copy(known) and not is_copy(item):
+            first[key(item)] = item
+            item, known = known, item
+        repeated.append((item, known))
     return list(first.values()), repeated
 
 

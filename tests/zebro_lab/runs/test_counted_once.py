@@ -63,6 +63,14 @@ def test_a_table_under_two_names_counts_once(data, sweep, again):
     assert_once(read_rig_data([data]), sweep, "sweep")
 
 
+@pytest.mark.parametrize("name", ["sweep - Kopie", "sweep (1)", "sweep copy", "Copy of sweep"])
+def test_of_two_equal_tables_the_one_named_like_a_copy_is_the_copy(data, name):
+    table = data / "sweep.csv"
+    found = read_rig_data([shutil.copy(table, data / f"{name}.csv"), table])
+    assert found.files[0] == table
+    assert f"{name} equals sweep" in found.repeated[0]
+
+
 def test_a_file_imported_twice_counts_once(data, sweep, tmp_path):
     imported(data, tmp_path / "runs", label="first")
     imported(data, tmp_path / "runs", label="second")
@@ -121,7 +129,7 @@ covariance = { matrix = [[1.0, 0.0], [0.0, 1e-4]] }
 tested = { normal_force = [2.0, 13.0], slip_ratio = [0.0, 1.0] }
 """)
     assert len(check_runs([data], tmp_path).runs) == 24
-    assert "was ignored: sweep equals copy" in caplog.text
+    assert "was ignored: copy equals sweep" in caplog.text
 
 
 def test_a_damaged_gzip_file_is_told_apart_by_its_bytes(tmp_path):

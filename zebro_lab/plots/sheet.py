@@ -28,7 +28,7 @@ from zebro_lab.files.picture_format import PictureFormat, format_of
 BLUE, RED = "#0072B2", "#D55E00"
 CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
 _SHOWN_DRAWS = 60
-_TITLE = 11.0  # letters of a title in each inch of a figure's width
+_TITLE = 10.0  # letters of a title in each inch of a figure's width
 _HANDLE, _LETTER = 0.6, 0.08  # inches of a legend's entry: its symbol, and each letter
 NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn in an additional panel
 
@@ -117,11 +117,13 @@ def legend_below(figure: Figure, *, columns: int) -> None:
     }
     if not entries:
         return
-    widest = max(map(len, entries), default=0)
-    fitting = int(figure.get_figwidth() / (_HANDLE + _LETTER * widest))
+    width = figure.get_figwidth()
+    letters = max(10, int((width - 2 * _HANDLE) / _LETTER))  # a longer label is wrapped
+    widest = min(max(map(len, entries)), letters)
+    fitting = int(width / (_HANDLE + _LETTER * widest))
     figure.legend(
-        entries.values(), entries.keys(), loc="outside lower center",
-        ncols=max(1, min(columns, fitting)),
+        entries.values(), [textwrap.fill(label, letters) for label in entries],
+        loc="outside lower center", ncols=max(1, min(columns, fitting)),
     )  # fmt: skip
 
 

@@ -76,7 +76,7 @@ def traction_forces(path: WalkPath, *, title: str) -> Figure:
         to the left of the heading; contact is shaded. 1 % at either end may exceed the limits,
         which is marked.
     """
-    return _draw_traction(path.t, path.traction_force, path.contact, title)
+    return _draw_traction(path.t, path.traction_force, path.contact, title, label="traction force")
 
 
 @styled
@@ -84,7 +84,7 @@ def paired_traction(path: WalkPath, *, title: str) -> Figure:
     """Draw the sum of traction force over pairs of time steps, of each leg over time (Fig. 5-19).
 
     In the thesis's model the traction changes sign from time step to time step; the thesis calls
-    this sum the net force.
+    this sum the net force. It is a sum, not a mean: where the traction is steady, twice the force.
 
     Args:
         path: Part of a walk to draw.
@@ -96,7 +96,9 @@ def paired_traction(path: WalkPath, *, title: str) -> Figure:
     """
     net = paired_sum(path.traction_force)
     first = slice(1, 2 * len(net), 2)
-    return _draw_traction(path.t[first], net, path.contact[first], title)
+    return _draw_traction(
+        path.t[first], net, path.contact[first], title, label="sum of two steps' traction force"
+    )
 
 
 @styled
@@ -168,10 +170,12 @@ def _turning(t: Array, theta: Array) -> NDArray[np.bool_]:
     return turns
 
 
-def _draw_traction(t: Array, force: Array, contact: NDArray[np.bool_], title: str) -> Figure:
+def _draw_traction(
+    t: Array, force: Array, contact: NDArray[np.bool_], title: str, *, label: str
+) -> Figure:
     lines = {"forward": force[..., 0], "to the left": force[..., 1]}
     limits = _limits(force[contact], least=0.5)
-    return _leg_panels(t, contact, lines, limits, label="traction force", unit="N", title=title)
+    return _leg_panels(t, contact, lines, limits, label=label, unit="N", title=title)
 
 
 def _leg_panels(

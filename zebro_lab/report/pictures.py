@@ -27,8 +27,8 @@ _WORTH: Final = 1.5
 """Ratio of the size of an exact copy to that at `_QUALITY` up to which it is taken."""
 VALIDATION, ERRORS = "validation", ".errors"
 CAPTIONS: Mapping[str, str] = {
-    "curves": "Block means of the rig's traction over load, and the fitted slip curve at each load",
-    "surface": "Fitted traction over slip ratio and load",
+    "curves": "Block means of the rig's traction force over slip ratio, and the fit, by load",
+    "surface": "Fitted traction force over slip ratio and load",
     "corner": "Posterior of the slip law's parameters, each alone and each pair",
     "traces": "The sampler's walkers over its steps",
     "residuals": "Residuals of the fit",
@@ -44,7 +44,7 @@ CAPTIONS: Mapping[str, str] = {
     "slip_ratio": "Predicted slip ratio of each leg in the last two cycles",
     "normal_force": "Predicted normal force of each leg in the last two cycles",
     "traction_force": "Predicted traction of each leg in the last two cycles",
-    "paired_traction": "Predicted traction of the legs of each pair",
+    "paired_traction": "Predicted traction of each leg, time steps added in pairs: twice the force",
     "gantt": "Predicted stance of each leg in the last two cycles",
     ".floor": "Predicted band and tracked path over the floor as seen from above",
     ".photos": "Photographs from above, and the robot drawn at its predicted pose",

@@ -39,7 +39,11 @@ def draw_walk(
         "slip_ratio": ("Slip ratios", walk_legs.slip_ratios, end),
         "normal_force": ("Normal forces", walk_legs.normal_forces, end),
         "traction_force": ("Traction forces", walk_legs.traction_forces, end),
-        "paired_traction": ("Traction, pairs of time steps added", walk_legs.paired_traction, end),
+        "paired_traction": (
+            "Sums of traction over pairs of time steps",
+            walk_legs.paired_traction,
+            end,
+        ),
         "gantt": ("Contact", walk_legs.gantt, end),
     }
     figures = {

@@ -5,6 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
+from support.figure_extents import overhang
 from zebro_lab.plots import (
     save,
 )
@@ -40,6 +41,11 @@ def test_units_stand_on_every_axis_that_is_labelled(any_scene):
         assert labels, name
         assert all("[" in text for axes in figure.axes if (text := axes.get_xlabel())), name
         assert all("[" in text for axes in figure.axes if (text := axes.get_ylabel())), name
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_nothing_is_drawn_beyond_the_page(rig, picture):
+    assert overhang(rig.picture(picture)) <= 0
 
 
 def test_the_slip_axis_names_its_definition(tyre):

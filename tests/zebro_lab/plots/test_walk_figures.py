@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from model.robot import Robot
+from support.figure_extents import overhang
 from zebro_lab.plots import save
 from zebro_lab.plots.walk_legs import (
     gantt,
@@ -45,6 +46,17 @@ def test_every_axis_has_a_unit(draw, walked):
     labels = [label for a in figure.axes for label in (a.get_xlabel(), a.get_ylabel())]
     labels.append(figure.get_supylabel())
     assert sum("[" in label for label in labels) >= 2
+
+
+@draws_all
+def test_nothing_of_a_walk_is_drawn_beyond_the_page(draw, walked):
+    assert overhang(draw(walked, title="A walk")) <= 0
+
+
+def test_sums_of_two_steps_are_called_sums(walked):
+    assert paired_traction(walked, title="").get_supylabel() == (
+        "sum of two steps' traction force [N]"
+    )
 
 
 @draws_all

@@ -5,11 +5,12 @@ import base64
 import hashlib
 import json
 import re
+from importlib.resources import files
 from pathlib import Path
 
 import zebro_lab.report
 from support.report_pages import HOSTILE, MADE, made
-from zebro_lab.report.page import render_report
+from zebro_lab.report.page import PAGES, STYLE, render_report
 from zebro_lab.report.sources import find_sources
 
 
@@ -103,3 +104,16 @@ def test_the_policy_allows_the_pages_own_style_and_no_other(walk):
 def html_of(walk) -> str:
     sources = find_sources(walk, calibration=walk.parent / "calibration")
     return render_report(sources, title="A walk", made=MADE)
+
+
+def test_pictures_are_printed_as_wide_as_the_text():
+    style = (files("zebro_lab.report") / PAGES / STYLE).read_text()
+    printed = style[style.index("@media print") :]
+    rule = re.search(r"figure img \{(.*?)\}", printed)[1]
+    assert "width: 100%" in rule
+    assert float(re.search(r"max-height: ([\d.]+)cm", rule)[1]) >= 19
+    caption, body = (
+        float(re.search(rf"\n  {name} \{{.*?font-size: ([\d.]+)pt", printed)[1])
+        for name in ("figcaption", "body")
+    )
+    assert caption <= body

@@ -136,3 +136,8 @@ def test_captions_go_by_name_and_in_a_validation_by_its_end():
     assert caption_of("my_own-one", stage="track") == "my own one"
     names = ["other.png", "band.png", "path.png", "map.png"]
     assert sorted(names, key=place_of) == ["map.png", "path.png", "band.png", "other.png"]
+
+
+def test_the_captions_of_traction_say_what_is_drawn():
+    assert "added in pairs" in CAPTIONS["paired_traction"]
+    assert "over slip ratio" in CAPTIONS["curves"]

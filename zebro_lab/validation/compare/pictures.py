@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Picture of a comparison: overlaid curves or paths, and differences."""
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -22,6 +23,9 @@ from zebro_lab.validation.compare.values import Comparison, Curve, RunPaths
 
 _COLOURS = (BLUE, RED)
 _SHOWN_DRAWS = 40
+_TITLE_LETTERS = 70  # in a line of the title above the differences
+_CLEAR = "90 % interval of a difference, zero outside"
+_UNCLEAR = "90 % interval of a difference, zero inside"
 
 
 @styled
@@ -82,12 +86,14 @@ def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Di
     for i, each in enumerate(differences):
         half = 0.5 * (each.high - each.low) or 1.0
         ends = np.array([each.low, each.high]) / half
-        axes.plot(ends, [i, i], color="black" if each.clear else "0.6", lw=2.0)
-        axes.plot(each.median / half, i, marker="o", ms=4, color="black")
+        colour, label = ("black", _CLEAR) if each.clear else ("0.6", _UNCLEAR)
+        axes.plot(ends, [i, i], color=colour, lw=2.0, label=label)
+        axes.plot(
+            each.median / half, i, ls="none", marker="o", ms=4, color="black", label="its median"
+        )
     axes.axvline(0, color="0.5", lw=0.6)
     axes.set_yticks(range(len(differences)), [q.name for q in compared.quantities])
     axes.invert_yaxis()
-    axes.set_xlabel(
-        f"{compared.names[1]} minus {compared.names[0]}, over half its 90 % interval; black where "
-        "zero lies outside"
-    )
+    title = f"difference: {compared.names[1]} minus {compared.names[0]}"
+    axes.set_title(textwrap.fill(title, _TITLE_LETTERS), loc="left", parse_math=False)
+    axes.set_xlabel("difference over half its 90 % interval [-]")

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Two are drawn over each other, and their differences with what zero is to them."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from model.metrics.difference import Difference
 from model.poses import Poses
+from support.figure_extents import overhang
 from zebro_lab.validation.compare.pictures import overlay
 from zebro_lab.validation.compare.values import Comparison, Curve, Quantity, RunPaths
 
@@ -16,6 +20,10 @@ QUANTITIES = tuple(Quantity(name, "", (T, T)) for name in ("friction", "slope"))
 def comparison(**content) -> Comparison:
     return Comparison(kind="x", names=("tiles", "carpet"), quantities=QUANTITIES, source="real",
                       files=(), **content)  # fmt: skip
+
+
+def keys(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_curves_have_a_panel_a_load_and_a_line_each():
@@ -41,6 +49,7 @@ def test_differences_are_black_where_zero_lies_outside():
     above, below = figure.axes
     assert len(above.lines) == 40 + 1 + 1 + 1  # draws, their name, two tracks
     assert above.get_xlabel() == "x from the start [m]"
+    assert len(set(keys(figure))) == len(keys(figure)) == 6  # three of paths, three of differences
     clear, middle, unclear, _, zero = below.lines
     np.testing.assert_allclose(clear.get_xdata(), [1.0, 3.0])
     np.testing.assert_allclose(middle.get_xdata(), 2.0)
@@ -48,4 +57,16 @@ def test_differences_are_black_where_zero_lies_outside():
     assert (clear.get_color(), unclear.get_color()) == ("black", "0.6")
     assert set(zero.get_xdata()) == {0}
     assert [label.get_text() for label in below.get_yticklabels()] == ["friction", "slope"]
-    assert below.get_xlabel().startswith("carpet minus tiles")
+    assert below.get_title(loc="left") == "difference: carpet minus tiles"
+    assert below.get_xlabel() == "difference over half its 90 % interval [-]"
+    assert clear.get_label().endswith("zero outside")
+    assert unclear.get_label().endswith("zero inside")
+
+
+@pytest.mark.parametrize("letters", [30, 120])
+def test_long_names_of_runs_stay_inside_the_picture(letters):
+    path = Poses(T, np.column_stack([T, T]), 0 * T)
+    names = tuple(f"20200601T120000Z_walk_{end * letters}" for end in "ab")
+    paths = (RunPaths(path, None), RunPaths(path, None))
+    compared = replace(comparison(paths=paths), names=names)
+    assert overhang(overlay(compared, APART, simulated=True)) <= 0

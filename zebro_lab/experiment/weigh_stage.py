@@ -8,7 +8,6 @@ from pathlib import Path
 from rig.experiment.control import Control
 from rig.experiment.plan import LoadSetting
 from rig.experiment.weigh import GainCheck, Weighing, check_gain, weigh
-from rig.safety import require_within
 from zebro_lab.experiment.request import WeighRequest
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
 from zebro_lab.files.atomic import atomic_write_text
@@ -41,10 +40,10 @@ def weigh_masses(
         The readings, the line through them, and the written file; None without `--data`.
 
     Raises:
-        SettingsError: A mass is missing or not positive, a number is not finite, or `--fast` is
-            given for a rig that cannot run in simulated time.
+        SettingsError: A mass is missing, not positive or too heavy for the rig, a number is not
+            finite, or `--fast` is given for a rig that cannot run in simulated time.
         AlreadyExists: The folder has a `columns.toml` already; nothing was measured.
-        RigError: The address or profile is invalid, a weight is beyond the rig's limit, a disc
+        RigError: The address or profile is invalid, a disc
             turns, the load cell sends too few samples, or a device failed.
         OSError: The file cannot be written.
     """
@@ -56,10 +55,7 @@ def weigh_masses(
         raise AlreadyExists(f"{target} exists; omit --data and copy the printed [load_cell]")
     forces = [mass * request.gravity for mass in request.masses]
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
-        for force in forces:
-            require_within(
-                force, rig.bench.profile.limits.normal_force, quantity="weight", unit="N"
-            )
+        _require_hangable(request, rig.bench.profile.limits.normal_force)
         # No tolerance: the check is to find the error of the reading.
         load = rig.load_setter(LoadSetting("hand", math.inf, patience=0.0), control)
         with rig.bench:
@@ -71,6 +67,18 @@ def weigh_masses(
         target.parent.mkdir(parents=True, exist_ok=True)
         atomic_write_text(target, render_load_cell(check))
     return weighing, check, target
+
+
+def _require_hangable(request: WeighRequest, limit: float) -> None:
+    """Raise `SettingsError` for a mass whose weight is beyond the rig's limit [N]."""
+    for mass in request.masses:
+        weight = mass * request.gravity
+        if weight > limit:
+            raise SettingsError(
+                f"a mass of {mass:g} kg weighs {weight:.4g} N, beyond the rig's limit of "
+                f"{limit:g} N; masses are in kg: {mass:g} g is {mass / 1000:g}",
+                key="--masses",
+            )
 
 
 def bias_sd(check: GainCheck) -> float:

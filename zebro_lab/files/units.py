@@ -142,21 +142,31 @@ def quantity_to_si(quantity: str | float, si_unit: str) -> float:
     return number * factor
 
 
-def option_to_si(text: str, si_unit: str, *, key: str) -> float:
+def option_to_si(text: str, si_unit: str, *, key: str, usual: float = math.inf) -> float:
     """Convert the value of an option, such as "35 mm", to a number in SI.
 
     Args:
         text: Number with a unit, or without one in SI.
         si_unit: SI unit of the result.
         key: The option, for the error.
+        usual: Largest number that is believed without a unit.
 
     Raises:
-        SettingsError: The value cannot be converted, as in `quantity_to_si`.
+        SettingsError: The value cannot be converted, as in `quantity_to_si`, or is a number beyond
+            `usual` without a unit.
     """
     try:
-        return quantity_to_si(text, si_unit)
+        number = quantity_to_si(text, si_unit)
     except UnitError as error:
         raise SettingsError(str(error), key=key) from error
+    match = _QUANTITY.fullmatch(text)
+    if abs(number) > usual and match is not None and not match[2]:
+        raise SettingsError(
+            f"found {text} without a unit, which is {number:g} {si_unit} and improbable; append "
+            f"its unit, such as {text}m{si_unit} (or {text}{si_unit})",
+            key=key,
+        )
+    return number
 
 
 def is_unit_of(unit: str, si_unit: str) -> bool:

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab zebro check`: which channel is which leg, which way it turns, where its zero is."""
 
+import io
 import math
+import select
+import sys
 from typing import TYPE_CHECKING
 
 import typer
@@ -33,6 +36,7 @@ def check(request: CheckRequest, output: Output = TEXT) -> None:
     """
     from zebro_lab.recording.check_stage import check_zebro
 
+    _require_answers()
     checked = check_zebro(request, _Terminal(output))
     if checked.lift_off is not None:
         output.say(
@@ -41,6 +45,21 @@ def check(request: CheckRequest, output: Output = TEXT) -> None:
         )
     output.say(f"wrote the profile {checked.file}; record with --zebro {checked.file}@PORT")
     output.document("zebro check", _in_numbers(checked))
+
+
+def _require_answers() -> None:
+    """Raise `BadParameter` where standard input has ended already, before a leg is moved."""
+    try:
+        readable = bool(select.select([sys.stdin], [], [], 0)[0]) and not sys.stdin.isatty()
+        given = sys.stdin.buffer
+        ended = readable and isinstance(given, io.BufferedReader) and not given.peek(1)
+    except (AttributeError, OSError, TypeError, ValueError):  # no file, as in tests, or Windows
+        ended = sys.stdin is None
+    if ended:
+        raise typer.BadParameter(
+            "the check asks which leg has moved, but standard input has ended; run it in a "
+            "terminal, or pipe the answers to it"
+        )
 
 
 def _in_numbers(checked: "Checked") -> dict[str, object]:

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import option_to_si
 
+LARGEST_PRINT = 3.0
+"""Largest length of a marker or of a robot's top that is believed without a unit [m]."""
+
 
 @dataclass(frozen=True)
 class MarkerPrint:
@@ -40,7 +43,7 @@ def parse_marker(text: str) -> MarkerPrint:
 
     Raises:
         SettingsError: The string has another form, NUMBER is not a whole number, or the side is not
-            a length above 0.
+            a length above 0 or, without a unit, above `LARGEST_PRINT`.
 
     >>> parse_marker("apriltag_36h11:4:10cm")
     MarkerPrint(dictionary='apriltag_36h11', number=4, side=0.1)
@@ -51,7 +54,7 @@ def parse_marker(text: str) -> MarkerPrint:
             f"found '{text}'; expected DICTIONARY:NUMBER:SIDE such as {KIT_PRINT.text}",
             key="--marker",
         )
-    side = option_to_si(parts[2], "m", key="--marker")
+    side = option_to_si(parts[2], "m", key="--marker", usual=LARGEST_PRINT)
     if side <= 0:
         raise SettingsError(f"found '{text}'; expected a side above 0", key="--marker")
     return MarkerPrint(parts[0], int(parts[1]), side)

@@ -19,6 +19,7 @@ from zebro_lab.files.atomic import atomic_write_bytes, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
 from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.files.units import option_to_si
+from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.track.annotate_request import AnnotateRequest
 from zebro_lab.track.annotations import (
@@ -130,7 +131,7 @@ def _plate(request: AnnotateRequest) -> TopPlate:
     sides, _, height = request.plate.partition("@")
     length, _, width = sides.partition("x")
     parts = (length, width, height)
-    sizes = [option_to_si(text, "m", key="--plate") for text in parts if text]
+    sizes = [option_to_si(t, "m", key="--plate", usual=LARGEST_PRINT) for t in parts if t]
     if len(sizes) != len(parts) or min(sizes[:2]) <= 0:
         raise SettingsError(
             f"'{request.plate}' is not LENGTHxWIDTH@HEIGHT with sides above 0, such as "

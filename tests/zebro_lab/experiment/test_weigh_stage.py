@@ -32,3 +32,10 @@ def test_numbers_that_are_not_finite_are_not_weighed(bad, tmp_path):
     with pytest.raises(SettingsError, match="finite"):
         weigh_masses(request, lambda text, normal: None, Control())
     assert list(tmp_path.iterdir()) == []
+
+
+def test_masses_in_grams_are_asked_about(tmp_path):
+    request = WeighRequest("sim", (200.0, 500.0), tmp_path / "data", fast=True)
+    with pytest.raises(SettingsError, match=r"^--masses: a mass of 200 kg .* 200 g is 0\.2$"):
+        weigh_masses(request, lambda text, normal: None, Control())
+    assert list(tmp_path.iterdir()) == []

@@ -3,6 +3,7 @@
 
 import io
 import json
+import os
 
 from rig.zebro.profile import load_leg_profile
 
@@ -41,3 +42,13 @@ def test_a_question_that_is_not_answered_is_one_line_and_nothing_is_written(
     assert "which leg turned" in question
     assert error.startswith("error: standard input has ended")
     assert not list(tmp_path.iterdir())
+
+
+def test_nothing_moves_where_nobody_can_answer(run_command, monkeypatch, tmp_path):
+    moved = []
+    monkeypatch.setattr("zebro_lab.recording.check_stage.check_zebro", lambda *_: moved.append(1))
+    with open(os.devnull) as nobody:  # noqa: PTH123 - standard input as a shell redirects it
+        monkeypatch.setattr("sys.stdin", nobody)
+        code, out, err = run_command("zebro", "check", "sim", "--save", tmp_path / "mine.toml")
+    assert (code, out, moved) == (2, "", [])
+    assert "standard input has ended" in err

@@ -80,6 +80,10 @@ FAULTS = {
     "three angles": ({"liftoff_deg": "1,2,3"}, r"--liftoff-deg: '1,2,3' is not an angle"),
     "empty angle": ({"touchdown_deg": ""}, r"--touchdown-deg: '' is not an angle"),
     "infinite angle": ({"touchdown_deg": "inf"}, r"--touchdown-deg: 'inf' is not an angle"),
+    "radians": (
+        {"touchdown_deg": "0.87"}, r"--touchdown-deg: found 0.87, which is .* write 49.85$",
+    ),
+    "one angle in radians": ({"liftoff_deg": "130,2.4"}, r"--liftoff-deg: .* in radians"),
     "two angles for one": (
         {"name": "buehler", "touchdown_deg": "50,40"}, r"this gait takes one, for all legs",
     ),

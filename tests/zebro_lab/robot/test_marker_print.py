@@ -26,3 +26,9 @@ def test_text_of_another_form_says_how_to_write_a_marker(text):
 def test_a_side_that_is_no_length_names_the_option(side, problem):
     with pytest.raises(SettingsError, match=f"--marker: .*{problem}"):
         parse_marker(f"4x4_50:0:{side}")
+
+
+def test_a_side_of_metres_is_believed_with_its_unit_only():
+    with pytest.raises(SettingsError, match=r"--marker: found 120 without a unit, .* as 120mm"):
+        parse_marker("4x4_50:0:120")
+    assert parse_marker("4x4_50:0:4m").side == 4.0

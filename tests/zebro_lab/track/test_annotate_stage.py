@@ -62,6 +62,12 @@ def test_the_top_and_points_of_the_floor_are_clicked_on(asked):
     assert said.clicks == {"p2.png": {"door": (10.0, 20.5)}}
 
 
+def test_a_plate_in_millimetres_needs_their_unit(asked):
+    corners = "1,2 3,2 3,8 1,8"
+    with pytest.raises(SettingsError, match=r"--plate: found 194 without a unit, .* as 194mm"):
+        annotate(replace(asked, photo="p1.png", corners=corners, plate="194x251@35"))
+
+
 def test_without_a_plate_the_top_is_the_body_of_the_robot(asked):
     said = annotate(replace(asked, photo="p1.png", corners="1,2 3,2 3,8 1,8"))
     assert said.template is not None

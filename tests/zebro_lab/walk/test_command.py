@@ -79,6 +79,7 @@ USAGE = {
     "no such gait": ("walk", "--gait", "trot", "--duration", "3"),
     "no such model": ("predict", "legs.csv", "--model", "ours"),
     "no log": ("predict", "--slip", "thesis"),
+    "milliseconds as step": ("walk", "--duration", "3", "--slip", "thesis", "--dt", "1"),
     "negative step": ("walk", "--duration", "3", "--slip", "thesis", "--dt", "-1"),
 }
 

@@ -50,6 +50,17 @@ def test_steps_that_make_no_walk_or_too_long_a_one_are_an_error(options):
         walked(slip="coulomb:0.4", **options)
 
 
+def test_a_step_that_skips_contacts_is_refused_with_the_longest_one():
+    with pytest.raises(SettingsError, match=r"--dt: found 0.01 s; expected at most 0.005 s"):
+        walked(slip="coulomb:0.4", dt=0.01)
+    with pytest.raises(SettingsError, match=r"--dt: found 0.1 s; expected at most 0.02 s"):
+        walked(model="no-slip", dt=0.1)
+
+
+def test_a_step_longer_than_the_model_s_is_noted():
+    assert any("legs slip too much" in n for n in walked(slip="coulomb:0.4", dt=0.005).notes)
+
+
 def test_an_arc_in_place_of_the_robot_s_own():
     robot = robot_of(ModelRequest(arc_deg=200.0)).robot
     assert robot.leg_arc == pytest.approx(np.radians(200.0))

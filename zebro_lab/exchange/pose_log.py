@@ -2,6 +2,7 @@
 """Poses of a ROS log as the columns of a track."""
 
 from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -42,7 +43,8 @@ def read_pose_log(
         columns["yaw_rad"] = _yaw(found.quaternion)
         if found.covariance is not None:
             columns |= {name: found.covariance[:, index] for name, index in _PLANAR.items()}
-    return TopicTable.of(path, columns, found.rows)
+    read = TopicTable.of(path, columns, found.rows)
+    return replace(read, table=replace(read.table, units={"yaw_rad": "rad"}))
 
 
 def _yaw(quaternion: Array) -> Array:

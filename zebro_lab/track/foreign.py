@@ -136,8 +136,9 @@ def _flat(trajectory: Trajectory) -> RawTable:
         columns["z_m"] = trajectory.height
     source = None if trajectory.source == "unknown" else trajectory.source
     return RawTable(
-        trajectory.file, {n: pd.Series(v) for n, v in columns.items()}, source=source, notes=notes
-    )
+        trajectory.file, {n: pd.Series(v) for n, v in columns.items()}, source=source, notes=notes,
+        units={"yaw_rad": "rad"},
+    )  # fmt: skip
 
 
 def _sideways(trajectory: Trajectory) -> tuple[str, ...]:

@@ -9,8 +9,14 @@ from model.poses import Poses, travel_direction
 from model.slip.law import Array
 
 _FITS: Final = 0.9
-_FITS_NOT: Final = 0.7
-"""Alignments of heading and travel, above which a unit fits and below which it does not [-]."""
+"""Alignment of heading and travel above which a unit fits the path [-]."""
+_CLEARLY: Final = 5.0
+"""Factor by which radians must lack more alignment than degrees do [-].
+
+Degrees that grow by 6 to 7 from pose to pose are nearly whole turns as radians, and align well too.
+"""
+_LEAST: Final = 0.05
+"""Alignment that radians must lack at least [-]: a heading that stays fits in both units."""
 
 
 def are_degrees(heading: Array, position: Array) -> bool:
@@ -29,4 +35,4 @@ def are_degrees(heading: Array, position: Array) -> bool:
     in_radians, in_degrees = (
         np.abs(np.exp(1j * (each - travel)).mean()) for each in (heading, np.radians(heading))
     )
-    return bool(in_radians < _FITS_NOT and in_degrees > _FITS)
+    return bool(in_degrees > _FITS and 1 - in_radians > _CLEARLY * (1 - in_degrees) + _LEAST)

@@ -21,6 +21,11 @@ def test_degrees_are_told_from_radians_whatever_axis_points_ahead(offset, turns)
     assert not are_degrees(angle + offset, circle(angle))
 
 
+def test_steps_of_nearly_whole_turns_of_radians_are_found_too():
+    angle = np.radians(6.5 * np.arange(15))
+    assert are_degrees(np.degrees(angle), circle(angle))
+
+
 def test_wrapped_and_noisy_degrees_are_found():
     rng = np.random.default_rng(1)
     heading = np.degrees(4 * TURN + rng.normal(0, 0.1, len(TURN)))

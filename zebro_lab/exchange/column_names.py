@@ -10,11 +10,11 @@ from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.header_units import suffix_in_header, unit_in_header
 
 _TIME = (
-    r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|time_?stamp|seconds|"
+    r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|(time_?)?stamp|seconds|"
     r"zeit(stempel|punkt|achse)?|messzeit|sekunden|uhrzeit|datum(_?(und_?)?(uhr)?zeit)?|"
     r"date(_?(and_?)?time)?|x_value|millis|micros|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|rosbagtimestamp"
 )
-_SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschwindigkeit|angular_(speed|velocity))"
+_SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschw(indigkeit)?|angular_(speed|velocity))"
 _LEG_DISC = r"(l|leg|leg_?disc|wheel|bein|beinscheibe|rad)"
 _GROUND = r"(g|ground|ground_?disc|table|boden|bodenscheibe|teller|tisch|belt|road|fahrbahn)"
 _TURNS = "n_?(leg|leg_?disc|wheel|bein|beinscheibe|rad)"  # German for speed: n

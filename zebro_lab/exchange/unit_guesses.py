@@ -56,7 +56,8 @@ def guess_unit(table: RawTable, name: str, si_unit: str, *, si: bool) -> UnitGue
         return UnitGuess(stated, "")
     if stated is not None:
         meant = _MEANT.get((stated.strip().casefold(), si_unit)) or _MEANT.get((stated, si_unit))
-        return UnitGuess(meant or si_unit, f"the file says '{stated}'")
+        factor = "" if meant else f"; scale = NUMBER below, if 1 {stated} is NUMBER {si_unit}"
+        return UnitGuess(meant or si_unit, f"the file says '{stated}'{factor}")
     if si:
         return UnitGuess(si_unit, "")
     return UnitGuess(_by_numbers(table, name, si_unit), "the file states none")

@@ -133,7 +133,9 @@ def test_set_point_is_what_changes_seldom():
         ("Schlupf [%]", "slip_ratio", "%"), ("slip_percent", "slip_ratio", "%"),
         ("Drehzahl Bein", "omega_leg", "rpm?"), ("Drehzahl Boden [1/min]", "omega_ground", "1/min"),
         ("Längskraft (N)", "traction_force", "N"), ("ω_leg [rad/s]", "omega_leg", "rad/s"),
-        ("FZ [lbs]", "normal_force", "lbf?"), ("Zugkraft_kN", "traction_force", "kN"),
+        ("FZ [lbs]", "normal_force", "lbf?"), ("stamp_ms", "t", "ms"),
+        ("Winkelgeschw. Bein [°/s]", "omega_leg", "°/s"), ("millis", "t", "ms?"),
+        ("Zugkraft_kN", "traction_force", "kN"),
     ],
 )  # fmt: skip
 def test_a_header_gives_name_and_unit_and_what_is_not_stated_is_in_doubt(header, canonical, unit):

@@ -24,6 +24,9 @@ def read_camera_file(file: Path) -> Camera:
         SettingsError: The file is not TOML, or holds an unknown key or an impossible value.
     """
     table = read_settings(file, advice="`zebro-lab camera calibrate PHOTOS` writes one")
+    if "markers" in table or "points" in table:
+        raise table.fault("lists markers or points as a floor.toml does; expected a camera.toml: "
+                          "are --camera and --floor exchanged?")  # fmt: skip
     fx, fy = table.quantities("focal", 2, "dimensionless")
     cx, cy = table.quantities("centre", 2, "dimensionless")
     if min(fx, fy) <= 0:

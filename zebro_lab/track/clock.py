@@ -2,7 +2,7 @@
 """Count photographs' times from the run's start, a given moment, or the first photograph."""
 
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 
 from tracking.errors import TimesError
 from tracking.images import PhotoTimes
@@ -56,7 +56,10 @@ def counted_from(
         zero = manifest.began.timestamp()
         what = f"the run's start, {manifest.start}"
     elif manifest is not None:
-        notes = unknown_start("give --clock (docs/tracking-howto.md) or --start, or ")
+        notes = (
+            *_dated_apart(zero, manifest),
+            *unknown_start("give --clock (docs/tracking-howto.md) or --start, or "),
+        )
     counted = PhotoTimes(times.t - zero, times.sd, times.source)
     if manifest is not None and not notes:
         notes = _outside_run(counted, manifest)
@@ -88,6 +91,17 @@ def unknown_start(advice: str) -> tuple[str, ...]:
     return (
         "time is counted from the first photograph; when it was taken within the run is unknown: "
         f"{advice}bring it to the run's clock with `validate --time-offset`",
+    )
+
+
+def _dated_apart(zero: float, manifest: RunManifest) -> tuple[str, ...]:
+    """Return a note if the first photograph, at `zero` [s], and the run are over a day apart."""
+    days = abs(zero - manifest.began.timestamp()) / 86_400
+    if days <= 1.0:
+        return ()
+    return (
+        f"EXIF dates the photographs {datetime.fromtimestamp(zero, UTC):%Y-%m-%d}, and the run is "
+        f"of {manifest.began:%Y-%m-%d}, {days:.0f} days apart: are they of another run?",
     )
 
 

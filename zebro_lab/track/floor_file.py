@@ -32,6 +32,9 @@ def read_floor_file(file: Path) -> FloorMap:
             an impossible value.
     """
     table = read_settings(file, advice="`zebro-lab camera kit` starts one")
+    if "focal" in table:
+        raise table.fault("has a focal length as a camera.toml does; expected a floor.toml: are "
+                          "--camera and --floor exchanged?")  # fmt: skip
     markers, points = table.table("markers"), table.table("points")
     if markers.empty and points.empty:
         raise table.fault("no marker and no point; expected a marker, or four points", "markers")

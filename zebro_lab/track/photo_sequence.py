@@ -28,6 +28,7 @@ from tracking.images import (
 from tracking.photos.scene import Photo
 from tracking.photos.workers import Progress, report_step
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.provenance import file_hash
 from zebro_lab.track.request import VIDEOS, TimeRequest
 
 _ORIENTATION = 0x0112
@@ -170,7 +171,11 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
         raise DataError(
             "holds no photograph but that of --clock; expected photographs of the walk", file=folder
         )
+    copies = {} if request.table is not None else _copies(paths)
+    paths = tuple(path for path in paths if path.name not in copies)
     left_out: Mapping[str, str] = {}
+    if request.interval is not None:
+        _require_interval(paths, request.interval)
     times = _given_times(paths, request)
     if times is None:
         # A file that is no picture has no EXIF either; its error is reported later.
@@ -184,7 +189,36 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     photos = tuple(Photo(paths[k].name, paths[k]) for k in order)
     source = next((found for photo in photos if (found := _simulated(photo.path))), None)
     ordered = PhotoTimes(times.t[order], times.sd[order], times.source)
-    return PhotoSequence(photos, ordered, source, folder, left_out)
+    return PhotoSequence(photos, ordered, source, folder, {**copies, **left_out})
+
+
+def _copies(paths: Sequence[Path]) -> Mapping[str, str]:
+    """Return a reason to leave out each equal file with a time, but that of the shortest name."""
+    sizes = Counter(path.stat().st_size for path in paths)
+    originals: dict[str, str] = {}
+    copies = {}
+    for path in sorted(paths, key=lambda each: (len(each.name), each.name)):
+        if sizes[path.stat().st_size] == 1 or exif_time(path) is None:
+            continue
+        original = originals.setdefault(file_hash(path), path.name)
+        if original != path.name:
+            copies[path.name] = f"a copy of {original}, byte for byte; delete one of them"
+    return copies
+
+
+def _require_interval(paths: Sequence[Path], interval: float) -> None:
+    """Raise `SettingsError` if EXIF times of all photographs are of another order of interval."""
+    taken = [exif_time(path) for path in paths]
+    t = np.sort([each[0] for each in taken if each is not None])
+    if len(t) < 2 or len(t) < len(paths):
+        return
+    apart = float(np.median(np.diff(t)))
+    if apart > 0 and not 0.01 < interval / apart < 100:
+        raise SettingsError(
+            f"found {interval:g} s, but by their EXIF times the photographs are {apart:g} s apart; "
+            "the option is in seconds, and without it the EXIF times are used",
+            key="--interval",
+        )
 
 
 def _without_time(readable: Sequence[Path]) -> Mapping[str, str]:

@@ -64,3 +64,10 @@ def test_a_fault_is_named_with_file_and_key(tmp_path, text, message):
 def test_a_missing_file_says_who_writes_it(tmp_path):
     with pytest.raises(NotFound, match="camera calibrate"):
         read_camera_file(tmp_path / "camera.toml")
+
+
+def test_the_file_of_the_other_option_is_told_apart(tmp_path):
+    file = tmp_path / "x.toml"
+    file.write_text("[markers.10]\nx = 0\n")
+    with pytest.raises(SettingsError, match=r"are --camera and --floor exchanged\?"):
+        read_camera_file(file)

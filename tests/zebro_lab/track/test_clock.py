@@ -40,6 +40,8 @@ def test_time_is_counted_from_the_run_only_where_the_clocks_are_tied():
     loose = counted(manifest=manifest)
     np.testing.assert_allclose(loose.times.t, [0, 2])
     assert "when it was taken within the run is unknown" in loose.notes[0]
+    later = counted(manifest=run_starting("2026-06-01T12:00:00+00:00"))
+    assert "EXIF dates the photographs 2020-06-01, and the run is of 2026-06-01" in later.notes[0]
     np.testing.assert_allclose(counted(START - timedelta(seconds=1)).times.t, [4, 6])
     with pytest.raises(TimesError, match=r"7203\.0 to 7205\.0 s after the run's start"):
         counted(START - timedelta(hours=2), replace(manifest, stop=START.isoformat()))

@@ -70,3 +70,10 @@ def test_a_fault_is_named_with_file_and_key(tmp_path, text, message):
 def test_a_missing_file_says_who_starts_it(tmp_path):
     with pytest.raises(NotFound, match="camera kit"):
         read_floor_file(tmp_path / "floor.toml")
+
+
+def test_the_file_of_the_other_option_is_told_apart(tmp_path):
+    file = tmp_path / "x.toml"
+    file.write_text("focal = [1, 1]\n")
+    with pytest.raises(SettingsError, match=r"are --camera and --floor exchanged\?"):
+        read_floor_file(file)

@@ -49,6 +49,25 @@ def test_a_file_that_is_no_picture_does_not_keep_the_others_from_their_times(tmp
         assert len(sequence.photos) == 4
 
 
+def test_a_copy_of_a_photograph_counts_once_and_is_named(tmp_path):
+    for number in range(3):
+        photo(tmp_path / f"p{number}.jpg", 2.0 * number)
+    (tmp_path / "p1 (1).jpg").write_bytes((tmp_path / "p1.jpg").read_bytes())
+    with open_photos(tmp_path, TimeRequest()) as sequence:
+        assert names_of(sequence) == ("p0.jpg", "p1.jpg", "p2.jpg")
+        assert sequence.left_out["p1 (1).jpg"].startswith("a copy of p1.jpg, byte for byte")
+
+
+def test_an_interval_in_milliseconds_is_told_by_the_photographs_own_times(tmp_path):
+    for number in range(3):
+        photo(tmp_path / f"p{number}.jpg", 2.0 * number)
+    with (
+        pytest.raises(SettingsError, match=r"--interval: found 2000 s, but .* are 2 s apart"),
+        open_photos(tmp_path, TimeRequest(interval=2000.0)),
+    ):
+        pass
+
+
 def test_an_interval_counts_in_the_order_a_person_counts(tmp_path):
     for number in (1, 2, 10):
         photo(tmp_path / f"p{number}.jpg", None)

@@ -53,7 +53,7 @@ NO_DOCUMENT = {
     "zebro-lab camera clock": "it shows a picture on the terminal, and has no results",
 }
 """Commands without `--json`, and why."""
-NUMBER = r"(-?[\d.e+-]+)"
+NUMBER = r"(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
 
 
 def options(of: Any) -> list[Any]:

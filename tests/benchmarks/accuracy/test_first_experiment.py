@@ -5,7 +5,12 @@ import pytest
 import tomlkit
 
 from benchmarks.accuracy import first_experiment
-from benchmarks.accuracy.first_experiment import PLAN, TRUTH, advised_plan, read_found
+from benchmarks.accuracy.calibrated_experiments import NAMES
+from benchmarks.accuracy.first_experiment import PLAN, SLIPS, advised_plan, read_found
+from model.slip.thesis import THESIS_VALUES
+
+EVEN = PLAN.replace("SLIPS", SLIPS["even"])
+TRUTH = dict(zip(NAMES, THESIS_VALUES, strict=True))
 
 ADVICE = """slips are missing. In a copy of the plan, set these:
 [points]
@@ -37,26 +42,26 @@ def write_fit(out, *, stiffness=TRUTH["slip_stiffness"], steps=()):
 
 
 def test_advised_lines_replace_those_of_the_plan_and_leave_the_others():
-    plan = tomllib.loads(advised_plan(PLAN, ("look at a picture", ADVICE)))
+    plan = tomllib.loads(advised_plan(EVEN, ("look at a picture", ADVICE)))
     assert plan["points"]["slips"] == [0.01, 0.05]
     assert plan["points"]["omega_leg"] == 12.0
     assert plan["controls"] == {"tare_every": 2}
-    assert plan["limits"] == tomllib.loads(PLAN)["limits"]
+    assert plan["limits"] == tomllib.loads(EVEN)["limits"]
 
 
 def test_advice_without_lines_of_a_plan_gives_none():
-    assert advised_plan(PLAN, ("sample longer", "look at residuals.png [the first]")) is None
+    assert advised_plan(EVEN, ("sample longer", "look at residuals.png [the first]")) is None
 
 
 @pytest.mark.parametrize(("stiffness", "held"), [(1.005, True), (1.03, False)])
 def test_an_interval_holds_the_truth_or_does_not(tmp_path, stiffness, held):
     write_fit(tmp_path / "out", stiffness=stiffness * TRUTH["slip_stiffness"])
-    found = read_found(tmp_path / "out")
+    found = read_found(tmp_path / "out", THESIS_VALUES)
     assert found.covered == (held, True)
 
 
 def test_both_experiments_are_measured_and_the_second_fit_has_both(monkeypatch, tmp_path, rows):
-    short = PLAN.replace("count = 12", "count = 2").replace("duration = 1.0", "duration = 0.2")
+    short = PLAN.replace("duration = 1.0", "duration = 0.2")
     monkeypatch.setattr(first_experiment, "PLAN", short.replace("[5.0, 10.0]", "[5.0]"))
     command, fitted = first_experiment.run, []
 
@@ -70,6 +75,6 @@ def test_both_experiments_are_measured_and_the_second_fit_has_both(monkeypatch, 
         return 0
 
     monkeypatch.setattr(first_experiment, "run", run)
-    first_experiment.main(1, 7)
+    first_experiment.main(1, 7, THESIS_VALUES, "[0.0, 1.0]")
     assert fitted == [[2], [2, 2]]
     assert rows() == [["7", "NO", "yes", "told", "yes", "yes", "told"]]

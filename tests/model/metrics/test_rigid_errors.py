@@ -47,7 +47,7 @@ def test_a_path_without_rotations_has_no_relative_errors():
 
 def test_one_pose_is_too_few():
     one = path().part(np.array([0]))
-    with pytest.raises(InsufficientData, match="1 poses"):
+    with pytest.raises(InsufficientData, match="1 pose to compare"):
         rigid_errors(one, one)
 
 

@@ -37,7 +37,7 @@ class Weighing:
     forces: tuple[float, ...]
     readings: tuple[float, ...]
     errors: tuple[float, ...]
-    source: str = "real"
+    source: str
 
 
 @dataclass(frozen=True)

@@ -78,8 +78,8 @@ def read_rig_data(
     """
     named, others = _of_the_rig(find_sources(paths))
     excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
-    counted = [source for source in named if source not in excluded]
-    sources, repeated = _distinct(counted)
+    included = [source for source in named if source not in excluded]
+    sources, repeated = _distinct(included)
     wanted = slip_definition
     if wanted is not None:
         wanted = parse_definition(wanted, file=None, key="slip definition")

@@ -11,6 +11,7 @@ from model.bayes.calibration import Calibration
 from model.bayes.estimate import Estimate
 from model.counted import counted
 from zebro_lab.calibration.rig_data import RigData
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 
@@ -22,7 +23,7 @@ def print_data(console: Console, data: RigData) -> None:
         console: Console to print to.
         data: The rig data.
     """
-    simulated = "sim:" in data.source
+    simulated = is_simulated(data.source)
     lines = [
         f"{'SIMULATED data' if simulated else 'data'}, source '{data.source}': "
         f"{counted(len(data.samples), 'sample')} in "

@@ -22,6 +22,7 @@ from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.provenance import file_hash, file_hashes
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.robot.robot_file import RobotFile
 
 Metrics: TypeAlias = Mapping[str, float]
@@ -210,7 +211,7 @@ def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
     parameters = posterior.contractions()
     document = tomlkit.document()
     document.add(tomlkit.comment("Legs and floor fitted to tracked walks. SI units and radians."))
-    if "sim:" in fitted.source:
+    if is_simulated(fitted.source):
         document.add(tomlkit.comment("SIMULATED walks: nothing here was measured."))
     document.update({
         "schema": SCHEMA,

@@ -17,7 +17,7 @@ from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.tables.column_sections import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.tables.columns import CANONICAL
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.track.trajectory.table import MAPPED_UNITS
+from zebro_lab.track.trajectory.table import MAPPED_UNITS, QUATERNION
 
 UNITS: Final[Mapping[str, Mapping[str, str | None]]] = {
     RIG: {name: column.unit for name, column in CANONICAL.items()},
@@ -41,7 +41,6 @@ _EVERYBODYS: Final = frozenset(("t", "x", "y", "z", "roll", "pitch", "yaw"))
 """Canonical names that other programs use, too, in other units."""
 _MOST_SET_POINTS = 200
 _FORCES = ("force_x", "force_y", "force_z")
-_QUATERNION = ("qw", "qx", "qy", "qz")
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,7 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
     guesses: dict[str, ColumnGuess] = {}
     taken: set[str] = set()
     first = min((leg[0] for name in table.columns if (leg := leg_of(name))), default=1)
-    shared = (*_EVERYBODYS, *_QUATERNION)
+    shared = (*_EVERYBODYS, *QUATERNION)
     ours = any(name in UNITS[kind] and name not in shared for name in table.columns)
     for canonical in UNITS[kind]:
         fitting = [n for n in table.columns if n not in taken and _fits(n, canonical, kind, first)]
@@ -133,9 +132,9 @@ def _in_multiples_of_g(table: RawTable, guesses: dict[str, ColumnGuess]) -> dict
 
 def _whole_quaternion(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
     """Return the guesses without a part of a quaternion, which are angles about the axes."""
-    if set(_QUATERNION) <= guesses.keys():
+    if set(QUATERNION) <= guesses.keys():
         return guesses
-    return {name: guess for name, guess in guesses.items() if name not in _QUATERNION}
+    return {name: guess for name, guess in guesses.items() if name not in QUATERNION}
 
 
 def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
@@ -215,7 +214,7 @@ def _is_kind(kind: str, found: Mapping[str, ColumnGuess]) -> bool:
     if kind == LEGS:
         return all(name in found for name in ANGLES)
     if kind == IMU:
-        tilt = {"roll", "pitch"} <= found.keys() or set(_QUATERNION) <= found.keys()
+        tilt = {"roll", "pitch"} <= found.keys() or set(QUATERNION) <= found.keys()
         return tilt or {"rate_x", "rate_y", "rate_z"} <= found.keys()
     return {"x_m", "y_m"} <= found.keys()
 
@@ -256,7 +255,7 @@ def _guess(
         return ColumnGuess(name, name_doubt=doubt)
     numbers = numbers_or_none(table, name)
     unit = UnitGuess("s", "") if nanoseconds else guess_unit(table, name, si_unit, si=known)
-    if canonical in _QUATERNION:
+    if canonical in QUATERNION:
         unit = UnitGuess(si_unit, "")
     sign, sign_doubt = _sign(canonical, numbers, known=known or bool(_UPRIGHT.fullmatch(name)))
     zero = "90 deg must be where the centre of the leg's arc is straight below the hip"

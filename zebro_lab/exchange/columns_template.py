@@ -15,7 +15,6 @@ from zebro_lab.exchange.column_guesses import (
 from zebro_lab.tables.column_sections import DOUBT, IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.track.trajectory.table import QUATERNION
 
 _READS: Final = {
     RIG: "calibrate-slip and import --rig read", LEGS: "predict and import --legs read",
@@ -52,7 +51,7 @@ _MEANINGS: Final = {
     "y_m": "position, to the left of x", "z_m": "height", "yaw_rad": "positive to the left",
     "roll": "positive with the left side up", "pitch": "positive with the nose down",
     "yaw": "positive to the left",
-    **{f"q{axis}": "orientation, a part of a quaternion [-]" for axis in "wxyz"},
+    **{f"q{axis}": "quaternion from the body's frame to the floor's" for axis in "wxyz"},
     **{f"rate_{axis}": "angular rate of the body, in its frame" for axis in "xyz"},
     **{f"force_{axis}": "specific force (9.81 m/s^2 upwards at rest)" for axis in "xyz"},
 }  # fmt: skip
@@ -139,8 +138,6 @@ def _meaning(name: str, kind: str) -> str:
         return CANONICAL[name].meaning
     if kind == LEGS and name != "t":
         return f"angle of leg {name[-1]}, growing as the robot walks forward"
-    if name in QUATERNION:
-        return "of the quaternion from the body's frame to that of the positions"
     return _MEANINGS.get(name, "of the body, in its frame" if kind == IMU else "covariance")
 
 

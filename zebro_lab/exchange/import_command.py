@@ -2,6 +2,7 @@
 """`zebro-lab import`: convert files from other software to run folders."""
 
 from zebro_lab.exchange.import_request import ImportRequest
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
@@ -45,6 +46,6 @@ def import_files(request: ImportRequest, output: Output = TEXT) -> None:
         {"folder": folder, "source": manifest.source, "samples": dict(manifest.streams)}
         for folder, manifest in manifests.items()
     ]
-    simulated = any("sim:" in manifest.source for manifest in manifests.values())
+    simulated = any(is_simulated(manifest.source) for manifest in manifests.values())
     content = {"simulated": simulated, "runs": runs, "notes": list(imported.notes)}
     output.document("import", content)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from zebro_lab.experiment.request import Data, RigRunRequest, WeighRequest
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
@@ -207,7 +208,7 @@ def check(
         f"{drifted} of {len(runs)} runs deviate from the calibration by over {SUSPICIOUS:g} sd"
     )
     code = REFUSED if any(found.verdict for found in runs) else 0
-    simulated = any("sim:" in source for source in done.sources)
+    simulated = any(is_simulated(source) for source in done.sources)
     content = {"simulated": simulated, "runs": [checked_in_numbers(run) for run in runs]}
     output.document("rig check", content, exit_code=code)
     if code:

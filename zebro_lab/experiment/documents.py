@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from zebro_lab.files.source_names import is_simulated
+
 if TYPE_CHECKING:
     from rig.experiment.run import Outcome
     from rig.experiment.weigh import GainCheck, Weighing
@@ -22,7 +24,7 @@ def experiment_in_numbers(outcome: "Outcome", journal: "Journal", data: Path) ->
     """
     return {
         "folder": data,
-        "simulated": outcome.source.startswith("sim:"),
+        "simulated": is_simulated(outcome.source),
         "source": outcome.source,
         "reason": outcome.reason,
         "finished": outcome.finished,
@@ -55,7 +57,7 @@ def weighing_in_numbers(
 
     columns = zip(weighing.forces, weighing.readings, weighing.errors, strict=True)
     return {
-        "simulated": weighing.source.startswith("sim:"),
+        "simulated": is_simulated(weighing.source),
         "written": [] if written is None else [written],
         "weights": [
             {"force_N": force, "reading_N": reading, "standard_error_N": error}

@@ -5,6 +5,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 
+def is_simulated(source: str) -> bool:
+    """Return whether any of the data of a source are simulated, also of several that are joined.
+
+    >>> is_simulated("sim:zebro"), is_simulated("mixed:real,sim:imu"), is_simulated("real")
+    (True, True, False)
+    """
+    return "sim:" in source
+
+
 def joined_source(sources: Sequence[str]) -> str:
     """Join the sources of a run's streams: KIND:A+B if all are of one kind, else mixed:A,B.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.recording.request import CheckRequest
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
@@ -68,7 +69,7 @@ def _in_numbers(checked: "Checked") -> dict[str, object]:
         "angle_rad": math.radians(found.theta_deg), "height_difference_m": found.mismatch
     }  # fmt: skip
     return {
-        "simulated": checked.source.startswith("sim:"),
+        "simulated": is_simulated(checked.source),
         "written": [checked.file],
         "legs": profile.legs,
         "signs": profile.sign,

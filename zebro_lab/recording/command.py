@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
@@ -55,7 +56,7 @@ def _print_document(recorded: "Recorded", output: Output, code: int) -> None:
         from zebro_lab.runs.manifest import manifest_text
 
         run = json.loads(manifest_text(recorded.manifest))
-        simulated = "sim:" in recorded.manifest.source
+        simulated = is_simulated(recorded.manifest.source)
         content = {"folder": recorded.folder, "simulated": simulated, "run": run}
         output.document("record", content, exit_code=code)
 

@@ -8,6 +8,7 @@ from typing import Final
 from rig.openers import REPLAY
 from rig.replay import ReplayStream
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
@@ -96,5 +97,5 @@ def _chosen(what: str, name: str | None, found: tuple[str, ...]) -> tuple[str, .
 
 
 def _source(folder: Path, manifest: RunManifest, stream: str) -> str:
-    simulated = "sim:" in manifest.sources.get(stream, manifest.source)
+    simulated = is_simulated(manifest.sources.get(stream, manifest.source))
     return f"{'sim:' * simulated}{REPLAY}{folder.absolute().name}"

@@ -17,6 +17,7 @@ from markupsafe import Markup
 from zebro_lab.files.commit import software_commit
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.shown_text import shown
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.report.band_coverage import OutOfRange, out_of_range
 from zebro_lab.report.belonging import belonging
 from zebro_lab.report.numbers import number
@@ -128,7 +129,7 @@ def _count(run: ReportedRun, topic: str) -> str:
 
 
 def _pictures(part: Part) -> list[Picture]:
-    simulated = "sim:" in part.source
+    simulated = is_simulated(part.source)
     return [embed(file, stage=part.name, simulated=simulated) for file in part.pictures]
 
 

@@ -15,6 +15,7 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import TRACK
 from zebro_lab.files.opening import parsing, read_text
 from zebro_lab.files.replacement import settle
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.report.pictures import SUFFIXES, VALIDATION, lies_in, place_of
 from zebro_lab.runs.folder import find_runs
 from zebro_lab.runs.manifest import MANIFEST_FILE, is_track_alone
@@ -142,7 +143,9 @@ class Sources:
         """Sources of present parts and of runs that contain `sim:`, sorted, each once."""
         named = [part.source for part in self.parts if not part.missing]
         named += [str(run.recorded.get("source", "")) for run in self.runs]
-        return sorted({each.strip() for one in named for each in one.split(",") if "sim:" in each})
+        return sorted(
+            {each.strip() for one in named for each in one.split(",") if is_simulated(each)}
+        )
 
 
 def find_sources(data: Path, *, calibration: Path) -> Sources:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from model.counted import counted
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
@@ -29,7 +30,7 @@ def runs(data: DataDir, output: Output = TEXT) -> None:
     for run in listed:
         output.say(_in_words(run))
     output.say(f"{counted(len(listed), 'run')} in {data}")
-    simulated = any("sim:" in (run.source or "") for run in listed)
+    simulated = any(is_simulated(run.source or "") for run in listed)
     output.document("runs", {"simulated": simulated, "runs": [_in_numbers(run) for run in listed]})
 
 
@@ -73,6 +74,6 @@ def exclude(run: RunFolder, why: Why = None, undo: Undo = False, output: Output 
 
 
 def _print_excluded(run: Path, manifest: "RunManifest", output: Output) -> None:
-    simulated = "sim:" in manifest.source
+    simulated = is_simulated(manifest.source)
     content = {"folder": run, "simulated": simulated, "excluded": manifest.excluded}
     output.document("exclude", content)

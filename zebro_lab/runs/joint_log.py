@@ -109,11 +109,12 @@ def joint_table(log: JointLog, columns: MappedColumns) -> RawTable:
             f"name those of legs 1 to 6 ({_ORDER}) with --joints A,B,C,D,E,F, or in a columns.toml",
             file=log.table.path,
         )
-    used = {columns.mapped[name].name for name in ANGLES}
-    used_by = [columns.mapped[name] for name in ANGLES]
-    turns = {each.name: 2 * np.pi / factor_to_si(each.unit, "rad") for each in used_by}
-    table = joined_readings(_with_legs(table, used), turns)
-    told = {name: leg for name, leg in log.legs.items() if f"theta{leg}" in used & set(aliases)}
+    legs = [columns.mapped[name] for name in ANGLES]
+    turns = {each.name: 2 * np.pi / factor_to_si(each.unit, "rad") for each in legs}
+    table = joined_readings(_with_legs(table, turns), turns)
+    told = {
+        name: leg for name, leg in log.legs.items() if f"theta{leg}" in turns.keys() & set(aliases)
+    }
     return replace(table, notes=(*table.notes, *_told(told)))
 
 

@@ -131,7 +131,7 @@ class RunManifest:
     @property
     def is_track_alone(self) -> bool:
         """Whether the run was imported from the path of another program alone."""
-        return is_track_alone(self.__dict__)
+        return is_track_alone(asdict(self))
 
 
 def is_track_alone(manifest: Mapping[str, Any]) -> bool:

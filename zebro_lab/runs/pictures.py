@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from model.counted import counted
 from model.slip.law import Array
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots.sheet import CYCLE, RED, new_figure, styled
 from zebro_lab.runs.signals import Event, Panel, RunSignals
 
@@ -33,7 +34,7 @@ def raw_streams(run: RunSignals, at: Sequence[float] = ()) -> Figure:
     title = f"{run.name}: raw streams, {run.state}"
     events = min(len(run.events), _MOST_EVENTS + 1)
     heights = [0.25 + 0.16 * events] * bool(run.events) + [1.4] * len(drawn)
-    figure = new_figure(title, "sim:" in run.source, width=10.0, height=1.0 + sum(heights))
+    figure = new_figure(title, is_simulated(run.source), width=10.0, height=1.0 + sum(heights))
     grid = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     if run.events:
         _list_events(grid[0], run.events)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.request import TrackRequest
@@ -70,7 +71,7 @@ def _track(request: TrackRequest, output: Output) -> None:
 
 def _print_document(result: "TrackResult", output: Output) -> None:
     track = result.tracked.track
-    content = {"folder": result.folder, "simulated": "sim:" in result.source}
+    content = {"folder": result.folder, "simulated": is_simulated(result.source)}
     numbers = {
         "source": result.source,
         "photographs": result.photos,

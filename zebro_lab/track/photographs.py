@@ -18,6 +18,7 @@ from tracking.photos.search import Wanted, look_at
 from tracking.pictures import rectify_floor
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.annotations import ANNOTATIONS_FILE, Annotations, read_annotations
 from zebro_lab.track.camera_file import read_camera_file
@@ -122,7 +123,7 @@ def photos_of_track(track: Path) -> TrackedPhotos:
         camera=_camera(inputs, folder),
         floor=read_floor_file(folder / FLOOR_FILE),
         annotations=read_annotations(annotated) if annotated.is_file() else Annotations(),
-        simulated="sim:" in str(manifest["source"]),
+        simulated=is_simulated(str(manifest["source"])),
     )
 
 

@@ -4,6 +4,7 @@
 import typer
 
 from model.counted import counted
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.validation.request import ValidateRequest
@@ -89,7 +90,7 @@ def _print_document(request: ValidateRequest, output: Output) -> None:
     from zebro_lab.files.documents import read_json_document
 
     manifest = read_json_document(request.folder / "manifest.json")
-    simulated = "sim:" in str(manifest.get("source", ""))
+    simulated = is_simulated(str(manifest.get("source", "")))
     content = {"folder": request.folder, "simulated": simulated, "validation": manifest}
     output.document("validate", content)
 

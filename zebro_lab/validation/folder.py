@@ -14,6 +14,7 @@ from model.metrics.bootstrap import Interval, bootstrap_mean
 from model.metrics.path_errors import pose_errors
 from zebro_lab.files.picture_format import PictureFormat, in_every_format
 from zebro_lab.files.result_folder import ResultKind, result_folder
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.track.file import tum_lines
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.pictures import ShownRun, draw_validation
@@ -173,7 +174,7 @@ def write_validation(
     with result_folder(out, VALIDATION, content=content) as draft:
         _write_tables(draft, runs)
         for each in shown:
-            undrawn = draw_validation(draft, each, simulated="sim:" in source, form=form)
+            undrawn = draw_validation(draft, each, simulated=is_simulated(source), form=form)
             notes += [f"{each.run.name}: {why}" for why in undrawn]
 
 

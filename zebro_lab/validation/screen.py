@@ -10,6 +10,7 @@ from rich.text import Text
 
 from model.metrics.consistency import Consistency
 from model.metrics.scores import coverage_range
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
@@ -31,7 +32,7 @@ def print_validated(console: Console, validated: Validated, out: Path) -> None:
         validated: Results of the validation.
         out: Folder that was written.
     """
-    if "sim:" in validated.source:
+    if is_simulated(validated.source):
         console.print(plain(f"SIMULATED: {validated.source}"))
     for run in validated.runs:
         warnings = [note for note in run.notes if note.startswith("WARNING")]

@@ -5,6 +5,7 @@ import typer
 
 from zebro_lab.calibration.command import fit_and_report
 from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.version import Version
@@ -66,7 +67,7 @@ def _document(request: CalibrationRequest, *, with_walks: bool) -> dict[str, obj
 
     slip = read_toml_document(request.out / "slip.toml")
     source = str(slip.get("source", ""))
-    content = {"folder": request.out, "simulated": "sim:" in source, "calibration": slip}
+    content = {"folder": request.out, "simulated": is_simulated(source), "calibration": slip}
     if with_walks:
         content["walks"] = read_json_document(request.out / "walks" / "manifest.json")
     return content

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from model.bayes.walks.posterior import Contraction, WalkPosterior
 from model.bayes.walks.prior import FALL, UNITS
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import shown_unit
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
@@ -26,7 +27,7 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
         done: The finished fit of the walks.
     """
     posterior = done.posterior
-    if "sim:" in done.source:
+    if is_simulated(done.source):
         console.print(plain(f"SIMULATED: {done.source}"))
     for note in done.notes:
         console.print(plain(note))

@@ -17,6 +17,7 @@ from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, writ
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.clocks import LARGEST_OFFSET, checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
@@ -107,7 +108,7 @@ def calibrate_walks(
             notes=notes,
         ),
         draw=lambda draft: draw_walks(
-            draft, posterior, left_out, simulated="sim:" in source, form=calibration.form
+            draft, posterior, left_out, simulated=is_simulated(source), form=calibration.form
         ),
     )
     return WalksCalibrated(posterior, left_out, folder, source, notes)

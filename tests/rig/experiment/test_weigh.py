@@ -15,7 +15,7 @@ FORCES = (0.0, 2.0, 5.0, 10.0)
 @given(st.floats(0.9, 1.1), st.floats(-0.5, 0.5))
 def test_a_straight_line_is_found_exactly(slope, zero):
     readings = tuple(zero + slope * force for force in FORCES)
-    check = check_gain(Weighing(FORCES, readings, (0.01,) * 4))
+    check = check_gain(Weighing(FORCES, readings, (0.01,) * 4, "real"))
     assert check.slope == pytest.approx(slope, abs=1e-9)
     assert check.zero == pytest.approx(zero, abs=1e-9)
     assert check.misfit < 1e-9
@@ -25,7 +25,9 @@ def test_a_straight_line_is_found_exactly(slope, zero):
 def test_the_error_of_the_slope_is_that_of_many_weighings():
     rng = np.random.default_rng(0)
     found = [
-        check_gain(Weighing(FORCES, tuple(rng.normal(FORCES, 0.02)), (0.02,) * 4), weight_sd=0.0)
+        check_gain(
+            Weighing(FORCES, tuple(rng.normal(FORCES, 0.02)), (0.02,) * 4, "real"), weight_sd=0.0
+        )
         for _ in range(400)
     ]
     slopes = [check.slope for check in found]
@@ -35,20 +37,20 @@ def test_the_error_of_the_slope_is_that_of_many_weighings():
 
 
 def test_what_hangs_askew_widens_the_error():
-    straight = check_gain(Weighing(FORCES, FORCES, (0.001,) * 4), weight_sd=0.0)
-    askew = check_gain(Weighing(FORCES, (0.0, 2.1, 4.9, 10.0), (0.001,) * 4), weight_sd=0.0)
+    straight = check_gain(Weighing(FORCES, FORCES, (0.001,) * 4, "real"), weight_sd=0.0)
+    askew = check_gain(Weighing(FORCES, (0.0, 2.1, 4.9, 10.0), (0.001,) * 4, "real"), weight_sd=0.0)
     assert askew.slope_sd > 10 * straight.slope_sd
     assert askew.misfit > 0.05
 
 
 def test_the_weights_own_error_stays_in_the_slopes():
-    check = check_gain(Weighing(FORCES, FORCES, (1e-6,) * 4), weight_sd=0.01)
+    check = check_gain(Weighing(FORCES, FORCES, (1e-6,) * 4, "real"), weight_sd=0.01)
     assert check.slope_sd == pytest.approx(0.01, rel=1e-3)
 
 
 def test_no_weight_at_all_is_refused():
     with pytest.raises(ProtocolError, match="expected one above 0 N"):
-        check_gain(Weighing((0.0,), (0.1,), (0.01,)))
+        check_gain(Weighing((0.0,), (0.1,), (0.01,), "real"))
 
 
 def test_a_gain_error_of_the_twin_is_weighed(lab):

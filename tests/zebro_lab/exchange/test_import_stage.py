@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from support.foreign_trajectories import drive, euroc, kitti, tum, written
+from support.foreign_trajectories import drive, tum, written
 from support.imported_files import COLUMNS, THETA, YAW, T, everything, taken
 from support.leg_motions import T as T12
 from support.leg_motions import tripod
@@ -24,10 +24,6 @@ from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
 from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.request import ModelRequest, PredictRequest
-
-
-def kitti_of(t, position, rotation):
-    return kitti(position, rotation)
 
 
 def test_leg_angles_come_back_in_si_whatever_their_names_and_units(files, tmp_path):
@@ -152,93 +148,6 @@ def test_what_cannot_be_taken_is_named_and_leaves_nothing(files, tmp_path, spoil
     assert not (tmp_path / "data").exists()
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("1 2 3\n", "has 3 numbers a line"),
-        ("0 0 0 0 0 0 0 x\n", "a line of words"),
-        ("0 0 0 0 0 0 0 0\n", "length 0"),
-        ("# nothing\n", "has no pose"),
-        ("0 0 0 0 0 0 0 1\n" * 3, "has 1 pose; expected 3"),
-    ],
-)
-def test_a_trajectory_of_another_form_is_refused(files, tmp_path, text, message):
-    (files / "path.tum").write_text(text)
-    with pytest.raises(DataError, match=message):
-        everything(files, tmp_path, "path.tum")
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "how"),
-    [
-        ("a.tum", tum, {}),
-        ("a.csv", euroc, {}),
-        ("a.txt", kitti_of, {"plane": Plane.XY, "times": "times.txt"}),
-    ],
-)
-def test_a_trajectory_alone_makes_a_run_with_a_track(tmp_path, name, text, how):
-    t, position, rotation = drive()
-    file = written(tmp_path / name, text(t, position, rotation))
-    written(tmp_path / "times.txt", "".join(f"{stamp:.17g}\n" for stamp in t))
-    how = {key: tmp_path / v if key == "times" else v for key, v in how.items()}
-    (folder,) = taken(tmp_path, track=file, trajectory=TrajectoryRequest(**how)).folders
-    poses = read_track(folder / "track").poses
-    np.testing.assert_allclose(poses.t, t, atol=1e-9)
-    np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
-    ahead = rotation.apply([1.0, 0.0, 0.0])
-    np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
-    assert read_manifest(folder).sources == {"track": f"import:{name}"}
-
-
-MOCAP = """
-[track.columns]
-t_s = "Time (Seconds)"
-""" + "".join(
-    f'{axis}_m = {{name = "Body Position {axis.upper()}", unit = "mm"}}\n' for axis in "xyz"
-) + "".join(f'q{axis} = "Body Rotation {axis.upper()}"\n' for axis in "xyzw")  # fmt: skip
-
-
-def motion_capture(folder):
-    """Write a drive as a motion-capture program does, with its column map; return the file."""
-    t, position, rotation = drive()
-    columns = {"Frame": np.arange(len(t)), "Time (Seconds)": t}
-    columns |= dict(zip(("Body Rotation X", "Body Rotation Y", "Body Rotation Z",
-                         "Body Rotation W"), rotation.as_quat().T, strict=True))  # fmt: skip
-    columns |= {f"Body Position {a}": 1e3 * p for a, p in zip("XYZ", position.T, strict=True)}
-    pd.DataFrame(columns).to_csv(folder / "take.csv", index=False)
-    written(folder / "columns.toml", MOCAP)
-    return folder / "take.csv"
-
-
-@pytest.mark.parametrize("how", [{}, {"plane": Plane.XY}])
-def test_mapped_quaternions_of_a_table_are_the_heading(tmp_path, how):
-    (folder,) = taken(
-        tmp_path, track=motion_capture(tmp_path), trajectory=TrajectoryRequest(**how)
-    ).folders
-    poses = read_track(folder / "track").poses
-    _, position, rotation = drive()
-    np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
-    ahead = rotation.apply([1.0, 0.0, 0.0])
-    np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
-
-
-def test_a_map_without_sections_is_for_the_only_file(tmp_path):
-    file = motion_capture(tmp_path)
-    plain = written(tmp_path / "own.toml", MOCAP.replace("[track.columns]", "[columns]"))
-    (folder,) = taken(tmp_path, track=file, columns=plain).folders
-    assert len(read_track(folder / "track").poses) == 60
-
-
-def test_a_track_of_another_clock_is_brought_to_that_of_the_legs(files, tmp_path):
-    table = pd.read_csv(files / "track.csv")
-    table.assign(t=table.t - 1000.0).to_csv(files / "track.csv", index=False)
-    both = {"legs": files / "legs.csv", "track": files / "track.csv"}
-    with pytest.raises(DataError, match="no second is shared; add --track-offset 1000 where both"):
-        taken(tmp_path, **both)
-    (folder,) = taken(tmp_path, **both, track_offset=1000.0).folders
-    np.testing.assert_allclose(read_track(folder / "track").poses.t, T[::20], atol=1e-9)
-
-
 def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
     file = written(tmp_path / "a.tum", tum(*drive()))
     (folder,) = taken(tmp_path, track=file).folders
@@ -246,31 +155,6 @@ def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
         read_leg_log(folder)
     with pytest.raises(DataError, match=r"without leg angles.*validate REFERENCE .*track\.csv$"):
         pairs_of_run(folder)
-
-
-def test_times_since_1970_of_a_track_tell_when_it_began(tmp_path):
-    t, position, rotation = drive()
-    file = written(tmp_path / "a.csv", euroc(t + 1_772_600_767, position, rotation))
-    (folder,) = taken(tmp_path, track=file).folders
-    assert read_manifest(folder).start == "2026-03-04T05:06:07+00:00"
-    np.testing.assert_allclose(read_track(folder / "track").poses.t, t, atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("how", "error", "message"),
-    [
-        ({"plane": Plane.XY}, DataError, "has no times.*--times"),
-        ({"times": "times.txt"}, SettingsError, "^--plane: .*across the plane xz.*state the plane"),
-    ],
-)
-def test_what_a_trajectory_leaves_open_is_asked_for(tmp_path, how, error, message):
-    t, position, rotation = drive()
-    file = written(tmp_path / "a.txt", kitti(position, rotation))
-    written(tmp_path / "times.txt", "".join(f"{stamp}\n" for stamp in t))
-    how = {key: tmp_path / v if key == "times" else v for key, v in how.items()}
-    with pytest.raises(error, match=message):
-        taken(tmp_path, track=file, trajectory=TrajectoryRequest(**how))
-    assert not (tmp_path / "data").exists()
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 
 from typing import TYPE_CHECKING
 
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
@@ -35,13 +36,13 @@ def compare(request: CompareRequest, output: Output = TEXT) -> None:
 
     done = stage.compare(request)
     console = output.console()
-    if "sim:" in done.comparison.source:
+    if is_simulated(done.comparison.source):
         console.print(plain(f"SIMULATED: {done.comparison.source}"))
     console.print(_table(done))
     for note in done.comparison.notes:
         console.print(plain(note))
     console.print(Text(f"\nwritten to {request.out}"))
-    simulated = "sim:" in done.comparison.source
+    simulated = is_simulated(done.comparison.source)
     content = {"folder": request.out, "simulated": simulated, "names": done.comparison.names}
     notes = list(done.comparison.notes)
     output.document("compare", {**content, "quantities": _quantities(done), "notes": notes})

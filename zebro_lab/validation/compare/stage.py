@@ -14,6 +14,7 @@ from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.provenance import file_hash, file_hashes
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.validation.compare.calibrations import compare_calibrations
 from zebro_lab.validation.compare.request import CompareRequest
 from zebro_lab.validation.compare.runs import compare_runs, is_walked
@@ -123,7 +124,7 @@ def _write(request: CompareRequest, done: Compared) -> None:
         pd.DataFrame(rows).to_csv(
             draft / TABLE, index=False, float_format="%.6g", lineterminator="\n"
         )
-        figure = overlay(compared, done.differences, simulated="sim:" in compared.source)
+        figure = overlay(compared, done.differences, simulated=is_simulated(compared.source))
         save(figure, draft / f"{PICTURE}.{request.form}")
 
 

@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from model.metrics.path_errors import pose_errors
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, map_and_panels, styled
 from zebro_lab.validation.trajectories.pair import JudgedPair
 
@@ -24,7 +25,7 @@ def trajectories(judged: JudgedPair) -> Figure:
     track, estimate, row = judged.tracked, judged.estimated, judged.rows[0]
     figure, above, panels = map_and_panels(
         judged.title,
-        simulated="sim:" in judged.source, height=5.0, names=_PANELS,
+        simulated=is_simulated(judged.source), height=5.0, names=_PANELS,
     )  # fmt: skip
     aligned = row.errors.alignment.apply(row.estimate.position)
     above.plot(*track.position.T, color="black", lw=1.6, label="reference")

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.trajectories.folder import metrics
@@ -39,7 +40,7 @@ def print_pair(console: Console, judged: JudgedPair, out: Path) -> None:
         judged: The errors.
         out: Folder that was written.
     """
-    if "sim:" in judged.source:
+    if is_simulated(judged.source):
         console.print(plain(f"SIMULATED: {judged.source}"))
     console.print(_table(judged))
     for note in judged.notes:

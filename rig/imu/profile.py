@@ -37,6 +37,7 @@ class ImuProfile:
         mounting: Quaternion w, x, y, z of the rotation from the sensor's axes to the body's.
         rate: Sample rate [Hz].
         link: `serial`, or `table` for an imported file.
+        has_yaw: Whether yaw is measured; if not, that of the quaternion means nothing.
     """
 
     name: str
@@ -48,6 +49,7 @@ class ImuProfile:
     mounting: tuple[float, ...]
     rate: float
     link: Link = "serial"
+    has_yaw: bool = True
 
     @property
     def body(self) -> struct.Struct:
@@ -69,7 +71,8 @@ class Orientation:
         device_time: Time at which the unit took each sample, NaN where unknown, shape (n,) [s].
         roll: Roll angle, left side up, shape (n,) [rad].
         pitch: Pitch angle, nose down, shape (n,) [rad].
-        yaw: Unwrapped yaw angle from an arbitrary heading, to the left, shape (n,) [rad].
+        yaw: Unwrapped yaw angle from an arbitrary heading, to the left, NaN if not measured, shape
+            (n,) [rad].
         angular_rate: Angular velocity of the body, columns x, y, z, shape (n, 3) [rad/s].
         specific_force: Acceleration less that of gravity, hence upward at rest, columns x, y, z,
             shape (n, 3) [m/s²].
@@ -115,21 +118,23 @@ def load_imu_profile(name: str) -> ImuProfile:
         mounting=quaternion,
         rate=stream.positive("rate"),
         link=kind,
+        has_yaw=link.flag("yaw", default=True) if kind == "table" else True,
     )
     table.finish()
     return profile
 
 
-def render_table_profile(rate: float) -> str:
+def render_table_profile(rate: float, *, has_yaw: bool = True) -> str:
     """Format as TOML the profile of orientation imported from a table in SI and the body's axes.
 
     Args:
         rate: Sample rate [Hz].
+        has_yaw: Whether the table has a yaw.
     """
     document = {
         "schema": SCHEMA,
         "device": "imu",
-        "link": {"kind": "table"},
+        "link": {"kind": "table", "yaw": has_yaw},
         "scale": {"quaternion": 1.0, "angular_rate": 1.0, "specific_force": 1.0},
         "mounting": {"quaternion": [1.0, 0.0, 0.0, 0.0]},
         "stream": {"rate": rate},
@@ -157,9 +162,9 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
         device_time=columns.device_time,
         roll=roll,
         pitch=pitch,
-        yaw=np.unwrap(yaw),
-        angular_rate=mounting.apply(counts[:, 4:7] / profile.rate_scale),
-        specific_force=mounting.apply(counts[:, 7:] / profile.force_scale),
+        yaw=np.unwrap(yaw) if profile.has_yaw else np.full(len(yaw), np.nan),
+        angular_rate=_turned(mounting, counts[:, 4:7] / profile.rate_scale),
+        specific_force=_turned(mounting, counts[:, 7:] / profile.force_scale),
     )
 
 
@@ -184,6 +189,13 @@ def encode_orientation(
         profile.force_scale * mounting.inv().apply(specific_force),
     ])  # fmt: skip
     return tuple(int(count) for count in np.clip(np.rint(values), -32_768, 32_767))
+
+
+def _turned(mounting: Rotation, vectors: Array) -> Array:
+    """Rotate vectors, shape (n, 3); one with an axis that is not measured only by no rotation."""
+    if mounting.magnitude() == 0:  # else a NaN of one axis would make all three NaN
+        return vectors
+    return mounting.apply(vectors)
 
 
 def _unit(quaternions: Array) -> Array:

@@ -81,7 +81,7 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
         profiles[LEGS] = render_leg_profile(_leg_profile(_rate(t)))
         samples[LEGS] = table_samples(t, np.degrees(walk.legs.reference.theta))
     if imu is not None:
-        profiles[IMU] = render_table_profile(_rate(imu.t))
+        profiles[IMU] = render_table_profile(_rate(imu.t), has_yaw=imu.has_yaw)
         samples[IMU] = table_samples(imu.t - walk.zero, imu.values)
     manifest = replace(
         walk.manifest,

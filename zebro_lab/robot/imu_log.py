@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read the body's orientation from an IMU table, in SI and in the body frame."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -27,6 +27,7 @@ IMU_UNITS: Final[Mapping[str, str]] = {
 }
 _NORM_TOLERANCE: Final = 0.05
 _NEAR_G: Final = 0.15
+_MOST_NAMED: Final = 6  # columns that are not read
 _ADVICE: Final = "delete such rows, or fill them"
 
 
@@ -41,6 +42,7 @@ class ImuLog:
         source: Source stated by the column map or the table; None if not stated.
         files: Files that were read: the table and, if there is one, the column map.
         notes: Notes, one line each.
+        has_yaw: Whether the table states a yaw; if not, that of the quaternion is 0.
     """
 
     t: Array
@@ -48,6 +50,7 @@ class ImuLog:
     source: str | None
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
+    has_yaw: bool = True
 
 
 def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
@@ -64,7 +67,7 @@ def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
     """
     t = mapping.times(table, "t", advice=_ADVICE)
     table.require_increasing(mapping.mapped["t"].name, t)
-    quaternion, notes = _orientation(table, mapping)
+    quaternion, has_yaw = _orientation(table, mapping)
     rest = [_or_nan(table, mapping, name) for name in (*_RATE, *_FORCE)]
     _require_no_multiples_of_g(table, mapping, rest[3:])
     return ImuLog(
@@ -72,16 +75,32 @@ def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
         np.column_stack([quaternion, *rest]),
         mapping.source or table.source,
         (table.path, *([mapping.file] if mapping.file else [])),
-        (*table.notes, *mapping.conversions(table), *notes),
+        (*table.notes, *mapping.conversions(table), *_not_read(table, mapping, has_yaw=has_yaw)),
+        has_yaw,
     )
 
 
-def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, tuple[str, ...]]:
+def _not_read(table: RawTable, mapping: MappedColumns, *, has_yaw: bool) -> Iterator[str]:
+    """Yield a note of a missing yaw, and one of the columns that are mapped to no quantity."""
+    if not has_yaw:
+        yield f"{table.path.name} has no column of yaw; yaw is not measured"
+    known = {column.name for column in mapping.mapped.values()}
+    others = [f"'{name}'" for name in table.columns if name not in known]
+    if others:
+        shown = ", ".join(others[:_MOST_NAMED]) + ", …" * (len(others) > _MOST_NAMED)
+        yield (
+            f"{table.path.name}: not read: {shown}; if one is an angular rate or a specific force "
+            "of the body, map it in [imu.columns] of a columns.toml"
+        )
+
+
+def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, bool]:
+    """Return quaternions, shape (n, 4), and whether the table has a yaw; 0 is taken without."""
     if mapping.has(table, "qw"):
         columns = [_numbers(table, mapping, name) for name in _QUATERNION]
         quaternion = np.column_stack(columns)
         _require_unit(table, mapping, quaternion)
-        return quaternion, ()
+        return quaternion, True
     if not mapping.has(table, "roll"):
         raise DataError(
             f"holds no orientation; expected the columns {', '.join(_QUATERNION)}, or roll and "
@@ -92,8 +111,7 @@ def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, tuple[
     known = mapping.has(table, "yaw")
     yaw = _numbers(table, mapping, "yaw") if known else np.zeros(len(roll))
     turned = Rotation.from_euler("ZYX", np.column_stack([yaw, pitch, roll]))
-    notes = () if known else (f"{table.path.name} has no column of yaw; yaw is set to 0",)
-    return turned.as_quat(scalar_first=True), notes
+    return turned.as_quat(scalar_first=True), known
 
 
 def _numbers(table: RawTable, mapping: MappedColumns, name: str) -> Array:

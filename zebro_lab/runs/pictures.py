@@ -26,10 +26,10 @@ def raw_streams(run: RunSignals, at: Sequence[float] = ()) -> Figure:
     """Draw every stream of a run, one panel per quantity, above them the events; return the figure.
 
     Args:
-        run: Signals; a panel without any finite value is left out, ValueError if none is drawn.
+        run: Signals, with one panel or more.
         at: Times to mark in every panel [s].
     """
-    drawn = [panel for panel in run.panels if _known(panel)]
+    drawn = run.panels
     rows = len(drawn) + bool(run.events)
     title = f"{run.name}: raw streams, {run.state}"
     events = min(len(run.events), _MOST_EVENTS + 1)
@@ -74,11 +74,6 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
     chosen = np.sort(np.stack([parts.argmin(axis=1), parts.argmax(axis=1)]) + first, axis=0)
     at = np.append(chosen.T.ravel(), np.arange(length * columns, len(t)))
     return t[at], values[at]
-
-
-def _known(panel: Panel) -> bool:
-    """Return whether any curve of a panel has a finite value."""
-    return any(np.isfinite(line).any() for line in panel.lines.values())
 
 
 def _draw_panel(axes: Axes, panel: Panel) -> None:

@@ -42,7 +42,8 @@ class Panel:
         title: Stream and quantity, such as `legs: angles, unwrapped`.
         unit: Unit of the values.
         t: Time of each sample since the start of the run, shape (n,) [s].
-        lines: Values by name of the curve, each of shape (n,); NaN where not measured.
+        lines: Values by name of the curve, each of shape (n,); NaN where not measured, but not
+            throughout.
         simulated: Whether the stream is simulated.
         gaps: Begin and end of each gap, shape (k, 2) [s].
     """
@@ -54,12 +55,17 @@ class Panel:
     simulated: bool
     gaps: Array
 
+    def measured(self) -> "Panel":
+        """Return the panel without the curves of which nothing is measured."""
+        lines = {name: line for name, line in self.lines.items() if np.isfinite(line).any()}
+        return replace(self, lines=lines)
+
     def within(self, begin: float, end: float) -> "Panel":
         """Return the samples from `begin` to `end` [s], and the gaps that reach into this time."""
         kept = (self.t >= begin) & (self.t <= end)
         lines = {name: np.asarray(line)[kept] for name, line in self.lines.items()}
         gaps = self.gaps[(self.gaps[:, 0] < end) & (self.gaps[:, 1] > begin)]
-        return replace(self, t=self.t[kept], lines=lines, gaps=gaps)
+        return replace(self, t=self.t[kept], lines=lines, gaps=gaps).measured()
 
 
 @dataclass(frozen=True)
@@ -128,7 +134,7 @@ class RunSignals:
             SettingsError: No stream has a sample in this time.
         """
         panels = [panel.within(begin, end) for panel in self.panels]
-        drawn = tuple(panel for panel in panels if len(panel.t))
+        drawn = tuple(panel for panel in panels if panel.lines)
         if not drawn:
             first, last = self.span
             raise SettingsError(
@@ -158,13 +164,14 @@ def read_signals(folder: Path) -> RunSignals:
     else:
         run = read_slip_rig_run(folder)
         panels, notes = list(_of_table(run.table.rows(), manifest)), run.notes
-    if not panels:
+    measured = tuple(panel for panel in map(Panel.measured, panels) if panel.lines)
+    if not measured:
         raise DataError("holds no samples to plot that the run's profiles describe", file=log)
     state = run_state(folder, manifest)
     if manifest.excluded is not None:
         state = f"excluded: {manifest.excluded.get('why', 'no reason given')}"
     events = _events(log, manifest)
-    return RunSignals(folder.absolute().name, state, manifest.source, tuple(panels), events, notes)
+    return RunSignals(folder.absolute().name, state, manifest.source, measured, events, notes)
 
 
 def profile_of(folder: Path, name: str) -> Path:

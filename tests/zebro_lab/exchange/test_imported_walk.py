@@ -16,6 +16,7 @@ from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.manifest import profile_file, read_manifest
+from zebro_lab.runs.signals import read_signals
 from zebro_lab.runs.stage import list_runs
 
 
@@ -41,6 +42,16 @@ def test_orientation_is_decoded_as_of_any_imu(files, tmp_path):
     np.testing.assert_allclose(seen.pitch, 0.2 * np.cos(T), atol=1e-12)
     np.testing.assert_allclose(stream.counts[:, 6], np.radians(5.0))
     assert np.isnan(stream.counts[:, [4, 5, 7, 8, 9]]).all()
+
+
+def test_a_plot_shows_what_the_files_have_and_nothing_else(files, tmp_path):
+    folder, _ = everything(files, tmp_path)
+    shown = {panel.title: list(panel.lines) for panel in read_signals(folder).panels}
+    legs = [f"leg {leg}" for leg in range(1, 7)]
+    assert shown == {
+        "legs: counts as sent": legs, "legs: angles, unwrapped": legs,
+        "imu: orientation": ["roll", "pitch"], "imu: angular rate": ["z"],
+    }  # fmt: skip
 
 
 def test_nobody_stated_a_source_so_that_the_file_is_it(files, tmp_path):

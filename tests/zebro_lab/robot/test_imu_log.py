@@ -69,7 +69,17 @@ def test_what_is_not_measured_is_nan_and_a_missing_yaw_is_noted():
                             [np.nan, 2.0, np.nan, np.nan, np.nan, 9.9]],
     )  # fmt: skip
     np.testing.assert_array_equal(log.t, T)
-    assert log.notes == ("imu.csv has no column of yaw; yaw is set to 0",)
+    assert log.notes == ("imu.csv has no column of yaw; yaw is not measured",)
+    assert not log.has_yaw
+
+
+def test_columns_that_no_quantity_is_read_from_are_named():
+    log = read(roll=[0.0, 0.0], pitch=[0.0, 0.0], yaw=[0.0, 0.0], gyro_yaw=[1.0, 2.0])
+    assert log.notes == (
+        "imu.csv: not read: 'gyro_yaw'; if one is an angular rate or a specific force of the body, "
+        "map it in [imu.columns] of a columns.toml",
+    )
+    assert log.has_yaw
 
 
 @pytest.mark.parametrize(

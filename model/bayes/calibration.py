@@ -74,11 +74,6 @@ class Calibration:
         """The posterior that was sampled."""
         return self.fit.posterior
 
-    @property
-    def simulated(self) -> bool:
-        """Whether any of the data are simulated: `source` contains "sim:"."""
-        return "sim:" in self.source
-
 
 def conclude(
     fit: PreparedFit,

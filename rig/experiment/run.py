@@ -16,7 +16,7 @@ from rig.experiment.measure import record, settle, take_zero
 from rig.experiment.plan import Plan
 from rig.experiment.readings import Batch
 from rig.experiment.sink import RunSink, RunStart, SinkFailed
-from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
+from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out, steps_left
 from rig.experiment.verdict import PointVerdict, judge_point
 from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory, StopRequested
@@ -152,7 +152,7 @@ class _Run:
         try:
             self._acquire.arm()
             self._show(RigState.RUNNING)
-            for step in self._remaining():
+            for step in steps_left(self._steps, self._done):
                 self._carry_out(step)
             self._show(RigState.STOPPING, "the plan is complete")
             self._acquire.come_to_rest(REST_TIMEOUT)
@@ -168,18 +168,6 @@ class _Run:
             self._acquire.rest_without_sink(REST_TIMEOUT)
             raise
         return "completed"
-
-    def _remaining(self) -> list[Step]:
-        """List the steps left, a zero first; none if every point is finished.
-
-        Zeros without a remaining point since the previous zero are left out.
-        """
-        left = [step for step in self._steps if step.number not in self._done]
-        first = next((k for k, step in enumerate(left) if isinstance(step, Point)), None)
-        if first is None:
-            return []
-        return [step for k, step in enumerate(left) if isinstance(step, Point)
-                or k + 1 == first or (k > first and isinstance(left[k - 1], Point))]  # fmt: skip
 
     def _carry_out(self, step: Step) -> None:
         """Carry out a zero or a point; hold first if paused, and on a soft stop, then repeat it."""

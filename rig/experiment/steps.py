@@ -2,6 +2,7 @@
 """Expand a plan into ordered steps, estimate their duration, and check them against limits."""
 
 import math
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
@@ -94,6 +95,23 @@ def spell_out(plan: Plan) -> tuple[Step, ...]:
         )
         since_tare += 1
     return tuple(steps)
+
+
+def steps_left(steps: Sequence[Step], done: Collection[int]) -> list[Step]:
+    """List the steps that are left, a zero first; none if every point is finished.
+
+    Zeros without a point that is left since the previous zero are omitted.
+
+    Args:
+        steps: Steps of a plan, in order.
+        done: Numbers of the finished points.
+    """
+    left = [step for step in steps if step.number not in done]
+    first = next((k for k, step in enumerate(left) if isinstance(step, Point)), None)
+    if first is None:
+        return []
+    return [step for k, step in enumerate(left) if isinstance(step, Point)
+            or k + 1 == first or (k > first and isinstance(left[k - 1], Point))]  # fmt: skip
 
 
 def _points(plan: Plan) -> list[Point]:

@@ -23,6 +23,7 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind
+from zebro_lab.files.source_names import is_simulated
 
 if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
     import arviz as az
@@ -152,7 +153,7 @@ def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
 
     document = tomlkit.document()
     document.add(tomlkit.comment("Slip curve fitted by calibrate-slip. SI units."))
-    if calibration.simulated:
+    if is_simulated(calibration.source):
         document.add(tomlkit.comment("SIMULATED data: nothing here was measured."))
     document.update({
         "schema": SCHEMA,

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from model.bayes.calibration import Calibration
 from zebro_lab.files.picture_format import PictureFormat
+from zebro_lab.files.source_names import is_simulated
 
 
 def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat = "png") -> None:
@@ -18,7 +19,7 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
     from zebro_lab import plots  # matplotlib takes most of a second to import
 
     blocks, law = calibration.posterior.blocks, calibration.posterior.law
-    residuals, simulated = calibration.residuals, calibration.simulated
+    residuals, simulated = calibration.residuals, is_simulated(calibration.source)
     k = len(law.parameters)
     draws = calibration.draws.flat[:, :k]
     labels = plots.parameter_labels(law.parameters)

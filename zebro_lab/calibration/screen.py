@@ -83,7 +83,7 @@ def _comparison_lines(calibration: Calibration) -> list[str]:
 
 def _parameter_table(calibration: Calibration) -> Table:
     title = f"parameters of '{calibration.posterior.law.name}' and of the measurement"
-    if calibration.simulated:
+    if is_simulated(calibration.source):
         title += " (simulated)"
     numbers = ("median", "90 % interval", "unit", "informed", "R-hat", "ESS")
     table = plain_table(title, ("parameter", "symbol"), numbers, no_wrap=True)

@@ -9,8 +9,8 @@ from model.errors import DomainError
 from model.slip.curve import SlipCurve
 from model.slip.law import Array
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
+from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.slip_argument import NamedSlip
-from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
 POSTERIOR = "posterior.nc"

@@ -38,7 +38,7 @@ def import_files(request: ImportRequest, output: Output = TEXT) -> None:
         output.say(note)
     manifests = {folder: read_manifest(folder) for folder in imported.folders}
     for folder, manifest in manifests.items():
-        simulated = "SIMULATED " if manifest.source.startswith("sim:") else ""
+        simulated = "SIMULATED " if is_simulated(manifest.source) else ""
         counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
         held = f"samples: {counts}" if counts else "a track alone"
         output.say(f"{simulated}source {manifest.source}, {held}; wrote {folder}")

@@ -68,7 +68,7 @@ def _report(recorded: "Recorded") -> str:
     lines = []
     for name, counters in manifest.counters.items():
         rejected = sum(counters[key] for key in ("damaged", "repeated", "refused"))
-        simulated = "SIMULATED " if manifest.sources[name].startswith("sim:") else ""
+        simulated = "SIMULATED " if is_simulated(manifest.sources[name]) else ""
         lines.append(
             f"{simulated}{name}: {counters['received']} samples received, {counters['lost']} lost "
             f"on the way, {rejected} rejected as damaged, repeated, impossible or for another "

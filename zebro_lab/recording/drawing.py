@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from rich.text import Text
 
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.recording.clock_text import short_drift
 from zebro_lab.recording.live_values import TURN, LiveValue
 from zebro_lab.recording.status import RecordStatus, StreamStatus
@@ -98,7 +99,7 @@ def stream_in_words(name: str, stream: StreamStatus) -> dict[str, str]:
         stream: Its status.
     """
     counters = stream.counters
-    simulated = " SIMULATED" if stream.source.startswith("sim:") else ""
+    simulated = " SIMULATED" if is_simulated(stream.source) else ""
     said = {
         "name": name + simulated,
         "rate": f"{stream.rate:.0f} Hz",

@@ -21,7 +21,6 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.sample_queue import SampleQueue
 from zebro_lab.files.errors import RecordingError
-from zebro_lab.files.new_folders import removing_new_folders
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.ros_messages import INFO
 from zebro_lab.recording.place import require_space
@@ -29,6 +28,7 @@ from zebro_lab.recording.run_files import RunFiles
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.runs.folder import LOG_FILE, new_run_folder
 from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.runs.new_folders import removing_new_folders
 
 FLUSH_EVERY: Final = 0.1
 """Interval at which the queues are written and flushed [s]."""

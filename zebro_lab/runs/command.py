@@ -38,7 +38,7 @@ def _in_words(run: "ListedRun") -> str:
     lasted = "-" if run.duration is None else f"{run.duration:.1f} s"
     samples = ", ".join(f"{count} {topic}" for topic, count in run.samples.items()) or "-"
     source = run.source or "-"
-    simulated = "SIMULATED " if source.startswith("sim:") else ""
+    simulated = "SIMULATED " if is_simulated(source) else ""
     return f"{run.name}  {run.state}  {lasted}  {samples}  {simulated}{source}"
 
 

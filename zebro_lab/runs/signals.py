@@ -20,6 +20,7 @@ from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.zebro.profile import LegProfile, decode_angles, load_leg_profile
 from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import LOG, WARNING
@@ -238,7 +239,7 @@ def _panels(
     try:
         for what, unit, part, lines in stream_decoder(name, place)(t, stream):
             own = gaps if len(part) == len(t) else find_gaps(part)
-            yield Panel(f"{name}: {what}", unit, part, lines, source.startswith("sim:"), own)
+            yield Panel(f"{name}: {what}", unit, part, lines, is_simulated(source), own)
     except RigError as error:
         raise DataError(str(error), file=place) from error
 
@@ -280,7 +281,7 @@ def _forces(forces: Forces) -> Mapping[str, Array]:
 
 def _of_table(rows: Array, manifest: RunManifest) -> Iterator[Panel]:
     t, leg, ground, normal, traction = rows.T
-    simulated = manifest.source.startswith("sim:")
+    simulated = is_simulated(manifest.source)
     gaps = find_gaps(t)
     speeds = {"leg": leg, "ground": ground}
     yield Panel("rig: speeds of the discs", "rad/s", t, speeds, simulated, gaps)

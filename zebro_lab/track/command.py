@@ -93,7 +93,7 @@ def track_lines(result: "TrackResult") -> list[str]:
 
     track, fit = result.tracked.track, result.tracked.floor.fit
     spread = np.sqrt(np.diagonal(track.covariance, axis1=1, axis2=2))
-    simulated = "SIMULATED " if result.source.startswith("sim:") else ""
+    simulated = "SIMULATED " if is_simulated(result.source) else ""
     moves = np.where(track.gap_before[1:], 0.0, np.hypot(*np.diff(track.poses[:, :2], axis=0).T))
     lost = list(result.tracked.lost.items())
     what = "exposures" if result.is_composite else "photographs"

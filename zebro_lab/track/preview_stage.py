@@ -9,6 +9,7 @@ from tracking.images import read_pixels
 from tracking.photos.preview import Preview, preview_photo
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.own_file import picture, require_own
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.track.inputs import read_inputs
 from zebro_lab.track.photo_sequence import open_photos
 from zebro_lab.track.photographs import PlacedPhoto
@@ -44,7 +45,7 @@ def preview(request: TrackRequest, file: Path) -> Preview:
         draw_preview(
             drawn, PlacedPhoto(read_pixels(photo.path), scene.camera, found.pose),
             floor=scene.floor, detection=found.detection, title=f"Preview: {photo.name}",
-            simulated=inputs.source_of(sequence).startswith("sim:"), command=PREVIEW.command,
+            simulated=is_simulated(inputs.source_of(sequence)), command=PREVIEW.command,
         )  # fmt: skip
         atomic_write_bytes(target, drawn.getvalue())
         return found

@@ -11,6 +11,7 @@ from tracking.photos.workers import Progress
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.robot.marker_print import MarkerPrint
 from zebro_lab.track.annotations import ANNOTATIONS_FILE, render_annotations
 from zebro_lab.track.clock import CountedTimes
@@ -132,7 +133,7 @@ def _draw(
         draft, track, PlacedPhoto(read_pixels(path), scene.camera, seen.fit.pose_of(shown)),
         floor=seen.fit.floor, detection=detection,
         title=sequence.origin.name,
-        simulated=result.source.startswith("sim:"), form=form,
+        simulated=is_simulated(result.source), form=form,
     )  # fmt: skip
 
 

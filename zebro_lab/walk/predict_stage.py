@@ -12,6 +12,7 @@ from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
@@ -75,7 +76,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         described,
         legs.smooth() if isinstance(legs, QuantisedLog) else legs,
         duration=end - start,
-        what=f"{'simulated' if log.source.startswith('sim:') else 'logged'} leg angles",
+        what=f"{'simulated' if is_simulated(log.source) else 'logged'} leg angles",
         direction=request.direction,
         logs=log.files,
         angles_are_true=is_walk,

@@ -30,6 +30,5 @@ def test_data_narrow_the_friction_and_the_law_explains_left_out_samples(calibrat
     assert 0.5 < calibration.r_squared <= 1.0
 
 
-def test_the_source_says_whether_data_were_simulated(calibration):
-    assert calibration.simulated
+def test_a_calibration_keeps_the_source_of_its_data_and_the_time_it_took(calibration):
     assert (calibration.source, calibration.seconds) == ("sim:test", 1.5)

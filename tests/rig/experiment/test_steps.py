@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from rig.errors import LimitExceeded, ProfileError
-from rig.experiment.steps import Point, Tare, estimate, require_allowed, spell_out
+from rig.experiment.steps import Point, Tare, estimate, require_allowed, spell_out, steps_left
 from rig.slip_rig.profile import load_rig_profile
 
 PROFILE = load_rig_profile("rig-board-serial")
@@ -58,6 +58,23 @@ def test_a_sweep_is_one_run_a_load_through_all_slips(lab):
     assert [found[0].slip_at(f) for f in (0.0, 0.25, 0.5, 1.0)] == pytest.approx(
         [0.02, 0.11, 0.2, 0.8]
     )
+
+
+@pytest.mark.parametrize(
+    ("done", "left"),
+    [
+        ((), "tppptppp"),
+        ((2, 3), "tptppp"),
+        ((2, 3, 4), "tppp"),
+        ((2, 3, 4, 6, 7), "tp"),
+        ((2, 3, 4, 6, 7, 8), ""),
+    ],
+)
+def test_what_is_left_of_a_plan_begins_with_a_zero_and_holds_none_in_vain(done, left):
+    steps = [Tare(k) if k in (1, 5) else Point(k, 5.0, (0.1,)) for k in range(1, 9)]
+    found = steps_left(steps, done)
+    assert "".join("t" if isinstance(step, Tare) else "p" for step in found) == left
+    assert not {step.number for step in found} & set(done)
 
 
 def test_the_estimate_counts_points_loads_and_time(lab):

@@ -6,8 +6,8 @@ import pytest
 
 from model.slip import Brush, MagicFormula
 from support.short_calibration import short_calibration
+from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import read_slip, write_tables
-from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
 GOOD = """

@@ -3,8 +3,10 @@
 
 import pytest
 
+from support.imported_files import COLUMNS
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.runs.signals import read_signals
 
 
 def test_options_reach_the_run_and_it_is_named(files, tmp_path, run_command):
@@ -27,6 +29,19 @@ def test_options_reach_the_run_and_it_is_named(files, tmp_path, run_command):
     assert (manifest.material, manifest.operator, manifest.robot) == ("PLA", "a", "robot")
     assert (folder / "track" / "track.csv").is_file()
     assert len(read_leg_log(folder).reference.t) == 100
+
+
+def test_a_run_of_real_legs_and_a_simulated_imu_is_called_simulated(files, tmp_path, run_command):
+    mixed = COLUMNS.replace("[legs", '[legs]\nsource = "real"\n[legs', 1)
+    (files / "columns.toml").write_text(mixed)
+    ended = run_command(
+        "import", "--legs", files / "legs.csv", "--imu", files / "imu.csv", "--columns",
+        files / "columns.toml", "--robot", files / "robot.toml", "--data", tmp_path / "data",
+    )  # fmt: skip
+    assert ended.out.splitlines()[-1].startswith("SIMULATED source mixed:real,sim:other-lab,")
+    (folder,) = (tmp_path / "data").iterdir()
+    shown = {panel.title.split(":")[0]: panel.simulated for panel in read_signals(folder).panels}
+    assert shown == {"legs": False, "imu": True}
 
 
 def test_a_rigs_runs_are_all_named(sweep, tmp_path, run_command):

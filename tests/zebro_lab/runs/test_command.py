@@ -59,7 +59,9 @@ def test_an_exclusion_needs_a_reason(tmp_path, run_command):
 def test_simulated_runs_are_listed_as_such_and_counted(tmp_path, run_command):
     make_run(tmp_path, label="a")
     make_run(tmp_path, label="b", source="real")
-    first, second, count = run_command("runs", tmp_path).out.splitlines()
+    make_run(tmp_path, label="c", source="mixed:real,sim:imu")
+    first, second, third, count = run_command("runs", tmp_path).out.splitlines()
     assert first.endswith("_a  completed  0.2 s  200 /board/raw  SIMULATED sim:noise")
     assert second.endswith("_b  completed  0.2 s  200 /board/raw  real")
-    assert count == f"2 runs in {tmp_path}"
+    assert third.endswith("SIMULATED mixed:real,sim:imu")
+    assert count == f"3 runs in {tmp_path}"

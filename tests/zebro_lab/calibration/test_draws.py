@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from support.bounded_reading import refusal
-from zebro_lab.files.draws import MOST_DRAWS, read_draws_of
+from zebro_lab.calibration.draws import MOST_DRAWS, read_draws_of
 from zebro_lab.files.errors import DataError, NotFound
 
 NAMES = ("friction", "slip_stiffness")

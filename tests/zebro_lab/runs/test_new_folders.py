@@ -3,7 +3,7 @@
 
 import pytest
 
-from zebro_lab.files.new_folders import removing_new_folders
+from zebro_lab.runs.new_folders import removing_new_folders
 
 
 def create(folder, *, file=None, error=None):

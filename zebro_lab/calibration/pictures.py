@@ -11,6 +11,8 @@ from zebro_lab.files.source_names import is_simulated
 def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat = "png") -> None:
     """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit.
 
+    The titles of a fit that did not converge, or that is not trustworthy, say so.
+
     Args:
         folder: Existing folder to write the pictures into.
         calibration: The finished fit.
@@ -37,4 +39,10 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
         ),
     }
     for name, figure in figures.items():
+        if not calibration.verdict.trustworthy:
+            plots.add_to_title(figure, _doubt(calibration))
         plots.save(figure, folder / f"{name}.{form}")
+
+
+def _doubt(calibration: Calibration) -> str:
+    return "NOT TRUSTWORTHY" if calibration.verdict.converged else "NOT CONVERGED"

@@ -31,12 +31,14 @@ class NamedSlip(Slip):
             convert.
         walks: Posterior of legs and floor after tracked walks; None if no walks were fitted, or
             they were not read.
+        doubt: Headline of the verdict of a fit that cannot be trusted; else None.
     """
 
     text: str
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()
     walks: StoredWalks | None = None
+    doubt: str | None = None
 
     @property
     def title(self) -> str:
@@ -86,4 +88,4 @@ def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
         notes.append(f"slip: fitted to '{read.curve.definition}' slip, converted when evaluated")
     walks = read_stored_walks(read.file) if with_walks else None
     files = (read.file, *(walks.files if walks is not None else ()))
-    return NamedSlip(read.curve, read.source, text, files, tuple(notes), walks)
+    return NamedSlip(read.curve, read.source, text, files, tuple(notes), walks, read.doubt)

@@ -3,11 +3,12 @@
 
 from zebro_lab.plots.noise import residuals
 from zebro_lab.plots.posterior import corner, traces
-from zebro_lab.plots.sheet import parameter_labels, save
+from zebro_lab.plots.sheet import add_to_title, parameter_labels, save
 from zebro_lab.plots.slip import slip_curves
 from zebro_lab.plots.surface import slip_surface
 
 __all__ = [
+    "add_to_title",
     "corner",
     "parameter_labels",
     "residuals",

@@ -14,7 +14,7 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.residuals import lag_correlation
 from model.bayes.verdict import lag_one_limit
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, RED, new_figure, slip_label, styled
+from zebro_lab.plots.sheet import BLUE, RED, new_figure, slip_label, styled, with_minus
 
 _MAX_LAG = 20
 _FEWEST_PAIRS = 8  # of a lag that is drawn: with fewer the band of chance is most of -1 to 1
@@ -92,23 +92,24 @@ def _draw_autocorrelation(axes: Axes, whitened: Array, run: NDArray[np.intp]) ->
     reach = 1.15 * max(limit, float(np.abs(correlations).max()), float(chance.max()))
     axes.set(xlim=(0.5, lags[-1] + 0.5), ylim=(-reach, reach))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    _legend_above(axes)
+    _legend_above(axes, columns=1)
 
 
-def _legend_above(axes: Axes) -> None:
-    axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncols=2, borderpad=0)
+def _legend_above(axes: Axes, *, columns: int = 2) -> None:
+    """Add a legend above, which must not be wider than the axes: they would be squeezed."""
+    axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncols=columns, borderpad=0)
 
 
 def _draw_run_scores(axes: Axes, run_score: Array, names: Sequence[str]) -> None:
     outside = int(np.sum(np.abs(run_score) > _NORMAL_90))
-    name = f"central 90 %, {outside} of {len(run_score)} runs outside"
+    name = f"central 90 %: {outside} of {len(run_score)} outside"
     axes.axhspan(-_NORMAL_90, _NORMAL_90, color=BLUE, alpha=0.15, lw=0, label=name)
     order = np.argsort(run_score, kind="stable")
     ranks = np.arange(1, len(run_score) + 1)
     axes.plot(ranks, run_score[order], ls="none", marker="o", ms=3, color=BLUE)
     axes.axhline(0, color="black", lw=0.6)
     axes.set(xlabel="run, by rank [-]", ylabel="run mean less predicted [sd]")
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
     reach = 1.1 * max(3.0, float(np.abs(run_score).max()))
     axes.set_ylim(-reach, reach)
     _name_furthest(axes, [(names[int(i)], float(run_score[i])) for i in order])
@@ -120,7 +121,7 @@ def _name_furthest(axes: Axes, ranked: Sequence[tuple[str, float]]) -> None:
     lowest = [(name, score) for name, score in ranked[:_NAMED] if score < 0]
     highest = [(name, score) for name, score in ranked[-_NAMED:] if score > 0]
     for runs, x, y in ((highest[::-1], 0.02, 0.98), (lowest[::-1], 0.98, 0.02)):
-        text = "\n".join(f"{_short(name)}  {score:+.1f}" for name, score in runs)
+        text = "\n".join(f"{_short(name)}  {with_minus(f'{score:+.1f}')}" for name, score in runs)
         sides = ("left", "top") if y > 0.5 else ("right", "bottom")
         axes.text(
             x, y, text, ha=sides[0], va=sides[1], fontsize=6.5, transform=axes.transAxes,

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import gaussian_filter
 
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, CYCLE, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, CYCLE, legend_below, new_figure, styled, with_minus
 
 _REGIONS = ("#CCE3F0", "#66AAD1")  # blue, mixed with white: 90 % and 50 % of the draws
 
@@ -116,7 +116,7 @@ def _draw_marginal(axes: Axes, values: Array, edges: Array) -> None:
     for edge in (low, high):
         axes.axvline(edge, color=BLUE, lw=0.9, ls="--", label="central 90 %")
     digits = 1 - math.floor(math.log10(high - low)) if high > low else 3
-    low, median, high = (f"{value:.{max(digits, 0)}f}" for value in (low, median, high))
+    low, median, high = (with_minus(f"{value:.{max(digits, 0)}f}") for value in (low, median, high))
     axes.set_title(f"{median}\n[{low}, {high}]", fontsize=8)
     axes.set(yticks=[], ylim=(0, None))
     axes.spines["left"].set_visible(False)

@@ -76,8 +76,29 @@ def new_figure(title: str, simulated: bool, *, width: float, height: float) -> F
     figure = Figure(figsize=(width, height), dpi=150, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     text = f"{title} (simulated)" if simulated else title
-    figure.suptitle(textwrap.fill(text, int(_TITLE * width)), parse_math=False)
+    figure.suptitle(_title_lines(text, figure), parse_math=False)
     return figure
+
+
+def _title_lines(text: str, figure: Figure) -> str:
+    """Break a title into lines as wide as the figure; into two after the first colon, if it has."""
+    letters = int(_TITLE * figure.get_figwidth())
+    lines = textwrap.wrap(text, letters)
+    head, colon, tail = " ".join(text.split()).partition(": ")
+    if len(lines) == 2 and colon and max(len(head) + 1, len(tail)) <= letters:
+        return f"{head}:\n{tail}"  # rather than in the middle of a phrase
+    return "\n".join(lines)
+
+
+@styled
+def add_to_title(figure: Figure, words: str) -> None:
+    """Append words to the title of a figure.
+
+    Args:
+        figure: A figure of `new_figure`.
+        words: What to append, after a colon.
+    """
+    figure.suptitle(_title_lines(f"{figure.get_suptitle()}: {words}", figure), parse_math=False)
 
 
 @styled
@@ -211,16 +232,25 @@ def time_texts(t: Array) -> list[str]:
     """
     least = float(np.diff(np.unique(t)).min()) if np.ptp(t) > 0 else 1.0
     digits = next((n for n in range(3) if np.abs(t - t.round(n)).max() <= 0.02 * least), 3)
-    return [f"{each + 0.0:.{digits}f}" for each in t.round(digits)]
+    return [with_minus(f"{each + 0.0:.{digits}f}") for each in t.round(digits)]
 
 
 def plain(value: float) -> str:
     """Format a number with at most three significant digits; no exponent from 0.0001 to 999000.
 
-    >>> plain(1148.3), plain(0.01442)
-    ('1150', '0.0144')
+    >>> plain(1148.3), plain(-0.01442)
+    ('1150', '−0.0144')
     """
-    return f"{float(f'{value:.3g}'):g}"
+    return with_minus(f"{float(f'{value:.3g}'):g}")
+
+
+def with_minus(number: str) -> str:
+    """Return a formatted number with the minus sign that the ticks of axes have, U+2212.
+
+    >>> with_minus("-0.5")
+    '−0.5'
+    """
+    return number.replace("-", "−")
 
 
 def slip_grid(slip: Array, count: int) -> Array:

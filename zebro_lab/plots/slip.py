@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,6 +31,7 @@ from zebro_lab.plots.sheet import (
 
 _QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CURVES = 400  # draws whose curves make the bands
+_LINE = 0.015  # of the height of a panel: a band that is narrower hides behind the line
 _NEAR_LOAD = 0.1  # relative load difference beyond which a block is not comparable with the curve
 
 
@@ -63,6 +64,7 @@ def slip_curves(
     """
     curves = _load_curves(blocks, law, draws, np.sort(np.ravel(np.asarray(load_levels, float))))
     reach = _narrow_reach(blocks, curves)
+    hidden = all(curve.is_narrow() for curve in curves)
     groups = math.ceil(math.sqrt(len(curves))) if reach is None else 1 + (len(curves) > 4)
     rows, width = math.ceil(len(curves) / groups), 1 if reach is None else 2
     sides = max(7.0, 3.2 * groups * width), 1.2 + 2.2 * max(rows, 1.6)
@@ -72,6 +74,8 @@ def slip_curves(
         row, column = index // groups, index % groups * width
         cells = [grid[row, column + i] for i in range(width)]
         panels = _draw_load(figure, cells, blocks, curve, reach)
+        for axes in panels:
+            _draw_bands(axes, curve, hidden=hidden)
         if column == 0:
             panels[0].set_ylabel(TRACTION_LABEL)
         if index + groups >= len(curves):  # the last panel of its column
@@ -91,6 +95,11 @@ class _LoadCurve:
     bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
     peaks: Array  # shape (0 to 2, 2): slip [-] and force [N] of driving, then of braking peak
 
+    def is_narrow(self) -> bool:
+        """Return whether the band of 90 % is hardly wider than a line."""
+        width = float((self.bands[-1] - self.bands[0]).max())
+        return width < _LINE * float(np.ptp(self.bands))
+
     def main_peak(self) -> tuple[float, float] | None:
         """Return slip [-] and force [N] of the driving peak, else the braking one, else None."""
         return (float(self.peaks[0, 0]), float(self.peaks[0, 1])) if len(self.peaks) else None
@@ -109,9 +118,10 @@ def _draw_load(
         return [whole]
     whole.set_title(load, loc="left")
     close = figure.add_subplot(cells[1], sharey=whole)
-    _draw_load_curve(close, blocks, curve)
+    inside = curve.rows & (reach[0] <= blocks.slip) & (blocks.slip <= reach[1])
+    _draw_load_curve(close, blocks, replace(curve, rows=inside))
     margin = 0.02 * (reach[1] - reach[0])
-    close.set_xlim(reach[0] - margin, reach[1])
+    close.set_xlim(reach[0] - margin, reach[1] + margin)
     close.set_title(peak, loc="left")
     close.tick_params(labelleft=False)
     close.xaxis.set_major_locator(few_ticks(4))
@@ -166,20 +176,25 @@ def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
         slip[off], force[off], s=12, facecolors="none", edgecolors="0.35", alpha=alpha,
         linewidths=0.6, label="block means, load differs > 10 %" if off.any() else None,
     )  # fmt: skip
-    low, lower, median, upper, high = curve.bands
-    axes.fill_between(
-        curve.slip, low, high, color=tint(0.25), lw=0, zorder=0.5, label="90 % of curves"
-    )
-    axes.fill_between(
-        curve.slip, lower, upper, color=tint(0.6), lw=0, zorder=0.6, label="50 % of curves"
-    )
-    axes.plot(curve.slip, median, color=BLUE, lw=1.4, label="posterior median")
+    axes.plot(curve.slip, curve.bands[2], color=BLUE, lw=1.4, label="posterior median")
     if len(curve.peaks):
         axes.plot(
             *curve.peaks.T, ls="none", marker="D", ms=5, color=RED,
             mec="white", mew=0.6, label="peak",
         )  # fmt: skip
     axes.axhline(0, color="0.6", lw=0.5, zorder=0)
+
+
+def _draw_bands(axes: Axes, curve: _LoadCurve, *, hidden: bool) -> None:
+    """Draw the bands of curves; `hidden`: none is wider than the line, which their key says."""
+    low, lower, _, upper, high = curve.bands
+    note = ": not wider than the line" if hidden else ""
+    axes.fill_between(
+        curve.slip, low, high, color=tint(0.25), lw=0, zorder=0.5, label=f"90 % of curves{note}"
+    )
+    axes.fill_between(
+        curve.slip, lower, upper, color=tint(0.6), lw=0, zorder=0.6, label=f"50 % of curves{note}"
+    )
 
 
 def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:

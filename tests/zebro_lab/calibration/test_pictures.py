@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A calibration has its five pictures, each of the fit's own draws."""
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+import pytest
+
+from model.bayes.verdict import Check, Verdict
 from support.drawn_figures import figures_saved
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.pictures import draw_calibration
@@ -14,11 +18,11 @@ def test_every_picture_shows_the_fit_and_says_simulated(tmp_path, monkeypatch):
     draw_calibration(tmp_path, calibration)
     titles = {name: figure.get_suptitle() for name, figure in saved.items()}
     assert titles == {
-        "curves.png": "Slip curve by load (simulated)",
-        "surface.png": "Slip surface (simulated)",
-        "corner.png": "Posterior of the slip law (simulated)",
-        "traces.png": "Traces by ensemble (simulated)",
-        "residuals.png": "Residuals (simulated)",
+        "curves.png": "Slip curve by load (simulated): NOT CONVERGED",
+        "surface.png": "Slip surface (simulated): NOT CONVERGED",
+        "corner.png": "Posterior of the slip law (simulated): NOT CONVERGED",
+        "traces.png": "Traces by ensemble (simulated): NOT CONVERGED",
+        "residuals.png": "Residuals (simulated): NOT CONVERGED",
     }
     k = len(calibration.posterior.law.parameters)
     assert len(saved["corner.png"].axes) == k * (k + 1) / 2
@@ -32,3 +36,12 @@ def test_every_picture_shows_the_fit_and_says_simulated(tmp_path, monkeypatch):
     np.testing.assert_allclose(over_slip[:, 1], calibration.residuals.whitened)
     named = "".join(text.get_text() for text in saved["residuals.png"].axes[3].texts)
     assert any(name in named for name in calibration.posterior.blocks.run_names)
+
+
+@pytest.mark.parametrize(("passed", "mark"), [(True, ""), (False, ": NOT TRUSTWORTHY")])
+def test_a_fit_that_is_not_trustworthy_says_so_in_every_title(passed, mark, tmp_path, monkeypatch):
+    saved = figures_saved(monkeypatch)
+    verdict = Verdict((Check("sampler", True, ""),), (Check("shape", passed, ""),), {})
+    draw_calibration(tmp_path, replace(short_calibration(), verdict=verdict))
+    for figure in saved.values():
+        assert figure.get_suptitle().endswith(f"(simulated){mark}")

@@ -26,7 +26,7 @@ def test_wild_residuals_are_counted_and_do_not_squeeze_the_histogram(one_load):
     legends = [axes.get_legend() for axes in figure.axes]
     entries = [text.get_text() for each in legends if each for text in each.get_texts()]
     assert "blocks (2 beyond ±8 at the edges)" in entries
-    assert "central 90 %, 1 of 2 runs outside" in entries
+    assert "central 90 %: 1 of 2 outside" in entries
 
 
 def test_lags_are_drawn_with_the_band_of_white_noise(rig):
@@ -68,7 +68,7 @@ def test_the_runs_furthest_out_are_named_on_their_sides(rig):
                        run_score=score, simulated=True)  # fmt: skip
     above, below = (text.get_text().splitlines() for text in figure.axes[3].texts)
     assert above == ["run 3  +6.0", "run 7  +5.0", "run 5  +0.3"]
-    assert below == ["run 6  -0.1", "run 4  -2.5", "run 1  -4.0"]
+    assert below == ["run 6  −0.1", "run 4  −2.5", "run 1  −4.0"]
 
 
 @pytest.mark.parametrize("length", [3, 33, 34, 35, 200])

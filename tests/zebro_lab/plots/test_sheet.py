@@ -12,6 +12,7 @@ from PIL import Image
 from model.slip import MagicFormula
 from zebro_lab.files.picture_format import FORMATS
 from zebro_lab.plots import (
+    add_to_title,
     parameter_labels,
     save,
 )
@@ -115,3 +116,14 @@ def test_times_are_told_apart_with_the_fewest_decimals():
     assert time_texts(np.array([-0.0001, 1.0])) == ["0", "1"]
     assert time_texts(np.array([0.0, 2.4, 4.8])) == ["0.0", "2.4", "4.8"]
     assert time_texts(np.array([1.0, 1.0])) == ["1", "1"]
+
+
+def test_a_long_title_is_broken_after_its_colon():
+    figure = new_figure(
+        "Traction: tripod, steering 1.3, thesis", simulated=True, width=4.5, height=3.0
+    )
+    assert figure.get_suptitle() == "Traction:\ntripod, steering 1.3, thesis (simulated)"
+    add_to_title(figure, "NOT TRUSTWORTHY")
+    assert figure.get_suptitle().replace("\n", " ") == (
+        "Traction: tripod, steering 1.3, thesis (simulated): NOT TRUSTWORTHY"
+    )

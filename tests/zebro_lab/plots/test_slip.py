@@ -48,7 +48,10 @@ def test_peaks_are_marked_where_the_tables_have_them(any_scene):
 
 def test_a_narrow_peak_gets_a_close_up_and_a_wide_one_none(rig, one_load, tyre):
     assert (len(rig.curves().axes), len(one_load.curves().axes)) == (8, 2)
-    assert rig.curves().axes[1].get_xlim()[1] == pytest.approx(0.15)
+    close = rig.curves().axes[1]
+    assert close.get_xlim()[1] == pytest.approx(0.15, abs=0.01)
+    shown = np.concatenate([np.asarray(each.get_offsets()) for each in scatters(close)])
+    assert 0.1 < shown[:, 0].max() <= 0.15  # none is cut by the edge of the panel
     assert len(tyre.curves().axes) == 4
 
 
@@ -64,3 +67,12 @@ def test_a_load_without_blocks_still_shows_its_curve(one_load):
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert "load 100 N (no blocks)" in titles
     assert len(labelled_lines(figure, "posterior median")) == 4
+
+
+@pytest.mark.parametrize("spread", [1e-4, 0.2])
+def test_bands_that_the_line_hides_say_so_in_the_key(one_load, spread):
+    factors = 1 + spread * np.linspace(-1, 1, 50)[:, None]
+    figure = replace(one_load, draws=one_load.truth * factors).curves()
+    keys = [text.get_text() for text in figure.legends[0].get_texts()]
+    note = ": not wider than the line" if spread < 1e-3 else ""
+    assert {f"90 % of curves{note}", f"50 % of curves{note}"} <= set(keys)

@@ -59,6 +59,7 @@ def compare_calibrations(
         notes=(*(note for slip in slips for note in slip.notes), *notes),
         curves=tuple(shown),
         definition=str(curves[0].definition),
+        doubted=(slips[0].doubt is not None, slips[1].doubt is not None),
     )
 
 

@@ -48,9 +48,9 @@ def overlay(compared: Comparison, differences: Sequence[Difference], *, simulate
     if compared.curves:
         panels = [figure.add_subplot(grid[0, i]) for i in range(columns)]
         for axes, curve in zip(panels, compared.curves, strict=True):
-            _draw_curve(axes, curve, compared.names)
+            _draw_curve(axes, curve, _marked(compared))
+            axes.set_xlabel(slip_label(compared.definition))
         panels[0].set_ylabel(TRACTION_LABEL)
-        panels[0].set_xlabel(slip_label(compared.definition))
     else:
         _draw_paths(figure.add_subplot(grid[0, 0]), compared.paths, compared.names)
     _draw_differences(figure.add_subplot(grid[1, :]), compared, differences)
@@ -58,11 +58,21 @@ def overlay(compared: Comparison, differences: Sequence[Difference], *, simulate
     return figure
 
 
+def _marked(compared: Comparison) -> list[str]:
+    """Return the names of both calibrations, with a mark on one that is not trustworthy."""
+    return [
+        f"{name} (NOT TRUSTWORTHY)" if doubted else name
+        for name, doubted in zip(compared.names, compared.doubted, strict=True)
+    ]
+
+
 def _draw_curve(axes: Axes, curve: Curve, names: Sequence[str]) -> None:
     for (low, median, high), colour, name in zip(curve.bands, _COLOURS, names, strict=True):
-        axes.fill_between(curve.slip, low, high, color=colour, alpha=0.25, lw=0)
-        axes.plot(curve.slip, median, color=colour, lw=1.2, label=name)
-    axes.set_title(f"{curve.load:.3g} N", loc="left")
+        axes.plot(curve.slip, median, color=colour, lw=1.2, label=f"{name}: median")
+        axes.fill_between(
+            curve.slip, low, high, color=colour, alpha=0.25, lw=0, label=f"{name}: 90 % of curves"
+        )
+    axes.set_title(f"load {curve.load:.3g} N", loc="left")
     axes.grid(color="0.92", lw=0.6)
 
 

@@ -78,6 +78,7 @@ class Comparison:
         curves: Bands of both slip curves, one item per load; empty for runs.
         paths: Paths of the first and of the second run; empty for calibrations.
         definition: Slip definition of the curves; empty for runs.
+        doubted: Whether each is a calibration that is not trustworthy.
         source: Sources of both, joined by commas.
         files: Files that were read, without `posterior.nc` and manifests.
         notes: Notes, one line each.
@@ -92,3 +93,4 @@ class Comparison:
     curves: tuple[Curve, ...] = ()
     paths: tuple[RunPaths, ...] = ()
     definition: str = ""
+    doubted: tuple[bool, bool] = (False, False)

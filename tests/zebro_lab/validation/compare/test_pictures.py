@@ -31,14 +31,25 @@ def test_curves_have_a_panel_a_load_and_a_line_each():
     curves = tuple(Curve(T, load, bands) for load in (2.0, 7.5))
     figure = overlay(comparison(curves=curves, definition="travel"), APART, simulated=True)
     first, second, _ = figure.axes
-    for axes, load in ((first, "2 N"), (second, "7.5 N")):
+    for axes, load in ((first, "load 2 N"), (second, "load 7.5 N")):
         assert axes.get_title(loc="left") == load
         tiles, carpet = axes.lines
         np.testing.assert_array_equal(tiles.get_ydata(), T + 1)
         np.testing.assert_array_equal(carpet.get_ydata(), T + 2)
-    assert first.get_xlabel() == "slip ratio, travel definition [-]"
+        assert axes.get_xlabel() == "slip ratio, travel definition [-]"
     assert first.get_ylabel() == "traction force [N]"
     assert figure.get_suptitle() == "tiles and carpet (simulated)"
+    assert keys(figure)[:4] == [
+        "tiles: median", "tiles: 90 % of curves", "carpet: median", "carpet: 90 % of curves",
+    ]  # fmt: skip
+
+
+def test_a_calibration_that_is_not_trustworthy_is_marked_in_the_key():
+    bands = np.array([[T, T + 1, T + 2], [T, T + 2, T + 3]])
+    shown = comparison(curves=(Curve(T, 2.0, bands),), doubted=(False, True))
+    assert keys(overlay(shown, APART, simulated=True))[:3:2] == [
+        "tiles: median", "carpet (NOT TRUSTWORTHY): median",
+    ]  # fmt: skip
 
 
 def test_differences_are_black_where_zero_lies_outside():

@@ -27,6 +27,7 @@ from model.slip.law import SlipLaw
 THIN = 5  # sampler moves a kept step
 CHUNK = 20  # kept steps between checks for a request to stop
 FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
+FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `max_steps` says
 FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
@@ -49,7 +50,7 @@ class SamplerSettings:
     Attributes:
         ensembles: Number of independent ensembles of walkers.
         max_steps: Number of sampler moves after which a fit ends without convergence, at the next
-            multiple of `THIN * CHUNK`; about `THIN * FIRST_LOOK` moves are made at least.
+            multiple of `THIN * CHUNK`; `FEWEST_MOVES` moves are made at least.
         block_length: Samples in a block; chosen by `choose_block_length` when None.
         threads: Number of folds of the cross-validation fitted, and of ensembles sampled, at once;
             below `FEW_BLOCKS` blocks one ensemble is sampled at a time.

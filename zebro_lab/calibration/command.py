@@ -21,12 +21,18 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
         Exit: The fit was stopped (exit code 130); a line on stderr says so.
         ZebroLabError, ModelError: As in `zebro_lab.calibration.stage.calibrate`.
     """
+    from model.bayes.calibrate import FEWEST_MOVES
     from zebro_lab.calibration.screen import print_calibration, print_data
     from zebro_lab.calibration.stage import Stopped, calibrate, read
 
     with output.progress() as watcher:
         data = read(request, watcher)
     print_data(output.console(), data)  # before the fit, which takes a minute
+    if request.max_steps < FEWEST_MOVES:
+        output.say(
+            f"--max-steps {request.max_steps} is fewer than the {FEWEST_MOVES} sampler moves "
+            f"before a fit is first judged; {FEWEST_MOVES} are made"
+        )
     try:
         with output.progress() as watcher:
             calibration, _ = calibrate(request, watcher, data)

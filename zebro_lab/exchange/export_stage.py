@@ -11,7 +11,7 @@ from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.files.settings_text import fill_in
 from zebro_lab.files.shown_text import shown
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
-from zebro_lab.runs.folder import LOG_FILE, read_slip_rig_run, run_state
+from zebro_lab.runs.folder import LOG_FILE, RECOVERED, read_slip_rig_run, run_state
 from zebro_lab.runs.manifest import RECORDING, read_manifest
 from zebro_lab.runs.recorded_legs import LEGS, read_recorded_legs
 from zebro_lab.tables.columns import COLUMNS_FILE
@@ -75,7 +75,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
 
 
 def unended_notes(folder: Path) -> tuple[str, ...]:
-    """Return a note on a run that has not ended: its state as in `runs`, and its last sample.
+    """Return a warning of a run without an end: its state as in `runs`, and its last sample.
 
     Raises:
         NotFound, DataError: As in `export_run`.
@@ -83,13 +83,14 @@ def unended_notes(folder: Path) -> tuple[str, ...]:
     manifest = read_manifest(folder)
     if manifest.exit_status != RECORDING:
         return ()
-    streams = read_raw_log(folder / LOG_FILE).streams.values() if manifest.profiles else ()
-    ends = [float(stream.host_time[-1]) for stream in streams if len(stream)]
-    until = f"; samples go up to {max(ends):.3f} s" if ends else ""
-    return (
-        f"WARNING: the run has not ended, state '{run_state(folder, manifest)}': it is being "
-        f"recorded, or its recorder was killed{until}",
-    )
+    end = read_raw_log(folder / LOG_FILE).end if manifest.profiles else None
+    until = "" if end is None else f"; samples go up to {end:.3f} s"
+    state = run_state(folder, manifest)
+    why = {
+        RECORDING: "it is being recorded, or its recorder was killed just now",
+        RECOVERED: "its recorder was killed",
+    }[state]
+    return (f"WARNING: the run has not ended, state '{state}': {why}{until}",)
 
 
 def _raw_columns(stream: SampleColumns) -> Columns:

@@ -60,8 +60,9 @@ def _to_check(written: "WrittenColumns") -> list[str]:
         advice = ["no column was recognised; map each by hand in columns.toml, which lists all "
                   "columns of the table at its end"]  # fmt: skip
     if doubts:
-        advice = [f'the {doubts} values that end in "?" in columns.toml: correct each and delete '
-                  'its "?"; until then no command reads the table']  # fmt: skip
+        marked = "value that ends" if doubts == 1 else f"{doubts} values that end"
+        advice = [f'the {marked} in "?" in columns.toml: correct each and delete its "?"; until '
+                  "then no command reads the table"]  # fmt: skip
     if written.kind != "rig":
         missing = [name for name in _NEEDED[written.kind] if name not in found]
         if missing:

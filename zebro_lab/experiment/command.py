@@ -91,13 +91,15 @@ def _say_latched(data: Path) -> None:
 
 def _end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
     """Print how an experiment ended, and exit with 0, `REFUSED` or `STOPPED`."""
+    from model.counted import counted
     from zebro_lab.experiment.documents import experiment_in_numbers
     from zebro_lab.experiment.journal import read_journal
     from zebro_lab.terminal.last_words import leave_at_once
 
     words = (
-        f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} points "
-        f"failed all their attempts, {outcome.attempts} attempts in this run; results in {data}"
+        f"{outcome.reason}: {counted(outcome.finished, 'point')} finished, "
+        f"{counted(len(outcome.refused), 'point')} failed all attempts, "
+        f"{counted(outcome.attempts, 'attempt')} in this run; results in {data}"
     )
     if not outcome.completed and not latched:
         words += "\nto continue, repeat the command with --resume"
@@ -233,6 +235,7 @@ class _Asker:
 
 
 def _print_plan(foreseen: "Foreseen", output: Output, *, steps: bool) -> None:
+    from model.counted import counted
     from rig.experiment.plan import LIMIT_UNITS
     from rig.experiment.steps import Point
 
@@ -240,12 +243,14 @@ def _print_plan(foreseen: "Foreseen", output: Output, *, steps: bool) -> None:
     minutes, seconds = divmod(round(foreseen.estimate.seconds), 60)
     output.say(f"plan '{plan.name}', material {plan.material}, rig profile {foreseen.profile.name}")
     output.say(
-        f"{foreseen.estimate.points} points in all, check points included: {len(points.loads)} "
-        f"loads x {len(points.slips)} slip ratios, gone through {points.repeats} time(s), "
+        f"{counted(foreseen.estimate.points, 'point')} in all, check points included: "
+        f"{counted(len(points.loads), 'load')} x {counted(len(points.slips), 'slip ratio')}, "
+        f"gone through {counted(points.repeats, 'time')}, "
         f"order {points.order}{', slip ratios as one sweep' if points.sweep else ''}"
     )
     output.say(
-        f"the load is set {foreseen.estimate.loads} times, 0 N included, by {plan.load.set_by}"
+        f"the load is set {counted(foreseen.estimate.loads, 'time')}, 0 N included, by "
+        f"{plan.load.set_by}"
     )
     output.say(f"the plan takes about {minutes} min {seconds} s if every point is good at once")
     output.say("limits of the plan, which all set-points keep, as those of the profile:")

@@ -50,6 +50,12 @@ class SalvagedStreams:
     streams: dict[str, SampleColumns]
     damage: str | None
 
+    @property
+    def end(self) -> float | None:
+        """Time of the last sample since the start of the run [s]; None without samples."""
+        ends = [float(stream.host_time[-1]) for stream in self.streams.values() if len(stream)]
+        return max(ends, default=None)
+
 
 def raw_topic(stream: str) -> str:
     """Return the topic of a stream's raw samples, `/STREAM/raw`."""

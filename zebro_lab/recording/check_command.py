@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.recording.request import CheckRequest
 from zebro_lab.terminal.command_classes import Application
@@ -49,7 +50,7 @@ def check(request: CheckRequest, output: Output = TEXT) -> None:
 
 
 def _require_answers() -> None:
-    """Raise `BadParameter` where standard input has ended already, before a leg is moved."""
+    """Raise `SettingsError` where standard input has ended already, before a leg is moved."""
     try:
         readable = bool(select.select([sys.stdin], [], [], 0)[0]) and not sys.stdin.isatty()
         given = sys.stdin.buffer
@@ -57,9 +58,9 @@ def _require_answers() -> None:
     except (AttributeError, OSError, TypeError, ValueError):  # no file, as in tests, or Windows
         ended = sys.stdin is None
     if ended:
-        raise typer.BadParameter(
-            "the check asks which leg has moved, but standard input has ended; run it in a "
-            "terminal, or pipe the answers to it"
+        raise SettingsError(
+            "standard input has ended, but the check asks which leg has moved; run it at a "
+            "terminal, or pass it all answers, one a line"
         )
 
 

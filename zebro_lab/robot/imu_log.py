@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.other_kind import looks_like_other
 from zebro_lab.tables.raw_table import RawTable
 
 _QUATERNION: Final = ("qw", "qx", "qy", "qz")
@@ -102,9 +103,11 @@ def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, bool]:
         _require_unit(table, mapping, quaternion)
         return quaternion, True
     if not mapping.has(table, "roll"):
+        other = looks_like_other(table.columns, mapping.mapped)
         raise DataError(
             f"holds no orientation; expected the columns {', '.join(_QUATERNION)}, or roll and "
-            f"pitch, found {', '.join(table.columns)}; map them in [imu.columns] of a columns.toml",
+            f"pitch, found {', '.join(table.columns)}{other}; else map them in [imu.columns] of a "
+            "columns.toml",
             file=table.path,
         )
     roll, pitch = (_numbers(table, mapping, name) for name in ("roll", "pitch"))

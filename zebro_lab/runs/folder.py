@@ -27,6 +27,8 @@ from zebro_lab.runs.manifest import (
 )
 
 LOG_FILE = "log.mcap"
+RECOVERED: Final = "recovered"
+"""State of a run whose recorder was killed: its samples end where the log ends."""
 _BOARD_TOPIC: Final = raw_topic("board")
 STILL_GROWING: Final = 3.0
 """Age below which a log's last change means that it is being recorded; written each second [s]."""
@@ -138,7 +140,7 @@ def run_state(folder: Path, manifest: RunManifest) -> str:
         return manifest.exit_status
     log = folder / LOG_FILE
     growing = log.is_file() and time.time() - log.stat().st_mtime < STILL_GROWING
-    return RECORDING if growing else "recovered"
+    return RECORDING if growing else RECOVERED
 
 
 def require_ended(folder: Path) -> None:

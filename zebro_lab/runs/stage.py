@@ -9,7 +9,7 @@ from pathlib import Path
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.exclusion import NO_REASON, past_reasons
-from zebro_lab.runs.folder import LOG_FILE, find_runs, run_state
+from zebro_lab.runs.folder import LOG_FILE, RECOVERED, find_runs, run_state
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 
@@ -20,7 +20,8 @@ class ListedRun:
     Attributes:
         name: Name of the run folder.
         state: State of the run, its exclusions with reasons, or why it cannot be read.
-        duration: Time from start to stop [s]; None without a stop.
+        duration: Time from start to stop [s], in state `recovered` to the last sample; None where
+            there is neither.
         samples: Number of samples of each topic; empty when unknown.
         source: Where the data come from; None if the run cannot be read.
     """
@@ -36,7 +37,7 @@ def list_runs(data: Path) -> list[ListedRun]:
     """List all runs in and below a folder, by path; an unreadable run is listed with its error.
 
     Samples are numbers from the manifest; of a run in state `recovered` they are counted in the
-    log.
+    log, whose last sample is the end.
 
     Raises:
         NotFound: The folder does not exist.
@@ -48,14 +49,14 @@ def _listed(folder: Path) -> ListedRun:
     try:
         manifest = read_manifest(folder)
         state = run_state(folder, manifest)
-        streams = manifest.streams
-        if state == "recovered":
-            found = read_raw_log(folder / LOG_FILE).streams
-            streams = {topic: len(stream) for topic, stream in found.items()}
+        streams, lasted = manifest.streams, _lasted(manifest)
+        if state == RECOVERED:
+            log = read_raw_log(folder / LOG_FILE)
+            streams, lasted = {topic: len(each) for topic, each in log.streams.items()}, log.end
     except (ZebroLabError, OSError) as error:
         return ListedRun(folder.name, f"unreadable: {error}")
     state = _with_exclusions(state, manifest)
-    return ListedRun(folder.name, state, _lasted(manifest), streams, manifest.source)
+    return ListedRun(folder.name, state, lasted, streams, manifest.source)
 
 
 def _with_exclusions(state: str, manifest: RunManifest) -> str:

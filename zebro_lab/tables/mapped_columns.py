@@ -12,6 +12,7 @@ from model.slip.law import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_mapped_column
+from zebro_lab.tables.other_kind import looks_like_other
 from zebro_lab.tables.raw_table import RawTable
 
 INTERVALS: Final = (2e-5, 2.0)
@@ -90,9 +91,11 @@ class MappedColumns:
         """
         mapped = self.mapped[name]
         if not self.has(table, name):
+            other = looks_like_other(table.columns, self.mapped)
+            known = nearest(mapped.name, list(table.columns))
             raise table.fault(
-                f"the column of the {what} is missing; {nearest(mapped.name, list(table.columns))}"
-                f"; if its header differs, map it in {COLUMNS_FILE}: [{self.where}columns.{name}]",
+                f"the column of the {what} is missing{other}; {known}; if its header differs, map "
+                f"it in {COLUMNS_FILE}: [{self.where}columns.{name}]",
                 mapped.name,
             )
         mapped = mapped.in_unit_of(table, self.units[name])

@@ -12,6 +12,7 @@ from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, Columns, MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit
+from zebro_lab.tables.other_kind import looks_like_other
 from zebro_lab.tables.raw_table import RawTable
 
 
@@ -61,9 +62,11 @@ class RigTable:
         """
         source = self.source_of(name)
         if source is None:
+            other = looks_like_other(self.raw.columns, CANONICAL)
             raise self.raw.fault(
-                f"is missing; {nearest(name, list(self.raw.columns))}; if it has another header, "
-                f"map it in {COLUMNS_FILE}: [columns.{name}] (zebro-lab init writes that file)",
+                f"is missing{other}; {nearest(name, list(self.raw.columns))}; if it has another "
+                f"header, map it in {COLUMNS_FILE}: [columns.{name}] (zebro-lab init writes that "
+                "file)",
                 name,
             )
         return source

@@ -9,7 +9,8 @@ from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
 from model.slip.law import Array
 from rig.nearest_name import nearest
-from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_definition
+from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, MappedColumn, parse_definition
+from zebro_lab.tables.other_kind import looks_like_other
 from zebro_lab.tables.rig_table import RigTable
 
 _SPEEDS = ("omega_leg", "omega_ground")
@@ -57,9 +58,11 @@ def slip(table: RigTable) -> SlipColumn:
     if any(table.source_of(name) for name in _SPEEDS):
         for name in _SPEEDS:
             table.required(name)
+    other = looks_like_other(table.raw.columns, CANONICAL)
     raise table.raw.fault(
-        "is missing; expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground' "
-        f"with the radii; {nearest('slip_ratio', list(table.raw.columns))}; if they have other "
+        f"is missing{other}; expected 'slip_ratio' with its definition, or 'omega_leg' and "
+        "'omega_ground' with the radii; "
+        f"{nearest('slip_ratio', list(table.raw.columns))}; if they have other "
         f"headers, map them in {COLUMNS_FILE} (zebro-lab init writes that file)",
         "slip_ratio",
     )

@@ -64,11 +64,20 @@ def _table(run: JudgedRun) -> Table:
         table.add_row(
             row.name, f"{1000 * e.ate:.1f}", f"{100 * e.ate_of_length:.2f}",
             f"{1000 * e.along:.1f}",
-            f"{1000 * e.cross:.1f}", f"{np.degrees(e.yaw):.2f}", f"{1000 * e.final_distance:.1f}",
+            f"{1000 * e.cross:.1f}", yaw_text(e.yaw), f"{1000 * e.final_distance:.1f}",
             f"{1000 * e.ate_aligned:.1f}", radius_text(e.radius[0]), crps,
         )  # fmt: skip
     table.add_row("track", *[""] * 7, radius_text(run.rows[0].errors.radius[1]), "")
     return table
+
+
+def yaw_text(yaw: float) -> str:
+    """Format an error of yaw [rad] for a table in degrees: `no heading` if NaN.
+
+    >>> yaw_text(0.1), yaw_text(float("nan"))
+    ('5.73', 'no heading')
+    """
+    return "no heading" if np.isnan(yaw) else f"{np.degrees(yaw):.2f}"
 
 
 def radius_text(radius: float) -> str:

@@ -28,6 +28,8 @@ LONGEST_STEP: Final = 0.02
 """Longest time step [s], for models without slip: with it, paths of cycles of 0.5 s hold to 1 %."""
 LONGEST_SLIPPING_STEP: Final = 0.005
 """The same for models with slip; longer steps leave the path, and give false slip."""
+_SLIPPING: Final = ("dynamics", "thesis")
+"""Models whose legs slip; `model.walk_models`, which says so, too, takes long to import."""
 
 
 @dataclass(frozen=True)
@@ -145,9 +147,11 @@ class ModelRequest:
     dt: Annotated[
         float | None,
         Option(
-            metavar="SECONDS", help="Time step [s], with slip at most 0.005; default: the model's."
+            metavar="SECONDS",
+            help=f"Time step [s], at most {LONGEST_SLIPPING_STEP:g} with slip and "
+            f"{LONGEST_STEP:g} without; default: the model's.",
         ),
-        Limits(above=0, most=LONGEST_STEP),
+        Limits(above=0),
     ] = None
     band: BandRequest = field(default_factory=BandRequest)
     pictures: PictureRequest = field(default_factory=PictureRequest)
@@ -159,9 +163,16 @@ class ModelRequest:
         return (*slip, *((self.robot,) if self.robot is not None else ()))
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for a `coulomb:…` that is no friction law."""
+        """Raise `SettingsError` for a `coulomb:…` that is no friction law, and a long step."""
         if self.slip is not None:
             coulomb_numbers(self.slip)
+        longest = LONGEST_SLIPPING_STEP if self.model in _SLIPPING else LONGEST_STEP
+        if self.dt is not None and self.dt > longest:
+            raise SettingsError(
+                f"found {self.dt:g} s; expected at most {longest:g} s with the model "
+                f"'{self.model}': longer steps skip contacts, and their slip is false",
+                key="--dt",
+            )
 
     def require_slip(self) -> None:
         """Check that `--slip` is given if the model needs it.
@@ -169,7 +180,7 @@ class ModelRequest:
         Raises:
             BadParameter: The model has slipping legs and `--slip` is missing.
         """
-        if self.slip is None and self.model in ("dynamics", "thesis"):
+        if self.slip is None and self.model in _SLIPPING:
             raise BadParameter(
                 f"missing: legs slip in the model '{self.model}'; name a slip.toml, the folder "
                 "that holds it, coulomb:MU[:V] or thesis",

@@ -19,7 +19,7 @@ from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
-from zebro_lab.walk.request import LONGEST_SLIPPING_STEP, LONGEST_STEP, ModelRequest
+from zebro_lab.walk.request import ModelRequest
 
 MOST_STEPS: Final = 500_000
 """Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""
@@ -145,19 +145,12 @@ def _time_step(
 ) -> float:
     """Return `--dt` if given, else the model's time step, for fitted legs at most `FINE.dt` [s].
 
-    Raises `SettingsError` as `_require_steps` does, and for a step longer than was checked.
+    Raises `SettingsError` as `_require_steps` does.
     """
     dt = model.dt if request.dt is None else request.dt
     if informed is not None and request.dt is None:
         dt = min(dt, FINE.dt)
     _require_steps(duration, dt)
-    longest = LONGEST_SLIPPING_STEP if model.slips else LONGEST_STEP
-    if dt > longest:
-        raise SettingsError(
-            f"found {dt:g} s; expected at most {longest:g} s with the model '{model.name}': longer "
-            "steps skip contacts, and their slip is false",
-            key="--dt",
-        )
     return dt
 
 

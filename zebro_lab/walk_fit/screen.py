@@ -13,7 +13,7 @@ from zebro_lab.files.units import shown_unit
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
-from zebro_lab.validation.screen import radius_text
+from zebro_lab.validation.screen import radius_text, yaw_text
 from zebro_lab.walk_fit.stage import WalksCalibrated
 
 _LIKELY = 0.01  # probability from which on a case is printed
@@ -111,8 +111,8 @@ def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
         held = scores.coverage[list(scores.levels).index(0.9)]
         table.add_row(
             plain(run.name), f"{1000 * e.ate:.1f}", f"{100 * e.ate_of_length:.2f}",
-            f"{np.degrees(e.yaw):.2f}", radius_text(e.radius[0]), radius_text(e.radius[1]),
-            " ".join(f"{100 * share:.0f}" for share in held),
+            yaw_text(e.yaw), radius_text(e.radius[0]), radius_text(e.radius[1]),
+            " ".join("-" if np.isnan(share) else f"{100 * share:.0f}" for share in held),
             _two(scores.crps), _two([min(o.scores.crps[k] for o in others) for k in range(2)]),
         )  # fmt: skip
     return table

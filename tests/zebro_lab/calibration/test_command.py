@@ -141,6 +141,7 @@ def test_fit_out_of_steps_exits_3_with_its_results_marked(sweep, tmp_path):
     process = run(patched(JUDGED_EARLY, *arguments))
     assert process.returncode == 3, process.stderr
     assert "error" not in process.stderr
+    assert "--max-steps 1 is fewer than the 500 sampler moves" in process.stdout
     assert "verdict: NOT CONVERGED" in process.stdout
     assert "next: sample longer: give the same command with --resume --max-steps" in process.stdout
     assert names(out) == FILES | {"checkpoint.npz"}

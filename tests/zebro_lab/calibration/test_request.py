@@ -2,7 +2,9 @@
 """Options of a calibration, as the fit takes them."""
 
 from pathlib import Path
+from typing import get_type_hints
 
+from model.bayes.calibrate import FEWEST_MOVES
 from zebro_lab.calibration.request import CalibrationRequest
 
 
@@ -15,3 +17,8 @@ def test_what_is_read_are_the_data_and_the_column_map():
     data, columns = Path("data"), Path("columns.toml")
     assert CalibrationRequest((data,)).inputs == (data,)
     assert CalibrationRequest((data,), columns=columns).inputs == (data, columns)
+
+
+def test_the_help_states_the_fewest_moves_of_a_fit():
+    option = get_type_hints(CalibrationRequest, include_extras=True)["max_steps"].__metadata__[0]
+    assert f"first look at {FEWEST_MOVES} moves" in option.help

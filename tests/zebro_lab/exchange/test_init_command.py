@@ -25,6 +25,12 @@ def test_init_says_what_it_guessed_and_what_to_check(tmp_path):
     assert "check: [constants] needs radius_leg and radius_ground" in result.output
 
 
+def test_init_speaks_of_a_single_doubt_in_the_singular(tmp_path):
+    (tmp_path / "rig.csv").write_text("t,normal_force,FX [N],slip_ratio\n0,5,1,0.1\n0.1,5,1,0.2\n")
+    result = CliRunner().invoke(app, [str(tmp_path / "rig.csv")])
+    assert 'the value that ends in "?" in columns.toml: correct each' in result.output
+
+
 def test_init_names_what_it_could_not_find(tmp_path):
     (tmp_path / "rig.csv").write_text("a,b\n1,2\n")
     result = CliRunner().invoke(app, [str(tmp_path / "rig.csv"), "--kind", "rig"])

@@ -50,5 +50,6 @@ def test_nothing_moves_where_nobody_can_answer(run_command, monkeypatch, tmp_pat
     with open(os.devnull) as nobody:  # noqa: PTH123 - standard input as a shell redirects it
         monkeypatch.setattr("sys.stdin", nobody)
         code, out, err = run_command("zebro", "check", "sim", "--save", tmp_path / "mine.toml")
-    assert (code, out, moved) == (2, "", [])
-    assert "standard input has ended" in err
+    assert (code, out, moved) == (1, "", [])
+    assert err.startswith("error: standard input has ended")
+    assert err.count("\n") == 1

@@ -7,6 +7,7 @@ import pytest
 
 from support.written_runs import edit, make_run
 from zebro_lab.files.errors import NotFound
+from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.exclusion import exclude_run, take_in_again
 from zebro_lab.runs.stage import ListedRun, list_runs
 
@@ -37,7 +38,8 @@ def test_a_run_whose_recorder_died_is_listed_with_what_its_log_holds(tmp_path):
     edit(folder, exit_status="recording", stop=None, streams={})
     os.utime(folder / "log.mcap", (0, 0))
     (run,) = list_runs(tmp_path)
-    assert (run.state, run.duration, run.samples) == ("recovered", None, {"/board/raw": 200})
+    end = read_raw_log(folder / "log.mcap").streams["/board/raw"].host_time[-1]
+    assert (run.state, run.duration, run.samples) == ("recovered", end, {"/board/raw": 200})
 
 
 def test_a_run_that_cannot_be_read_does_not_hide_the_others(tmp_path):

@@ -127,3 +127,10 @@ def test_a_share_that_is_not_known_is_not_testable():
     text = printed(replace(RUN, rows=(unknown, *baselines)))
     assert text.count("yaw not testable (of") == len(prediction.scores.levels)
     assert "nan%" not in text
+
+
+def test_errors_of_yaw_without_headings_are_no_numbers():
+    rows = [replace(row, errors=replace(row.errors, yaw=float("nan"))) for row in RUN.rows]
+    text = printed(replace(RUN, rows=tuple(rows)))
+    assert text.count("no heading") == len(rows)
+    assert "nan" not in text

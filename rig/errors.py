@@ -143,3 +143,21 @@ class ProfileError(RigError, ValueError):
         self.problem = problem
         self.file = file
         self.key = key
+
+
+class WrongDevice(ProfileError):
+    """A profile describes another kind of device than the one that is opened.
+
+    Attributes:
+        found: Kind of device that the profile describes.
+
+    >>> str(WrongDevice("imu", expected="legs", file="mine.toml"))
+    "mine.toml, device: found 'imu'; expected a profile of the device 'legs'"
+    """
+
+    def __init__(self, found: str, *, expected: str, file: str | PathLike[str]) -> None:
+        super().__init__(
+            f"found '{found}'; expected a profile of the device '{expected}'", file=file,
+            key="device",
+        )  # fmt: skip
+        self.found = found

@@ -6,17 +6,13 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Final
 
-from rig.errors import ProfileError
+from rig.errors import ProfileError, WrongDevice
 from rig.nearest_name import nearest
 from rig.toml_table import TomlTable
 from rig.toml_text import MOST_BYTES, parse_toml
 
 SCHEMA: Final = 1
 """Version of the layout of profiles; a file with another one is an error."""
-_PLACES: Final = {
-    "legs": "--zebro or sim zebro", "imu": "--imu or sim imu", "slip-rig": "--rig or sim rig",
-}  # fmt: skip
-"""Where a profile of each kind of device is named on a command line."""
 
 
 def open_profile(name: str, *, device: str) -> TomlTable:
@@ -30,7 +26,8 @@ def open_profile(name: str, *, device: str) -> TomlTable:
         The whole file as a table; `schema` and `device` are already read.
 
     Raises:
-        ProfileError: There is no such profile, or it is not TOML or of another schema or device.
+        ProfileError: There is no such profile, or it is not TOML or of another schema.
+        WrongDevice: It describes another kind of device.
     """
     source = _find(name)
     try:
@@ -42,11 +39,7 @@ def open_profile(name: str, *, device: str) -> TomlTable:
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     found = table.text("device")
     if found != device:
-        place = _PLACES.get(found)
-        advice = f"; this profile belongs to {place}" if place else ""
-        raise table.fault(
-            f"found '{found}'; expected a profile of the device '{device}'{advice}", "device"
-        )
+        raise WrongDevice(found, expected=device, file=source.name)
     return table
 
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Advice of a verdict that can be followed to the letter: lines of a plan, commands, options."""
+"""Advice of a verdict as values: what to measure or fit next, in no program's words."""
 
-from collections.abc import Sequence
-from typing import Final
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,17 +9,6 @@ from model.slip.definition import SlipDefinition, convert_slip
 from model.slip.law import Array
 from model.slip.laws import LAWS
 from model.slip.magic_formula import MagicFormula
-
-SECONDS: Final = 2.0
-"""Time of each further slip ratio [s]."""
-ZERO_SECONDS: Final = 10.0
-"""Time of a zero: noise that remembers 0.05 s leaves a tenth of itself in it [s]."""
-SHORT: Final = 0.5
-"""Time of a run that forces hardly drift in [s]."""
-SHORT_ZERO: Final = 2.0
-"""Time of the zero before each of these runs [s]."""
-PASSES: Final = 4
-"""Such runs of each slip ratio."""
 
 _MEASURABLE = {
     SlipDefinition.MATERIAL: (-np.inf, 1.0),
@@ -30,99 +18,103 @@ _MEASURABLE = {
 """Slip ratios that a rig can hold, without those where the leg disc would have to stand [-]."""
 
 
-def measure_slips(reason: str, *, loads: Array, slips: Array, definition: SlipDefinition) -> str:
-    """Format advice to measure further slip ratios at every load, and to fit them with the others.
+@dataclass(frozen=True)
+class Advice:
+    """Advice that is said by its reason alone.
+
+    Attributes:
+        reason: What was found, and in this class what follows from it, as text.
+    """
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class SampleLonger(Advice):
+    """Advice to go on sampling.
+
+    Attributes:
+        moves: Number of moves to sample up to.
+    """
+
+    moves: int
+
+
+@dataclass(frozen=True)
+class MeasureSlips(Advice):
+    """Advice to measure further slip ratios at every load, and to fit them with the others.
+
+    Attributes:
+        loads: Loads [N].
+        slips: Slip ratios in the material definition, which is that of a rig's set-points [-].
+    """
+
+    loads: tuple[float, ...]
+    slips: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class ZeroBeforeEach(Advice):
+    """Advice to measure again in short runs with a zero of their own, and to fit only these."""
+
+
+@dataclass(frozen=True)
+class WeighLoadCell(Advice):
+    """Advice to measure how stable the zero of the load cell is, and to state it."""
+
+
+@dataclass(frozen=True)
+class TryLaws(Advice):
+    """Advice to fit the same data with the other laws.
+
+    Attributes:
+        laws: Names of the other laws.
+        load_sensitivity: Whether the fitted law has a form that depends on load, to try as well.
+        both_signs: Whether slip is driving and braking, which may differ.
+    """
+
+    laws: tuple[str, ...]
+    load_sensitivity: bool
+    both_signs: bool
+
+
+@dataclass(frozen=True)
+class ExcludeRuns(Advice):
+    """Advice to leave out runs that do not belong to the others, and to fit again.
+
+    Attributes:
+        runs: Names of the runs, at least one.
+    """
+
+    runs: tuple[str, ...]
+
+
+def measure_slips(
+    reason: str, *, loads: Array, slips: Array, definition: SlipDefinition
+) -> MeasureSlips:
+    """Return advice to measure slip ratios, limited to those that a rig can hold.
 
     Args:
-        reason: What the data lack, the first words of the advice.
+        reason: What the data lack.
         loads: Loads, shape (m,) [N].
         slips: Slip ratios, shape (n,) [-].
-        definition: Definition of the slip ratios; those of a plan are material.
+        definition: Definition of the slip ratios.
     """
     possible = np.clip(slips, *_MEASURABLE[definition])
     material = convert_slip(possible, definition, SlipDefinition.MATERIAL)
-    numbers = list(dict.fromkeys(f"{slip:.2g}" for slip in material))
-    lines = {
-        "points": {
-            "loads": f"[{', '.join(f'{load:.3g}' for load in loads)}]",
-            "slips": f"[{', '.join(numbers)}]",
-            "length": '"duration"',
-            "duration": f"{SECONDS:.1f}",
-        },
-        "controls": {"tare_every": f"{len(numbers)}", "tare_duration": f"{ZERO_SECONDS:.1f}"},
-    }
-    return _plan(
-        f"{reason}: measure {len(numbers)} more slip ratios (material definition), {SECONDS:g} s "
-        f"each, at {len(loads)} load(s), the load cell zeroed for {ZERO_SECONDS:g} s before each "
-        "load",
-        lines,
-        "then fit both (calibrate-slip DATA FURTHER)",
-    )
+    return MeasureSlips(reason, tuple(map(float, loads)), tuple(map(float, material)))
 
 
-def zero_before_each(reason: str) -> str:
-    """Format advice to measure again in short runs with a zero of their own, and to fit only these.
+def try_laws(reason: str, law: str, *, both_signs: bool) -> TryLaws:
+    """Return advice to fit every other law.
 
     Args:
-        reason: What the data show, the first words of the advice.
-    """
-    lines = {
-        "points": {"length": '"duration"', "duration": f"{SHORT:.1f}", "repeats": f"{PASSES}"},
-        "controls": {"tare_every": "1", "tare_duration": f"{SHORT_ZERO:.1f}"},
-    }
-    return _plan(
-        f"{reason}: measure again in runs of {SHORT:g} s, the load cell zeroed for {SHORT_ZERO:g} s"
-        " before each",
-        lines,
-        "then fit it alone (calibrate-slip FURTHER); if it says the same, forces drift too fast: "
-        "let the load cell warm up, or mend it",
-    )
-
-
-def _plan(what: str, tables: dict[str, dict[str, str]], fit: str) -> str:
-    """Format lines of a plan by table and key, and the commands that run and fit it."""
-    heads = (f"[{table}]\n" + "\n".join(f"{key} = {value}" for key, value in keys.items())
-             for table, keys in tables.items())  # fmt: skip
-    return (
-        f"{what}. In a copy of the plan, set these:\n"
-        + "\n".join(heads)
-        + "\nRun the copy into another folder, with the other options as before "
-        f"(zebro-lab rig run COPY --rig RIG --data FURTHER), {fit}"
-    )
-
-
-def try_laws(reason: str, law: str, *, both_signs: bool) -> str:
-    """Format advice to fit the same data with the other laws.
-
-    Args:
-        reason: What the data show, the first words of the advice.
+        reason: What the data show.
         law: Name of the fitted law.
         both_signs: Whether slip is driving and braking, which may differ.
     """
-    options = [f"--law {name}" for name in LAWS if name != law]
-    if law == MagicFormula.name:
-        options.append("--load-sensitivity")
-    apart = "; else fit driving and braking apart ([rows] keep in columns.toml)"
-    return (
-        f"{reason}: give the same command with {', with '.join(options)}, each with an --out of "
-        f"its own, and use the result that is trustworthy{apart if both_signs else ''}; if none "
-        "is, check the slip definition (--slip-definition) and see residuals.png"
-    )
-
-
-def exclude_runs(reason: str, names: Sequence[str]) -> str:
-    """Format advice to leave out runs that do not belong to the others, and to fit again.
-
-    Args:
-        reason: What the data show, the first words of the advice.
-        names: Names of the runs, at least one.
-    """
-    commands = "\n".join(f"zebro-lab exclude DATA/{name} --why REASON" for name in names)
-    return (
-        f"{reason}: where the lab notes tell why (another material, a lost zero), leave these runs "
-        "out, each with its reason, rows of a table by [rows] keep in columns.toml, and give the "
-        f"same command again:\n{commands}"
-    )
+    others = tuple(name for name in LAWS if name != law)
+    return TryLaws(reason, others, law == MagicFormula.name, both_signs)
 
 
 def beyond_the_peak(peaks: Array, slip: Array) -> Array:

@@ -205,7 +205,7 @@ def _implausible(load: float, traction: float) -> str:
     ten times the load, and else about the zero stability.
     """
     if max(load, traction) < 1:
-        return "are the forces in kN? Name their unit in columns.toml, or give the zero stability"
+        return "are the forces in kN? State their unit, or the zero stability of the load cell"
     if traction > 10 * load:
         return (
             f"traction force reaches {traction:.3g} N, implausible under such a load: check both "

@@ -93,7 +93,7 @@ def start_chains(
     if len(inside) < ensembles * walkers:
         raise FitError(
             f"only {len(inside)} of {len(drawn)} starting points lie inside the support, expected "
-            f"{ensembles * walkers}; the law hardly suits these data: try another --law"
+            f"{ensembles * walkers}; the law hardly suits these data: try another law"
         )
     states = [
         np.random.MT19937(int(seed)).state["state"] for seed in rng.integers(2**31, size=ensembles)

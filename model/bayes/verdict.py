@@ -7,11 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.bayes.advice import (
+    Advice,
+    ExcludeRuns,
+    SampleLonger,
+    TryLaws,
+    WeighLoadCell,
+    ZeroBeforeEach,
     beyond_the_peak,
-    exclude_runs,
     measure_slips,
     try_laws,
-    zero_before_each,
 )
 from model.bayes.blocks import SlipBlocks
 from model.bayes.convergence import Convergence
@@ -43,13 +47,13 @@ class Check:
         name: Claim that is checked, as text.
         passed: Whether the claim holds; None if these data cannot test it.
         evidence: Measured value and its limit, or why these data cannot test the claim, as text.
-        advice: What to do when the claim does not hold, as text.
+        advice: What to do when the claim does not hold; None for what cannot be tested.
     """
 
     name: str
     passed: bool | None
     evidence: str
-    advice: str = ""
+    advice: Advice | None = None
 
     @property
     def failed(self) -> bool:
@@ -69,7 +73,7 @@ class Verdict:
 
     convergence: tuple[Check, ...]
     trust: tuple[Check, ...]
-    weak: Mapping[str, str]
+    weak: Mapping[str, Advice]
 
     @property
     def converged(self) -> bool:
@@ -103,10 +107,11 @@ class Verdict:
             result += f"; not testable with these data: {', '.join(self.not_testable)}"
         return result + (f"; weakly identified: {', '.join(self.weak)}" if self.weak else "")
 
-    def next_steps(self) -> tuple[str, ...]:
-        """List the advice of failed checks, then the reasons of `weak`, without repetition."""
-        failed = [c.advice for c in (*self.convergence, *self.trust) if c.failed]
-        return tuple(dict.fromkeys([*failed, *(reason for reason in self.weak.values())]))
+    def next_steps(self) -> tuple[Advice, ...]:
+        """List the advice of failed checks, then that of `weak`, without repetition."""
+        checks = (*self.convergence, *self.trust)
+        failed = [check.advice for check in checks if check.failed and check.advice]
+        return tuple(dict.fromkeys([*failed, *self.weak.values()]))
 
 
 def judge(
@@ -150,9 +155,7 @@ def _not_testable(name: str, why: str) -> Check:
 
 def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
     """Return one failed check for each unmet criterion, or one passed check."""
-    advice = (
-        f"sample longer: give the same command with --resume --max-steps {2 * convergence.moves}"
-    )
+    advice = SampleLonger("sample longer", 2 * convergence.moves)
     failures = convergence.failures()
     if failures:
         return tuple(Check("sampler", False, failure, advice) for failure in failures)
@@ -167,9 +170,7 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Check:
     name = "residuals are white"
     pairs = len(blocks) - blocks.n_runs
     if pairs == 0:
-        return _not_testable(
-            name, "no run has two blocks; a shorter --block-length would make them"
-        )
+        return _not_testable(name, "no run has two blocks; a shorter block length would make them")
     limit = lag_one_limit(pairs)
     return Check(
         name,
@@ -179,14 +180,14 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Check:
     )
 
 
-def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> str:
+def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Advice:
     """Choose between another law and shorter runs: drift neither alternates nor repeats by slip."""
     if residuals.lag_one < 0 or residuals.misfit_p < MISFIT_P:
         return _law_advice(blocks, law)
-    return zero_before_each("forces drift within runs, so that intervals are too narrow")
+    return ZeroBeforeEach("forces drift within runs, so that intervals are too narrow")
 
 
-def _law_advice(blocks: SlipBlocks, law: SlipLaw) -> str:
+def _law_advice(blocks: SlipBlocks, law: SlipLaw) -> TryLaws:
     """Advise another law; slips of both signs, beyond noise about zero, may need one each."""
     smaller = min(blocks.slip.max(), -blocks.slip.min())
     return try_laws(
@@ -224,16 +225,14 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
     )
 
 
-def _run_advice(residuals: Residuals, far: list[str]) -> str:
+def _run_advice(residuals: Residuals, far: list[str]) -> Advice:
     """Choose what to do about run means: leave runs out, measure again, or state the load cell."""
     if far:
-        return exclude_runs("these runs do not belong to the others", far)
+        return ExcludeRuns("these runs do not belong to the others", tuple(far))
     if residuals.inside < INSIDE:
-        return zero_before_each("run means scatter more than the model predicts")
-    return (
-        "run means scatter less than the model predicts, so that intervals are too wide: weigh the "
-        "load cell (zebro-lab rig weigh --rig RIG --masses KG,KG --data DATA), state its "
-        "zero_stability there in columns.toml, and give the same command again"
+        return ZeroBeforeEach("run means scatter more than the model predicts")
+    return WeighLoadCell(
+        "run means scatter less than the model predicts, so that intervals are too wide"
     )
 
 
@@ -269,7 +268,7 @@ def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> C
         share <= MAX_OFFSET_SHARE and tau <= MAX_OFFSET_RATIO * scale,
         f"they explain {share:.0%} of the force variance, limit {MAX_OFFSET_SHARE:.0%}; their "
         f"standard deviation is {tau:.3g} N, limit {MAX_OFFSET_RATIO * scale:.3g} N",
-        zero_before_each("zero offsets between runs are too large to be told from the curve"),
+        ZeroBeforeEach("zero offsets between runs are too large to be told from the curve"),
     )
 
 
@@ -295,16 +294,18 @@ def _rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
 
 def _weak(
     blocks: SlipBlocks, law: SlipLaw, values: Array, contraction: Mapping[str, float]
-) -> dict[str, str]:
-    """Return the law's weakly identified parameters by name, with the reason as text.
+) -> dict[str, Advice]:
+    """Return the law's weakly identified parameters by name, with reason and advice.
 
     Weak are sampled parameters with a contraction below `MIN_CONTRACTION` and, of a law with a
     shape factor, shape and friction if `slip_reach` is below `MIN_REACH`.
     """
     names = [parameter.name for parameter in law.parameters]
-    weak = {
-        name: f"{name}: data reduce its prior variance by {max(contraction[name], 0):.0%}, not by "
-        f"{MIN_CONTRACTION:.0%}; use F_max and BCD, peak force and initial slope, instead"
+    weak: dict[str, Advice] = {
+        name: Advice(
+            f"{name}: data reduce its prior variance by {max(contraction[name], 0):.0%}, not by "
+            f"{MIN_CONTRACTION:.0%}; use F_max and BCD, peak force and initial slope, instead"
+        )
         for name in names
         if contraction.get(name, 1.0) < MIN_CONTRACTION
     }
@@ -315,11 +316,11 @@ def _weak(
             f"peak's slip (0 without a peak), {MIN_REACH:g} are needed; use F_max and BCD, peak "
             "force and initial slope, instead, or measure larger slips"
         )
-        reason = measure_slips(
+        advice = measure_slips(
             reason, loads=load_levels(blocks), definition=blocks.definition,
             slips=beyond_the_peak(_peaks(blocks, law, values), blocks.slip),
         )  # fmt: skip
-        weak |= {"shape": reason, "friction": reason}
+        weak |= {"shape": advice, "friction": advice}
     return weak
 
 

@@ -3,7 +3,7 @@
 
 import pytest
 
-from rig.errors import ProfileError
+from rig.errors import ProfileError, WrongDevice
 from rig.profile import open_profile, shipped_profiles, split_address
 
 LEG_PROFILES = ["vregs-dump", "zebro-100-can", "zebro-100-serial", "zebrobus-uart"]
@@ -24,6 +24,7 @@ def test_half_an_address_is_refused(address):
         split_address(address)
 
 
-def test_a_profile_of_another_device_says_where_it_belongs():
-    with pytest.raises(ProfileError, match=r"found 'imu'; .* belongs to --imu or sim imu$"):
+def test_a_profile_of_another_device_is_refused_with_the_kind_that_it_describes():
+    with pytest.raises(WrongDevice, match=r"found 'imu'; expected .* device 'legs'$") as raised:
         open_profile("imu-quaternion-serial", device="legs")
+    assert raised.value.found == "imu"

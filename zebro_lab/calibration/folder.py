@@ -16,6 +16,7 @@ import numpy as np
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
+from zebro_lab.calibration.advice import advice_text
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import shortest_distinct
@@ -175,7 +176,7 @@ def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
         "trustworthy": verdict.trustworthy,
         "not_testable": list(verdict.not_testable),
         "weakly_identified": list(verdict.weak),
-        "next_steps": list(verdict.next_steps()),
+        "next_steps": [advice_text(step) for step in verdict.next_steps()],
     }
 
 

@@ -10,6 +10,7 @@ from rich.text import Text
 from model.bayes.calibration import Calibration
 from model.bayes.estimate import Estimate
 from model.counted import counted
+from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.messages import plain
@@ -173,4 +174,4 @@ def _print_verdict(console: Console, calibration: Calibration) -> None:
                 )
             )
     for step in verdict.next_steps():
-        console.print(plain(f"  next: {step}"))
+        console.print(plain(f"  next: {advice_text(step)}"))

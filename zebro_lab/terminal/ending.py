@@ -9,6 +9,10 @@ from typing import Final
 
 ERROR: Final = 1
 WRONG_USAGE: Final = 2
+_PLACES: Final = {
+    "legs": "--zebro or sim zebro", "imu": "--imu or sim imu", "slip-rig": "--rig or sim rig",
+}  # fmt: skip
+"""Where a profile of each kind of device is named on a command line."""
 
 
 def run(app: Callable[[], object]) -> None:
@@ -27,7 +31,7 @@ def _guard(command: Callable[[], object]) -> None:
     try:
         command()
     except Exception as error:
-        message = str(error) if _is_known(error) else _of_a_file(error)
+        message = f"{error}{_advice(error)}" if _is_known(error) else _of_a_file(error)
         if message is None:
             raise
         from zebro_lab.files.shown_text import shortened, shown
@@ -37,6 +41,13 @@ def _guard(command: Callable[[], object]) -> None:
         if not say_in_time(f"error: {shortened(shown(message))}", err=True):
             leave_at_once(code)
         raise SystemExit(code) from None
+
+
+def _advice(error: Exception) -> str:
+    """Say where a profile belongs that describes another device; nothing of other errors."""
+    wrong_device = getattr(sys.modules.get("rig.errors"), "WrongDevice", ())
+    place = _PLACES.get(error.found) if isinstance(error, wrong_device) else None
+    return f"; this profile belongs to {place}" if place else ""
 
 
 def _of_a_file(error: Exception) -> str | None:

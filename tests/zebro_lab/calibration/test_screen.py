@@ -7,6 +7,7 @@ import pytest
 from rich.console import Console
 
 from support.short_calibration import short_calibration
+from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.calibration.screen import print_calibration, print_data
 
@@ -59,7 +60,7 @@ def test_faults_are_marked_with_their_evidence(printed):
     assert {check.passed for check in checks} == set(marks)
     assert "FAIL" in printed
     for step in verdict.next_steps():
-        assert f"next: {step[:60]}" in printed
+        assert f"next: {advice_text(step)[:60]}" in printed
 
 
 def test_data_source_and_files_are_told_and_names_are_no_markup(printed):

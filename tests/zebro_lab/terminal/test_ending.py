@@ -7,6 +7,7 @@ import pytest
 import typer
 
 from model.errors import FitError
+from rig.errors import WrongDevice
 from zebro_lab.files.errors import DataError
 from zebro_lab.main import app as zebro_lab
 from zebro_lab.terminal.ending import run
@@ -34,6 +35,16 @@ def test_known_error_is_one_line_and_exit_1(error, capsys):
     assert ended.value.code == 1
     assert ended.value.__suppress_context__
     assert capsys.readouterr() == ("", f"error: {error}\n")
+
+
+@pytest.mark.parametrize(
+    ("found", "end"),
+    [("imu", "'legs'; this profile belongs to --imu or sim imu\n"), ("camera", "'legs'\n")],
+)
+def test_a_profile_of_another_device_says_on_which_option_it_belongs(found, end, capsys):
+    with pytest.raises(SystemExit):
+        run(app_that_raises(WrongDevice(found, expected="legs", file="a.toml")))
+    assert capsys.readouterr().err.endswith(end)
 
 
 def test_unknown_error_keeps_its_traceback():

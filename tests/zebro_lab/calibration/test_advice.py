@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""Advice holds lines, commands and options that can be used as they stand."""
+
+import tomllib
+
+import pytest
+
+from model.bayes.advice import (
+    Advice,
+    ExcludeRuns,
+    MeasureSlips,
+    SampleLonger,
+    TryLaws,
+    WeighLoadCell,
+    ZeroBeforeEach,
+)
+from zebro_lab.calibration.advice import SECONDS, SHORT, advice_text
+
+
+def plan_in(advice: str) -> dict:
+    """Parse the lines of a plan in advice, which are between its first and its last line."""
+    return tomllib.loads("\n".join(advice.splitlines()[1:-1]))
+
+
+def test_further_slips_are_lines_of_a_plan_and_are_fitted_with_the_others():
+    advice = advice_text(MeasureSlips("x", (5.0, 10.0), (0.01, 0.03, 0.2)))
+    plan = plan_in(advice)
+    assert advice.startswith("x: measure 3 more slip ratios")
+    assert plan["points"]["loads"] == [5.0, 10.0]
+    assert plan["points"]["slips"] == [0.01, 0.03, 0.2]
+    assert plan["points"]["duration"] == SECONDS
+    assert plan["controls"]["tare_every"] == 3
+    assert "calibrate-slip DATA FURTHER" in advice.splitlines()[-1]
+
+
+def test_slips_that_a_plan_cannot_tell_apart_are_measured_once():
+    advice = advice_text(MeasureSlips("x", (5.0,), (0.031, 0.0312, 0.2)))
+    assert plan_in(advice)["points"]["slips"] == [0.031, 0.2]
+
+
+def test_short_runs_have_a_zero_each_and_are_fitted_alone():
+    advice = advice_text(ZeroBeforeEach("x"))
+    assert plan_in(advice)["points"]["duration"] == SHORT
+    assert plan_in(advice)["controls"]["tare_every"] == 1
+    assert "calibrate-slip FURTHER" in advice.splitlines()[-1]
+
+
+def test_laws_are_options_and_driving_and_braking_are_parted_where_both_were_measured():
+    one = advice_text(TryLaws("x", ("brush",), load_sensitivity=False, both_signs=False))
+    both = advice_text(TryLaws("x", ("brush",), load_sensitivity=True, both_signs=True))
+    assert "with --law brush, each" in one
+    assert "--law brush, with --load-sensitivity, each" in both
+    assert ("driving and braking apart" in one, "driving and braking apart" in both) == (
+        False,
+        True,
+    )
+
+
+def test_each_run_that_is_left_out_has_its_command():
+    lines = advice_text(ExcludeRuns("x", ("one", "two"))).splitlines()
+    assert lines[1:] == [f"zebro-lab exclude DATA/{run} --why REASON" for run in ("one", "two")]
+
+
+@pytest.mark.parametrize(
+    ("advice", "said"),
+    [
+        (SampleLonger("sample longer", 400), "command with --resume --max-steps 400"),
+        (WeighLoadCell("too close"), "zebro-lab rig weigh --rig RIG --masses KG,KG --data DATA"),
+        (Advice("use F_max"), "use F_max"),
+    ],
+)
+def test_other_advice_begins_with_its_reason_and_names_its_command(advice, said):
+    assert advice_text(advice).startswith(advice.reason)
+    assert said in advice_text(advice)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""Advice of a verdict that can be followed to the letter: lines of a plan, commands, options."""
+
+from functools import singledispatch
+from typing import Final
+
+from model.bayes.advice import (
+    Advice,
+    ExcludeRuns,
+    MeasureSlips,
+    SampleLonger,
+    TryLaws,
+    WeighLoadCell,
+    ZeroBeforeEach,
+)
+
+SECONDS: Final = 2.0
+"""Time of each further slip ratio [s]."""
+ZERO_SECONDS: Final = 10.0
+"""Time of a zero: noise that remembers 0.05 s leaves a tenth of itself in it [s]."""
+SHORT: Final = 0.5
+"""Time of a run that forces hardly drift in [s]."""
+SHORT_ZERO: Final = 2.0
+"""Time of the zero before each of these runs [s]."""
+PASSES: Final = 4
+"""Such runs of each slip ratio."""
+
+
+@singledispatch
+def advice_text(advice: Advice) -> str:
+    """Format advice as text, of several lines where it holds lines of a plan or commands."""
+    return advice.reason
+
+
+@advice_text.register
+def _sample_longer(advice: SampleLonger) -> str:
+    return f"{advice.reason}: give the same command with --resume --max-steps {advice.moves}"
+
+
+@advice_text.register
+def _measure_slips(advice: MeasureSlips) -> str:
+    numbers = list(dict.fromkeys(f"{slip:.2g}" for slip in advice.slips))
+    lines = {
+        "points": {
+            "loads": f"[{', '.join(f'{load:.3g}' for load in advice.loads)}]",
+            "slips": f"[{', '.join(numbers)}]",
+            "length": '"duration"',
+            "duration": f"{SECONDS:.1f}",
+        },
+        "controls": {"tare_every": f"{len(numbers)}", "tare_duration": f"{ZERO_SECONDS:.1f}"},
+    }
+    return _plan(
+        f"{advice.reason}: measure {len(numbers)} more slip ratios (material definition), "
+        f"{SECONDS:g} s each, at {len(advice.loads)} load(s), the load cell zeroed for "
+        f"{ZERO_SECONDS:g} s before each load",
+        lines,
+        "then fit both (calibrate-slip DATA FURTHER)",
+    )
+
+
+@advice_text.register
+def _zero_before_each(advice: ZeroBeforeEach) -> str:
+    lines = {
+        "points": {"length": '"duration"', "duration": f"{SHORT:.1f}", "repeats": f"{PASSES}"},
+        "controls": {"tare_every": "1", "tare_duration": f"{SHORT_ZERO:.1f}"},
+    }
+    return _plan(
+        f"{advice.reason}: measure again in runs of {SHORT:g} s, the load cell zeroed for "
+        f"{SHORT_ZERO:g} s before each",
+        lines,
+        "then fit it alone (calibrate-slip FURTHER); if it says the same, forces drift too fast: "
+        "let the load cell warm up, or mend it",
+    )
+
+
+@advice_text.register
+def _weigh_load_cell(advice: WeighLoadCell) -> str:
+    return (
+        f"{advice.reason}: weigh the load cell (zebro-lab rig weigh --rig RIG --masses KG,KG "
+        "--data DATA), state its zero_stability there in columns.toml, and give the same command "
+        "again"
+    )
+
+
+@advice_text.register
+def _try_laws(advice: TryLaws) -> str:
+    options = [f"--law {name}" for name in advice.laws]
+    options += ["--load-sensitivity"] * advice.load_sensitivity
+    apart = "; else fit driving and braking apart ([rows] keep in columns.toml)"
+    return (
+        f"{advice.reason}: give the same command with {', with '.join(options)}, each with an "
+        f"--out of its own, and use the result that is trustworthy{apart * advice.both_signs}; if "
+        "none is, check the slip definition (--slip-definition) and see residuals.png"
+    )
+
+
+@advice_text.register
+def _exclude_runs(advice: ExcludeRuns) -> str:
+    commands = "\n".join(f"zebro-lab exclude DATA/{name} --why REASON" for name in advice.runs)
+    return (
+        f"{advice.reason}: where the lab notes tell why (another material, a lost zero), leave "
+        "these runs out, each with its reason, rows of a table by [rows] keep in columns.toml, and "
+        f"give the same command again:\n{commands}"
+    )
+
+
+def _plan(what: str, tables: dict[str, dict[str, str]], fit: str) -> str:
+    """Format lines of a plan by table and key, and the commands that run and fit it."""
+    heads = (f"[{table}]\n" + "\n".join(f"{key} = {value}" for key, value in keys.items())
+             for table, keys in tables.items())  # fmt: skip
+    return (
+        f"{what}. In a copy of the plan, set these:\n"
+        + "\n".join(heads)
+        + "\nRun the copy into another folder, with the other options as before "
+        f"(zebro-lab rig run COPY --rig RIG --data FURTHER), {fit}"
+    )

@@ -46,7 +46,8 @@ def _guard(command: Callable[[], object]) -> None:
 def _advice(error: Exception) -> str:
     """Say where a profile belongs that describes another device; nothing of other errors."""
     wrong_device = getattr(sys.modules.get("rig.errors"), "WrongDevice", ())
-    place = _PLACES.get(error.found) if isinstance(error, wrong_device) else None
+    found = getattr(error, "found", "") if isinstance(error, wrong_device) else ""
+    place = _PLACES.get(found)
     return f"; this profile belongs to {place}" if place else ""
 
 

@@ -47,9 +47,15 @@ def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
         random_positions=chains.random_positions,
     )
     place = real_place(folder)
+    is_new = not place.exists()
     with writing(folder):
         place.mkdir(parents=True, exist_ok=True)
-        atomic_write_bytes(place / FILE, buffer.getvalue())
+        try:
+            atomic_write_bytes(place / FILE, buffer.getvalue())
+        except OSError:
+            if is_new:
+                place.rmdir()
+            raise
     return folder / FILE
 
 

@@ -17,7 +17,6 @@ from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
 from zebro_lab.exchange.imu_messages import read_imu_messages
-from zebro_lab.exchange.pose_log import read_pose_log
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
 from zebro_lab.mcap.ros_bags import bag_files
@@ -30,16 +29,10 @@ from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
-from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.terminal.leg_options import joint_names
-from zebro_lab.track.foreign import (
-    ForeignTrack,
-    read_foreign_track,
-    track_of_foreign_table,
-)
+from zebro_lab.track.foreign import ForeignTrack, read_foreign_track
 from zebro_lab.track.trajectory.request import TrajectoryRequest
-from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 _UNIX: Final = 1e9
 """First time that counts as Unix time, since no run lasts for 30 years [s]."""
@@ -192,18 +185,10 @@ def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
 def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:
     alone = request.legs is None and request.rig is None
     columns = foreign_columns(TRACK, path, request.columns, alone=alone)
-    series = columns.series(TRACK)
-    if is_ros_log(path):
-        if request.trajectory != TrajectoryRequest():
-            raise SettingsError(
-                f"{path} is a ROS log; leave out --plane, --forward, --times and --layout",
-                key="--track",
-            )
-        own = replace(series, mapped=canonical_columns(MAPPED_UNITS).mapped)  # without headers
-        found = read_pose_log(path, topic=columns.topic, topics=request.topic)
-        track = track_of_foreign_table(found.table, own)
-        return replace(track, files=(*bag_files(path), *track.files[1:])), found.topic
-    return read_foreign_track(path, series, request.trajectory), None
+    track = read_foreign_track(
+        path, columns.series(TRACK), request.trajectory, topic=columns.topic, topics=request.topic
+    )
+    return track, track.topic
 
 
 def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:

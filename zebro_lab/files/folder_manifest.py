@@ -27,7 +27,22 @@ def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
     try:
         return require_object(read_json_document(file), file)
     except NotFound as error:
-        raise NotFound(f"{file.parent} is not a {of}: {file.name} is missing") from error
+        within = such_folder_in(file.parent, file.name)
+        raise NotFound(f"{file.parent} is not a {of}: {file.name} is missing{within}") from error
+
+
+def such_folder_in(folder: Path, name: str) -> str:
+    """Offer a folder that has a file of a name, directly in another, for an error message.
+
+    Args:
+        folder: Folder that was given in the place of one of those in it.
+        name: Name of the file.
+
+    Returns:
+        A clause that begins with "; "; "" where no folder in it has such a file.
+    """
+    found = min(folder.glob(f"*/{name}"), default=None)
+    return "" if found is None else f"; give one of the folders in it, such as {found.parent}"
 
 
 def read_folder_manifest(

@@ -7,12 +7,14 @@ from pathlib import Path
 
 from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.folder_manifest import such_folder_in
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.mcap.ros_bags import bag_files
 from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
+from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.tables.column_sections import LEGS, read_section
 from zebro_lab.tables.columns import COLUMNS_FILE
@@ -132,7 +134,8 @@ def _table_of(path: Path) -> Path:
         return path / PATH_CSV
     raise DataError(
         f"is a folder without {PATH_CSV}, run.json or metadata.yaml; give a walk folder, a run "
-        f"folder, a bag, or a table with the columns t and {ANGLES[0]} to {ANGLES[-1]}",
+        f"folder, a bag, or a table with the columns t and {ANGLES[0]} to {ANGLES[-1]}"
+        f"{such_folder_in(path, MANIFEST_FILE)}",
         file=path,
     )
 

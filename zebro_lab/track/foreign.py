@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Import a path tracked by another program, from a table or a trajectory."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
@@ -11,6 +11,7 @@ import numpy as np
 from model.poses import travel_direction, wrap
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
@@ -42,12 +43,14 @@ class ForeignTrack:
         more: Known further columns of `track.csv`, `t_sigma` [s] and `z_m` [m], shape (n,) each.
         with_covariance: Whether the covariance is known.
         files: Every file read: the table and, if there is one, its `columns.toml`.
+        topic: Topic of a ROS log that was read; None for any other file.
     """
 
     track: TrackFile
     more: Mapping[str, Array] = field(default_factory=dict)
     with_covariance: bool = False
     files: tuple[Path, ...] = ()
+    topic: str | None = None
 
     @property
     def columns(self) -> Mapping[str, Sequence[float]]:
@@ -75,14 +78,21 @@ class ForeignTrack:
 
 
 def read_foreign_track(
-    path: Path, mapping: MappedColumns, request: TrajectoryRequest
+    path: Path,
+    mapping: MappedColumns,
+    request: TrajectoryRequest,
+    *,
+    topic: str | None = None,
+    topics: Collection[str] = (),
 ) -> ForeignTrack:
-    """Read a path tracked by another program: a table, or a TUM, KITTI or EuRoC trajectory.
+    """Read a path tracked by another program: a table, a TUM, KITTI or EuRoC trajectory, a ROS log.
 
     Args:
         path: The file.
         mapping: Header, unit and sign of each column of a table.
         request: How a trajectory is read.
+        topic: Topic to read from a ROS log; None for one of `topics`, else the only one with poses.
+        topics: Topics of a ROS log to prefer, also such of other messages.
 
     Raises:
         NotFound: A file does not exist.
@@ -90,13 +100,11 @@ def read_foreign_track(
         SettingsError: An option does not fit the file, or has no effect on it; or the path extends
             across the plane of the floor, and that is not stated.
     """
-    if number_lines_of(path, request.layout_of(0)) is None and request.plane in (None, Plane.XY):
-        table = read_table_file(path, sheet=mapping.sheet)
-        columns = recognised(table, mapping)
-        if not all(columns.has(table, name) for name in QUATERNION):
-            _require_unused(path, request)
-            return track_of_foreign_table(table, mapping)
-    trajectory = read_trajectory(path, request, mapping=mapping)
+    table = None if is_ros_log(path) else _planar_table(path, mapping, request)
+    if table is not None:
+        _require_unused(path, request)
+        return track_of_foreign_table(table, mapping)
+    trajectory = read_trajectory(path, request, mapping=mapping, topic=topic, topics=topics)
     if not trajectory.timed:
         raise DataError("has no times; give the file of its times with --times", file=path)
     if trajectory.leaves_plane and request.plane is None:
@@ -107,7 +115,21 @@ def read_foreign_track(
         )
     own = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped)  # without headers
     track = track_of_foreign_table(_flat(trajectory), own)
-    return replace(track, files=trajectory.files)
+    files = tuple(dict.fromkeys((*trajectory.files, *track.files[1:])))
+    return replace(track, files=files, topic=trajectory.topic)
+
+
+def _planar_table(
+    path: Path, mapping: MappedColumns, request: TrajectoryRequest
+) -> RawTable | None:
+    """Return the table of a path in the plane; None for any other trajectory."""
+    if number_lines_of(path, request.layout_of(0)) is not None:
+        return None
+    if request.plane not in (None, Plane.XY):
+        return None
+    table = read_table_file(path, sheet=mapping.sheet)
+    columns = recognised(table, mapping)
+    return None if all(columns.has(table, name) for name in QUATERNION) else table
 
 
 def _require_unused(path: Path, request: TrajectoryRequest) -> None:
@@ -132,6 +154,9 @@ def _flat(trajectory: Trajectory) -> RawTable:
     if poses.has_yaw:
         columns["yaw_rad"] = poses.yaw
         notes = (*notes, *_sideways(trajectory))
+        if (covariance := trajectory.planar_covariance) is not None:
+            upper = zip(COVARIANCE, zip(*np.triu_indices(3), strict=True), strict=True)
+            columns |= {name: covariance[:, i, j] for name, (i, j) in upper}
     if trajectory.in_space:
         columns["z_m"] = trajectory.height
     source = None if trajectory.source == "unknown" else trajectory.source

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A stopped fit on disk: the same arrays back, or one line that says why not."""
 
+import errno
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,20 @@ def test_a_checkpoint_is_written_behind_a_link(tmp_path):
     path = save_checkpoint(tmp_path / "link", chains(), fingerprint=MARK)
     assert path == tmp_path / "link" / FILE
     assert (tmp_path / "folder" / FILE).is_file()
+
+
+def test_a_full_disk_leaves_no_folder(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("zebro_lab.calibration.checkpoint.atomic_write_bytes", full)
+    with pytest.raises(NotWritten, match="No space left"):
+        save_checkpoint(tmp_path / "new", chains(), fingerprint=MARK)
+    assert not (tmp_path / "new").exists()
+    (tmp_path / "old").mkdir()
+    with pytest.raises(NotWritten, match="No space left"):
+        save_checkpoint(tmp_path / "old", chains(), fingerprint=MARK)
+    assert (tmp_path / "old").is_dir()
 
 
 def test_a_checkpoint_that_cannot_be_written_is_told_in_one_line(tmp_path):

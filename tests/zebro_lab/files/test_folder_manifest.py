@@ -2,6 +2,7 @@
 """The manifest of a result folder is read if it is of the expected kind and schema."""
 
 import json
+import re
 
 import pytest
 
@@ -49,6 +50,15 @@ def test_a_manifest_of_another_kind_or_schema_is_refused(file, content, message)
 
 def test_a_folder_without_its_file_is_none_of_the_kind(file):
     with pytest.raises(NotFound, match=r"is not a run folder: manifest\.json is missing"):
+        read_json_object(file, of="run folder")
+
+
+def test_a_folder_of_such_folders_names_one_to_give(file):
+    for name in ("b", "a"):
+        (file.parent / name).mkdir()
+        (file.parent / name / file.name).write_text("{}")
+    said = f"manifest.json is missing; give one of the folders in it, such as {file.parent / 'a'}"
+    with pytest.raises(NotFound, match=re.escape(said)):
         read_json_object(file, of="run folder")
 
 

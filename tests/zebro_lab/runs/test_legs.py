@@ -85,6 +85,10 @@ def test_named_columns_file_must_exist(read, tmp_path):
 def test_empty_folder_is_no_leg_log(tmp_path):
     with pytest.raises(DataError, match=r"is a folder without path\.csv, run\.json or metadata"):
         read_leg_log(tmp_path)
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "run.json").write_text("{}")
+    with pytest.raises(DataError, match=r"; give one of the folders in it, such as .*run$"):
+        read_leg_log(tmp_path)
 
 
 def test_a_bag_is_a_leg_log_whose_topic_is_chosen(tmp_path):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read a trajectory of another program: TUM, KITTI, EuRoC, a table or a ROS log."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from model.counted import counted
 from model.poses import Poses
-from model.rigid_path import RigidPath, rotations_of_quaternions
+from model.rigid_path import RigidPath, plane_axes, rotations_of_quaternions
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.ros_bags import bag_files
@@ -17,7 +17,7 @@ from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.table_files import is_table_file
 from zebro_lab.track.trajectory.layouts import OrderedNumbers, ordered
-from zebro_lab.track.trajectory.logged_poses import read_logged_poses
+from zebro_lab.track.trajectory.logged_poses import LoggedPoses, read_logged_poses
 from zebro_lab.track.trajectory.numbers import NumberLines, read_number_lines
 from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
 from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
@@ -41,6 +41,9 @@ class Trajectory:
         source: Where the poses come from, as stated; else "unknown".
         notes: Notes on how the file was read, one line each.
         files: Every file read.
+        topic: Topic of a ROS log that was read; None for any other file.
+        covariance: Covariances of x, y, z and the rotations about them, of messages that have
+            them, by rows, shape (n, 6, 6) [m, rad]; else None.
     """
 
     file: Path
@@ -53,6 +56,8 @@ class Trajectory:
     source: str = "unknown"
     notes: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
+    topic: str | None = None
+    covariance: Array | None = None
 
     @property
     def poses(self) -> Poses:
@@ -67,11 +72,25 @@ class Trajectory:
         return across > extent.min() and across > 0.1 * extent.max()
 
     @property
+    def normal(self) -> Array:
+        """Unit vector normal to the plane, upwards where the plane is seen from above, (3,) [-]."""
+        first, second = plane_axes(self.plane)
+        return np.cross(np.eye(3)[first], np.eye(3)[second])
+
+    @property
     def height(self) -> Array:
-        """Coordinate along the plane's normal, upwards where the plane is seen from above [m]."""
-        first, second = ("xyz".index(axis) for axis in self.plane)
-        normal = np.cross(np.eye(3)[first], np.eye(3)[second])
-        return self.path.position @ normal
+        """Coordinate along the plane's normal [m]."""
+        return self.path.position @ self.normal
+
+    @property
+    def planar_covariance(self) -> Array | None:
+        """Covariance of x, y and heading in the plane, shape (n, 3, 3) [m, rad]; None without."""
+        if self.covariance is None:
+            return None
+        chosen = np.zeros((3, 6))
+        chosen[[0, 1], plane_axes(self.plane)] = 1.0
+        chosen[2, 3:] = self.normal  # the heading turns about it
+        return chosen @ self.covariance @ chosen.T
 
 
 def read_trajectory(
@@ -81,6 +100,7 @@ def read_trajectory(
     mapping: MappedColumns | None = None,
     which: int = 0,
     topic: str | None = None,
+    topics: Collection[str] = (),
 ) -> Trajectory:
     """Read a trajectory; its layout is found by its content where the request does not state it.
 
@@ -89,7 +109,8 @@ def read_trajectory(
         request: How to read it.
         mapping: Headers and units of the columns of a table.
         which: 0 for the first file of a command, 1 for the second.
-        topic: Topic to read from a ROS log; None for the only one with poses.
+        topic: Topic to read from a ROS log; None for one of `topics`, else the only one with poses.
+        topics: Topics of a ROS log to prefer, also such of other messages.
 
     Raises:
         NotFound: A file is missing, or the package that reads a ROS log.
@@ -99,7 +120,8 @@ def read_trajectory(
     """
     stated = request.layout_of(which)
     if is_ros_log(path):
-        return _of_ros_log(path, request, which, topic)
+        _require_no_other(path, request, which)
+        return _of_ros_log(path, request, read_logged_poses(path, topic=topic, topics=topics))
     if stated is Layout.ROS:
         raise DataError("is no ROS log by its name; expected .mcap, .db3, .bag or a bag's folder, "
                         "or another --layout", file=path)  # fmt: skip
@@ -190,15 +212,16 @@ def _of_table(path: Path, request: TrajectoryRequest, mapping: MappedColumns | N
     return _with_doubts(trajectory)
 
 
-def _of_ros_log(
-    path: Path, request: TrajectoryRequest, which: int, topic: str | None
-) -> Trajectory:
+def _require_no_other(path: Path, request: TrajectoryRequest, which: int) -> None:
+    """Raise `SettingsError` for options that do not fit a ROS log."""
     if request.times is not None:
         raise SettingsError(f"{path} is a ROS log, whose messages have times; leave the option out",
                             key="--times")  # fmt: skip
     if request.layout_of(which) not in (None, Layout.ROS):
         raise SettingsError(f"{path} is a ROS log; leave the option out", key="--layout")
-    found = read_logged_poses(path, topic=topic)
+
+
+def _of_ros_log(path: Path, request: TrajectoryRequest, found: LoggedPoses) -> Trajectory:
     rows, quaternion = found.rows, found.quaternion
 
     def fault(problem: str, index: int) -> DataError:
@@ -219,6 +242,8 @@ def _of_ros_log(
         forward=forward,
         notes=_named(path, (rows.told, *rows.notes, *notes)),
         files=tuple(bag_files(path)),
+        topic=rows.topic,
+        covariance=None if found.covariance is None else found.covariance[kept].reshape(-1, 6, 6),
     )
     return _with_doubts(trajectory)
 

@@ -12,10 +12,20 @@ from numpy.typing import NDArray
 from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, RED, draw_band, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import (
+    BLUE,
+    RED,
+    draw_band,
+    few_ticks,
+    legend_below,
+    new_figure,
+    styled,
+    with_minus,
+)
 from zebro_lab.plots.walk_robot import leg_arcs, outline, to_world
 
-_COLUMN = 2.6  # inches
+_COLUMN = 1.75  # inches: the text of four columns is legible at the width of a page
+_DPI = 220  # for the photographs
 _IN_AIR = "0.55"
 
 
@@ -62,20 +72,24 @@ def photos_beside_poses(
     """
     figure = new_figure(
         f"Photographs and predicted poses: {title}", False,
-        width=_COLUMN * len(shots) + 0.6, height=2 * _COLUMN + 1.2,
+        width=max(_COLUMN * len(shots) + 0.6, 5.0), height=2 * _COLUMN + 1.4,
     )  # fmt: skip
+    figure.set_dpi(_DPI)
     panels = figure.subplots(2, len(shots), squeeze=False)
     taken = "simulated photograph" if simulated_photos else "photograph"
     for (photograph, drawn), shot in zip(panels.T, shots, strict=True):
         photograph.imshow(shot.picture[:, :, ::-1], extent=shot.extent, interpolation="antialiased")
-        photograph.set_title(f"t = {shot.t:.2f} s", loc="left")
+        photograph.set_title(f"t = {shot.t:.2f} s", loc="left", fontsize=8)
         _draw_robot(drawn, shot, robot)
         off = 1e3 * np.linalg.norm(shot.position[:2] - shot.tracked[:2])
         turned = np.degrees(np.angle(np.exp(1j * (shot.orientation[2] - shot.tracked[2]))))
-        drawn.set_title(f"error {off:.0f} mm, {turned:+.1f} deg", loc="left")
+        error = with_minus(f"{off:.0f} mm, {turned:+.1f} deg")
+        drawn.set_title(f"off {error}", loc="left", fontsize=8)
         for axes in (photograph, drawn):
             axes.set(xlim=shot.extent[:2], ylim=shot.extent[2:], aspect="equal")
             axes.tick_params(labelsize=7)
+            axes.xaxis.set_major_locator(few_ticks(4))
+            axes.yaxis.set_major_locator(few_ticks(4))
         drawn.set_xlabel("x [m]")
     panels[0, 0].set_ylabel(f"{taken}\ny [m]")
     panels[1, 0].set_ylabel("predicted (simulated)\ny [m]")
@@ -107,6 +121,7 @@ def band_over_floor(
     band: Poses | None,
     track: Poses,
     title: str,
+    photo_at: float,
     simulated_photos: bool,
 ) -> Figure:
     """Draw the predicted path with 60 of its draws, and the track, over a photograph from above.
@@ -118,6 +133,7 @@ def band_over_floor(
         band: Draws of the predicted path; None without draws.
         track: The tracked poses.
         title: Name of the walk.
+        photo_at: Time of the photograph, in the prediction's time base [s].
         simulated_photos: Whether the photograph is simulated too; predictions always are.
 
     Returns:
@@ -134,8 +150,12 @@ def band_over_floor(
     # The photograph is drawn paler, so that the paths stand out.
     axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.55)
     draw_band(axes, band, label="draws", color=BLUE, lw=0.5, alpha=0.25)
-    axes.plot(*path.position.T, color="black", lw=1.4, label="predicted path")
-    axes.plot(*track.position.T, ls="none", marker="o", ms=4, color=RED, label="track")
+    axes.plot(*path.position.T, color=BLUE, lw=1.6, label="predicted path")
+    axes.plot(
+        *track.position.T, ls="none", marker="o", ms=4.5, color="black", mec="white", mew=0.6,
+        label="track",
+    )  # fmt: skip
+    axes.set_title(f"photograph at {photo_at:.1f} s; raised objects are displaced", loc="left")
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
     legend_below(figure, columns=3)
     return figure

@@ -15,6 +15,8 @@ from zebro_lab.plots.sheet import BLUE, CYCLE, RED, few_ticks, legend_below, new
 
 _WIDTH = 9.0  # inches
 _GREEN = CYCLE[2]
+_DOT = 2.5  # points
+_MOST_ARROWS = 24
 _ORIGIN, _HEADING = "body's origin", "heading"
 _UNSEEN = "0.35"  # black, as pale as the photograph is drawn
 
@@ -27,11 +29,13 @@ class SeenMarks:
         outlines_px: Corners u, v of each outline, shape (m, 2) [px]; the last is joined to the
             first when drawn.
         labels: Label of each outline, as many as outlines; "" writes none.
+        name: Name of the group, for the key.
         colour: Colour of outlines and labels, as matplotlib takes it.
     """
 
     outlines_px: Sequence[Array]
     labels: Sequence[str]
+    name: str
     colour: str
 
 
@@ -71,15 +75,10 @@ def over_photo(
 def _outline(axes: Axes, group: SeenMarks) -> None:
     for outline, label in zip(group.outlines_px, group.labels, strict=True):
         closed = np.vstack((outline, outline[:1]))
-        axes.plot(*closed.T, color=group.colour, lw=1.0)
         axes.plot(
-            *outline[0],
-            color=group.colour,
-            marker="o",
-            ms=3,
-            ls="none",
-            label="a mark's first corner",
-        )
+            *closed.T, color=group.colour, lw=1.0, marker="o", ms=3, markevery=[0],
+            label=f"{group.name}, dot at its first corner",
+        )  # fmt: skip
         if label:
             # Beside the mark: a label on a marker would hide it.
             axes.annotate(
@@ -91,17 +90,24 @@ def _outline(axes: Axes, group: SeenMarks) -> None:
 
 def _path(axes: Axes, path: Array, ahead: Array) -> None:
     axes.plot(*path.T, color=RED, lw=1.2, marker="o", ms=2.5, label=_ORIGIN)
-    step = ahead - path
+    _arrows(axes, path, ahead - path)
+
+
+def _arrows(axes: Axes, start: Array, step: Array) -> None:
+    """Draw headings over the path, white-edged since they lie along it, and not too many."""
+    known = np.flatnonzero(np.isfinite(start[:, 0]))
+    chosen = known[:: -(-len(known) // _MOST_ARROWS) or 1]
     axes.quiver(
-        *path.T, *step.T, angles="xy", scale_units="xy", scale=1, color=_GREEN, width=0.0022,
-        headwidth=4, headlength=5, label=_HEADING,
+        *start[chosen].T, *step[chosen].T, angles="xy", scale_units="xy", scale=1, color=_GREEN,
+        width=0.004, headwidth=3.5, headlength=4, headaxislength=3.5, edgecolor="white", lw=0.6,
+        zorder=4, label=_HEADING,
     )  # fmt: skip
 
 
 @styled
 def over_floor(
     floor: NDArray[np.uint8], *, extent: tuple[float, float, float, float], poses: Array,
-    ellipses: Sequence[Array], labels: Sequence[str], title: str, simulated: bool,
+    ellipses: Sequence[Array], labels: Sequence[str], title: str, note: str, simulated: bool,
 ) -> Figure:  # fmt: skip
     """Draw a track over the floor as seen from straight above.
 
@@ -112,6 +118,7 @@ def over_floor(
         ellipses: Outline x, y of the confidence region around each pose, shape (m, 2) [m].
         labels: Label of each pose, "" for none; every n-th is written, so that none overlap.
         title: Title of the figure.
+        note: Note on the photograph, above it.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -125,15 +132,15 @@ def over_floor(
     axes = figure.add_subplot()
     # The photograph is drawn paler, so that the path stands out.
     axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.65)
-    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=2.5, label=_ORIGIN)
+    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=_DOT, label=_ORIGIN)
+    dot = _DOT / 72 / scale  # m
+    hidden = all(float(np.ptp(ellipse, axis=0).max()) < dot for ellipse in ellipses)
+    region = "90 % region of the origin" + ": smaller than a dot" * hidden
     for ellipse in ellipses:
-        axes.plot(*ellipse.T, color=BLUE, lw=0.7, label="90 % region of the origin")
-    arrow = 0.05 * max(width, height)
-    axes.quiver(
-        *poses[:, :2].T, arrow * np.cos(poses[:, 2]), arrow * np.sin(poses[:, 2]), angles="xy",
-        scale_units="xy", scale=1, color=_GREEN, width=0.002, headwidth=4, headlength=5,
-        label=_HEADING,
-    )  # fmt: skip
+        axes.plot(*ellipse.T, color=BLUE, lw=0.9, zorder=5, label=region)
+    arrow = 0.03 * max(width, height)
+    _arrows(axes, poses[:, :2], arrow * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2]))))
+    axes.set_title(note, loc="left")
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
     if np.any(np.all(floor == 0, axis=2)):
         axes.fill_between([], [], color=_UNSEEN, lw=0, label="outside the photograph")
@@ -148,7 +155,7 @@ def _label_apart(figure: Figure, axes: Axes, points: Array, labels: Sequence[str
     texts = [
         axes.annotate(
             label, (x, y), xytext=(6, -3), textcoords="offset points", ha="left", va="top",
-            fontsize=7,
+            fontsize=10,
         )
         for (x, y), label in zip(points, labels, strict=True)
     ]  # fmt: skip

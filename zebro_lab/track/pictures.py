@@ -109,10 +109,11 @@ def seen_marks(
     from zebro_lab.plots.track import SeenMarks
 
     outlines = [project(photo.camera, photo.pose, mark.points) for mark in floor.marks.values()]
-    marks = [SeenMarks(outlines, [str(key) for key in floor.marks], CYCLE[0])]
+    labels = [str(key) for key in floor.marks]
+    marks = [SeenMarks(outlines, labels, "mark of the floor", CYCLE[0])]
     if detection is not None and detection.robot is not None:
         label = f"robot {detection.robot.marker_id}"
-        marks.append(SeenMarks([detection.robot.corners_px], [label], RED))
+        marks.append(SeenMarks([detection.robot.corners_px], [label], "marker of the robot", RED))
     return marks
 
 
@@ -149,7 +150,8 @@ def _draw_map(
     extent = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
     figure = over_floor(
         picture, extent=extent, poses=poses, ellipses=ellipses, labels=_time_labels(track, poses),
-        title=f"Path over the floor, 90 % regions; raised objects are displaced: {title}",
+        title=f"Path over the floor: {title}",
+        note=f"photograph of the last pose, {track.t[-1]:.1f} s; raised objects are displaced",
         simulated=simulated,
     )  # fmt: skip
     save(figure, file)

@@ -95,7 +95,9 @@ def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos, form: Pic
     )
     save(figure, folder / f"{run.name}.photos.{form}")
     # In the last photograph the robot no longer hides the floor at the start of the path.
-    _draw_floor(folder / f"{run.name}.floor.{form}", run, views[max(views)], photos.simulated)
+    last = max(views)
+    file = folder / f"{run.name}.floor.{form}"
+    _draw_floor(file, run, views[last], at[last], simulated_photos=photos.simulated)
 
 
 def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDArray[np.intp]:
@@ -126,7 +128,9 @@ def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> "Sho
     )
 
 
-def _draw_floor(file: Path, run: JudgedRun, view: PlacedPhoto, simulated_photos: bool) -> None:
+def _draw_floor(
+    file: Path, run: JudgedRun, view: PlacedPhoto, t: float, *, simulated_photos: bool
+) -> None:
     from zebro_lab.plots import save
     from zebro_lab.plots.photo_poses import band_over_floor
 
@@ -141,6 +145,7 @@ def _draw_floor(file: Path, run: JudgedRun, view: PlacedPhoto, simulated_photos:
         band=run.band,
         track=run.track,
         title=run.name,
+        photo_at=t,
         simulated_photos=simulated_photos,
     )
     save(figure, file)

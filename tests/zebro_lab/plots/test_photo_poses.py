@@ -17,7 +17,7 @@ def test_a_robot_is_drawn_where_it_was_predicted(walked):
     )  # fmt: skip
     figure = photos_beside_poses([shot], Robot(), title="w", simulated_photos=False)
     above, below = figure.axes
-    assert "error 30 mm, +5.7 deg" in below.get_title(loc="left")
+    assert "off 30 mm, +5.7 deg" in below.get_title(loc="left")
     assert above.get_ylabel().startswith("photograph")
     lines = {line.get_label(): line for line in below.lines}
     assert {"predicted body", "tracked body", "leg on the ground", "leg in the air"} <= set(lines)
@@ -32,8 +32,10 @@ def test_paths_are_drawn_over_the_floor_to_its_scale(walked):
     track = path.at([1.0, 2.0, 3.0])
     picture = np.full((20, 40, 3), 100, np.uint8)
     for draws, lines in ((band, 4), (None, 2)):
-        figure = band_over_floor(picture, extent=(-1.0, 3.0, -0.5, 1.5), path=path, band=draws,
-                                 track=track, title="w", simulated_photos=True)  # fmt: skip
+        figure = band_over_floor(
+            picture, extent=(-1.0, 3.0, -0.5, 1.5), path=path, band=draws, track=track, title="w",
+            photo_at=3.0, simulated_photos=True,
+        )  # fmt: skip
         (axes,) = figure.axes
         assert len(axes.lines) == lines
         predicted, seen = axes.lines[-2:]
@@ -41,4 +43,5 @@ def test_paths_are_drawn_over_the_floor_to_its_scale(walked):
         np.testing.assert_array_equal(seen.get_xydata(), track.position)
         assert (axes.get_xlim(), axes.get_ylim()) == ((-1.0, 3.0), (-0.5, 1.5))
         assert axes.get_aspect() == 1.0
+        assert axes.get_title(loc="left").startswith("photograph at 3.0 s; raised objects")
         assert "(simulated prediction and photograph)" in figure.get_suptitle()

@@ -11,13 +11,13 @@ from zebro_lab.plots.track import SeenMarks, over_floor, over_photo, residual_pa
 
 PIXELS = np.full((90, 120, 3), 200, np.uint8)
 POSES = np.array([[0.0, 0, 0], [0.5, 0.1, 0.2], [np.nan] * 3, [1.5, 0.6, 0.6]])
-MARK = SeenMarks([np.array([[10.0, 10], [20, 10], [20, 20], [10, 20]])], ["10"], "blue")
+MARK = SeenMarks([np.array([[10.0, 10], [20, 10], [20, 20], [10, 20]])], ["10"], "mark", "blue")
 
 
 def floor(simulated: bool = True):
     return over_floor(
         PIXELS, extent=(-1.0, 2.0, -1.0, 1.25), poses=POSES, ellipses=[POSES[:2, :2]],
-        labels=["0 s", "2 s", "", "9 s"], title="Path", simulated=simulated,
+        labels=["0 s", "2 s", "", "9 s"], title="Path", note="at 9 s", simulated=simulated,
     )  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def test_labels_of_near_poses_do_not_overlap(step):
     poses = np.column_stack([step * np.arange(12), np.zeros(12), np.zeros(12)])
     figure = over_floor(
         PIXELS, extent=(-1.0, 6.0, -1.0, 1.0), poses=poses, ellipses=[],
-        labels=[f"{2 * k} s" for k in range(12)], title="Path", simulated=True,
+        labels=[f"{2 * k} s" for k in range(12)], title="Path", note="", simulated=True,
     )  # fmt: skip
     figure.draw_without_rendering()
     texts = figure.axes[0].texts
@@ -92,11 +92,32 @@ def test_every_colour_of_a_map_and_a_photograph_has_a_key():
         return {text.get_text() for text in figure.legends[0].get_texts()}
 
     assert keys(floor()) == {"body's origin", "heading", "90 % region of the origin"}
-    assert keys(photograph()) == {"body's origin", "heading", "a mark's first corner"}
+    assert keys(photograph()) == {"body's origin", "heading", "mark, dot at its first corner"}
     partly = PIXELS.copy()
     partly[:10] = 0
     figure = over_floor(
         partly, extent=(-1.0, 2.0, -1.0, 1.25), poses=POSES, ellipses=[], labels=[""] * 4,
-        title="Path", simulated=True,
+        title="Path", note="", simulated=True,
     )  # fmt: skip
     assert "outside the photograph" in keys(figure)
+
+
+@pytest.mark.parametrize(("radius", "note"), [(1e-4, ": smaller than a dot"), (0.1, "")])
+def test_regions_that_a_dot_hides_say_so_in_the_key(radius, note):
+    circle = radius * np.array([[1.0, 0], [0, 1], [-1, 0], [0, -1]])
+    figure = over_floor(
+        PIXELS, extent=(-1.0, 2.0, -1.0, 1.25), poses=POSES, ellipses=[circle], labels=[""] * 4,
+        title="Path", note="", simulated=True,
+    )  # fmt: skip
+    keys = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert f"90 % region of the origin{note}" in keys
+
+
+def test_headings_of_a_long_track_are_thinned_and_end_at_no_gap():
+    path = np.column_stack([np.arange(200.0), np.arange(200.0)])
+    path[::10] = np.nan
+    figure = over_photo(PIXELS, title="Path", simulated=True, path_px=path, headings_px=path + 5)
+    (arrows,) = figure.axes[0].collections
+    starts = np.asarray(arrows.get_offsets())
+    assert 12 <= len(starts) <= 24
+    assert np.isfinite(starts).all()

@@ -70,9 +70,10 @@ def _typical(force: Array) -> str:
 
 def _is_stated(table: RigTable, name: str) -> bool:
     """Return whether file or column map state the unit of a column; recorded runs are in SI."""
-    if table.raw.path.is_dir() or name in table.columns.columns:
+    column = table.required(name)
+    if table.raw.path.is_dir() or column.unit_stated:
         return True
-    return table.raw.unit_of(table.required(name).name, "N") is not None
+    return table.raw.unit_of(column.name, "N") is not None
 
 
 def _require_radii(table: RigTable) -> None:

@@ -12,6 +12,7 @@ from model.slip.law import Array
 from zebro_lab.exchange.column_names import NAMES, WEAK, leg_of, plain_name, split_header
 from zebro_lab.exchange.unit_guesses import UnitGuess, guess_unit
 from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.units import factor_to_si
 from zebro_lab.robot.imu_log import IMU_UNITS, is_in_g
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.tables.column_sections import IMU, KINDS, LEGS, RIG, TRACK
@@ -257,6 +258,8 @@ def _guess(
     unit = UnitGuess("s", "") if nanoseconds else guess_unit(table, name, si_unit, si=known)
     if canonical in QUATERNION:
         unit = UnitGuess(si_unit, "")
+    if canonical in ANGLES and numbers is not None:
+        numbers = numbers * factor_to_si(unit.unit, si_unit)  # to unwrap them
     sign, sign_doubt = _sign(canonical, numbers, known=known or bool(_UPRIGHT.fullmatch(name)))
     zero = "90 deg must be where the centre of the leg's arc is straight below the hip"
     return ColumnGuess(

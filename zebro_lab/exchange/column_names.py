@@ -11,7 +11,7 @@ from zebro_lab.tables.header_units import suffix_in_header, unit_in_header
 
 _TIME = (
     r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|(time_?)?stamp|seconds|"
-    r"zeit(stempel|punkt|achse)?|messzeit|sekunden|uhrzeit|datum(_?(und_?)?(uhr)?zeit)?|"
+    r"zeit(stempel|punkt|achse)?|messzeit|sekunden|uhrzeit|clock|(wall|local)_?(clock|time)|time_of_day|datum(_?(und_?)?(uhr)?zeit)?|"
     r"date(_?(and_?)?time)?|x_value|millis|micros|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|rosbagtimestamp"
 )
 _SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschw(indigkeit)?|angular_(speed|velocity))"
@@ -89,7 +89,9 @@ _ENDS = {
     "front": 0, "fore": 0, "vorn": 0, "vorne": 0, "f": 0, "v": 0, "middle": 1, "mid": 1, "mitte": 1,
     "m": 1, "rear": 2, "back": 2, "hind": 2, "hinten": 2, "b": 2, "h": 2,
 }  # fmt: skip
-_BEFORE = r"(?:.*_)?(?:th|theta|leg|bein|angle|winkel|phi|q|joint|motor|position|pos|hip)_?"
+_BEFORE = (
+    r"(?:.*_)?(?:th|theta|leg|bein|angle|winkel|phi|q|joint|motor|axis|servo|position|pos|hip)_?"
+)
 _AFTER = r"(?:_(?:angle|position|pos|joint|winkel|theta))?"
 _NUMBERED = re.compile(rf"{_BEFORE}(\d){_AFTER}|(\d)|l(\d)")
 _LETTERED = re.compile(

@@ -29,6 +29,7 @@ from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
+from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import ForeignTrack, read_foreign_track
@@ -260,11 +261,15 @@ def _require_shared_time(
             continue
         times, file = other
         first, last, start, end = told_apart(*(times[[0, -1]] + zero), *(t[[0, -1]] + zero))
-        offset = f"add --track-offset {t[0] - times[0]:.10g} where both start together, or "
+        later = f"{t[0] - times[0]:.10g}"
+        offset = {
+            TRACK: f"add --track-offset {later}",
+            IMU: f"state offset = {later} in [{IMU}.columns.t] of {COLUMNS_FILE}",
+        }
         raise DataError(
             f"times of the {name} go from {first} to {last} s, those of the legs from {start} to "
-            f"{end} s: no second is shared; "
-            f"{offset if name == TRACK else ''}bring both files to one clock",
+            f"{end} s: no second is shared; {offset[name]} where both start together, or bring "
+            "both files to one clock",
             file=file,
         )
 

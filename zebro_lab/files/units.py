@@ -25,7 +25,7 @@ _SPELLINGS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "sek": "s",
     "sekunde": "s", "sekunden": "s", "sek.": "s", "msec": "ms",
     "usec": "us", "nsec": "ns", "kph": "km/h", "kmh": "km/h", "km/hr": "km/h", "mps": "m/s",
-    "fps": "ft/s", "°": "deg", "rev/min": "rpm", "rad/sec": "rad/s",
+    "fps": "ft/s", "°": "deg", "rev/min": "rpm", "tr/min": "rpm", "rad/sec": "rad/s",
     "deg/sec": "deg/s", "°/s": "deg/s", "newton": "N", "newtons": "N", "lbs": "lbf",
     "prozent": "%", "pct": "%", "deg c": "degC", "deg f": "degF", "°c": "degC", "inches": "in",
     "millimeter": "mm", "meter": "m",
@@ -36,7 +36,7 @@ _BASES = (
     r"s|[Ss]ecs?|[Ss]econds?|[Ss]ek|Sekunden?|ms|msec|us|usec|µs|ns|nsec|min|h|hr|hrs"
     r"|m|dm|mm|cm|km|um|µm|in|inch|ft|(?:[Mm]illi|[Cc]enti|[Kk]ilo)?[Mm](?:et(?:er|re)s?)"
     r"|(?:[kMmcdµunGh]|da)?N|(?:[Kk]ilo|[Mm]illi)?[Nn]ewtons?|lbf?|lbs|ozf|oz|kgf?|gf|kp|p|mg|g|dyn"
-    r"|rad|[Rr]adians?|mrad|deg|[Dd]egrees?|[Gg]rad|°|rev|turns?|rpm|RPM|Upm|dps|mdps|rps"
+    r"|rad|[Rr]adians?|mrad|deg|[Dd]egrees?|[Gg]rad|°|rev|turns?|tr|rpm|RPM|Upm|dps|mdps|rps"
     r"|Hz|kHz|mV|µV|V|mA|A|W|kW|J|K"
     r"|°C|degC|deg ?[CF]|°F|C|F|Pa|kPa|hPa|MPa|bar|mbar|psi|%|percent|[Pp]rozent|Nm|N-m|N\*m|N m"
     r"|pix|px|pixels?|ticks|counts?|digits?|kph|mph|kmh|mps|U|G|T|uT|µT|mT|dB|ohm|Ohm|Ω|raw"

@@ -21,7 +21,8 @@ _DIGITS = r"(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+]?\d+)?"
 _GROUPED = r"\d{1,3}(?:[ '’.,\u00a0\u202f]\d{3})+(?:[.,]\d+)?"
 _NUMBER = re.compile(rf"[-+\u2212]?(?:{_DIGITS}|{_GROUPED}|inf|Inf|INF|infinity|Infinity)")
 _DATE = re.compile(
-    r"(?:\d{4}[-/]\d\d?[-/]\d\d?|\d\d?[-./]\d\d?[-./]\d{4})(?:[T ]\s*\d\d?:\d\d.*)?"
+    r"(?:\d{4}[-/]\d\d?[-/]\d\d?|\d\d?[-./]\d\d?[-./]\d{4}|\d\d?-[A-Z][a-z]{2}-\d{4})"
+    r"(?:[T ]\s*\d\d?:\d\d.*)?"
     r"|\d{1,3}:\d\d(?::\d\d(?:[.,:]\d+)?)?(?: ?[AaPp][Mm])?"
 )
 _COMMA_DECIMAL = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")

@@ -13,7 +13,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 from zebro_lab.tables.cells import NO_VALUE
-from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.raw_table import RawTable, differing_headers
 from zebro_lab.tables.row_checks import require_full_rows
 from zebro_lab.tables.text_encoding import WINDOWS, decoded, possible_encodings
 from zebro_lab.tables.text_layout import (
@@ -182,7 +182,7 @@ def _table(path: Path, layout: Layout, frame: "pd.DataFrame", encoding: str) -> 
     return RawTable(
         path,
         columns,
-        layout.header.repeated,
+        differing_headers(layout.header.repeated, columns),
         decimal_comma=True,
         decimal="," if layout.separator == ";" and not layout.decimal else layout.decimal,
         notes=tuple(f"{path.name}: {note}" for note in (*said, *layout.header.notes)),

@@ -13,6 +13,11 @@ from zebro_lab.tables.raw_table import RawTable
 CLOCK: Final = "h:m:s"
 """Unit of times of day or durations such as 12:00:00.5."""
 _DATE = re.compile(r"date(?: (?P<zone>UTC|[+-]\d\d:\d\d))?")
+_MONTHS: Final = (
+    "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
+)  # fmt: skip
+_NAMED_MONTH = rf"^(\d\d?)-({'|'.join(_MONTHS)})-(\d{{4}})"
+_DAY: Final = 86400.0  # s
 _ZONE = r"(?:Z|[+-]\d\d:?\d\d)$"
 EXAMPLE: Final = "2026-03-04T05:06:07.5+01:00"
 
@@ -29,7 +34,9 @@ def is_date_unit(unit: str) -> bool:
 def seconds_of_dates(table: RawTable, name: str, unit: str) -> NDArray[np.float64]:
     """Return a column of dates or times of day as seconds, NaN for empty cells, shape (n,).
 
-    Dates become seconds since 1970 (UTC). They are as ISO 8601 has them, or day.month.year.
+    Dates become seconds since 1970 (UTC). They are as ISO 8601 has them, day.month.year, or
+    04-Mar-2026. A time of day that is earlier by more than 12 hours than the one before is of the
+    next day.
 
     Args:
         table: Table with the column.
@@ -52,11 +59,12 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> NDArray[np.float6
         found = pd.to_timedelta(texts.str.replace(",", ".", regex=False), errors="coerce")
         seconds = found.dt.total_seconds().to_numpy(dtype=float)
         _require_read(table, name, np.isnan(seconds) & ~empty, "12:00:00.5")
-        return seconds
+        return _past_midnight(seconds)
     zone = unit.removeprefix("date").strip() or None
     zoned = texts.str.contains(_ZONE, na=False).to_numpy(dtype=bool)
     _require_zone(table, name, zoned | empty if zone is None else ~zoned, zone)
     texts = texts.str.replace(r"^(\d\d?)\.(\d\d?)\.(\d{4})", r"\3-\2-\1", regex=True)
+    texts = texts.str.replace(_NAMED_MONTH, _numbered_month, regex=True)
     texts = texts.str.replace(r"^(\d{4})/(\d\d?)/(\d\d?)", r"\1-\2-\3", regex=True)
     texts = texts.str.replace(",", ".", regex=False)
     texts = texts.str.replace(r"-(\d)(?=[-T ]|$)", r"-0\1", regex=True)
@@ -64,6 +72,19 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> NDArray[np.float6
     since = (found - pd.Timestamp(0, tz="UTC")).dt.total_seconds().to_numpy(dtype=float)
     _require_read(table, name, np.isnan(since) & ~empty, EXAMPLE)
     return since - _offset(zone)
+
+
+def _past_midnight(seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return times of day that go on past midnight, shape (n,) [s]; NaN stays."""
+    known = np.flatnonzero(np.isfinite(seconds))
+    days = np.cumsum(np.diff(seconds[known]) < -_DAY / 2)
+    passed = seconds.copy()
+    passed[known[1:]] += _DAY * days
+    return passed
+
+
+def _numbered_month(match: re.Match[str]) -> str:
+    return f"{match[3]}-{_MONTHS.index(match[2]) + 1:02d}-{int(match[1]):02d}"
 
 
 def _iso(cell: object) -> object:

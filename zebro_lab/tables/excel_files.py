@@ -13,7 +13,7 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO, read_unpacked
 from zebro_lab.tables.cells import decimal_sign, kind_of
 from zebro_lab.tables.header_rows import Header, NoHeader, data_rows, find_header
-from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.raw_table import RawTable, differing_headers
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,10 +46,11 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
     notes = (f"sheet '{name}'", *header.notes)
     ratios = {header.names[i]: "dimensionless" for i in percent if i < len(header.names)}
     notes += tuple(f"'{each}' is shown in percent and stored as a ratio" for each in ratios)
+    columns = _columns(cells, header)
     return RawTable(
         path,
-        _columns(cells, header),
-        header.repeated,
+        columns,
+        differing_headers(header.repeated, columns),
         decimal_comma=True,
         decimal=decimal_sign([c for row in cells[:_HEAD_ROWS] for c in row if isinstance(c, str)]),
         notes=tuple(f"{path.name}: {note}" for note in notes),

@@ -100,6 +100,8 @@ def find_header(rows: Sequence[Row], data: DataRows) -> Header:
     if units is None and len(block) > 1 and is_units_row(block[-2]):
         units = block.pop(-2)  # above the names
     names, above = _names(block, above, has_units=units is not None)
+    if above and "" in names:  # those of the first columns may stand one row higher
+        names = [name or over for name, over in zip(names, _padded(above[-1], names), strict=True)]
     width = max(len(names), data.width)
     names += [""] * (width - len(names))
     filled = [name.strip() or f"column {i}" for i, name in enumerate(names, start=1)]
@@ -201,8 +203,6 @@ def _names(block: list[Row], above: list[Row], *, has_units: bool) -> tuple[list
                 "has two rows above the numbers that may be the header, "
                 f"'{_start(block[-2])}' and '{_start(block[-1])}'"
             )
-        if has_units and len(higher) >= len(names):
-            names = [name or over for name, over in zip(names, higher, strict=False)]
         return names, [*above, *block[:-1]]
     left = [*above, *block[:-1]]
     longer = names
@@ -228,6 +228,10 @@ def _filled(row: Row, width: int) -> list[str]:
         last = cell.strip() or last
         filled.append(last)
     return filled
+
+
+def _padded(row: Row, names: Sequence[str]) -> list[str]:
+    return [cell.strip() for cell in [*row, *[""] * len(names)][: len(names)]]
 
 
 def _start(row: Row) -> str:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Column map of a time series: canonical names and units for the columns of a table."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -17,6 +18,11 @@ from zebro_lab.tables.raw_table import RawTable
 
 INTERVALS: Final = (2e-5, 2.0)
 """Range of the median time between samples of legs or an IMU whose unit is not stated [s]."""
+
+_FRAMES: Final = re.compile(
+    r"(frame|sample|packet|record|scan|index|bild)[ _]*(#|no\.?|nr\.?|number|counter|index)?",
+    re.IGNORECASE,
+)
 
 
 @dataclass(frozen=True)
@@ -93,9 +99,10 @@ class MappedColumns:
         if not self.has(table, name):
             other = looks_like_other(table.columns, self.mapped)
             known = nearest(mapped.name, list(table.columns))
+            frames = _frames(table) if self.units[name] == "s" else ""
             raise table.fault(
                 f"the column of the {what} is missing{other}; {known}; if its header differs, map "
-                f"it in {COLUMNS_FILE}: [{self.where}columns.{name}]",
+                f"it in {COLUMNS_FILE}: [{self.where}columns.{name}]{frames}",
                 mapped.name,
             )
         mapped = mapped.in_unit_of(table, self.units[name])
@@ -131,6 +138,14 @@ class MappedColumns:
             "is right",
             mapped.name,
         )
+
+
+def _frames(table: RawTable) -> str:
+    """Return advice for a table whose time is a number of frames; "" for others."""
+    frames = next((name for name in table.columns if _FRAMES.fullmatch(name)), None)
+    if frames is None:
+        return ""
+    return f'; of frames at 100 Hz: name = "{frames}", unit = "s", scale = 0.01'
 
 
 def canonical_columns(units: Mapping[str, str]) -> MappedColumns:

@@ -3,10 +3,10 @@
 
 import io
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from zebro_lab.tables.header_units import suffix_unit
 
 _MINUS = "\u2212"  # as typesetters write it
 _BLOCK = 1 << 16  # cells converted to numbers at a time
+OVERLOAD: Final = 1e30
+"""Least size of a number that stands for an overload, such as 9.9e37 of instruments with SCPI."""
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +35,8 @@ class RawTable:
     Attributes:
         path: The file, or the run folder.
         columns: Columns by header, numbers, strings or dates, each of shape (n,).
-        repeated: Headers that more than one column has in the file, which are therefore ambiguous.
+        repeated: Headers that columns with different cells have in the file, which are therefore
+            ambiguous.
         source: Source stated in the file; None if not stated.
         decimal_comma: Whether numbers may be written with a decimal comma, e.g. 0,5.
         decimal: Decimal sign of the table, "," or ".", where it is known; then a number such as
@@ -161,7 +164,7 @@ class RawTable:
         *,
         may_be_empty: bool = False,
     ) -> None:
-        """Check that the numbers of a column are finite.
+        """Check that the numbers of a column are finite, and none stands for an overload.
 
         Args:
             name: Header of the column.
@@ -170,13 +173,13 @@ class RawTable:
             may_be_empty: Whether empty cells are allowed.
 
         Raises:
-            DataError: A number is infinite, or a cell is empty unless that is allowed.
+            DataError: A number is infinite or an overload, or a cell is empty unless that is
+                allowed.
         """
-        bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
+        bad = ~is_measured(values) & ~(may_be_empty & np.isnan(values))
         if bad.any():
             index = int(np.argmax(bad))
-            found = "infinite" if np.isinf(values[index]) else "empty"
-            raise self.fault(f"is {found}; expected {expected}", name, index)
+            raise self.fault(f"is {missing_text(values[index])}; expected {expected}", name, index)
 
     def require_increasing(self, column: str, t: NDArray[np.float64]) -> None:
         """Check that times are strictly increasing.
@@ -195,7 +198,8 @@ class RawTable:
         before, now = told_apart(t[index - 1], t[index])
         raise self.fault(
             f"time goes from {before} to {now} s; expected increasing times: "
-            "sort the rows by time and delete repeated ones",
+            "delete repeated rows, sort them by time, or, if another recording begins here, make a "
+            "file of each",
             column,
             index,
         )
@@ -220,6 +224,12 @@ class RawTable:
 
     def _not_a_number(self, name: str, index: int) -> DataError:
         text = str(self.column(name).iloc[index])
+        if index and self._is_line_of_words(index):
+            return self.fault(
+                f"'{text}' is not a number, but in a line of words between the numbers: delete the "
+                "line, or, if another table or recording begins there, make a file of each",
+                name, index, value=text,
+            )  # fmt: skip
         if may_be_thousands(text) and self.decimal_comma:
             return self.fault(
                 f"'{text}' has a decimal sign or a thousands separator; write all numbers without "
@@ -239,6 +249,46 @@ class RawTable:
         else:
             advice = "; correct or delete the row"
         return self.fault(f"'{text}' is not a number{advice}", name, index, value=text)
+
+    def _is_line_of_words(self, index: int) -> bool:
+        """Return whether no cell of a row is a value, and several are words or all others empty."""
+        kinds = [kind_of(_cell_text(cells.iloc[index])) for cells in self.columns.values()]
+        words = kinds.count("text")
+        return len(kinds) > 1 and "value" not in kinds and words in (1, len(kinds))
+
+
+def is_measured(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return for each number whether it is finite and no mark of an overload."""
+    return np.isfinite(values) & (np.abs(values) < OVERLOAD)
+
+
+def missing_text(value: float) -> str:
+    """Return what a number is that is not measured: "empty", "infinite" or that of an overload."""
+    if np.isnan(value):
+        return "empty"
+    return "infinite" if np.isinf(value) else f"{value:g}, which instruments write at an overload"
+
+
+def differing_headers(
+    repeated: Collection[str], columns: "Mapping[str, pd.Series]"
+) -> frozenset[str]:
+    """Return those of repeated headers whose columns differ: equal copies leave nothing open.
+
+    Args:
+        repeated: Headers that several columns have in the file.
+        columns: All columns by header; copies end in " (2)", " (3)", …
+    """
+    return frozenset(
+        name for name in repeated
+        if not all(
+            columns[name].equals(columns[copy]) for copy in columns
+            if re.fullmatch(rf"{re.escape(name)} \(\d+\)", copy)
+        )
+    )  # fmt: skip
+
+
+def _cell_text(cell: Any) -> str:
+    return cell if isinstance(cell, str) else "" if cell is None or cell != cell else str(cell)
 
 
 def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:

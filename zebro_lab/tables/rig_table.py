@@ -13,7 +13,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, Columns, MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.other_kind import looks_like_other
-from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.raw_table import OVERLOAD, RawTable, is_measured, missing_text
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class RigTable:
         """
         source = self.required(name)
         values = source.in_si(self.raw)[self.rows]
-        self._require_finite(name, source.name, values)
+        self._require_finite(name, source, values)
         return values
 
     def texts(self, name: str) -> NDArray[np.object_]:
@@ -151,17 +151,21 @@ class RigTable:
         text = problem(f"{value:g} {unit}".rstrip())
         return self.raw.fault(text, source.name, row, value=value, unit=unit or source.unit)
 
-    def _require_finite(self, name: str, header: str, values: Array) -> None:
-        good = np.isfinite(values)
-        bound = "> -1e99" if np.isneginf(values).any() else "< 1e99"
-        self.require(
-            name,
-            good,
-            lambda value: (
-                f"found {value}; expected finite numbers, which {np.sum(~good)} of {len(good)} "
-                "rows do not have, this row first. Delete these rows, or skip them with "
-                f'[rows] keep = ["`{header}` {bound}"] in {COLUMNS_FILE}'
-            ),
+    def _require_finite(self, name: str, source: MappedColumn, values: Array) -> None:
+        good = is_measured(values)
+        if good.all():
+            return
+        index = int(np.argmin(good))
+        negative = np.any(values[~good] * source.factor < 0)  # in the file
+        bound = f"> -{OVERLOAD:g}" if negative else f"< {OVERLOAD:g}"
+        raise self.raw.fault(
+            f"is {missing_text(values[index])}; expected finite numbers, which {np.sum(~good)} of "
+            f"{len(good)} rows do not have, this row first. Delete these rows, or skip them with "
+            f'[rows] keep = ["`{source.name}` {bound}"] in {COLUMNS_FILE}',
+            source.name,
+            int(self.rows[index]),
+            value=float(values[index]),
+            unit=CANONICAL[name].unit,
         )
 
 

@@ -46,6 +46,11 @@ def is_table_file(path: Path) -> bool:
     return path.name.lower().endswith(TABLE_SUFFIXES) and not path.name.startswith("~$")
 
 
+def has_table_name(path: Path) -> bool:
+    """Return whether a file that is named is read as a table, by its name, in either case."""
+    return bool(_suffix(path))
+
+
 def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
     """Read a table: CSV and other text, Parquet or Excel; each of them may be gzipped.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from model.counted import counted
-from zebro_lab.tables.cells import decimal_sign
+from zebro_lab.tables.cells import decimal_sign, kind_of
 from zebro_lab.tables.header_rows import (
     DataRows,
     Header,
@@ -17,7 +17,7 @@ from zebro_lab.tables.header_rows import (
     find_header,
     made_header,
 )
-from zebro_lab.tables.stated_settings import after_lvm_header, stated_units
+from zebro_lab.tables.stated_settings import SeveralSegments, after_lvm_header, stated_units
 
 BLANKS: Final = r"\s+"
 SEPARATORS: Final[Mapping[str, str]] = {
@@ -99,7 +99,10 @@ def find_layout(lines: Sequence[Line]) -> Layout:
         LayoutError: There is no header, or several layouts fit.
     """
     _require_no_receipt(lines)
-    below = after_lvm_header(lines)
+    try:
+        below = after_lvm_header(lines)
+    except SeveralSegments as error:
+        raise LayoutError(str(error)) from error
     body, comments = _without_comments(below)
     if not body:
         raise LayoutError("is empty or all comments (#); expected a header and rows")
@@ -216,6 +219,12 @@ def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
 
 def _no_header(best: _Candidate, body: Sequence[Line]) -> LayoutError:
     data = best.data
+    if data is not None and data.first == 0 and _is_transposed(best.rows):
+        return LayoutError(
+            f"has a name at the start of each line, '{best.rows[0][0][:40]}' first, and is "
+            "transposed; expected a column of each quantity: exchange rows and columns (in a "
+            "spreadsheet copy, then paste special, transposed)"
+        )
     if data is None or data.first == 0 or "two rows" in best.problem:
         if "two rows" in best.problem:
             return LayoutError(f"{best.problem}; delete one of them, or put # before it")
@@ -223,11 +232,27 @@ def _no_header(best: _Candidate, body: Sequence[Line]) -> LayoutError:
             f"has no header: the first line is '{body[0][1][:60]}'; add a line with column names"
         )
     above = best.rows[data.first - 1]
+    if len(above) == data.width:
+        number, line = body[data.first - 1]
+        return LayoutError(
+            f"line {number}, '{line[:60]}', stands between names and numbers and has no cell of "
+            "its own for each column; delete it, or fill its cells"
+        )
     advice = "write decimals with a point" if best.separator == "," else "correct it"
     return LayoutError(
         f"the row has {data.width} cells, the header has {len(above)}; {advice}",
         row=1, line=body[data.first][0],
     )  # fmt: skip
+
+
+def _is_transposed(rows: Sequence[Sequence[str]]) -> bool:
+    """Return whether each line is one quantity: another name, then numbers."""
+    names = {row[0] for row in rows}
+    return (
+        1 < len(rows) == len(names)
+        and all(kind_of(name) == "text" for name in names)
+        and all(len(row) > 2 and all(kind_of(c) != "text" for c in row[1:]) for row in rows)
+    )
 
 
 def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> Layout:

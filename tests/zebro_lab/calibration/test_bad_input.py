@@ -52,9 +52,9 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     ),
     "nan": (
         put("traction_force", 7, None),
-        "column 'traction_force', row 7 (line 8): found nan N; expected finite numbers",
+        "column 'traction_force', row 7 (line 8): is empty; expected finite numbers",
     ),
-    "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e99"]'),
+    "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e+30"]'),
     "nan in time": (put("t", 4, None), "column 't', row 4 (line 5)"),
     "text": (
         put("normal_force", 5, "n/m"),

@@ -293,8 +293,8 @@ def faulty(sweep: Path, folder: Path, fault: str) -> None:
 FAULTS = {
     "missing column": "column 'normal_force': is missing",
     "unknown unit": "unknown unit 'Newtom'",
-    "not a number": "column 'traction_force', row 41 (line 42): found nan N; expected finite",
-    "infinite": "column 'traction_force', row 41 (line 42): found inf N; expected finite",
+    "not a number": "column 'traction_force', row 41 (line 42): is empty; expected finite",
+    "infinite": "column 'traction_force', row 41 (line 42): is infinite; expected finite",
     "negative load": "column 'normal_force', row 41 (line 42): the normal force is -1 N",
     "constant slip": "a curve needs several set-points",
     "mixed definitions": "'travel'",

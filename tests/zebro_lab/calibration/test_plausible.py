@@ -73,6 +73,12 @@ def test_improbable_forces_of_stated_units_are_told_of(table):
     assert any(note.startswith("IMPROBABLE FORCES: the traction") for note in data.notes)
 
 
+def test_a_header_that_is_mapped_states_no_unit(table):
+    mapped = '[columns]\nnormal_force = "normal_force"\ntraction_force = "traction_force"\n'
+    with pytest.raises(DataError, match=r"\[columns.normal_force\] unit"):
+        read_rig_data([table(more=mapped, traction_force=lambda d: 0.01 * d.traction_force)])
+
+
 def test_hard_braking_is_plausible(table):
     turning = {"omega_ground": 12.0 * (35 / 120) * (1 + SLIP)}
     read_rig_data([table(**turning, traction_force=lambda d: -d.traction_force)])

@@ -47,6 +47,15 @@ def test_a_kind_that_headers_leave_open_is_asked_for(headers):
         guess_kind(one(*headers.split()))
 
 
+@pytest.mark.parametrize(("unit", "turn"), [("deg", 360.0), ("turns", 1.0), ("rad", 2 * np.pi)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_sign_of_a_leg_is_found_in_turns_of_its_unit(unit, turn, sign):
+    angle = (sign * np.arange(200) * turn / 60) % turn  # 6 deg a row
+    names = [f"theta{leg} [{unit}]" for leg in range(1, 7)]
+    guesses = guess_columns(one(*names, cells=angle), "legs")
+    assert {guess.sign for guess in guesses.values()} == {sign}
+
+
 def test_legs_by_place_are_sure_and_numbers_of_other_programs_are_not():
     places = [
         "front_left",

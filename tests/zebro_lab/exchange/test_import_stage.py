@@ -104,6 +104,16 @@ def test_files_that_share_no_time_are_not_imported(name, files, tmp_path):
     assert not (tmp_path / "data").exists()
 
 
+def test_an_imu_of_another_clock_is_brought_to_that_of_the_legs(files, tmp_path):
+    table = pd.read_csv(files / "imu.csv")
+    table.assign(t=table.t + 1000.0).to_csv(files / "imu.csv", index=False)
+    with pytest.raises(DataError, match=r"state offset = -1000 in \[imu\.columns\.t\]"):
+        everything(files, tmp_path)
+    map_file = files / "columns.toml"
+    map_file.write_text(map_file.read_text() + "\n[imu.columns.t]\noffset = -1000\n")
+    everything(files, tmp_path)
+
+
 def change(name, **changes):
     """Return what changes cells of a file: column=(row, value)."""
 

@@ -17,6 +17,7 @@ from zebro_lab.files.units import factor_to_si, is_unit_of, quantity_to_si
         ("mm", "m", 1e-3),
         ("kN", "N", 1e3),
         ("rpm", "rad/s", 2 * math.pi / 60),
+        ("tr/min", "rad/s", 2 * math.pi / 60),
         ("rev/s", "rad/s", 2 * math.pi),
         *(
             (unit, "rad/s", 2 * math.pi / 60)

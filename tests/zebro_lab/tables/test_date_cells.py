@@ -14,6 +14,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.tables.date_cells import seconds_of_dates
 from zebro_lab.tables.raw_table import RawTable
 
+MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 MOMENTS = st.datetimes(datetime(1971, 1, 1), datetime(2200, 1, 1))
 
 
@@ -32,7 +33,8 @@ def test_dates_with_a_zone_are_unix_time(moment, hours):
 def test_dates_without_a_zone_are_in_the_one_that_is_stated(moment):
     utc = moment.replace(tzinfo=UTC).timestamp()
     text = moment.strftime("%d.%m.") + f"{moment.year:04d} " + moment.time().isoformat()
-    for cell in (moment.isoformat(" "), moment.isoformat().replace(".", ","), text, moment):
+    named = f"{moment.day:02d}-{MONTHS[moment.month - 1]}-{moment.year} {moment.time().isoformat()}"
+    for cell in (named, moment.isoformat(" "), moment.isoformat().replace(".", ","), text, moment):
         assert seconds(cell, unit="date UTC")[0] == pytest.approx(utc, abs=1e-5)
         assert seconds(cell, unit="date +01:30")[0] == pytest.approx(utc - 5400, abs=1e-5)
 
@@ -40,6 +42,12 @@ def test_dates_without_a_zone_are_in_the_one_that_is_stated(moment):
 def test_times_of_day_count_from_midnight_and_empty_cells_are_nan():
     found = seconds("01:02:03,5", None, "00:00:00", unit="h:m:s")
     np.testing.assert_array_equal(found, [3723.5, np.nan, 0])
+
+
+def test_times_of_day_go_on_past_midnight_and_an_earlier_one_of_the_day_stays():
+    cells = ("23:59:59", None, "00:00:01", "00:00:00", "23:59:59", "00:00:02")
+    expected = [86399, np.nan, 86401, 86400, 172799, 172802]
+    np.testing.assert_array_equal(seconds(*cells, unit="h:m:s"), expected)
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,14 @@ def test_a_missing_column_says_where_to_map_it():
         parse().numbers(table(rol=[1.0]), "roll", **READ)
 
 
+def test_frames_are_a_time_once_their_rate_is_stated():
+    with pytest.raises(DataError, match=r'frames at 100 Hz: name = "Frame", unit = "s", scale'):
+        parse().numbers(table(Frame=[1, 2], x=[0, 0]), "t", what="time", advice="")
+    at_50_hz = parse(columns={"t": {"name": "Frame", "unit": "s", "scale": 0.02}})
+    found = at_50_hz.numbers(table(Frame=[1, 2]), "t", what="time", advice="")
+    np.testing.assert_allclose(found, [0.02, 0.04])
+
+
 @pytest.mark.parametrize(("cell", "found"), [(np.nan, "empty"), (-np.inf, "infinite")])
 def test_a_cell_without_a_finite_number_is_named(cell, found):
     message = f"row 2: is {found}; expected a number in rad: delete such rows"

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.csv_files import read_csv_file
-from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.raw_table import RawTable, differing_headers
 
 
 def table(**columns) -> RawTable:
@@ -111,3 +111,33 @@ def test_a_number_that_is_not_clear_is_refused(cells, decimal, problem):
     raw = RawTable(Path("a.csv"), {"x": pd.Series(cells)}, decimal_comma=True, decimal=decimal)
     with pytest.raises(DataError, match=f"row 1: .*{problem}"):
         raw.numbers("x")
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        ("1,2\nboard was reset,\n3,4", True), ("1,2\nt,F\n3,4", True),
+        ("1,2\nn/m,3\n3,4", False),
+    ],
+)  # fmt: skip
+def test_a_line_of_words_between_numbers_is_told_from_a_wrong_cell(tmp_path, rows, told):
+    file = tmp_path / "a.csv"
+    file.write_text(f"t,F\n{rows}\n")
+    with pytest.raises(DataError, match="is not a number") as raised:
+        read_csv_file(file).numbers("t")
+    assert ("if another table or recording begins there, make a file of each"
+            in str(raised.value)) == told  # fmt: skip
+
+
+@pytest.mark.parametrize(("cell", "found"), [(9.9e37, r"9.9e\+37, which"), (-1e38, "-1e")])
+def test_the_mark_of_an_overload_is_no_number(cell, found):
+    with pytest.raises(DataError, match=f"row 2: is {found}.*instruments write at an overload"):
+        table(F=[1.0, cell]).finite("F")
+    assert table(F=[1.0, 1e29]).finite("F")[1] == 1e29
+
+
+def test_equal_columns_of_one_header_are_one():
+    columns = {name: pd.Series(cells) for name, cells in (
+        ("t", [0.0, 1.0]), ("t (2)", [0.0, 1.0]), ("F", [1.0, 2.0]), ("F (2)", [1.0, 3.0]),
+    )}  # fmt: skip
+    assert differing_headers({"t", "F"}, columns) == {"F"}

@@ -12,7 +12,8 @@ from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import Columns, MappedColumn
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.rig_table import RigTable, normal_force
+from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
+from zebro_lab.tables.row_conditions import parse_row_condition
 
 
 def table_of(columns: dict[str, MappedColumn], constants: dict[str, float], **values) -> RigTable:
@@ -39,6 +40,19 @@ def test_a_cell_is_named_as_the_file_has_it():
         normal_force(table)
     with pytest.raises(DataError, match=r"column 'omega_leg': is missing; .*columns.omega_leg"):
         table.si("omega_leg")
+
+
+@pytest.mark.parametrize(("factor", "sign"), [(1.0, "<"), (-1.0, "<"), (1.0, "> -")])
+def test_an_overload_is_skipped_by_the_condition_that_is_proposed(factor, sign):
+    cell = -9.9e37 if sign == "> -" else 9.9e37
+    mapped = {"traction_force": MappedColumn("Fx", "N", factor)}
+    table = table_of(mapped, {}, Fx=[1.0, cell])
+    condition = f"`Fx` {sign}{'' if '-' in sign else ' '}1e+30"
+    with pytest.raises(DataError, match="which instruments write at an overload") as raised:
+        table.si("traction_force")
+    assert f'keep = ["{condition}"]' in str(raised.value)
+    settings = Columns(columns=mapped, keep=(parse_row_condition(condition),))
+    assert kept_rows(table.raw, settings).tolist() == [0]
 
 
 def test_a_load_that_is_negative_nearly_everywhere_is_given_its_sign():

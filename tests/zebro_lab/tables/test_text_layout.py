@@ -90,6 +90,12 @@ def test_the_settings_of_a_labview_file_are_no_data():
         ("Zeit;Kraft\ntime;force\n1;2\n", "two rows above the numbers that may be the header"),
         ("t,F\n0,1,5,2\n0,2,5,3\n", "has 4 cells, the header has 2; write decimals with a point"),
         ('"a" "b"\n"1" 0.5 0.6\n"2" 0.5 0.6\n', "has 3 cells, the header has 2"),
+        (
+            "t,0,1,2\nF,5,6,7\n",
+            "has a name at the start of each line, 't' first, and is transposed",
+        ),
+        ("a,0,1,2\na,5,6,7\n", "has no header: the first line"),
+        ("t,F\nn/m,\n1,2\n3,4\n", "line 2, 'n/m,', stands between names and numbers"),
         ("t;F\n1;2\n1;2;3\n", "has 3 cells, the header has 2"),
     ],
 )

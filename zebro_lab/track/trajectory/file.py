@@ -15,7 +15,7 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.ros_bags import bag_files
 from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.tables.mapped_columns import MappedColumns
-from zebro_lab.tables.table_files import is_table_file
+from zebro_lab.tables.table_files import has_table_name
 from zebro_lab.track.trajectory.layouts import OrderedNumbers, ordered
 from zebro_lab.track.trajectory.logged_poses import LoggedPoses, read_logged_poses
 from zebro_lab.track.trajectory.numbers import NumberLines, read_number_lines
@@ -155,10 +155,10 @@ def number_lines_of(path: Path, stated: Layout | None) -> NumberLines | None:
     try:
         numbers = read_number_lines(path)
     except DataError as error:
-        if is_table_file(path) and isinstance(error.__cause__, UnicodeDecodeError):
+        if has_table_name(path) and isinstance(error.__cause__, UnicodeDecodeError):
             return None
         raise
-    if numbers is None and not is_table_file(path):
+    if numbers is None and not has_table_name(path):
         raise DataError("has a line of words; expected lines of 8 (TUM) or 12 (KITTI) numbers, or "
                         "a table with a suffix such as .csv", file=path)  # fmt: skip
     return numbers

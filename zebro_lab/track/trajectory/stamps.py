@@ -73,7 +73,8 @@ def kept_stamps(
         at = int(np.argmax(step < 0)) + 1
         raise fault(
             f"the stamp {float(t[at])!r} s is earlier than {float(t[at - 1])!r} s of row {at}; "
-            "expected increasing stamps: sort the rows by time",
+            "expected increasing stamps: sort the rows by time, or, if another recording begins "
+            "here, make a file of each",
             at,
         )
     same = np.concatenate([[False], step == 0])

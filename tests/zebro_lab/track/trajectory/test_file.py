@@ -127,14 +127,14 @@ def test_a_rotation_out_of_the_plane_is_told_of(tmp_path):
                for note in read(file).notes)  # fmt: skip
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".csv.gz"])
+@pytest.mark.parametrize("suffix", [".csv", ".txt", ".parquet", ".csv.gz"])
 def test_a_table_is_read_by_its_headers(tmp_path, suffix):
     names = ["time", "pos_x", "pos_y", "pos_z", "q_x", "q_y", "q_z", "q_w"]
     frame = pd.DataFrame(np.column_stack([T, POSITION, ROTATION.as_quat()]), columns=names)
     file = tmp_path / f"a{suffix}"
     if suffix == ".parquet":
         frame.to_parquet(file)
-    elif suffix == ".csv":
+    elif suffix != ".csv.gz":
         frame.to_csv(file, index=False)
     else:
         file.write_bytes(gzip.compress(frame.to_csv(index=False).encode()))

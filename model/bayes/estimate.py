@@ -93,6 +93,15 @@ def estimate(parameter: Parameter, draws: Array) -> Estimate:
     return Estimate(parameter, *(float(x) for x in (mean, sd, low, median, high)))
 
 
+def informed(contraction: float) -> float:
+    """Return what is shown of a contraction: a posterior wider than the prior, by chance, is 0 [-].
+
+    >>> informed(0.8), informed(-0.02)
+    (0.8, 0.0)
+    """
+    return max(0.0, contraction)
+
+
 def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
     """Compute the contraction of each parameter: 1 - posterior variance over prior variance of z.
 

@@ -6,16 +6,20 @@ import numpy as np
 from model.poses import Poses
 
 ROUND = 0.2  # of the positions' spread, that the misfit of a circle may have
+STILL = 1e-12  # rad; a smaller range of headings is rounding
 STRAIGHT = np.radians(5.0)  # range of headings; below, a radius is mostly the tracker's noise
 
 
 def mean_yaw_rate(poses: Poses) -> float:
     """Fit a line to heading over time by least squares; return its slope, positive left [rad/s].
 
-    NaN if a heading is missing or there are fewer than two poses.
+    Exactly 0 if the heading stands still; NaN if a heading is missing or there are fewer than two
+    poses.
     """
     if not poses.has_yaw or len(poses) < 2:
         return float("nan")
+    if np.ptp(poses.yaw) < STILL:
+        return 0.0
     t = poses.t - poses.t.mean()
     return float(t @ (poses.yaw - poses.yaw.mean()) / (t @ t))
 

@@ -14,7 +14,7 @@ from zebro_lab.report.stage import report
 MADE = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 
 
-VOID = {"meta", "img", "br", "link", "input", "hr"}
+VOID = {"meta", "img", "br", "wbr", "link", "input", "hr"}
 
 
 HOSTILE = '<script>alert("x")</script> & "quotes"'

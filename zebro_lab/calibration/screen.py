@@ -8,11 +8,12 @@ from rich.table import Table
 from rich.text import Text
 
 from model.bayes.calibration import Calibration
-from model.bayes.estimate import Estimate
+from model.bayes.estimate import Estimate, informed
 from model.counted import counted
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.files.source_names import is_simulated
+from zebro_lab.files.units import unit_symbol
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 
@@ -100,7 +101,7 @@ def _parameter_table(calibration: Calibration) -> Table:
             f"{e.median:.4g}",
             _interval(e),
             _unit(e),
-            f"{max(0.0, calibration.contraction[e.parameter.name]):.0%}",
+            f"{informed(calibration.contraction[e.parameter.name]):.0%}",
             f"{calibration.convergence.r_hat[i]:.3f}",
             f"{calibration.convergence.ess_bulk[i]:.0f}",
         )
@@ -108,8 +109,7 @@ def _parameter_table(calibration: Calibration) -> Table:
 
 
 def _unit(e: Estimate) -> str:
-    unit = e.parameter.unit
-    return {"dimensionless": "-"}.get(unit, unit.replace("newton", "N"))
+    return unit_symbol(e.parameter.unit)
 
 
 def _interval(e: Estimate) -> str:

@@ -59,6 +59,15 @@ def shown_unit(unit: str) -> tuple[float, str]:
     return _SHOWN.get(unit, (1.0, "log of factor"))
 
 
+def unit_symbol(unit: str) -> str:
+    """Return the short form of a slip parameter's unit, as tables and pictures show it.
+
+    >>> unit_symbol("1/newton"), unit_symbol("dimensionless")
+    ('1/N', '-')
+    """
+    return "-" if unit == "dimensionless" else unit.replace("newton", "N")
+
+
 def factor_to_si(unit: str, si_unit: str) -> float:
     """Compute the factor that converts numbers in a unit to numbers in an SI unit.
 

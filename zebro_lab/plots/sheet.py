@@ -18,12 +18,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from pint import Unit
 
 from model.poses import Poses
 from model.slip.law import Array, Parameter
 from zebro_lab.files.own_file import picture_metadata
 from zebro_lab.files.picture_format import PictureFormat, format_of
+from zebro_lab.files.units import unit_symbol
 
 BLUE, RED = "#0072B2", "#D55E00"
 CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
@@ -59,7 +59,7 @@ def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
     'peak slip per load\n$x_m/F_n$ [1/N]'
     """
     return tuple(
-        f"{each.name.replace('_', ' ')}\n${_mathtext(each.symbol)}$ [{_short(each.unit)}]"
+        f"{each.name.replace('_', ' ')}\n${_mathtext(each.symbol)}$ [{unit_symbol(each.unit)}]"
         for each in parameters
     )
 
@@ -275,7 +275,3 @@ def slip_grid(slip: Array, count: int) -> Array:
 
 def _mathtext(symbol: str) -> str:
     return re.sub(r"\b([A-Z])n\b", r"\1_n", re.sub(r"(?<![a-z])mu\b", r"{\\mu}", symbol))
-
-
-def _short(unit: str) -> str:
-    return f"{Unit(unit):~P}" or "-"

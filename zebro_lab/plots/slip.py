@@ -96,8 +96,8 @@ class _LoadCurve:
     peaks: Array  # shape (0 to 2, 2): slip [-] and force [N] of driving, then of braking peak
 
     def is_narrow(self) -> bool:
-        """Return whether the band of 90 % is hardly wider than a line."""
-        width = float((self.bands[-1] - self.bands[0]).max())
+        """Return whether the band of 90 % is mostly not wider than a line."""
+        width = float(np.median(self.bands[-1] - self.bands[0]))  # not where the curve is steep
         return width < _LINE * float(np.ptp(self.bands))
 
     def main_peak(self) -> tuple[float, float] | None:
@@ -188,7 +188,7 @@ def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
 def _draw_bands(axes: Axes, curve: _LoadCurve, *, hidden: bool) -> None:
     """Draw the bands of curves; `hidden`: none is wider than the line, which their key says."""
     low, lower, _, upper, high = curve.bands
-    note = ": not wider than the line" if hidden else ""
+    note = ": mostly within the line" if hidden else ""
     axes.fill_between(
         curve.slip, low, high, color=tint(0.25), lw=0, zorder=0.5, label=f"90 % of curves{note}"
     )

@@ -2,7 +2,7 @@
 """Numbers of a report, marked up with the file, key and value that they come from."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from markupsafe import Markup
@@ -30,7 +30,12 @@ def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
 
 
 def number(
-    document: Mapping[str, Any], *keys: str | int, file: str, scale: float = 1.0, digits: int = 3
+    document: Mapping[str, Any],
+    *keys: str | int,
+    file: str,
+    scale: float = 1.0,
+    digits: int = 3,
+    rule: Callable[[float], float] | None = None,
 ) -> str:
     """Format a number with its origin: `<data value="0.0123" data-file=… data-key=…>12.3</data>`.
 
@@ -40,6 +45,7 @@ def number(
         file: Name of the file, for `data-file`.
         scale: Factor from the file's unit to the shown unit.
         digits: Number of significant digits shown; integers are not rounded.
+        rule: What is shown of the number, before it is scaled; None for the number itself.
 
     Returns:
         The HTML element; a dash if the value is missing, not a number, or not finite.
@@ -49,7 +55,7 @@ def number(
         return ABSENT
     path = "/".join(str(key).replace("~", "~0").replace("/", "~1") for key in keys)
     return Markup('<data value="{}" data-file="{}" data-key="/{}">{}</data>').format(
-        repr(value), file, path, spelled(value * scale, digits)
+        repr(value), file, path, spelled(scale * (value if rule is None else rule(value)), digits)
     )
 
 

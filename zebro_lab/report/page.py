@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
@@ -14,10 +14,12 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
+from model.bayes.estimate import informed
 from zebro_lab.files.commit import software_commit
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.shown_text import shown
 from zebro_lab.files.source_names import is_simulated
+from zebro_lab.files.units import shown_unit, unit_symbol
 from zebro_lab.report.band_coverage import OutOfRange, out_of_range
 from zebro_lab.report.belonging import belonging
 from zebro_lab.report.numbers import number
@@ -92,6 +94,10 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
             coverage_out_of_range=_coverage_out_of_range,
             error_columns=ERROR_COLUMNS,
             number=_number,
+            informed=partial(_number, scale=100.0, rule=informed),
+            unit_symbol=unit_symbol,
+            shown_unit=shown_unit,
+            breakable=_breakable,
             count=_count,
             pictures=_pictures,
         )
@@ -122,6 +128,11 @@ def _policy(style: str) -> str:
 
 def _number(part: Part, file: str, *keys: str | int, **spelling: Any) -> str:
     return number(part.documents[file], *keys, file=f"{part.folder}/{file}", **spelling)
+
+
+def _breakable(path: object) -> Markup:
+    """Return a path that may be broken behind its slashes, and nowhere else."""
+    return Markup("/<wbr>").join(str(path).split("/"))
 
 
 def _count(run: ReportedRun, topic: str) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.counted import counted
 from model.judgement import Judgement, TiltJudged, judge
 from model.metrics.consistency import FEWEST_DRAWS
 from zebro_lab.files.errors import DataError, SettingsError
@@ -83,7 +84,11 @@ def _outside(inside: np.ndarray, t: np.ndarray) -> Iterator[str]:
             "with --time-offset"
         )
     elif left_out:
-        yield f"{left_out} tracked poses lie outside the predicted time and are not scored"
+        lie = "lies" if left_out == 1 else "lie"
+        yield (
+            f"{counted(left_out, 'tracked pose')} {lie} outside the predicted time and "
+            f"{'is' if left_out == 1 else 'are'} not scored"
+        )
 
 
 def _not_testable(judgement: Judgement) -> Iterator[str]:

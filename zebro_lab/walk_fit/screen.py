@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from model.bayes.estimate import informed
 from model.bayes.walks.posterior import Contraction, WalkPosterior
 from model.bayes.walks.prior import FALL, UNITS
 from zebro_lab.files.source_names import is_simulated
@@ -51,17 +52,17 @@ def _parameter_table(posterior: WalkPosterior) -> Table:
 
 
 def _cells(each: Contraction, unit: str) -> tuple[str, str, str, str]:
-    informed = f"{max(0.0, each.contraction):.0%}"
+    share = f"{informed(each.contraction):.0%}"
     if unit == "log":  # of a factor
         before = f"1 ×/÷ {np.exp(each.prior_sd):.2f}"
         after = f"{np.exp(each.mean):.2f} ×/÷ {np.exp(each.sd):.2f}"
-        return before, after, "factor", informed
+        return before, after, "factor", share
     if each.name == "fall":
         after = f"{FALL + each.mean:.2f} ± {each.sd:.2f}"
-        return f"{FALL:g} ± {each.prior_sd:.2f}", after, "factor", informed
+        return f"{FALL:g} ± {each.prior_sd:.2f}", after, "factor", share
     scale, shown = shown_unit(unit)
     before = f"0 ± {scale * each.prior_sd:.2f}"
-    return before, f"{scale * each.mean:+.2f} ± {scale * each.sd:.2f}", shown, informed
+    return before, f"{scale * each.mean:+.2f} ± {scale * each.sd:.2f}", shown, share
 
 
 def _uninformed(posterior: WalkPosterior) -> list[str]:

@@ -65,3 +65,11 @@ def test_headings_are_needed():
 def test_the_yaw_rate_is_the_slope_of_the_heading():
     assert mean_yaw_rate(circle(0.5)) == pytest.approx(2.0)
     assert mean_yaw_rate(circle(-0.5)) == pytest.approx(-2.0)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.1, -2.0])
+def test_the_yaw_rate_of_a_path_that_stands_still_is_exactly_zero(yaw):
+    t = np.linspace(0.1, 3.7, 37)
+    still = Poses(t, np.zeros((37, 2)), np.nextafter(np.full(37, yaw), np.tile([9.0], 37)))
+    rounded = Poses(t, still.position, yaw + np.spacing(yaw) * (np.arange(37) % 3))
+    assert (mean_yaw_rate(still), mean_yaw_rate(rounded)) == (0.0, 0.0)

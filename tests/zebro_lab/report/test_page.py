@@ -9,9 +9,36 @@ from importlib.resources import files
 from pathlib import Path
 
 import zebro_lab.report
-from support.report_pages import HOSTILE, MADE, made
+from support.report_pages import HOSTILE, MADE, SLIP, made, write_json
 from zebro_lab.report.page import PAGES, STYLE, render_report
 from zebro_lab.report.sources import find_sources
+
+WALKS = """
+effective_draws = 900.0
+reliable = true
+not_informed = ["offset_1"]
+walk = [{name = "one"}]
+[[parameter]]
+name = "offset_1"
+unit = "rad"
+prior_sd = 0.1
+mean = 0.01
+sd = 0.1
+informed = -0.01
+[[parameter]]
+name = "fall"
+unit = "-"
+prior_sd = 0.3
+mean = 0.2
+sd = 0.2
+informed = 0.5
+[[case]]
+name = "leg 1 wrong"
+probability = 0.001
+[[case]]
+name = "leg 2 wrong"
+probability = 0.5
+"""
 
 
 def test_errors_and_bands_of_every_model_are_in_the_tables(walk):
@@ -117,3 +144,46 @@ def test_pictures_are_printed_as_wide_as_the_text():
         for name in ("figcaption", "body")
     )
     assert caption <= body
+
+
+def test_units_and_shares_are_spelled_as_in_the_printed_table(walk):
+    calibration = walk.parent / "calibration"
+    (calibration / "slip.toml").write_text(SLIP.replace('"dimensionless"', '"1/newton"'))
+    summary = calibration / "summary.csv"
+    summary.write_text(summary.read_text().replace("0.9911", "-0.0199"))
+    page = made(walk)
+    assert "1/N" in page.text
+    assert "newton" not in page.text
+    shares = [text for attrs, text in page.numbers if attrs["data-key"] == "/shape/contraction"]
+    assert shares == ["0"]
+
+
+def test_paths_may_be_broken_behind_slashes_alone(walk):
+    html = html_of(walk)
+    assert "track/<wbr>manifest" in html or "/<wbr>track</code>" in html
+    style = (files("zebro_lab.report") / PAGES / STYLE).read_text()
+    assert re.search(r"footer th code \{ overflow-wrap: normal", style)
+
+
+def test_headings_of_words_stand_over_their_words(walk):
+    page = html_of(walk)
+    for title in ("unit", "prior", "symbol"):
+        assert f'<th scope="col" class="words">{title}</th>' in page
+
+
+def test_legs_and_floor_have_the_units_and_shares_of_the_printed_table(walk):
+    walks = walk.parent / "calibration/walks"
+    write_json(walks / "manifest.json", {
+        "schema": 2, "kind": "walks", "source": "sim:test", "settings": {}, "left_out": {},
+    })  # fmt: skip
+    (walks / "walks.toml").write_text(WALKS)
+    page = made(walk)
+    found = {
+        attrs["data-key"]: text for attrs, text in page.numbers if "walks" in attrs["data-file"]
+    }
+    assert found["/parameter/0/sd"] == "5.73"  # degrees
+    assert found["/parameter/1/mean"] == "20"  # per cent
+    assert (found["/parameter/0/informed"], found["/parameter/1/informed"]) == ("0", "50")
+    assert {"/case/1/probability"} == {key for key in found if key.endswith("probability")}
+    words = " ".join(page.text.split())
+    assert "Mounted wrong: leg 2 wrong" in words

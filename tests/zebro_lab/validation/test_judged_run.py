@@ -63,6 +63,8 @@ def test_poses_outside_the_predicted_time_are_left_out_and_noted():
     found = judge(PATH.delayed(2.0))
     assert found.rows[0].errors.poses == 5
     assert found.notes[2].startswith("4 tracked poses lie outside the predicted time")
+    note = judge(PATH.delayed(0.5)).notes[2]
+    assert note == "1 tracked pose lies outside the predicted time and is not scored"
     with pytest.raises(DataError, match="start from it: 1; expected two or more"):
         judge(PATH.delayed(3.2), anchor=True)
 

@@ -102,7 +102,7 @@ def test_a_calibration_takes_runs_that_were_killed(tmp_path):
 def test_a_recorded_sweep_gives_the_law_that_the_simulated_rig_obeys(tmp_path):
     recorded = subprocess.run(
         [COMMAND, "record", "--rig", "rig-odrive-netft@sim", "--duration", "66", "--label", "sweep",
-         "--data", str(tmp_path / "data")],
+         "--data", str(tmp_path / "data"), "--seed", "0"],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert recorded.returncode == 0, recorded.stderr

@@ -14,6 +14,15 @@ def is_simulated(source: str) -> bool:
     return "sim:" in source
 
 
+def is_twin(source: str) -> bool:
+    """Return whether a device's source is a simulated device, and no replay of one.
+
+    >>> is_twin("sim:zebro"), is_twin("sim:replay:one"), is_twin("real")
+    (True, False, False)
+    """
+    return source.startswith("sim:") and not source.startswith("sim:replay:")
+
+
 def joined_source(sources: Sequence[str]) -> str:
     """Join the sources of a run's streams: KIND:A+B if all are of one kind, else mixed:A,B.
 

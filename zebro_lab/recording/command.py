@@ -75,4 +75,6 @@ def _report(recorded: "Recorded") -> str:
             f"device, {counters['dropped']} dropped by a slow disk"
         )
     lines += [clock_in_words(name, clock) for name, clock in manifest.clocks.items()]
+    if manifest.seed is not None:
+        lines.append(f"simulated devices drew the random numbers of --seed {manifest.seed}")
     return "\n".join([*lines, f"recording {manifest.exit_status}; run folder {recorded.folder}"])

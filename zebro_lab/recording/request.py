@@ -45,7 +45,14 @@ class RecordRequest:
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the operator.")] = "unknown"
     robot: Annotated[str | None, Option(help="Name of the robot, noted in run.json.")] = None
-    seed: Annotated[int, Option(min=0, help="Seed of simulated devices.")] = 0
+    seed: Annotated[
+        int | None,
+        Option(
+            min=0,
+            help="Seed of the random numbers of simulated devices; default: a new one for each "
+            "run, noted in run.json.",
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for an address of another form."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Record devices into a run folder: open them, read them in threads, log, show status, end."""
 
+import secrets
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from rig.acquisition import Acquisition, acquiring
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import RigError
 from zebro_lab.files.errors import RecordingError, SettingsError
-from zebro_lab.files.source_names import joined_source
+from zebro_lab.files.source_names import is_twin, joined_source
 from zebro_lab.mcap.ros_messages import WARNING
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
@@ -28,6 +29,8 @@ from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 LOOK_EVERY: Final = 0.05
 """Interval between checks of the conditions that end a recording [s]."""
+_SEED_BITS: Final = 31
+"""Bits of a seed that nobody states: few digits, and no two runs of a laboratory are the same."""
 _AS_THEY_ARE: Final = (
     "--play sends these angles as they are, without signs and offsets of a robot.toml: if the "
     "warning is right, stop, and repair the file or the columns.toml beside it"
@@ -95,13 +98,14 @@ def record(
     for line in notes:
         watcher.note(line)
     duration = _duration(request, play)
-    wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, request.seed)
+    seed = secrets.randbits(_SEED_BITS) if request.seed is None else request.seed
+    wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, seed)
     with needing_threads(), ExitStack() as kept, open_devices(wanted) as opened:
         if opened.replayed:
             lasts = max(opened.replayed)
             duration = lasts if duration is None else min(lasts, duration)
         recorder = RunRecorder(
-            request.data, manifest=_manifest(request, opened),
+            request.data, manifest=_manifest(request, opened, seed),
             profiles=opened.profiles, clock=clock,
         )  # fmt: skip
         kept.enter_context(recorder)  # left after the devices: they wait for no disk
@@ -205,7 +209,7 @@ def _duration(request: RecordRequest, play: SampledReference | None) -> float | 
     return min(wanted, default=None)
 
 
-def _manifest(request: RecordRequest, opened: OpenDevices) -> RunManifest:
+def _manifest(request: RecordRequest, opened: OpenDevices, seed: int) -> RunManifest:
     sources = {device.name: device.stream.source for device in opened.devices}
     return RunManifest(
         kind="walk" if request.rig is None else "slip-rig",
@@ -217,4 +221,5 @@ def _manifest(request: RecordRequest, opened: OpenDevices) -> RunManifest:
         sources=sources,
         robot=request.robot,
         truth=opened.truth,
+        seed=seed if any(map(is_twin, sources.values())) else None,
     )

@@ -95,6 +95,7 @@ class RunManifest:
         inputs: SHA-256 of the files that an imported run was made from, by their paths.
         point: Plan, number and attempt of the experiment's point that the run measures, and
             whether it is accepted; empty outside experiments.
+        seed: Seed of the random numbers of a recording's simulated devices; None without such.
         schema_version: Version of the manifest's format.
     """
 
@@ -121,6 +122,7 @@ class RunManifest:
     truth: Mapping[str, Any] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
     point: Mapping[str, Any] = field(default_factory=dict)
+    seed: int | None = None
     schema_version: int = SCHEMA_VERSION
 
     @property
@@ -180,7 +182,7 @@ def manifest_text(manifest: RunManifest) -> str:
     """
     document = {
         key: value for key, value in asdict(manifest).items()
-        if value is not None and (value or key not in _OPTIONAL)
+        if value is not None and (value or value == 0 or key not in _OPTIONAL)
     }  # fmt: skip
     return json.dumps(encodable(document), indent=2, ensure_ascii=False) + "\n"
 
@@ -190,7 +192,7 @@ _FIELD_TYPES: Mapping[str, type] = {
     "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
     "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
     "clocks": dict, "duration": dict, "robot": str, "truth": dict, "inputs": dict, "point": dict,
-    "exclusions": list,
+    "exclusions": list, "seed": int,
 }  # fmt: skip
 _ENTRY_TYPES: Mapping[str, tuple[type, ...]] = {
     "software": (str,), "constants": (int, float), "streams": (int,), "excluded": (str,),
@@ -200,7 +202,7 @@ _ENTRY_TYPES: Mapping[str, tuple[type, ...]] = {
 _NUMBERS = ("counters", "clocks")  # tables of tables of numbers
 _ADDED = (
     "exclusions", "profiles", "sources", "counters", "clocks", "duration", "robot", "truth",
-    "inputs", "point",
+    "inputs", "point", "seed",
 )  # fmt: skip
 _OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
 

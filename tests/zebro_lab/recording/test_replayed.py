@@ -38,6 +38,7 @@ def make(tmp_path):
 def test_a_replay_is_recorded_to_the_last_sample_and_says_what_it_is(make, tmp_path):
     run = make("real")
     recorded = record(RecordRequest("b", tmp_path / "again", rig=f"replay:{run}"), Onlooker())
+    assert recorded.manifest.seed is None
     assert recorded.manifest.source == f"replay:{run.name}"
     assert recorded.manifest.sources == {"board": f"replay:{run.name}"}
     assert recorded.manifest.exit_status == "completed"

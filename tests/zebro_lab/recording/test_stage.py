@@ -19,11 +19,11 @@ from rig.zebro.profile import load_leg_profile
 from support.leg_motions import T, tripod
 from support.leg_tables import table_of
 from support.logs import events
-from support.watchers import RecordWatcher
+from support.watchers import Onlooker, RecordWatcher
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_messages import WARNING
-from zebro_lab.recording.devices import default_gait, profile_text
+from zebro_lab.recording.devices import default_gait, open_devices, profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
@@ -46,7 +46,7 @@ def everything(tmp_path_factory):
     watcher = RecordWatcher(samples=ENOUGH)
     request = RecordRequest(
         "all", tmp_path_factory.mktemp("data"), zebro="sim", imus=("sim", "sim"), rig="sim",
-        duration=30.0, material="POM", operator="a",
+        duration=30.0, material="POM", operator="a", seed=0,
     )  # fmt: skip
     return record(request, watcher), watcher
 
@@ -166,6 +166,23 @@ def test_a_run_without_legs_is_no_leg_log(everything, tmp_path):
     folder = record(request, RecordWatcher()).folder
     with pytest.raises((DataError, FileNotFoundError), match="leg"):
         read_leg_log(folder)
+
+
+def test_every_run_of_a_twin_has_noise_of_its_own_unless_its_seed_is_given(tmp_path, monkeypatch):
+    drawn = []
+
+    def opened(wanted):
+        drawn.append(wanted.seed)
+        return open_devices(wanted)
+
+    monkeypatch.setattr("zebro_lab.recording.stage.open_devices", opened)
+    noted = [
+        record(RecordRequest(label, tmp_path, imus=("sim",), duration=0.1, seed=seed), Onlooker())
+        for label, seed in (("one", None), ("other", None), ("zero", 0))
+    ]
+    assert [run.manifest.seed for run in noted] == drawn
+    assert drawn[0] != drawn[1]
+    assert drawn[2] == 0
 
 
 def wait_until(met, limit=20.0):

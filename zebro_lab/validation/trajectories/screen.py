@@ -33,7 +33,7 @@ _NAMES = {
 
 
 def print_pair(console: Console, judged: JudgedPair, out: Path) -> None:
-    """Print errors and notes of a trajectory, and the output folder.
+    """Print warnings, errors and notes of a trajectory, and the output folder.
 
     Args:
         console: Console to print to.
@@ -42,9 +42,13 @@ def print_pair(console: Console, judged: JudgedPair, out: Path) -> None:
     """
     if is_simulated(judged.source):
         console.print(plain(f"SIMULATED: {judged.source}"))
+    warnings = [note for note in judged.notes if note.startswith("WARNING")]
+    for note in warnings:
+        console.print(plain(note))
     console.print(_table(judged))
     for note in judged.notes:
-        console.print(plain(note))
+        if note not in warnings:
+            console.print(plain(note))
     console.print(Text(f"\nwritten to {out}"))
 
 

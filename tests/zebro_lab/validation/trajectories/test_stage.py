@@ -52,6 +52,7 @@ def test_lengths_in_another_unit_are_asked_about(run_command, files, tmp_path, f
     assert f"times as far as {files[0] if factor > 1 else other}, as {units} differ" in " ".join(
         ended.out.split()
     )
+    assert ended.out.startswith("WARNING: ")
     ended = run_command("validate", files[0], other, "--correct-scale", "--out", tmp_path / "out")
     assert "WARNING" not in ended.out
     twice = written(tmp_path / "c.tum", tum(T, 2 * POSITION, ROTATION))

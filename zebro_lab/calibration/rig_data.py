@@ -24,7 +24,8 @@ from zebro_lab.runs.counted_once import (
 from zebro_lab.runs.data_paths import DataSource, find_sources
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
-from zebro_lab.tables.columns import Columns, parse_definition, read_columns
+from zebro_lab.tables.columns import Columns
+from zebro_lab.tables.columns_file import parse_definition, read_columns
 from zebro_lab.tables.table_files import table_stem
 
 _LEAST_SAMPLES = 20  # of a recording, to estimate its noise

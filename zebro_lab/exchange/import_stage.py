@@ -28,9 +28,9 @@ from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
-from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.table_files import read_table_file, table_stem
+from zebro_lab.tables.table_kinds import IMU, LEGS, RIG, TRACK
 from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import ForeignTrack, read_foreign_track
 from zebro_lab.track.trajectory.request import TrajectoryRequest

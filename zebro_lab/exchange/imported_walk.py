@@ -20,7 +20,7 @@ from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.runs.table_run import table_samples, write_table_run
-from zebro_lab.tables.column_sections import IMU, LEGS, TRACK
+from zebro_lab.tables.table_kinds import IMU, LEGS, TRACK
 from zebro_lab.track.folder import track_folder
 from zebro_lab.track.foreign import ForeignTrack
 

@@ -12,9 +12,10 @@ from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.opening import read_text
-from zebro_lab.tables.column_sections import RIG, is_sectioned
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns_file import is_sectioned
 from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.tables.table_kinds import RIG
 
 Kind = Literal["rig", "legs", "imu", "track"]
 

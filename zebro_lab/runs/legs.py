@@ -16,10 +16,11 @@ from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
-from zebro_lab.tables.column_sections import LEGS, read_section
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns_file import read_section
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.tables.table_kinds import LEGS
 
 _IN_A_RUN = (
     "use the part before or after it alone: write the run as tables (zebro-lab export RUN --out "

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`columns.toml`: map the columns of a table to canonical columns in SI.
-
-The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commented example.
-"""
+"""Columns of a table as canonical columns in SI: what a `columns.toml` states, as values."""
 
 import math
 from collections.abc import Mapping
@@ -14,15 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.definition import SlipDefinition
-from rig.nearest_name import nearest
-from zebro_lab.files.errors import SettingsError, UnitError
-from zebro_lab.files.settings_table import SettingsTable
+from zebro_lab.files.errors import UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
-from zebro_lab.tables.column_sections import RIG, read_section
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.row_conditions import RowCondition, parse_row_condition
+from zebro_lab.tables.row_conditions import RowCondition
 
 COLUMNS_FILE = "columns.toml"
 
@@ -57,15 +51,6 @@ CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
         CanonicalColumn("slip_definition", None, "material, travel or larger; one in each file"),
     )
 })  # fmt: skip
-_CONSTANTS = {"radius_leg": "m", "radius_ground": "m"}
-_LOAD_CELL = {
-    "zero_stability": "N",
-    "gain_sd": "dimensionless",
-    "bias_sd": "N",
-    "crosstalk_sd": "dimensionless",
-}
-_SOURCES = ("real", "sim", "replay", "import", "mixed", "unknown")
-"""Kinds of source; `import` and `mixed` only stand beside exported tables."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +120,7 @@ class MappedColumn:
         unit = table.unit_of(self.name, si_unit)
         if unit is None:
             return self
-        advice = f'state unit = "{si_unit}" or what it is in {COLUMNS_FILE}, {_scaled(si_unit)}'
+        advice = f'state unit = "{si_unit}" or what it is in {COLUMNS_FILE}, {scaled(si_unit)}'
         if unit == unit_in_header(self.name) and not is_unit_text(unit):
             problem = f"'{unit}' in the header is no unit that is known; {advice}"
             raise table.fault(problem, self.name)
@@ -148,6 +133,12 @@ class MappedColumn:
             problem = f"the file states its unit: {error}; {advice}"
             raise table.fault(problem, self.name) from error
         return replace(self, unit=unit, factor=math.copysign(factor, self.factor))
+
+
+def scaled(si_unit: str) -> str:
+    """Return how to state a unit that is not known, as a multiple of the SI unit, for messages."""
+    unit = "" if si_unit == "dimensionless" else f" {si_unit}"
+    return f'or scale = NUMBER, unit = "{si_unit}" if 1 in the file is NUMBER{unit}'
 
 
 @dataclass(frozen=True)
@@ -191,167 +182,3 @@ class Columns:
     runs: RunRule = RunRule()
     keep: tuple[RowCondition, ...] = ()
     load_cell: Mapping[str, float] = field(default_factory=dict)
-
-
-def read_columns(file: Path) -> Columns:
-    """Read and check a `columns.toml`.
-
-    Raises:
-        NotFound: There is no such file.
-        SettingsError: The file cannot be read as TOML, has an unknown key, unit or value, or more
-            than one run rule.
-    """
-    return parse_columns(read_section(RIG, file))
-
-
-def parse_columns(table: SettingsTable) -> Columns:
-    """Parse and check the content of a `columns.toml`.
-
-    Args:
-        table: Content of the file, or a section of it; no other keys are allowed.
-
-    Raises:
-        SettingsError: It has an unknown key, unit or value, or more than one run rule.
-    """
-    columns = table.table("columns")
-    columns_file = Columns(
-        file=Path(table.file),
-        source=_source(table),
-        sheet=table.text("sheet") if "sheet" in table else None,
-        columns={
-            name: parse_mapped_column(columns, name, column.unit)
-            for name, column in CANONICAL.items()
-            if name in columns
-        },
-        constants=_quantities(table.table("constants"), _CONSTANTS),
-        runs=_runs(table),
-        keep=_keep(table.table("rows")),
-        load_cell=_quantities(table.table("load_cell"), _LOAD_CELL, least=0.0),
-    )
-    table.finish()
-    return columns_file
-
-
-def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) -> MappedColumn:
-    """Parse header, unit, scale and sign of one mapped column, and the definition of a slip ratio.
-
-    By default the header is the canonical name, the unit SI, scale and sign 1.
-
-    Args:
-        columns: Section with an entry for the column: a table, or only the header as a string.
-        name: Canonical name of the column.
-        si_unit: SI unit of the column; None if its cells are text.
-
-    Raises:
-        SettingsError: Header, unit, scale, sign or slip definition is invalid.
-    """
-    found = columns.value(name)
-    if isinstance(found, str):  # t = "ET": only a header, in SI
-        found = {"name": found}
-    table = columns.as_table(name, found, expected="a header, or a table with name, unit, sign")
-    stated = si_unit is not None and "unit" in table
-    unit, factor = _unit(table, si_unit) if si_unit else ("", 1.0)
-    sign, scale = (_sign(table), _scale(table, unit if stated else "")) if si_unit else (1, 1.0)
-    offset = table.quantity("offset", si_unit) if si_unit and "offset" in table else 0.0
-    is_time = si_unit == "s" and "nanoseconds" in table
-    nanoseconds = table.text("nanoseconds", least=1) if is_time else None
-    definition = None
-    if name == "slip_ratio" and "definition" in table:
-        key = table.dotted("definition") or ""
-        definition = parse_definition(table.value("definition"), file=Path(table.file), key=key)
-    header = table.text("name", name)
-    factor *= sign * scale
-    return MappedColumn(header, unit, factor, definition, stated, offset, nanoseconds, scale)
-
-
-def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
-    """Parse the name of a slip definition.
-
-    Args:
-        text: Name of the definition: material, travel or larger.
-        file: File that it was read from, for the error message.
-        key: Key or column that it was read from, for the error message.
-
-    Raises:
-        SettingsError: There is no definition of this name.
-    """
-    try:
-        return SlipDefinition(str(text))
-    except ValueError as error:
-        advice = nearest(str(text), list(SlipDefinition))
-        raise SettingsError(
-            f"unknown slip definition '{text}'; {advice}", file=file, key=key
-        ) from error
-
-
-def _unit(table: SettingsTable, si_unit: str) -> tuple[str, float]:
-    unit = table.text("unit") if "unit" in table else si_unit
-    if si_unit == "s" and is_date_unit(unit):
-        return unit, 1.0
-    try:
-        return unit, factor_to_si(unit, si_unit)
-    except UnitError as error:
-        raise table.fault(f"{error}, {_scaled(si_unit)}", "unit") from error
-
-
-def _scaled(si_unit: str) -> str:
-    unit = "" if si_unit == "dimensionless" else f" {si_unit}"
-    return f'or scale = NUMBER, unit = "{si_unit}" if 1 in the file is NUMBER{unit}'
-
-
-def _scale(table: SettingsTable, unit: str) -> float:
-    """Read the number that converts the file's numbers to the unit, which must be stated then."""
-    if "scale" not in table:
-        return 1.0
-    if not unit or is_date_unit(unit):
-        found = f"the unit '{unit}'" if unit else "no unit"
-        raise table.fault(f'stands beside {found}; expected one, such as unit = "ms"', "scale")
-    return table.quantity("scale", "dimensionless", above=0.0)
-
-
-def _sign(table: SettingsTable) -> int:
-    """Read a sign: a number, or a text as where a question mark was deleted."""
-    if "sign" not in table:
-        return 1
-    found = table.value("sign")
-    if isinstance(found, bool) or found not in (1, -1, "1", "+1", "-1"):
-        raise table.fault(f"found {found!r}; expected 1 or -1", "sign")
-    return int(found)
-
-
-def _source(table: SettingsTable) -> str | None:
-    if "source" not in table:
-        return None
-    source = table.text("source")
-    if source.split(":")[0] not in _SOURCES:
-        raise table.fault(f"found '{source}'; expected real, sim:WHAT or replay:WHAT", "source")
-    return source
-
-
-def _runs(table: SettingsTable) -> RunRule:
-    runs = table.table("runs")
-    given = [key for key in ("by", "gap", "each_row") if key in runs]
-    if len(given) > 1:
-        raise table.fault(f"found {' and '.join(given)}; keep only one of them", "runs")
-    return RunRule(
-        by=runs.texts("by"),
-        gap=runs.quantity("gap", "s", above=0.0) if "gap" in runs else None,
-        each_row=runs.flag("each_row", False),
-    )
-
-
-def _keep(rows: SettingsTable) -> tuple[RowCondition, ...]:
-    try:
-        return tuple(map(parse_row_condition, rows.texts("keep")))
-    except SettingsError:
-        raise
-    except ValueError as error:
-        raise rows.fault(str(error), "keep") from error
-
-
-def _quantities(
-    table: SettingsTable, units: Mapping[str, str], *, least: float = -math.inf
-) -> dict[str, float]:
-    return {
-        key: table.quantity(key, unit, least=least) for key, unit in units.items() if key in table
-    }

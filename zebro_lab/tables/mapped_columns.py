@@ -12,9 +12,10 @@ import numpy as np
 from model.slip.law import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.settings_table import SettingsTable
-from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_mapped_column
-from zebro_lab.tables.other_kind import looks_like_other
+from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn
+from zebro_lab.tables.columns_file import parse_mapped_column
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.table_kinds import looks_like_other
 
 INTERVALS: Final = (2e-5, 2.0)
 """Range of the median time between samples of legs or an IMU whose unit is not stated [s]."""

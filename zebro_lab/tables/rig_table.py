@@ -12,8 +12,8 @@ from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, Columns, MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit
-from zebro_lab.tables.other_kind import looks_like_other
 from zebro_lab.tables.raw_table import OVERLOAD, RawTable, is_measured, missing_text
+from zebro_lab.tables.table_kinds import looks_like_other
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
 from model.slip.law import Array
 from rig.nearest_name import nearest
-from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, MappedColumn, parse_definition
-from zebro_lab.tables.other_kind import looks_like_other
+from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, MappedColumn
+from zebro_lab.tables.columns_file import parse_definition
 from zebro_lab.tables.rig_table import RigTable
+from zebro_lab.tables.table_kinds import looks_like_other
 
 _SPEEDS = ("omega_leg", "omega_ground")
 _RANGES = {"material": "1 or less", "travel": "-1 or more", "larger": "from -1 to 1"}

@@ -25,7 +25,7 @@ from zebro_lab.calibration.walks_folder import SCHEMA, describe_legs, read_store
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file, render_robot_file
-from zebro_lab.tables.columns import read_columns
+from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.track.annotations import read_annotations
 from zebro_lab.track.camera_file import read_camera_file
 from zebro_lab.track.floor_file import read_floor_file

@@ -13,7 +13,8 @@ from support.written_runs import edit
 from zebro_lab.calibration.rig_part import RigPart, read_part
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.data_paths import DataSource
-from zebro_lab.tables.columns import Columns, read_columns
+from zebro_lab.tables.columns import Columns
+from zebro_lab.tables.columns_file import read_columns
 
 TWICE = '[columns.normal_force]\nname = "FZ"\nunit = "kN"\nsign = -1\n[runs]\nby = ["day"]\n'
 

@@ -12,7 +12,7 @@ from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.tables.columns import read_columns
+from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.table_files import read_table_file
 
 

@@ -16,7 +16,8 @@ from zebro_lab.exchange.columns_template import render_columns
 from zebro_lab.exchange.init_stage import write_columns_template
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.tables.columns import Columns, read_columns
+from zebro_lab.tables.columns import Columns
+from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.raw_table import RawTable
 
 N = 40

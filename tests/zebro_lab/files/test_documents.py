@@ -16,7 +16,7 @@ from zebro_lab.files.documents import read_json_document, read_toml_document
 from zebro_lab.files.errors import NotFound
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.runs.manifest import read_manifest
-from zebro_lab.tables.columns import read_columns
+from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.track.annotations import read_annotations
 from zebro_lab.track.camera_file import read_camera_file
 from zebro_lab.track.floor_file import read_floor_file

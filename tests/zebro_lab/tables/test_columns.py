@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`columns.toml`, parsed once into frozen values."""
+"""A mapped column has the unit that the file states, where its map states none."""
 
 from pathlib import Path
 
@@ -7,119 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.slip.definition import SlipDefinition
-from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.tables.columns import Columns, MappedColumn, RunRule, read_columns
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.row_conditions import RowCondition
-
-WHOLE = """
-source = "sim:sweep"
-[columns.t]
-name = "ET"
-unit = "ms"
-[columns.normal_force]
-name = "FZ"
-unit = "kN"
-sign = -1
-[columns.slip_ratio]
-name = "SL"
-definition = "travel"
-[columns.run]
-name = "trial"
-[constants]
-radius_leg = "35 mm"
-radius_ground = 0.12
-[runs]
-gap = "500 ms"
-[rows]
-keep = ["beta == 0", "`slip ratio` > 0.05"]
-[load_cell]
-zero_stability = "150 mN"
-gain_sd = "0.5 %"
-"""
-
-
-def read(tmp_path: Path, text: str) -> Columns:
-    file = tmp_path / "columns.toml"
-    file.write_text(text, encoding="utf-8")
-    return read_columns(file)
-
-
-def test_every_key_is_read_in_si(tmp_path):
-    assert read(tmp_path, WHOLE) == Columns(
-        file=tmp_path / "columns.toml",
-        source="sim:sweep",
-        columns={
-            "t": MappedColumn("ET", "ms", 1e-3, unit_stated=True),
-            "normal_force": MappedColumn("FZ", "kN", -1e3, unit_stated=True),
-            "slip_ratio": MappedColumn("SL", "dimensionless", 1.0, SlipDefinition.TRAVEL),
-            "run": MappedColumn("trial"),
-        },
-        constants={"radius_leg": 0.035, "radius_ground": 0.12},
-        runs=RunRule(gap=0.5),
-        keep=(RowCondition("beta", "==", 0), RowCondition("slip ratio", ">", 0.05)),
-        load_cell={"zero_stability": 0.15, "gain_sd": 0.005},
-    )
-
-
-def test_empty_file_changes_nothing(tmp_path):
-    assert read(tmp_path, "") == Columns(file=tmp_path / "columns.toml")
-
-
-@pytest.mark.parametrize("source", ["import:legs.csv", "mixed:real,sim:imu"])
-def test_the_source_of_an_exported_run_is_accepted(tmp_path, source):
-    assert read(tmp_path, f'source = "{source}"').source == source
-
-
-def test_byte_order_mark_is_accepted(tmp_path):
-    assert read(tmp_path, '\ufeffsource = "real"').source == "real"
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ('sorce = "real"', "sorce: unknown key; did you mean 'source'"),
-        ('source = "simulated"', "found 'simulated'; expected real, sim:WHAT"),
-        ("source = 3", "source: found 3; expected a text"),
-        ("columns = 3", "columns: found 3; expected a table"),
-        ("[columns.normal_froce]", "did you mean 'normal_force'"),
-        ("[columns.t]\nunits = 's'", "columns.t.units: unknown key; did you mean 'unit'"),
-        ("[columns.t]\nunit = 'frobs'", "columns.t.unit: unknown unit 'frobs'"),
-        ("[columns.normal_force]\nunit = 'mm'", "unit 'mm' cannot be converted to N"),
-        ("[columns.normal_force]\nunit = 'V'", 'or scale = NUMBER, unit = "N" if 1 in the file'),
-        ("[columns.t]\nscale = 0.1", "columns.t.scale: stands beside no unit; expected one"),
-        ("[columns.t]\nscale = 0.1\nunit = 'date'", "stands beside the unit 'date'; expected one"),
-        ("[columns.t]\nscale = -1\nunit = 's'", "columns.t.scale: is -1; expected more than 0"),
-        ("[columns.t]\nsign = 2", "columns.t.sign: found 2; expected 1 or -1"),
-        ("[columns.t]\nsign = true", "columns.t.sign: found True; expected 1 or -1"),
-        ("[columns.t]\nname = 3", "columns.t.name: found 3; expected a text"),
-        ("[columns.t]\ndefinition = 'travel'", "columns.t.definition: unknown key"),
-        ("[columns.slip_ratio]\ndefinition = 'travels'", "did you mean 'travel'"),
-        ("[constants]\nradius = 0.1", "constants.radius: unknown key; did you mean 'radius_leg'"),
-        ("[constants]\nradius_leg = '35 N'", "constants.radius_leg: unit 'N' cannot"),
-        ("[constants]\nradius_leg = true", "expected a number in m"),
-        ("[runs]\nby = ['a']\ngap = 1", "runs: found by and gap; keep only one"),
-        ("[runs]\nby = [1]", r"runs.by: found \[1\]; expected a text or a list"),
-        ("[runs]\ngap = 0", "runs.gap: is 0 s; expected more than 0"),
-        ("[runs]\neach_row = 1", "runs.each_row: found 1; expected true or false"),
-        ("[rows]\nkeep = ['slip']", "rows.keep: 'slip' is not a condition"),
-        ("[load_cell]\ngain = 0.1", "load_cell.gain: unknown key; did you mean 'gain_sd'"),
-        ("[load_cell]\ngain_sd = -0.1", "load_cell.gain_sd: is -0.1; expected 0 or more"),
-        ("[columns", "cannot be read as TOML"),
-    ],
-)
-def test_fault_is_one_line_that_names_file_and_key(tmp_path, text, message):
-    with pytest.raises(SettingsError, match=message) as caught:
-        read(tmp_path, text)
-    assert str(caught.value).startswith(str(tmp_path / "columns.toml"))
-    assert "\n" not in str(caught.value)
-
-
-def test_missing_file_is_named(tmp_path):
-    with pytest.raises(NotFound, match=r"absent\.toml: no such file"):
-        read_columns(tmp_path / "absent.toml")
 
 
 def table(units: dict[str, str], **columns) -> RawTable:
@@ -176,32 +67,3 @@ def test_a_header_with_another_unit_is_refused_until_one_is_stated(header, found
     assert 'or scale = NUMBER, unit = "N" if 1 in the file is NUMBER N' in str(raised.value)
     stated = MappedColumn(header, "N", 0.5, unit_stated=True)
     assert stated.in_unit_of(raw, "N") is stated
-
-
-def test_a_scale_converts_numbers_to_the_unit_that_is_stated(tmp_path):
-    text = '[columns.t]\nunit = "ms"\nscale = 0.1\n[columns.normal_force]\nname = "C"\n'
-    columns = read(tmp_path, text + 'unit = "N"\nscale = 40\nsign = -1\noffset = "1 N"\n').columns
-    raw = table({"C": "V"}, t=[0, 10], C=[-0.125, -0.25])
-    np.testing.assert_allclose(columns["t"].in_unit_of(raw, "s").in_si(raw), [0, 1e-3])
-    force = columns["normal_force"].in_unit_of(raw, "N")
-    np.testing.assert_allclose(force.in_si(raw), [6.0, 11.0])
-    assert force.said == "'C' in 40 N times -40"
-
-
-def test_offset_and_nanoseconds_are_added_in_si(tmp_path):
-    columns = read(
-        tmp_path,
-        '[columns.t]\nname = "s"\nnanoseconds = "ns"\n'
-        '[columns.normal_force]\nname = "F"\nunit = "kN"\nsign = "-1"\noffset = "5 N"\n',
-    ).columns
-    raw = table({}, s=[10, 11], ns=[500_000_000, 0], F=[1.0, 2.0])
-    np.testing.assert_array_equal(columns["t"].in_si(raw), [10.5, 11])
-    np.testing.assert_array_equal(columns["normal_force"].in_si(raw), [-995, -1995])
-
-
-def test_dates_of_a_time_become_unix_time(tmp_path):
-    columns = read(tmp_path, '[columns]\nt = {name = "when", unit = "date"}\n').columns
-    raw = table({}, when=["1970-01-01T00:00:01.5Z", "1970-01-01T01:00:02+01:00"])
-    np.testing.assert_array_equal(columns["t"].in_si(raw), [1.5, 2])
-    with pytest.raises(SettingsError, match="unknown unit 'date'"):
-        read(tmp_path, '[columns]\nnormal_force = {name = "when", unit = "date"}\n')

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.tables.column_sections import read_section
+from zebro_lab.tables.columns_file import read_section
 from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.track.file import tum_lines

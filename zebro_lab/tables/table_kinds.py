@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Recognise by its headers a table that was given in the place of one of another kind."""
+"""Kinds of tables, and a table that by its headers is of another kind than expected."""
 
 from collections.abc import Collection
 from typing import Final
 
-from zebro_lab.tables.column_sections import IMU, LEGS, RIG, TRACK
+LEGS, IMU, TRACK, RIG = "legs", "imu", "track", "rig"
+KINDS: Final = (LEGS, IMU, TRACK, RIG)
+"""Kinds of tables; their names are those of the sections of a `columns.toml`."""
 
 _MARKS: Final = tuple(
     (frozenset(names.split()), kind)

@@ -155,7 +155,7 @@ def _buehler(request: GaitRequest, _: float) -> NamedGait:
 
 
 _THESIS_TURN = (35.0, 130.0)  # touchdown and lift-off of 5-2-4 [deg]
-_RADIANS = 3.2  # in degrees a leg would touch down far ahead of the body, or lift off there
+LEAST_DEG = 3.2  # in degrees a leg would touch down far ahead of the body, or lift off there
 _ANGLES = ("touchdown_deg", "liftoff_deg")
 _TIMES = ("tau_ground", "tau_flight", "tau_turn")
 GAITS: Mapping[str, _Kind] = MappingProxyType({
@@ -210,7 +210,7 @@ def _angles(
         raise _no_angle(option, text) from error
     if len(numbers) > 2 or not np.isfinite(numbers).all():
         raise _no_angle(option, text)
-    if any(0 < abs(number) < _RADIANS for number in numbers):
+    if any(0 < abs(number) < LEAST_DEG for number in numbers):
         in_degrees = ",".join(f"{np.degrees(number):.4g}" for number in numbers)
         raise SettingsError(
             f"found {text}, which is improbable in degrees; expected angles like 50, or 0: if it "

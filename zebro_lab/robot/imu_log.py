@@ -27,7 +27,7 @@ IMU_UNITS: Final[Mapping[str, str]] = {
     **dict.fromkeys(_FORCE, "m/s^2"),
 }
 _NORM_TOLERANCE: Final = 0.05
-_NEAR_G: Final = 0.15
+NEAR_G: Final = 0.15
 _MOST_NAMED: Final = 6  # columns that are not read
 _ADVICE: Final = "delete such rows, or fill them"
 
@@ -148,7 +148,7 @@ def is_in_g(usual: float) -> bool:
     Args:
         usual: Median length of the specific force in the file's unit; NaN is False.
     """
-    return abs(usual - 1.0) < _NEAR_G
+    return abs(usual - 1.0) < NEAR_G
 
 
 def _require_unit(table: RawTable, mapping: MappedColumns, quaternion: Array) -> None:

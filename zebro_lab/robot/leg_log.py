@@ -17,9 +17,9 @@ from zebro_lab.tables.raw_table import RawTable
 
 ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
 LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
-_LONGEST_TURN = 2.5  # rad between samples; from pi on the direction of rotation is ambiguous
+LONGEST_TURN = 2.5  # rad between samples; from pi on the direction of rotation is ambiguous
 _ADVICE = "fill in the cell, or delete all rows up to it or from it on"
-_LONGEST_WRAPPED = np.pi / 2  # the same where a whole turn may have been cut off between samples
+LONGEST_WRAPPED = np.pi / 2  # the same where a whole turn may have been cut off between samples
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def _require_unwrapped(table: RawTable, columns: MappedColumns, raw: Array, thet
     """Check that unwrapping is not ambiguous: short steps, but for jumps by one turn."""
     jumps, turns = np.abs(np.diff(raw, axis=0)), np.abs(np.diff(theta, axis=0))
     wrapped = bool((jumps > np.pi).any())
-    most = _LONGEST_WRAPPED if wrapped else _LONGEST_TURN
+    most = LONGEST_WRAPPED if wrapped else LONGEST_TURN
     bad = (turns > most) | (jumps > 2 * np.pi + most)
     if not bad.any():
         return

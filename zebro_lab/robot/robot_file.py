@@ -15,7 +15,7 @@ from zebro_lab.robot.marker_print import KIT_PRINT, MarkerPrint
 
 ROBOT_FILE = "robot.toml"
 _MOST_NUMBER = 999_999  # of a marker; its dictionary has far fewer
-_LARGEST, _HEAVIEST = 3.0, 100.0
+LARGEST, HEAVIEST = 3.0, 100.0
 """Largest length [m] and mass [kg] that a number without a unit can give a walking robot."""
 _FORWARD = (1,) * N_LEGS
 
@@ -157,13 +157,13 @@ def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
     """
     given: dict[str, Any] = {}
     if "mass" in top:
-        given["mass"] = top.quantity("mass", "kg", usual=_HEAVIEST)
+        given["mass"] = top.quantity("mass", "kg", usual=HEAVIEST)
     if "body_size" in top:
-        given["body_size"] = top.quantities("body_size", 3, "m", usual=_LARGEST)
+        given["body_size"] = top.quantities("body_size", 3, "m", usual=LARGEST)
     if "inertia" in top:
         given["inertia"] = top.quantities("inertia", 3, "kg m^2")
     if "radius" in legs:
-        given["leg_radius"] = legs.quantity("radius", "m", usual=_LARGEST)
+        given["leg_radius"] = legs.quantity("radius", "m", usual=LARGEST)
     if "arc_deg" in legs:
         given["leg_arc"] = np.radians(legs.number("arc_deg"))
     if "offset_deg" in legs:
@@ -181,7 +181,7 @@ def _hips(hips: SettingsTable) -> np.ndarray:
     places = Robot().hips.copy()
     for leg in range(1, N_LEGS + 1):
         if str(leg) in hips:
-            places[leg - 1] = hips.quantities(str(leg), 3, "m", usual=_LARGEST)
+            places[leg - 1] = hips.quantities(str(leg), 3, "m", usual=LARGEST)
     return places
 
 
@@ -190,16 +190,16 @@ def _marker(marker: SettingsTable) -> Marker:
         raise marker.fault(
             "is missing; give the marker's centre in the body frame as [x, y, z] in m", "position"
         )
-    x, y, z = marker.quantities("position", 3, "m", usual=_LARGEST)
+    x, y, z = marker.quantities("position", 3, "m", usual=LARGEST)
     roll, pitch, yaw = np.radians(
         marker.numbers("roll_pitch_yaw_deg", 3) if "roll_pitch_yaw_deg" in marker else np.zeros(3)
     ).tolist()
     height = None
     if "height" in marker:
-        height = marker.quantity("height", "m", above=0.0, usual=_LARGEST)
+        height = marker.quantity("height", "m", above=0.0, usual=LARGEST)
     printed = MarkerPrint(
         marker.text("dictionary", KIT_PRINT.dictionary, least=1),
         marker.whole("id", KIT_PRINT.number, most=_MOST_NUMBER),
-        marker.quantity("side", "m", default=KIT_PRINT.side, above=0.0, usual=_LARGEST),
+        marker.quantity("side", "m", default=KIT_PRINT.side, above=0.0, usual=LARGEST),
     )
     return Marker((x, y, z), (roll, pitch, yaw), height, printed)

@@ -31,6 +31,8 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.track.request import VIDEOS, TimeRequest
 
+MOST_APART = 100.0
+"""Factor by which `--interval` may differ from EXIF times, whose clocks run a bit fast or slow."""
 _ORIENTATION = 0x0112
 _ROTATED = {5, 6, 7, 8}
 
@@ -213,7 +215,7 @@ def _require_interval(paths: Sequence[Path], interval: float) -> None:
     if len(t) < 2 or len(t) < len(paths):
         return
     apart = float(np.median(np.diff(t)))
-    if apart > 0 and not 0.01 < interval / apart < 100:
+    if apart > 0 and not 1 / MOST_APART < interval / apart < MOST_APART:
         raise SettingsError(
             f"found {interval:g} s, but by their EXIF times the photographs are {apart:g} s apart; "
             "the option is in seconds, and without it the EXIF times are used",

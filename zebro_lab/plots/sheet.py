@@ -28,6 +28,7 @@ from zebro_lab.files.units import unit_symbol
 BLUE, RED = "#0072B2", "#D55E00"
 CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
 _SHOWN_DRAWS = 60
+_TIME_MARGIN = 0.01  # of the time shown
 _TITLE = 10.0  # letters of a title in each inch of a figure's width
 _HANDLE, _LETTER = 0.6, 0.08  # inches of a legend's entry: its symbol, and each letter
 NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn in an additional panel
@@ -151,6 +152,19 @@ def legend_below(figure: Figure, *, columns: int) -> None:
 def few_ticks(most: int) -> MaxNLocator:
     """Return a tick locator: up to `most` intervals of 1, 2, 2.5 or 5 times a power of ten."""
     return MaxNLocator(most, steps=(1, 2, 2.5, 5, 10))
+
+
+def time_axis(axes: Axes, t: Array) -> None:
+    """Set label, ticks and limits of a time axis: a hundredth more than `t`, for ticks at its ends.
+
+    Args:
+        axes: Axes whose horizontal axis is time.
+        t: Times, shape (n,) [s].
+    """
+    begin, end = float(t[0]), float(t[-1])
+    margin = _TIME_MARGIN * (end - begin or 1.0)
+    axes.set(xlabel="time [s]", xlim=(begin - margin, end + margin))
+    axes.xaxis.set_major_locator(few_ticks(6))
 
 
 def map_axes(axes: Axes) -> None:

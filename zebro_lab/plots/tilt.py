@@ -34,7 +34,8 @@ def tilt(t: Array, predicted: Array, measured: Array, *, title: str, simulated: 
         axes.plot(t[shown], np.degrees(expected[shown]), color=BLUE, lw=1.2, label="predicted")
         axes.set_ylabel(name)
         axes.grid(color="0.92", lw=0.6)
-    panels[-1].set_xlabel("time [s]")
+    part = "" if shown.all() else f", the middle {_SHOWN:g} s of the walk"
+    panels[-1].set_xlabel(f"time [s]{part}")
     figure.align_ylabels(panels)
     legend_below(figure, columns=2)
     return figure

@@ -13,7 +13,16 @@ from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.thesis.traction import paired_sum
 from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
-from zebro_lab.plots.sheet import BLUE, RED, few_ticks, legend_below, new_figure, plain, styled
+from zebro_lab.plots.sheet import (
+    BLUE,
+    RED,
+    few_ticks,
+    legend_below,
+    new_figure,
+    plain,
+    styled,
+    time_axis,
+)
 
 _NAMES = ("left front", "right front", "left middle", "right middle", "left rear", "right rear")
 _STANCE = "0.93"
@@ -121,10 +130,11 @@ def gantt(path: WalkPath, *, title: str) -> Figure:
             bars, (leg + 0.6, 0.8), facecolors=colour, lw=0, label=f"{side} leg on the ground"
         )
     axes.set(
-        xlabel="time [s]", xlim=(path.t[0], path.t[-1]), ylim=(N_LEGS + 0.7, 0.3),
+        ylim=(N_LEGS + 0.7, 0.3),
         yticks=range(1, N_LEGS + 1),
         yticklabels=[f"{leg}  {name}" for leg, name in enumerate(_NAMES, start=1)],
     )  # fmt: skip
+    time_axis(axes, path.t)
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="x", color="0.9", lw=0.6)
     axes.set_axisbelow(True)
@@ -187,6 +197,7 @@ def _leg_panels(
     Contact is shaded; `limits` are those of the vertical axes, `label` and `unit` are theirs.
     """
     figure = new_figure(title, True, width=8.0, height=6.4)
+    lines = {name: _drawn(values) for name, values in lines.items()}
     beyond = f"beyond the axes; furthest {_furthest(lines, limits)} {unit}".removesuffix(" -")
     for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
@@ -196,9 +207,15 @@ def _leg_panels(
             axes.plot(t, values[:, leg], color=colour, lw=0.9, label=name)
             mark_beyond(axes, t, values[:, leg], limits, label=beyond)
     computed = any(np.isfinite(each).any() for each in lines.values())
-    _label(figure, f"{label} [{unit}]", computed=computed)
+    _label(figure, t, f"{label} [{unit}]", computed=computed)
     legend_below(figure, columns=4)
     return figure
+
+
+def _drawn(values: Array) -> Array:
+    """Return values with NaN for those between two of NaN, which no line shows, shape (n, 6)."""
+    known = np.pad(np.isfinite(values), ((1, 1), (0, 0)))
+    return np.where(known[:-2] | known[2:], values, np.nan)
 
 
 def _furthest(lines: Mapping[str, Array], limits: tuple[float, float]) -> str:
@@ -215,7 +232,6 @@ def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
         label="leg on the ground",
     )  # fmt: skip
     axes.axhline(0, color="0.6", lw=0.5, zorder=1)
-    axes.set_xlim(t[0], t[-1])
 
 
 def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
@@ -226,12 +242,11 @@ def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, f
     )
 
 
-def _label(figure: Figure, what: str, *, computed: bool) -> None:
+def _label(figure: Figure, t: Array, what: str, *, computed: bool) -> None:
     """Label the axes; write a note in each panel if the model does not compute the quantity."""
     figure.supylabel(what, fontsize=9.0)
     for axes in figure.axes[-2:]:
-        axes.set_xlabel("time [s]")
-        axes.xaxis.set_major_locator(few_ticks(6))
+        time_axis(axes, t)
     for axes in () if computed else figure.axes:
         axes.text(
             0.5, 0.7, "this model computes none", ha="center", color="0.4",

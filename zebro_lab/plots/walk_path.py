@@ -10,13 +10,24 @@ from matplotlib.figure import Figure
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.path import WalkPath
-from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
-from zebro_lab.plots.sheet import BLUE, few_ticks, legend_below, new_figure, styled, time_texts
+from zebro_lab.plots.beyond import limits_without_tips
+from zebro_lab.plots.sheet import (
+    BLUE,
+    few_ticks,
+    legend_below,
+    new_figure,
+    styled,
+    time_axis,
+    time_texts,
+)
 from zebro_lab.plots.walk_robot import outline, to_world
 
 _SNAPSHOTS = 6
 _LONGEST_SIDE = 8.5  # inches
 _NARROWEST, _LOWEST = 7.0, 3.4  # inches, for the title and for the axis labels
+_WINDOW = 0.1  # s over which velocities are means: impacts take a hundredth of that
+_MEAN = f"mean of {_WINDOW:g} s"
+_TWICE = f"mean of that in {_WINDOW:g} s"
 _MARGIN = 0.25  # of the body's length, around everything
 
 
@@ -74,11 +85,11 @@ def motion(path: WalkPath, *, title: str) -> Figure:
 
     Returns:
         The figure: a column for each of x, y, z in the inertial frame. Velocity and acceleration
-        are differences of the positions; the tips of impacts, which would flatten all else, are cut
-        off and marked.
+        are means, see `mean_rate`: the peaks of impacts would flatten all else.
     """
     names = ("x", "y", "z")
-    units = {"position [m]": 0.002, "velocity [m/s]": 0.01, "acceleration [m/s²]": 0.1}
+    units = {"position [m]": 0.002, f"velocity [m/s],\n{_MEAN}": 0.01,
+             f"acceleration [m/s²],\n{_TWICE}": 0.1}  # fmt: skip
     return _over_time(path.t, path.position, names, units, title)
 
 
@@ -91,11 +102,12 @@ def orientation(path: WalkPath, *, title: str) -> Figure:
         title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure: a column for each angle, in degrees. Rates and accelerations are differences of
-        the angles; the tips of impacts, which would flatten all else, are cut off and marked.
+        The figure: a column for each angle, in degrees. Rates and accelerations are means, see
+        `mean_rate`: the peaks of impacts would flatten all else.
     """
     names = ("roll (left side up)", "pitch (nose down)", "yaw (to the left)")
-    units = {"angle [deg]": 0.1, "rate [deg/s]": 1.0, "acceleration [deg/s²]": 10.0}
+    units = {"angle [deg]": 0.1, f"rate [deg/s],\n{_MEAN}": 1.0,
+             f"acceleration [deg/s²],\n{_TWICE}": 10.0}  # fmt: skip
     angles = np.degrees(path.orientation)
     return _over_time(path.t, angles, names, units, title)
 
@@ -112,23 +124,35 @@ def _over_time(
     panels = figure.subplots(3, 3, sharex=True)
     rows = [values]
     for _ in range(2):
-        rows.append(np.gradient(rows[-1], t, axis=0) if len(t) > 1 else np.zeros_like(values))
+        rows.append(mean_rate(t, rows[-1]))
     for row, (each, (unit, least)) in enumerate(zip(rows, units.items(), strict=True)):
-        cut, margin = (0.01, 0.3) if row else (0.0, 0.05)
         for axes, column in zip(panels[row], each.T, strict=True):
             axes.plot(t, column, color=BLUE, lw=0.9)
-            limits = limits_without_tips(column, cut=cut, margin=margin, least=least)
-            mark_beyond(axes, t, column, limits, label="beyond the axis")
+            axes.set_ylim(limits_without_tips(column, cut=0.0, margin=0.05, least=least))
             axes.yaxis.set_major_locator(few_ticks(5))
             axes.grid(color="0.92", lw=0.6)
         panels[row, 0].set_ylabel(unit)
     for top, bottom, name in zip(panels[0], panels[-1], names, strict=True):
         top.set_title(name, loc="left")
-        bottom.set(xlabel="time [s]", xlim=(t[0], t[-1]))
-        bottom.xaxis.set_major_locator(few_ticks(6))
+        time_axis(bottom, t)
     figure.align_ylabels(panels[:, 0])
-    legend_below(figure, columns=1)
     return figure
+
+
+def mean_rate(t: Array, values: Array) -> Array:
+    """Compute the mean derivative of values over 0.1 s around each time, shape (n, k) [1/s].
+
+    It is the difference between the values 0.05 s later and earlier over the time between, in the
+    first and last 0.05 s over the time that there is; 0 for a single time.
+
+    Args:
+        t: Times, increasing, shape (n,) [s].
+        values: Values, shape (n, k).
+    """
+    ends = [np.clip(t + half, t[0], t[-1]) for half in (-_WINDOW / 2, _WINDOW / 2)]
+    early, late = (np.column_stack([np.interp(end, t, each) for each in values.T]) for end in ends)
+    time = np.where(len(t) > 1, ends[1] - ends[0], 1.0)
+    return (late - early) / time[:, None]
 
 
 def _body(path: WalkPath, robot: Robot, index: int) -> Array:

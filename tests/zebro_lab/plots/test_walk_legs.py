@@ -58,7 +58,8 @@ def test_bars_of_contact_are_the_stances_of_each_leg(walked):
     assert low > high  # leg 1 on top
     names = [label.get_text() for label in axes.get_yticklabels()]
     assert names[0] == "1  left front"
-    assert (axes.get_xlabel(), axes.get_xlim()) == ("time [s]", (walked.t[0], walked.t[-1]))
+    assert axes.get_xlabel() == "time [s]"
+    np.testing.assert_allclose(axes.get_xlim(), (walked.t[0] - 0.04, walked.t[-1] + 0.04))
 
 
 def test_a_leg_at_rest_has_no_slip_ratio_whatever_the_solver_leaves_of_it(walked):
@@ -84,3 +85,14 @@ def test_an_impact_beyond_the_axes_is_marked_with_the_largest_force(walked):
 def test_what_is_shaded_and_drawn_has_a_key(walked):
     texts = [text.get_text() for text in paired_traction(walked, title="").legends[0].get_texts()]
     assert texts[:3] == ["leg on the ground", "forward", "to the left"]
+
+
+def test_a_single_ratio_without_neighbours_has_no_mark(walked):
+    ratio = walked.slip_ratio.copy()
+    ratio[:, 0] = np.nan
+    ratio[150, 0] = 0.9  # of a leg that turns
+    figure = slip_ratios(replace(walked, slip_ratio=ratio), title="")
+    assert not any("beyond" in line.get_label() for line in figure.axes[0].lines)
+    ratio[151, 0] = 0.9
+    figure = slip_ratios(replace(walked, slip_ratio=ratio), title="")
+    assert any("furthest 0.9" in line.get_label() for line in figure.axes[0].lines)

@@ -4,9 +4,11 @@
 from dataclasses import replace
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
 from model.robot import Robot
-from zebro_lab.plots.walk_path import motion, orientation, path_with_snapshots
+from zebro_lab.plots.walk_path import mean_rate, motion, orientation, path_with_snapshots
 
 
 def test_snapshots_show_the_body_where_it_is(walked):
@@ -20,14 +22,40 @@ def test_snapshots_show_the_body_where_it_is(walked):
         np.testing.assert_allclose(middle, walked.position[index, :2], atol=0.03)
 
 
-def test_motion_is_drawn_with_its_derivatives(walked):
+def test_motion_is_drawn_with_means_of_its_derivatives(walked):
     panels = np.reshape(motion(walked, title="A walk").axes, (3, 3))
+    inner = slice(10, -10)
     for column in range(3):
         position, speed, _ = (axes.lines[0].get_ydata() for axes in panels[:, column])
         np.testing.assert_array_equal(position, walked.position[:, column])
-        np.testing.assert_allclose(speed, np.gradient(position, walked.t), atol=1e-12)
+        smooth = np.gradient(position, walked.t)
+        np.testing.assert_allclose(speed[inner], smooth[inner], atol=1e-4)
     labels = [axes.get_ylabel() for axes in panels[:, 0]]
-    assert labels == ["position [m]", "velocity [m/s]", "acceleration [m/s²]"]
+    assert labels == [
+        "position [m]",
+        "velocity [m/s],\nmean of 0.1 s",
+        "acceleration [m/s²],\nmean of that in 0.1 s",
+    ]
+
+
+def test_an_impact_of_one_sample_is_spread_over_the_window_and_nothing_is_cut_off(walked):
+    position = walked.position.copy()
+    position[200:, 2] += 0.001
+    for axes in motion(replace(walked, position=position), title="").axes:
+        (line,) = axes.lines
+        low, high = axes.get_ylim()
+        assert low <= line.get_ydata().min() <= line.get_ydata().max() <= high
+    steps = mean_rate(walked.t, position)[:, 2] - mean_rate(walked.t, walked.position)[:, 2]
+    np.testing.assert_allclose(steps.max(), 0.001 / 0.1)
+    moved = np.flatnonzero(steps > 1e-9)
+    assert walked.t[moved[-1]] - walked.t[moved[0]] <= 0.1 + 1e-9
+
+
+@given(st.floats(-5, 5), st.floats(0.001, 0.3), st.integers(1, 60))
+def test_the_mean_rate_of_a_line_is_its_slope_to_both_ends(slope, step, count):
+    t = 3.0 + step * np.arange(count)
+    expected = slope if count > 1 else 0.0
+    np.testing.assert_allclose(mean_rate(t, slope * t[:, None]), expected, atol=1e-9)
 
 
 def test_angles_are_drawn_in_degrees(walked):

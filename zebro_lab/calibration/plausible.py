@@ -18,6 +18,8 @@ LARGEST_SLIP: Final = 1.5
 FRICTION: Final = (0.01, 4.0)
 """Range of the ratio of traction to normal force [-]: ice has 0.02, racing tyres 2."""
 
+_STRAY: Final = 10.0
+"""Ratio of one traction force to the largest normal force that no friction explains [-]."""
 _SLIPPING: Final = 0.02  # slip ratio beyond which traction exceeds the zero error of a load cell
 _FEWEST: Final = 8  # rows that slip, to judge their sign
 _OPPOSED: Final = 0.9  # share of them
@@ -40,7 +42,8 @@ def require_plausible(
     Raises:
         DataError: A radius is above `LARGEST_RADIUS`, most slip ratios computed from speeds are
             beyond `LARGEST_SLIP`, or the ratio of the forces is outside `FRICTION` and the unit of
-            one of them is not stated; or the traction opposes the slip.
+            one of them is not stated; or the traction opposes the slip, or is far beyond the
+            largest normal force in a row.
     """
     if slip.column == "omega_leg":
         _require_radii(table)
@@ -48,6 +51,7 @@ def require_plausible(
     _require_one_sign(table, slip.ratio, traction_force)
     ratio = float(np.quantile(np.abs(traction_force) / normal_force, 0.95))
     if FRICTION[0] <= ratio <= FRICTION[1]:
+        _require_no_stray(table, normal_force, traction_force)
         return ()
     found = (
         f"the traction force is {ratio:.2g} times the normal force, {_typical(traction_force)} to "
@@ -61,6 +65,21 @@ def require_plausible(
         + " and ".join(f'[columns.{name}] unit = "N"' for name in unstated)
         + " if it is right",
         table.required(unstated[0]).name,
+    )
+
+
+def _require_no_stray(table: RigTable, normal_force: Array, traction_force: Array) -> None:
+    """Raise `DataError` at a force that marks a missing value, such as -9999."""
+    limit = _STRAY * float(np.max(normal_force))
+    header = table.required("traction_force").name
+    table.require(
+        "traction_force",
+        np.abs(traction_force) <= limit,
+        lambda value: (
+            f"found {value}, more than {_STRAY:g} times the largest normal force, "
+            f"{limit / _STRAY:.3g} N; if it stands for a missing value, skip such rows with [rows] "
+            f"keep, a condition on `{header}`, in {COLUMNS_FILE}"
+        ),
     )
 
 

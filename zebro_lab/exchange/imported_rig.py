@@ -10,6 +10,7 @@ import numpy as np
 
 from model.counted import counted
 from model.slip.law import Array
+from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hashes
@@ -19,11 +20,13 @@ from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns
-from zebro_lab.tables.rig_table import RigTable, kept_rows
+from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
 from zebro_lab.tables.run_separation import run_times, separate_runs
+from zebro_lab.tables.slip_source import slip
 from zebro_lab.tables.table_files import read_table_file
 
 _NEEDED = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
+_MOSTLY = 0.9  # share of rows
 _ELSE = "give this table to calibrate-slip directly, without import"
 
 
@@ -78,8 +81,8 @@ def rig_runs(
     Raises:
         NotFound: The file does not exist.
         DataError: The table cannot be read or keeps no row, a column or a radius is missing, a cell
-            is no finite number, a radius changes, rows are averages of trials, or time decreases or
-            repeats within a run.
+            is no finite number, a radius changes, rows are averages of trials, time decreases or
+            repeats within a run, or no rig can have measured the numbers.
     """
     raw = read_table_file(path, sheet=columns.sheet)
     table = RigTable(raw, columns, kept_rows(raw, columns))
@@ -87,6 +90,7 @@ def rig_runs(
         raise DataError(f"each row is the mean of a trial, not a sample, as {COLUMNS_FILE} states "
                         f"in [runs] each_row; {_ELSE}", file=path)  # fmt: skip
     _require_columns(table)
+    doubts = _require_plausible(table)
     runs = separate_runs(table, label)
     run_times(table, runs)
     samples = {name: table.si(name) for name in _NEEDED}
@@ -111,6 +115,7 @@ def rig_runs(
     return made, (
         *raw.notes,
         *table.conversions(),
+        *doubts,
         *_left_out(table),
         f"{counted(len(made), 'run')}, {runs.rule}",
     )
@@ -151,6 +156,25 @@ def _require_columns(table: RigTable) -> None:
                     file=table.raw.path,
                 )
             table.required(name)
+
+
+def _require_plausible(table: RigTable) -> tuple[str, ...]:
+    """Check the rows under load as calibrate-slip does, to which a run folder is in SI.
+
+    Raises:
+        DataError: No rig can have measured the numbers, or the normal force is mostly negative.
+    """
+    force, turning = table.si("normal_force"), table.si("omega_leg") != 0
+    if np.mean(force < 0) > _MOSTLY:
+        normal_force(table)
+    rows = table.rows[(force > 0) & turning]
+    if not len(rows):
+        return ()
+    own = {name: c for name, c in table.columns.columns.items() if name != "slip_ratio"}
+    loaded = replace(table, rows=rows, columns=replace(table.columns, columns=own))
+    return require_plausible(
+        loaded, slip(loaded), loaded.si("normal_force"), loaded.si("traction_force")
+    )
 
 
 def _radius(table: RigTable, name: str) -> float:

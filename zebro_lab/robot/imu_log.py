@@ -29,6 +29,8 @@ IMU_UNITS: Final[Mapping[str, str]] = {
 _NORM_TOLERANCE: Final = 0.05
 NEAR_G: Final = 0.15
 _MOST_NAMED: Final = 6  # columns that are not read
+_LARGEST_TILT: Final = 1.0
+"""Largest roll or pitch whose unit nobody states [rad]: a walking body stays upright."""
 _ADVICE: Final = "delete such rows, or fill them"
 
 
@@ -113,8 +115,23 @@ def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, bool]:
     roll, pitch = (_numbers(table, mapping, name) for name in ("roll", "pitch"))
     known = mapping.has(table, "yaw")
     yaw = _numbers(table, mapping, "yaw") if known else np.zeros(len(roll))
+    _require_radians(table, mapping, np.column_stack([roll, pitch]))
     turned = Rotation.from_euler("ZYX", np.column_stack([yaw, pitch, roll]))
     return turned.as_quat(scalar_first=True), known
+
+
+def _require_radians(table: RawTable, mapping: MappedColumns, tilt: Array) -> None:
+    """Raise if a body tilts far in radians whose unit nobody states: they may be degrees."""
+    largest = float(np.max(np.abs(tilt), initial=0.0))
+    if largest <= _LARGEST_TILT or mapping.states_unit(table, "roll"):
+        return
+    raise table.fault(
+        f"roll and pitch go up to {largest:.3g} rad, {np.degrees(largest):.3g} deg, if they are in "
+        f"rad; expected at most {_LARGEST_TILT:g} rad where their unit is not stated: state it, "
+        f'such as [{mapping.where}columns.roll] unit = "deg", and so for pitch and yaw, or "rad" '
+        "if that is right",
+        mapping.mapped["roll"].name,
+    )
 
 
 def _numbers(table: RawTable, mapping: MappedColumns, name: str) -> Array:

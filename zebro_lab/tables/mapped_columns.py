@@ -56,6 +56,16 @@ class MappedColumns:
         header = self.mapped[name].name
         return header in table.columns or header in table.repeated
 
+    def states_unit(self, table: RawTable, name: str) -> bool:
+        """Return whether the map or the file state the unit of a column.
+
+        Args:
+            table: Table with the column.
+            name: Canonical name of the column.
+        """
+        mapped = self.mapped[name]
+        return mapped.unit_stated or table.unit_of(mapped.name, self.units[name]) is not None
+
     def conversions(self, table: RawTable) -> tuple[str, ...]:
         """Return a note of the columns that are converted by the units that the file states.
 

@@ -38,3 +38,30 @@ def test_a_rig_without_speeds_or_with_trials_is_left_to_the_calibration(sweep, t
     (tmp_path / "columns.toml").write_text("[runs]\neach_row = true")
     with pytest.raises(DataError, match="is the mean of a trial"):
         taken(tmp_path, rig=tmp_path / "trials.csv")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"radius_leg": 35.0}, r"radius is 35 m; expected 3 m or less"),
+        ({"traction_force": lambda d: 1000 * d.traction_force}, r"times the normal force, .*unit"),
+        ({"traction_force": lambda d: d.traction_force.where(d.index != 40, -9999)},
+         r"row 41 .*found -9999 N, more than 10 times the largest normal force.*a missing value"),
+        ({"omega_leg": lambda d: d.omega_ground, "omega_ground": lambda d: d.omega_leg},
+         "are the speeds exchanged"),
+        ({"normal_force": lambda d: -d.normal_force}, r"\[columns.normal_force\] sign = -1"),
+    ],
+)  # fmt: skip
+def test_what_no_rig_measures_is_not_imported(sweep, tmp_path, changes, message):
+    table = pd.read_csv(sweep / "sweep.csv").assign(radius_leg=0.035, radius_ground=0.12)
+    table.assign(**changes).to_csv(tmp_path / "a.csv", index=False)
+    with pytest.raises(DataError, match=message):
+        taken(tmp_path, rig=tmp_path / "a.csv")
+    assert not (tmp_path / "data").exists()
+
+
+def test_unloaded_rows_are_imported_too(sweep, tmp_path):
+    table = pd.read_csv(sweep / "sweep.csv").assign(radius_leg=0.035, radius_ground=0.12)
+    table.loc[:9, ["normal_force", "traction_force", "omega_leg"]] = 0.0
+    table.to_csv(tmp_path / "a.csv", index=False)
+    assert len(taken(tmp_path, rig=tmp_path / "a.csv").folders) == 24

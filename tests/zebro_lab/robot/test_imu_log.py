@@ -23,13 +23,20 @@ def read(**columns) -> ImuLog:
     return imu_of_table(RawTable(Path("imu.csv"), series), canonical_columns(IMU_UNITS))
 
 
+def in_radians(**columns) -> ImuLog:
+    """Read angles whose unit the file states: any attitude."""
+    series = {name: pd.Series(values) for name, values in ({"t": T} | columns).items()}
+    raw = RawTable(Path("imu.csv"), series, units={"roll": "rad"})
+    return imu_of_table(raw, canonical_columns(IMU_UNITS))
+
+
 def orientation(log: ImuLog) -> np.ndarray:
     return vars(log)["values"][:, :4]
 
 
 @given(roll=st.floats(-3, 3), pitch=st.floats(-1.5, 1.5), yaw=st.floats(-3, 3))
 def test_angles_and_their_quaternion_are_the_same_orientation(roll, pitch, yaw):
-    by_angles = read(roll=[0.0, roll], pitch=[0.0, pitch], yaw=[0.0, yaw])
+    by_angles = in_radians(roll=[0.0, roll], pitch=[0.0, pitch], yaw=[0.0, yaw])
     quaternion = dict(zip(("qw", "qx", "qy", "qz"), orientation(by_angles).T, strict=True))
     np.testing.assert_array_equal(orientation(read(**quaternion)), orientation(by_angles))
     found = Rotation.from_quat(orientation(by_angles)[1], scalar_first=True).as_matrix()
@@ -37,6 +44,17 @@ def test_angles_and_their_quaternion_are_the_same_orientation(roll, pitch, yaw):
                 * Rotation.from_rotvec([roll, 0, 0])).as_matrix()  # fmt: skip
     np.testing.assert_allclose(found, expected, atol=1e-12)
     assert by_angles.notes == ()
+
+
+@pytest.mark.parametrize("tilt", ["roll", "pitch"])
+def test_a_body_that_tilts_far_without_a_stated_unit_is_asked_about(tilt):
+    level = {"roll": [0.0, 0.0], "pitch": [0.0, 0.0]}
+    with pytest.raises(
+        DataError, match=r"up to 2 rad, 115 deg, .*\[columns\.roll\] unit = \"deg\""
+    ):
+        read(**{**level, tilt: [0.0, -2.0]})
+    assert in_radians(**{**level, tilt: [0.0, -2.0]}).t.tolist() == T
+    read(**{**level, tilt: [0.0, 0.9]}, yaw=[0.0, 9.0])
 
 
 def test_a_specific_force_in_g_is_refused_unless_its_unit_is_stated():

@@ -30,6 +30,9 @@ COVARIANCE: Final = {
     "cov_xx": "m^2", "cov_xy": "m^2", "cov_xyaw": "m rad", "cov_yy": "m^2", "cov_yyaw": "m rad",
     "cov_yawyaw": "rad^2",
 }  # fmt: skip
+FASTEST: Final = 20.0
+"""Largest mean speed of a path whose unit of length nobody states [m/s]."""
+_LEGS_OF_PATH: Final = 21  # so few that noise does not lengthen the path
 MAPPED_UNITS: Final[Mapping[str, str]] = {**POSE_UNITS, "t_sigma": "s", **COVARIANCE}
 """SI unit of each column that `[track.columns]` maps; not every command reads all of them."""
 
@@ -130,6 +133,7 @@ def read_table_columns(
         notes = (*said, *more)
         columns["t_s"] = columns["t_s"] * factor
     _require_radians(table, mapping, columns)
+    _require_metres(table, mapping, columns)
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
     kept, more = kept_stamps(columns["t_s"], poses, fault=fault)
     return TableColumns({n: column[kept] for n, column in columns.items()}, (*notes, *more))
@@ -149,6 +153,23 @@ def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[s
             f'degrees; state its unit in {COLUMNS_FILE}: [track.columns.yaw_rad] unit = "deg", or '
             '"rad" if that is right',
             heading.name,
+        )
+
+
+def _require_metres(table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]) -> None:
+    """Raise `DataError` for positions that no robot reaches in metres, if no unit is stated."""
+    east, t = mapping.mapped["x_m"], columns["t_s"]
+    if east.name == "x_m" or mapping.states_unit(table, "x_m") or not np.ptp(t):
+        return
+    at = np.linspace(0, len(t) - 1, _LEGS_OF_PATH).astype(int)
+    position = np.column_stack([columns["x_m"], columns["y_m"]])[at]
+    speed = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum() / np.ptp(t))
+    if speed > FASTEST:
+        raise table.fault(
+            f"the path goes at {speed:.3g} m/s, if positions are in m; expected at most "
+            f"{FASTEST:g} m/s where their unit is not stated: state it in {COLUMNS_FILE}, such as "
+            f'[{mapping.where}columns.x_m] unit = "mm", and so for y_m, or "m" if that is right',
+            east.name,
         )
 
 

@@ -141,6 +141,18 @@ def test_a_table_is_read_by_its_headers(tmp_path, suffix):
     assert same(read(file)).layout is Layout.TABLE
 
 
+def test_a_path_too_fast_for_metres_is_asked_about_unless_they_are_stated(tmp_path):
+    rows = "".join(f"{t},{150 * t},0\n" for t in range(30))
+    with pytest.raises(
+        DataError, match=r"'x': the path goes at 150 m/s, .*columns.x_m\] unit = \"mm"
+    ):
+        read(written(tmp_path / "a.csv", "t,x,y\n" + rows))
+    for stated in ("t_s,x_m,y_m\n", "t,x [m],y [m]\n"):
+        assert read(written(tmp_path / "a.csv", stated + rows)).poses.position[-1, 0] == 4350
+    milli = read(written(tmp_path / "a.csv", "t,x [mm],y [mm]\n" + rows))
+    assert milli.poses.position[-1, 0] == pytest.approx(4.35)
+
+
 def test_a_flat_table_has_no_place_in_space(tmp_path):
     file = written(tmp_path / "a.csv", "t,x,y,yaw\n0,0,0,0\n1,1,0,0.1\n2,2,0.1,0.2\n")
     trajectory = read(file)

@@ -17,6 +17,7 @@ LOAD_GAP = 1.1  # ratio of successive loads above which they are two levels
 FAR_SCORE = 2.0  # below, a run mean is not far out, however close the others are
 RARE_LEVEL = 0.05  # least share of the runs at a level
 MAX_LOAD_LEVELS = 8
+MISFIT_P = 1e-3  # p-value below which a misfit is none of chance
 
 
 @dataclass(frozen=True)
@@ -32,10 +33,12 @@ class Residuals:
             parameters included, shape (n_runs,) [-].
         inside: Fraction of run means within their predictive 90 % interval [-].
         inside_p: Two-sided binomial p-value of that fraction against 90 % [-].
-        misfit: Root-mean-square residual that is a function of slip and load, over the largest
-            predicted traction; repeated measurements do not average it away; 0 if no two runs
-            share a slip and load [-].
-        misfit_p: p-value of the F test of `misfit` against the scatter between runs; then NaN [-].
+        misfit: Root-mean-square residual that is a function of slip, over the largest predicted
+            traction at its load: of all loads together, or of the worst load if that is none of
+            chance. Repeated measurements do not average it away; 0 if no two runs share a slip and
+            load [-].
+        misfit_p: p-value of the F test of `misfit` against the scatter between runs, of a single
+            load times the number of loads; NaN if no two runs share a slip and load [-].
         r_squared: Fraction of the variance of the fitted block means that is explained [-].
         rmse: Root-mean-square residual of block means [N].
         rmse_over_load: Root-mean-square of each block's residual over its measured load [-].
@@ -70,7 +73,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     score = _run_scores(blocks, residual, factors, blocks.run_mean(predicted.force).std(axis=0))
     inside = int(np.sum(np.abs(score) <= norm.ppf(0.95)))
     whitened = _whiten(blocks, residual, factors)
-    misfit, misfit_p = _structure(blocks, residual)
+    misfit, misfit_p = _structure(blocks, residual, predicted.force.mean(axis=0))
     variance = np.mean((blocks.traction_force - blocks.traction_force.mean()) ** 2)
     return Residuals(
         whitened=whitened,
@@ -78,7 +81,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
         run_score=score,
         inside=inside / blocks.n_runs,
         inside_p=float(binomtest(inside, blocks.n_runs, 0.9).pvalue),
-        misfit=misfit / float(np.abs(predicted.force.mean(axis=0)).max()),
+        misfit=misfit,
         misfit_p=misfit_p,
         r_squared=float(1 - np.mean(residual**2) / variance),
         rmse=float(np.sqrt(np.mean(residual**2))),
@@ -217,25 +220,57 @@ def largest_slips(blocks: SlipBlocks) -> Array:
     )
 
 
-def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
+def _structure(blocks: SlipBlocks, residual: Array, force: Array) -> tuple[float, float]:
     """Split the residual into a part that repeats along the curve and the scatter between runs.
 
-    One-way analysis of variance: the groups are `SLIP_BINS` bins of slip at each of `load_levels`,
-    a group's replicates the means of the runs in it. Returns the standard deviation of the
-    repeating part [N] and the p-value of the F test; 0 and NaN if no group has two runs.
+    The groups are `SLIP_BINS` bins of slip at each of `load_levels`, a group's replicates the means
+    of the runs in it.
+
+    Args:
+        blocks: The block means.
+        residual: Measured minus predicted traction of each block, shape (n,) [N].
+        force: Predicted traction of each block, shape (n,) [N].
+
+    Returns:
+        What repeats, over the largest predicted traction, and its p-value; 0 and NaN if no group
+        has two runs. It is that of one load alone if that is larger and none of chance: over all
+        loads together the small ones hardly count. The largest traction at one load is the load
+        times the largest share of the load at any; its p-value is times the number of loads.
     """
-    level = nearest_level(np.maximum(blocks.normal_force, 1e-9), load_levels(blocks))
+    levels = load_levels(blocks)
+    level = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
     edges = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, SLIP_BINS + 1)[1:-1]))
     group = level * (SLIP_BINS + 1) + np.searchsorted(edges, blocks.slip, side="right")
-    cells, index = np.unique(np.stack([group, blocks.run]), axis=1, return_inverse=True)
-    means = np.bincount(index.ravel(), residual) / np.bincount(index.ravel())
+    found = [_repeating(residual / np.abs(force).max(), group, blocks.run)]
+    peaks = [np.abs(force[level == i]).max(initial=0.0) for i in range(len(levels))]
+    share = float((peaks / levels).max())
+    for i, load in enumerate(levels):
+        mine = level == i
+        misfit, p = _repeating(residual[mine] / (share * load), group[mine], blocks.run[mine])
+        found.append((misfit, p * len(levels)))
+    return max(found, key=lambda each: each[0] * (each[1] < MISFIT_P))
+
+
+def _repeating(
+    values: Array, group: NDArray[np.intp], run: NDArray[np.intp]
+) -> tuple[float, float]:
+    """Split values by a one-way analysis of variance over the means of each run in each group.
+
+    Returns the standard deviation of what repeats in the groups, and the p-value of the F test; 0
+    and NaN if no group has two runs. The means of one run in several groups, as in a sweep, share
+    its offset: they count as one for the degrees of freedom.
+    """
+    cells, index = np.unique(np.stack([group, run]), axis=1, return_inverse=True)
+    means = np.bincount(index.ravel(), values) / np.bincount(index.ravel())
     _, member = np.unique(cells[0], return_inverse=True)
     size = np.bincount(member)
-    centre = np.bincount(member, means) / size
     spare = len(means) - len(size)
     if spare < 1:
         return 0.0, float("nan")
+    centre = np.bincount(member, means) / size
     between = np.sum(size * centre**2) / len(size)
     within = np.sum((means - centre[member]) ** 2) / spare
     repeating = max(0.0, float(between - within) / float(size.mean()))
-    return float(np.sqrt(repeating)), float(f.sf(between / max(within, 1e-300), len(size), spare))
+    shared = len(means) / len(np.unique(cells[1]))  # groups of a run
+    p = f.sf(between / max(within, 1e-300), len(size) / shared, spare / shared)
+    return float(np.sqrt(repeating)), float(p)

@@ -20,7 +20,7 @@ from model.bayes.advice import (
 from model.bayes.blocks import SlipBlocks
 from model.bayes.convergence import Convergence
 from model.bayes.likelihood import predict_blocks
-from model.bayes.residuals import Residuals, far_runs, largest_slips, load_levels
+from model.bayes.residuals import MISFIT_P, Residuals, far_runs, largest_slips, load_levels
 from model.bayes.rise import sampled_rise
 from model.slip.law import Array, SlipLaw
 
@@ -31,7 +31,6 @@ MOST_NAMED = 3  # runs that evidence names
 MIN_P = 0.01  # p-value of the share of run means inside their intervals
 FEWEST_RUNS = 3  # with fewer, none of them inside has a p-value of 0.01 or more
 MAX_MISFIT = 0.05  # of the peak force
-MISFIT_P = 1e-3  # p-value below which a larger misfit fails the check
 MAX_OFFSET_SHARE = 0.2  # of the force variance, explained by run offsets
 MAX_OFFSET_RATIO = 3.0  # a half-normal exceeds three scales once in 370
 MIN_CONTRACTION = 0.75  # the posterior half as wide as the prior
@@ -237,10 +236,10 @@ def _run_advice(residuals: Residuals, far: list[str]) -> Advice:
 
 
 def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks) -> Check:
-    """Check that the misfit that all runs share is small or not significant.
+    """Check that the misfit that all runs share is small or not significant, at each load too.
 
-    It fails above `MAX_MISFIT` of the peak force with a p-value below `MISFIT_P`. Not testable if
-    no two runs share a slip and load.
+    It fails above `MAX_MISFIT` of the peak force at its load with a p-value below `MISFIT_P`. Not
+    testable if no two runs share a slip and load.
     """
     name = "the law fits the shape of the curve"
     if np.isnan(residuals.misfit_p):

@@ -200,14 +200,53 @@ def test_misfit_measures_what_repeats_and_not_the_scatter_of_runs():
     assert found.misfit_p > 0.01
 
 
-def test_the_misfits_size_is_the_planted_one():
-    data = sweep()
-    planted = np.where(data.normal_force > 10, 0.3, -0.3)
-    found = analyse_residuals(
-        replace(data, traction_force=data.traction_force + planted), LAW, parameters()
+def planted(data, share, *, at=LOADS):
+    """Add a share of the peak at their load to the tractions of some loads."""
+    load = np.array(LOADS)[nearest_level(data.normal_force, np.array(LOADS))]
+    peak = np.max(np.abs(predict_blocks(data, LAW, parameters()).force[0]) / load) * load
+    return replace(
+        data, traction_force=data.traction_force + np.where(np.isin(load, at), share * peak, 0.0)
     )
-    peak = np.abs(predict_blocks(data, LAW, parameters()).force).max()
-    assert found.misfit * peak == pytest.approx(0.3, rel=0.1)
+
+
+def test_the_misfits_size_is_the_planted_one():
+    found = analyse_residuals(planted(sweep(), -0.1), LAW, parameters())
+    assert found.misfit == pytest.approx(0.1, rel=0.15)
+
+
+@pytest.mark.parametrize("load", LOADS)
+def test_a_single_load_that_the_law_misses_is_found_however_small(load):
+    data = sweep(repeats=2)
+    found = analyse_residuals(planted(data, 0.12, at=(load,)), LAW, parameters())
+    assert found.misfit == pytest.approx(0.12, rel=0.25)
+    assert found.misfit_p < 1e-3
+    assert analyse_residuals(data, LAW, parameters()).misfit_p > 0.01
+
+
+def as_sweeps(data, runs):
+    """Return the blocks of each load as runs that sweep all slips, `runs` a load."""
+    level = nearest_level(data.normal_force, np.array(LOADS))
+    order = np.argsort(level, kind="stable")
+    turn = np.arange(len(data)) % (len(data) // 3) % runs
+    order = order[np.lexsort((turn, level[order]))]
+    run = np.repeat(np.arange(3 * runs), len(data) // (3 * runs))
+    kept = {
+        name: getattr(data, name)[order]
+        for name in ("slip", "normal_force", "slip_wander", "slip_error", "count",
+                     "load_variance", "load_skewness", "slip_load_covariance")
+    }  # fmt: skip
+    return replace(
+        data, **kept, run=run, run_names=tuple(map(str, range(3 * runs))),
+        traction_force=np.zeros(len(data)), run_slip_error=np.full(3 * runs, 5e-7),
+    )  # fmt: skip
+
+
+def test_few_sweeps_with_offsets_are_not_taken_for_a_misfit():
+    rng = np.random.default_rng(3)
+    plain = as_sweeps(blocks(np.linspace(0.0, 0.6, 30), LOADS, rng), runs=3)
+    values = parameters(offset_spread=0.15)
+    found = [analyse_residuals(with_traction(plain, rng, values), LAW, values) for _ in range(30)]
+    assert sum(each.misfit_p < 0.01 for each in found) <= 1  # 6, if each bin of a sweep counted
 
 
 def test_where_nothing_is_repeated_there_is_no_claim_of_misfit():

@@ -7,15 +7,16 @@ from pathlib import Path
 import pytest
 
 from zebro_lab.calibration.coulomb_argument import MOST_FRICTION
-from zebro_lab.calibration.plausible import FRICTION, LARGEST_RADIUS, LARGEST_SLIP
+from zebro_lab.calibration.plausible import FRICTION, LARGEST_RADIUS, LARGEST_SLIP, STRAY
 from zebro_lab.robot.gait_argument import LEAST_DEG
-from zebro_lab.robot.imu_log import NEAR_G
+from zebro_lab.robot.imu_log import LARGEST_TILT, NEAR_G
 from zebro_lab.robot.leg_gaps import LONGEST_BRIDGED
 from zebro_lab.robot.leg_log import LONGEST_TURN, LONGEST_WRAPPED
 from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.robot.robot_file import HEAVIEST, LARGEST
 from zebro_lab.tables.mapped_columns import INTERVALS
 from zebro_lab.track.photo_sequence import MOST_APART
+from zebro_lab.track.trajectory.table import FASTEST
 from zebro_lab.walk.request import LONGEST_SLIPPING_STEP, LONGEST_STEP
 from zebro_lab.walk.walking import MOST_STEPS
 
@@ -24,6 +25,7 @@ LIMITS = {
     "radii of a rig's discs": (LARGEST_RADIUS,),
     "slip ratio computed": (LARGEST_SLIP,),
     "traction over normal force": FRICTION,
+    "one traction force": (STRAY,),
     "`--slip coulomb:MU`": (MOST_FRICTION,),
     "lengths in `robot.toml`": (LARGEST,),
     "mass in `robot.toml`": (HEAVIEST,),
@@ -35,6 +37,8 @@ LIMITS = {
     "turn of a leg": (LONGEST_TURN, LONGEST_WRAPPED),
     "gap in a leg log": (LONGEST_BRIDGED,),
     "specific force": (1, NEAR_G),
+    "roll and pitch": (LARGEST_TILT,),
+    "mean speed of a path": (FASTEST,),
     "`--interval`": (MOST_APART, 1 / MOST_APART),
 }
 """Limits of each row, by the beginning of what it is about, in the order of its second column."""

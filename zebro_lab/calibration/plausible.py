@@ -18,7 +18,7 @@ LARGEST_SLIP: Final = 1.5
 FRICTION: Final = (0.01, 4.0)
 """Range of the ratio of traction to normal force [-]: ice has 0.02, racing tyres 2."""
 
-_STRAY: Final = 10.0
+STRAY: Final = 10.0
 """Ratio of one traction force to the largest normal force that no friction explains [-]."""
 _SLIPPING: Final = 0.02  # slip ratio beyond which traction exceeds the zero error of a load cell
 _FEWEST: Final = 8  # rows that slip, to judge their sign
@@ -70,14 +70,14 @@ def require_plausible(
 
 def _require_no_stray(table: RigTable, normal_force: Array, traction_force: Array) -> None:
     """Raise `DataError` at a force that marks a missing value, such as -9999."""
-    limit = _STRAY * float(np.max(normal_force))
+    limit = STRAY * float(np.max(normal_force))
     header = table.required("traction_force").name
     table.require(
         "traction_force",
         np.abs(traction_force) <= limit,
         lambda value: (
-            f"found {value}, more than {_STRAY:g} times the largest normal force, "
-            f"{limit / _STRAY:.3g} N; if it stands for a missing value, skip such rows with [rows] "
+            f"found {value}, more than {STRAY:g} times the largest normal force, "
+            f"{limit / STRAY:.3g} N; if it stands for a missing value, skip such rows with [rows] "
             f"keep, a condition on `{header}`, in {COLUMNS_FILE}"
         ),
     )

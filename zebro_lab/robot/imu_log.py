@@ -29,7 +29,7 @@ IMU_UNITS: Final[Mapping[str, str]] = {
 _NORM_TOLERANCE: Final = 0.05
 NEAR_G: Final = 0.15
 _MOST_NAMED: Final = 6  # columns that are not read
-_LARGEST_TILT: Final = 1.0
+LARGEST_TILT: Final = 1.0
 """Largest roll or pitch whose unit nobody states [rad]: a walking body stays upright."""
 _ADVICE: Final = "delete such rows, or fill them"
 
@@ -123,11 +123,11 @@ def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, bool]:
 def _require_radians(table: RawTable, mapping: MappedColumns, tilt: Array) -> None:
     """Raise if a body tilts far in radians whose unit nobody states: they may be degrees."""
     largest = float(np.max(np.abs(tilt), initial=0.0))
-    if largest <= _LARGEST_TILT or mapping.states_unit(table, "roll"):
+    if largest <= LARGEST_TILT or mapping.states_unit(table, "roll"):
         return
     raise table.fault(
         f"roll and pitch go up to {largest:.3g} rad, {np.degrees(largest):.3g} deg, if they are in "
-        f"rad; expected at most {_LARGEST_TILT:g} rad where their unit is not stated: state it, "
+        f"rad; expected at most {LARGEST_TILT:g} rad where their unit is not stated: state it, "
         f'such as [{mapping.where}columns.roll] unit = "deg", and so for pitch and yaw, or "rad" '
         "if that is right",
         mapping.mapped["roll"].name,

@@ -18,7 +18,7 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_kinds import looks_like_other
 
 INTERVALS: Final = (2e-5, 2.0)
-"""Range of the median time between samples of legs or an IMU whose unit is not stated [s]."""
+"""Range of the median time between samples of a table whose unit of time is not stated [s]."""
 
 _FRAMES: Final = re.compile(
     r"(frame|sample|packet|record|scan|index|bild)[ _]*(#|no\.?|nr\.?|number|counter|index)?",
@@ -138,17 +138,33 @@ class MappedColumns:
         stated = mapped.unit_stated or mapped.name in table.units
         if mapped.name != name:  # the ending of t_s itself is no statement of who wrote the file
             stated = stated or table.unit_of(mapped.name, "s") is not None
-        usual = float(np.median(np.diff(values))) if len(values) > 1 else 0.0
-        if usual <= 0 or stated or INTERVALS[0] <= usual <= INTERVALS[1]:
-            return values
-        unit = "ms" if usual > 1 else "min"
-        raise table.fault(
-            f"samples are {usual:.3g} s apart, {np.ptp(values):.5g} s in all, if times are in s; "
-            f"expected {INTERVALS[0]:g} to {INTERVALS[1]:g} s between samples: state the unit in "
-            f'{COLUMNS_FILE}, such as [{self.where}columns.{name}] unit = "{unit}", or "s" if that '
-            "is right",
-            mapped.name,
-        )
+        if not stated:
+            require_usual_steps(table, mapped.name, np.diff(values), f"{self.where}columns.{name}")
+        return values
+
+
+def require_usual_steps(table: RawTable, header: str, steps: Array, section: str) -> None:
+    """Check that times whose unit nobody states are those of samples, if they are in seconds.
+
+    Args:
+        table: The table.
+        header: Header of its column of times.
+        steps: Differences of successive times, those between runs left out, shape (n,) [s].
+        section: Dotted section of the column in a `columns.toml`, for the message.
+
+    Raises:
+        DataError: Half of the steps or more are outside `INTERVALS`.
+    """
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    if usual <= 0 or INTERVALS[0] <= usual <= INTERVALS[1]:
+        return
+    unit = "ms" if usual > 1 else "min"
+    raise table.fault(
+        f"samples are {usual:.3g} s apart, {steps.sum():.5g} s in all, if times are in s; "
+        f"expected {INTERVALS[0]:g} to {INTERVALS[1]:g} s between samples: state the unit in "
+        f'{COLUMNS_FILE}, such as [{section}] unit = "{unit}", or "s" if that is right',
+        header,
+    )
 
 
 def _frames(table: RawTable) -> str:

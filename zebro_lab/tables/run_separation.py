@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from model.slip.law import Array
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.mapped_columns import require_usual_steps
 from zebro_lab.tables.rig_table import RigTable
 
 
@@ -66,7 +67,8 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
 
     Raises:
         DataError: Time repeats or decreases within a run, is not a finite number, or is mapped to
-            a header that the table lacks.
+            a header that the table lacks; or it is in no unit that is stated, and does not fit
+            seconds.
     """
     if table.columns.runs.each_row or table.source_of("t") is None:
         return None
@@ -87,6 +89,9 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
         ~inside | (step > 0),
         lambda value: f"time {value} repeats within a run; delete the copy, or {advice}",
     )
+    source = table.required("t")
+    if not (table.raw.path.is_dir() or source.unit_stated or table.raw.unit_of(source.name, "s")):
+        require_usual_steps(table.raw, source.name, step[inside], "columns.t")
     return time
 
 

@@ -49,6 +49,7 @@ def test_a_rig_without_speeds_or_with_trials_is_left_to_the_calibration(sweep, t
          r"row 41 .*found -9999 N, more than 10 times the largest normal force.*a missing value"),
         ({"omega_leg": lambda d: d.omega_ground, "omega_ground": lambda d: d.omega_leg},
          "are the speeds exchanged"),
+        ({"t": lambda d: 1e5 * d.t}, r"samples are \d+ s apart.*\[columns.t\] unit = \"ms\""),
         ({"normal_force": lambda d: -d.normal_force}, r"\[columns.normal_force\] sign = -1"),
     ],
 )  # fmt: skip

@@ -54,3 +54,15 @@ def test_time_increases_within_a_run_and_may_restart_with_another(tmp_path, t, m
     samples = read_rig_data([path]).samples
     assert samples.run_names == ("rig trial=a", "rig trial=b")
     np.testing.assert_array_equal(samples.time[4:6], [0.016, t])
+
+
+def test_times_that_are_no_seconds_are_asked_about_and_pauses_between_runs_are_not(tmp_path):
+    table = given_slip().assign(t=np.arange(N) * 5.0, run=np.repeat([1, 2], N // 2))
+    with pytest.raises(
+        DataError, match=r"'t': samples are 5 s apart.*\[columns\.t\] unit = \"ms\""
+    ):
+        read_rig_data([write(tmp_path / "1", table)])
+    paused = table.assign(t=np.arange(N) * 0.1 + 1e6 * table.run)
+    assert read_rig_data([write(tmp_path / "2", paused)]).samples.n_runs == 2
+    columns(write(tmp_path / "3", table).parent, "columns.t.unit = 's'")
+    assert read_rig_data([tmp_path / "3" / "rig.csv"]).samples.time is not None

@@ -133,10 +133,11 @@ def read_table_columns(
         notes = (*said, *more)
         columns["t_s"] = columns["t_s"] * factor
     _require_radians(table, mapping, columns)
-    _require_metres(table, mapping, columns)
+    metres = _require_metres(table, mapping, columns)
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
     kept, more = kept_stamps(columns["t_s"], poses, fault=fault)
-    return TableColumns({n: column[kept] for n, column in columns.items()}, (*notes, *more))
+    notes = (*notes, *metres, *more)
+    return TableColumns({n: column[kept] for n, column in columns.items()}, notes)
 
 
 def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]) -> None:
@@ -156,14 +157,21 @@ def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[s
         )
 
 
-def _require_metres(table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]) -> None:
-    """Raise `DataError` for positions that no robot reaches in metres, if no unit is stated."""
+def _require_metres(
+    table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]
+) -> tuple[str, ...]:
+    """Return a note on positions whose unit nobody states: they are taken in metres.
+
+    Raises:
+        DataError: In metres they would be those of no robot.
+    """
     east, t = mapping.mapped["x_m"], columns["t_s"]
-    if east.name == "x_m" or mapping.states_unit(table, "x_m") or not np.ptp(t):
-        return
+    if east.name == "x_m" or mapping.states_unit(table, "x_m"):
+        return ()
     at = np.linspace(0, len(t) - 1, _LEGS_OF_PATH).astype(int)
     position = np.column_stack([columns["x_m"], columns["y_m"]])[at]
-    speed = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum() / np.ptp(t))
+    way = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum())
+    speed = way / float(np.ptp(t) or np.inf)
     if speed > FASTEST:
         raise table.fault(
             f"the path goes at {speed:.3g} m/s, if positions are in m; expected at most "
@@ -171,6 +179,7 @@ def _require_metres(table: RawTable, mapping: MappedColumns, columns: Mapping[st
             f'[{mapping.where}columns.x_m] unit = "mm", and so for y_m, or "m" if that is right',
             east.name,
         )
+    return (f"positions ('{east.name}', …) are taken in m, since no unit of them is stated",)
 
 
 def recognised(table: RawTable, mapping: MappedColumns) -> MappedColumns:

@@ -149,7 +149,10 @@ def test_a_path_too_fast_for_metres_is_asked_about_unless_they_are_stated(tmp_pa
         read(written(tmp_path / "a.csv", "t,x,y\n" + rows))
     for stated in ("t_s,x_m,y_m\n", "t,x [m],y [m]\n"):
         assert read(written(tmp_path / "a.csv", stated + rows)).poses.position[-1, 0] == 4350
+    slow = read(written(tmp_path / "a.csv", "t,x,y\n0,0,0\n1,1,0\n2,2,0\n"))
+    assert slow.notes[0].startswith("a.csv: positions ('x', …) are taken in m, since no unit")
     milli = read(written(tmp_path / "a.csv", "t,x [mm],y [mm]\n" + rows))
+    assert not any("taken in m" in note for note in milli.notes)
     assert milli.poses.position[-1, 0] == pytest.approx(4.35)
 
 

@@ -31,7 +31,7 @@ from zebro_lab.plots.sheet import (
 
 _QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CURVES = 400  # draws whose curves make the bands
-_LINE = 0.015  # of the height of a panel: a band that is narrower hides behind the line
+_LINE = 0.02  # of the height of a panel: a band that is narrower is hardly seen beside the line
 _NEAR_LOAD = 0.1  # relative load difference beyond which a block is not comparable with the curve
 
 
@@ -64,23 +64,26 @@ def slip_curves(
     """
     curves = _load_curves(blocks, law, draws, np.sort(np.ravel(np.asarray(load_levels, float))))
     reach = _narrow_reach(blocks, curves)
-    hidden = all(curve.is_narrow() for curve in curves)
     groups = math.ceil(math.sqrt(len(curves))) if reach is None else 1 + (len(curves) > 4)
     rows, width = math.ceil(len(curves) / groups), 1 if reach is None else 2
     sides = max(7.0, 3.2 * groups * width), 1.2 + 2.2 * max(rows, 1.6)
     figure = new_figure("Slip curve by load", simulated, width=sides[0], height=sides[1])
     grid = figure.add_gridspec(rows, groups * width)
+    drawn: list[tuple[list[Axes], _LoadCurve]] = []
     for index, curve in enumerate(curves):
         row, column = index // groups, index % groups * width
         cells = [grid[row, column + i] for i in range(width)]
         panels = _draw_load(figure, cells, blocks, curve, reach)
-        for axes in panels:
-            _draw_bands(axes, curve, hidden=hidden)
+        drawn.append((panels, curve))
         if column == 0:
             panels[0].set_ylabel(TRACTION_LABEL)
         if index + groups >= len(curves):  # the last panel of its column
             for axes in panels:
                 axes.set_xlabel(slip_label(blocks.definition))
+    hidden = all(curve.width() < _LINE * np.ptp(panels[0].get_ylim()) for panels, curve in drawn)
+    for panels, curve in drawn:
+        for axes in panels:
+            _draw_bands(axes, curve, hidden=hidden)
     legend_below(figure, columns=3)
     return figure
 
@@ -95,10 +98,9 @@ class _LoadCurve:
     bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
     peaks: Array  # shape (0 to 2, 2): slip [-] and force [N] of driving, then of braking peak
 
-    def is_narrow(self) -> bool:
-        """Return whether the band of 90 % is mostly not wider than a line."""
-        width = float(np.median(self.bands[-1] - self.bands[0]))  # not where the curve is steep
-        return width < _LINE * float(np.ptp(self.bands))
+    def width(self) -> float:
+        """Return the median width of the band of 90 %, not that where the curve is steep [N]."""
+        return float(np.median(self.bands[-1] - self.bands[0]))
 
     def main_peak(self) -> tuple[float, float] | None:
         """Return slip [-] and force [N] of the driving peak, else the braking one, else None."""
@@ -188,7 +190,7 @@ def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
 def _draw_bands(axes: Axes, curve: _LoadCurve, *, hidden: bool) -> None:
     """Draw the bands of curves; `hidden`: none is wider than the line, which their key says."""
     low, lower, _, upper, high = curve.bands
-    note = ": mostly within the line" if hidden else ""
+    note = ": hardly wider than the line" if hidden else ""
     axes.fill_between(
         curve.slip, low, high, color=tint(0.25), lw=0, zorder=0.5, label=f"90 % of curves{note}"
     )

@@ -22,6 +22,7 @@ from zebro_lab.plots.sheet import (
 from zebro_lab.validation.compare.values import Comparison, Curve, RunPaths
 
 _COLOURS = (BLUE, RED)
+_DOTS = (6.0, 3.5)  # points: a dot under another is seen as a ring
 _SHOWN_DRAWS = 40
 _TITLE_LETTERS = 70  # in a line of the title above the differences
 _CLEAR = "90 % interval of a difference, zero outside"
@@ -30,7 +31,9 @@ _UNCLEAR = "90 % interval of a difference, zero inside"
 
 @styled
 def overlay(compared: Comparison, differences: Sequence[Difference], *, simulated: bool) -> Figure:
-    """Draw both curves or paths overlaid; below, differences over half their 90 % intervals.
+    """Draw both curves or paths overlaid, and differences over half their 90 % intervals.
+
+    The differences are below curves, and right of paths.
 
     Args:
         compared: The comparison.
@@ -42,18 +45,22 @@ def overlay(compared: Comparison, differences: Sequence[Difference], *, simulate
     """
     title = f"{compared.names[0]} and {compared.names[1]}"
     n = len(compared.quantities)
-    figure = new_figure(title, simulated, width=9.0, height=4.6 + 0.25 * n)
-    columns = max(len(compared.curves), 1)
-    grid = figure.add_gridspec(2, columns, height_ratios=(3.6, 0.6 + 0.25 * n))
     if compared.curves:
+        figure = new_figure(title, simulated, width=9.0, height=4.6 + 0.25 * n)
+        columns = len(compared.curves)
+        grid = figure.add_gridspec(2, columns, height_ratios=(3.6, 0.6 + 0.25 * n))
         panels = [figure.add_subplot(grid[0, i]) for i in range(columns)]
         for axes, curve in zip(panels, compared.curves, strict=True):
             _draw_curve(axes, curve, _marked(compared))
             axes.set_xlabel(slip_label(compared.definition))
         panels[0].set_ylabel(TRACTION_LABEL)
+        below, letters = figure.add_subplot(grid[1, :]), _TITLE_LETTERS
     else:
-        _draw_paths(figure.add_subplot(grid[0, 0]), compared.paths, compared.names)
-    _draw_differences(figure.add_subplot(grid[1, :]), compared, differences)
+        figure = new_figure(title, simulated, width=9.0, height=5.2)
+        above, below = figure.subplots(1, 2, width_ratios=(1.4, 1.0))
+        _draw_paths(above, compared.paths, compared.names)
+        letters = _TITLE_LETTERS // 2
+    _draw_differences(below, compared, differences, letters=letters)
     legend_below(figure, columns=4)
     return figure
 
@@ -77,21 +84,23 @@ def _draw_curve(axes: Axes, curve: Curve, names: Sequence[str]) -> None:
 
 
 def _draw_paths(axes: Axes, runs: Sequence[RunPaths], names: Sequence[str]) -> None:
-    for run, colour, name in zip(runs, _COLOURS, names, strict=True):
+    for run, colour, name, dot in zip(runs, _COLOURS, names, _DOTS, strict=True):
         if run.band is not None:
             for position in run.band.position[:_SHOWN_DRAWS]:
                 axes.plot(*position.T, color=colour, lw=0.5, alpha=0.2)
             axes.plot([], [], color=colour, lw=1.0, label=f"{name}, predicted")
         if run.track is not None:
             axes.plot(
-                *run.track.position.T, ls="none", marker="o", ms=4, color=colour,
+                *run.track.position.T, ls="none", marker="o", ms=dot, color=colour,
                 label=f"{name}, tracked",
             )  # fmt: skip
     map_axes(axes)
     axes.set_xlabel("x from the start [m]")
 
 
-def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Difference]) -> None:
+def _draw_differences(
+    axes: Axes, compared: Comparison, differences: Sequence[Difference], *, letters: int
+) -> None:
     """Draw each difference, a row per quantity, over half the width of its 90 % interval."""
     for i, each in enumerate(differences):
         half = 0.5 * (each.high - each.low) or 1.0
@@ -105,5 +114,5 @@ def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Di
     axes.set_yticks(range(len(differences)), [q.name for q in compared.quantities])
     axes.invert_yaxis()
     title = f"difference: {compared.names[1]} minus {compared.names[0]}"
-    axes.set_title(textwrap.fill(title, _TITLE_LETTERS), loc="left", parse_math=False)
+    axes.set_title(textwrap.fill(title, letters), loc="left", parse_math=False)
     axes.set_xlabel("difference over half its 90 % interval [-]")

@@ -65,7 +65,7 @@ def test_a_mixed_folder_goes_the_whole_way(command, data):
     assert f"left out, runs of another kind than slip-rig: {one.name} (walk)" in plain(said)
     assert f"{cut.name}: log.mcap is incomplete" in plain(said)
     assert cut_walk.is_dir()
-    assert "legs and floor fitted to 2 walk(s)" in plain(said)
+    assert "legs and floor fitted to 2 walks" in plain(said)
     for walked in (one, two):
         command("predict", walked, "--slip", "calibration", "--draws", 60)
         command("plot", walked)

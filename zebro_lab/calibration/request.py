@@ -65,7 +65,7 @@ class CalibrationRequest:
             help="Relative gain error (sd) of the load cell [-]; default: columns.toml's, else "
             "0.01."
         ),
-        Limits(above=0.0, most=1.0),
+        Limits(above=0.0, most=0.2, advice="1 % is 0.01"),
     ] = None
     ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
     max_steps: Annotated[

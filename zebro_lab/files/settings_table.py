@@ -11,7 +11,7 @@ from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import factor_to_si, quantity_to_si
 
 _NO_UNIT: Final = "dimensionless"
-_SMALLER: Final = {"m": ("cm", "mm"), "kg": ("g", "g")}
+_SMALLER: Final = {"m": ("cm", "mm"), "kg": ("g", "g"), _NO_UNIT: ("%", "%")}
 """Units that a number beyond the usual may be meant in: up to ten times beyond, and farther."""
 
 

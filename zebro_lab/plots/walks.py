@@ -7,6 +7,7 @@ from scipy.stats import norm
 
 from model.bayes.walks.posterior import Contraction, WalkPosterior
 from model.bayes.walks.prior import UNITS
+from model.counted import counted
 from zebro_lab.files.units import shown_unit
 from zebro_lab.plots.sheet import BLUE, legend_below, new_figure, styled
 
@@ -26,7 +27,7 @@ def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
     """
     parameters = posterior.contractions()
     rows = -(-len(parameters) // _COLUMNS)
-    title = f"Legs and floor after {len(posterior.walks)} walk(s): prior and posterior"
+    title = f"Legs and floor after {counted(len(posterior.walks), 'walk')}: prior and posterior"
     figure = new_figure(title, simulated, width=9.0, height=1.9 * rows + 0.8)
     axes = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
     values = posterior.with_wrong_legs()

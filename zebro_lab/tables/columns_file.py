@@ -27,6 +27,8 @@ DOUBT: Final = "?"
 _GUESSED: Final = ("columns", "constants", "runs")
 
 _CONSTANTS = {"radius_leg": "m", "radius_ground": "m"}
+LARGEST_LOAD_CELL_ERROR = 0.2
+"""Largest relative error or crosstalk of a load cell that a number without a unit can state [-]."""
 _LOAD_CELL = {
     "zero_stability": "N",
     "gain_sd": "dimensionless",
@@ -70,7 +72,7 @@ def parse_columns(table: SettingsTable) -> Columns:
         constants=_quantities(table.table("constants"), _CONSTANTS),
         runs=_runs(table),
         keep=_keep(table.table("rows")),
-        load_cell=_quantities(table.table("load_cell"), _LOAD_CELL, least=0.0),
+        load_cell=_load_cell(table.table("load_cell")),
     )
     table.finish()
     return columns_file
@@ -250,11 +252,16 @@ def _keep(rows: SettingsTable) -> tuple[RowCondition, ...]:
         raise rows.fault(str(error), "keep") from error
 
 
-def _quantities(
-    table: SettingsTable, units: Mapping[str, str], *, least: float = -math.inf
-) -> dict[str, float]:
+def _quantities(table: SettingsTable, units: Mapping[str, str]) -> dict[str, float]:
+    return {key: table.quantity(key, unit) for key, unit in units.items() if key in table}
+
+
+def _load_cell(table: SettingsTable) -> dict[str, float]:
+    usual = {"dimensionless": LARGEST_LOAD_CELL_ERROR}
     return {
-        key: table.quantity(key, unit, least=least) for key, unit in units.items() if key in table
+        key: table.quantity(key, unit, least=0.0, usual=usual.get(unit, math.inf))
+        for key, unit in _LOAD_CELL.items()
+        if key in table
     }
 
 

@@ -9,6 +9,7 @@ from rich.text import Text
 from model.bayes.estimate import informed
 from model.bayes.walks.posterior import Contraction, WalkPosterior
 from model.bayes.walks.prior import FALL, UNITS
+from model.counted import counted
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import shown_unit
 from zebro_lab.terminal.messages import plain
@@ -43,7 +44,8 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
 
 
 def _parameter_table(posterior: WalkPosterior) -> Table:
-    title = f"legs and floor fitted to {len(posterior.walks)} walk(s): {', '.join(posterior.walks)}"
+    walks = counted(len(posterior.walks), "walk")
+    title = f"legs and floor fitted to {walks}: {', '.join(posterior.walks)}"
     numbers = ("prior", "posterior", "unit", "informed")
     table = plain_table(title, ("parameter",), numbers, no_wrap=True)
     for each, unit in zip(posterior.contractions(), UNITS, strict=True):

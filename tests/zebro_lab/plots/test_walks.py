@@ -27,5 +27,5 @@ def test_every_parameter_has_prior_and_posterior_in_its_unit():
     middle = [bar.get_x() + bar.get_width() / 2 for bar in leg.patches if bar.get_height() > 0]
     assert np.mean(middle) == pytest.approx(np.degrees(OFF), abs=0.1)
     assert leg.get_xlabel() == "[deg]"
-    title = "Legs and floor after 2 walk(s): prior and posterior (simulated)"
+    title = "Legs and floor after 2 walks: prior and posterior (simulated)"
     assert figure.get_suptitle() == title

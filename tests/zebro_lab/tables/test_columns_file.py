@@ -106,6 +106,7 @@ def test_byte_order_mark_is_accepted(tmp_path):
         ("[runs]\neach_row = 1", "runs.each_row: found 1; expected true or false"),
         ("[rows]\nkeep = ['slip']", "rows.keep: 'slip' is not a condition"),
         ("[load_cell]\ngain = 0.1", "load_cell.gain: unknown key; did you mean 'gain_sd'"),
+        ("[load_cell]\ngain_sd = 1", r"gain_sd: is 1, which is improbable; .* such as \"1 %\" "),
         ("[load_cell]\ngain_sd = -0.1", "load_cell.gain_sd: is -0.1; expected 0 or more"),
         ("[columns", "cannot be read as TOML"),
     ],

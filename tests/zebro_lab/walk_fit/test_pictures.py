@@ -14,7 +14,7 @@ def test_parameters_and_each_walk_left_out_are_drawn(tmp_path, monkeypatch):
     titles = {name: figure.get_suptitle() for name, figure in saved.items()}
     title = "Prediction and track: {}, from a fit of the other walks (simulated)"
     assert titles == {
-        "walk_parameters.png": "Legs and floor after 2 walk(s): prior and posterior (simulated)",
+        "walk_parameters.png": "Legs and floor after 2 walks: prior and posterior (simulated)",
         "left_out.one.png": title.format("one"),
         "left_out.two.png": title.format("two"),
     }

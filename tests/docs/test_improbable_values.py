@@ -41,7 +41,7 @@ LIMITS = {
     "specific force": (1, NEAR_G),
     "roll and pitch": (LARGEST_TILT,),
     "mean speed of a path": (FASTEST,),
-    "`--interval`": (MOST_APART, 1 / MOST_APART),
+    "interval by": (MOST_APART, 1 / MOST_APART),
 }
 """Limits of each row, by the beginning of what it is about, in the order of its second column."""
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.counted import counted
 from tracking.camera.lens import Array
 from tracking.errors import PhotoError, TimesError
 from tracking.images.read import open_picture
@@ -156,7 +157,8 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
     times = {row["photo"]: _numbers(table, line, row) for line, row in enumerate(rows, 2)}
     missing = [path.name for path in paths if path.name not in times]
     if missing:
-        raise TimesError(f"{table} has no row for {missing[0]} ({len(missing)} photos lack one)")
+        lack = f"{counted(len(missing), 'photograph')} without a row"
+        raise TimesError(f"{table} has no row for {missing[0]}; {lack}: add them, or delete those")
     pairs = np.array([times[path.name] for path in paths]).reshape(-1, 2)
     return PhotoTimes(pairs[:, 0], pairs[:, 1], f"table {table.name}")
 

@@ -33,11 +33,12 @@ if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is re
 
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
+POSTERIOR = "posterior.nc"
 PICTURES = ("curves", "surface", "corner", "traces", "residuals")
 CALIBRATION = ResultKind(
     "calibration",
     "calibrate-slip",
-    (SLIP_TOML, "summary.csv", "posterior.nc", *in_every_format(*PICTURES)),
+    (SLIP_TOML, "summary.csv", POSTERIOR, *in_every_format(*PICTURES)),
     schema=SCHEMA,
     inside={"walks": "walks"},
 )
@@ -79,7 +80,7 @@ def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[st
     """
     (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs))
     (folder / "summary.csv").write_text(summary_csv(calibration))
-    inference_data(calibration).to_netcdf(str(folder / "posterior.nc"), engine="h5netcdf")
+    inference_data(calibration).to_netcdf(str(folder / POSTERIOR), engine="h5netcdf")
 
 
 def read_slip(path: Path) -> SlipCurve:

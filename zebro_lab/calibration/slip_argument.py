@@ -9,10 +9,10 @@ from model.slip.thesis import thesis_curve
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb
 from zebro_lab.calibration.coulomb_argument import coulomb_numbers
-from zebro_lab.calibration.folder import SLIP_TOML, read_slip_file
+from zebro_lab.calibration.folder import POSTERIOR, SLIP_TOML, read_slip_file
 from zebro_lab.calibration.walks_folder import StoredWalks, read_stored_walks
 from zebro_lab.files.errors import NotFound
-from zebro_lab.files.folder_manifest import changed_output
+from zebro_lab.files.folder_manifest import changed_output, lost_output
 from zebro_lab.files.replacement import settle
 
 THESIS = "thesis"
@@ -82,6 +82,10 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
 def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
     read = read_slip_file(path)
     notes = [f"WARNING: {each}" for each in changed_output(read.file)]
+    notes += [
+        f"WARNING: {each}: draws are those of the Gaussian in {SLIP_TOML}"
+        for each in lost_output(read.file.with_name(POSTERIOR))
+    ]
     if read.doubt is not None:
         notes.append(f"WARNING: the calibration is not trustworthy: {read.doubt}")
     if read.curve.definition is not SlipDefinition.MATERIAL:

@@ -10,10 +10,10 @@ from model.slip.curve import SlipCurve
 from model.slip.law import Array
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
 from zebro_lab.calibration.draws import read_draws_of
+from zebro_lab.calibration.folder import POSTERIOR
 from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.files.errors import DataError
 
-POSTERIOR = "posterior.nc"
 _ADVICE = f"delete it and calibrate again, or choose a slip.toml without {POSTERIOR} beside it"
 MOST_TABLES = 200  # a table costs as much as 1 s of simulated walk, and paths hardly differ by it
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rig.experiment.plan import Plan
-from rig.experiment.steps import DurationEstimate, Step, estimate, require_allowed, spell_out
+from rig.experiment.steps import DurationEstimate, Step, estimate, spell_out
 from rig.openers import resolve
 from rig.slip_rig.profile import RigProfile, load_rig_profile
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_file import read_plan, require_plan_allowed
 from zebro_lab.experiment.rig_at_hand import TWIN_PROFILE
 
 
@@ -37,13 +37,13 @@ def foresee(file: Path, rig: str) -> Foreseen:
         rig: Name of the rig's profile, with or without `@PORT`; `sim` means `TWIN_PROFILE`.
 
     Raises:
-        ZebroLabError: The plan cannot be read.
-        RigError: The profile is missing or invalid, the plan limits a quantity that the rig does
-            not measure, or a set-point exceeds a limit (`LimitExceeded`).
+        ZebroLabError: The plan cannot be read, or a set-point exceeds a limit.
+        RigError: The profile is missing or invalid, or the plan limits a quantity that the rig does
+            not measure.
     """
     plan = read_plan(file)
     name = resolve(rig, default=TWIN_PROFILE)[0] if "@" in rig or rig == "sim" else rig
     profile = load_rig_profile(name)
-    require_allowed(plan, profile)
+    require_plan_allowed(file, plan, profile)
     steps = spell_out(plan)
     return Foreseen(plan, profile, steps, estimate(plan, steps))

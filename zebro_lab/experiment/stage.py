@@ -15,7 +15,6 @@ from rig.experiment.control_server import ControlServer, send_command
 from rig.experiment.plan import Plan
 from rig.experiment.run import Outcome, run_plan
 from rig.experiment.signal_stops import signal_stops
-from rig.experiment.steps import require_allowed
 from rig.experiment.supervision import supervised
 from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.folder import ExperimentFolder
@@ -25,7 +24,7 @@ from zebro_lab.experiment.journal import (
     begin_or_resume,
     plan_fingerprint,
 )
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_file import read_plan, require_plan_allowed
 from zebro_lab.experiment.points import Finished, finished_points, holds_points, point_sources
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
@@ -68,7 +67,7 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
     with rig_at_hand(
         request.rig, seed=request.seed, run=_run_name(request), fast=request.fast
     ) as rig:
-        require_allowed(plan, rig.bench.profile)
+        require_plan_allowed(request.plan, plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)
         with removing_new_folders(request.data), _owned(request.data):
             journal, finished = _begin(request, source=rig.bench.source)
@@ -109,10 +108,9 @@ def _begin(request: RigRunRequest, *, source: str) -> tuple[Journal, Finished]:
         SettingsError: Points of the experiment to resume have another source.
         ZebroLabError: See `begin_or_resume`.
     """
+    _require_no_points(request.data)
     if request.resume:
         _require_same_source(request.data, source)
-    else:
-        _require_no_points(request.data)
     journal = begin_or_resume(
         request.data, request.plan.read_text(encoding="utf-8"), resume=request.resume,
         reset=request.reset_emergency,

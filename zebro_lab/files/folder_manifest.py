@@ -92,6 +92,19 @@ def changed_output(file: Path) -> tuple[str, ...]:
     )
 
 
+def lost_output(file: Path) -> tuple[str, ...]:
+    """Return one sentence if a file that the manifest beside it lists is missing; else nothing."""
+    if file.exists():
+        return ()
+    try:
+        listed = read_json_object(file.parent / MANIFEST, of="result folder").get("outputs")
+    except ZebroLabError:
+        return ()
+    if not isinstance(listed, Mapping) or file.name not in listed:
+        return ()
+    return (f"{file}, which {MANIFEST} lists, is missing; restore it",)
+
+
 def result_kind(folder: Path) -> str | None:
     """Return the kind of result that a folder holds; None without a readable manifest of ours."""
     try:

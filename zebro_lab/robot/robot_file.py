@@ -182,7 +182,20 @@ def _hips(hips: SettingsTable) -> np.ndarray:
     for leg in range(1, N_LEGS + 1):
         if str(leg) in hips:
             places[leg - 1] = hips.quantities(str(leg), 3, "m", usual=LARGEST)
+            _require_side(hips, leg, places[leg - 1])
     return places
+
+
+def _require_side(hips: SettingsTable, leg: int, place: np.ndarray) -> None:
+    """Raise `SettingsError` for an odd leg on the right of the body, or an even one on the left."""
+    side, sign = ("left", 1) if leg % 2 else ("right", -1)
+    if sign * place[1] < 0:
+        raise hips.fault(
+            f"y is {place[1]:g} m; expected {'more' if leg % 2 else 'less'} than 0, as leg {leg} "
+            f"is on the {side} and y grows to the left (docs/conventions.md): are the legs "
+            "numbered otherwise, or is y meant to the right?",
+            str(leg),
+        )
 
 
 def _marker(marker: SettingsTable) -> Marker:

@@ -176,9 +176,9 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     copies = {} if request.table is not None else _copies(paths)
     paths = tuple(path for path in paths if path.name not in copies)
     left_out: Mapping[str, str] = {}
-    if request.interval is not None:
-        _require_interval(paths, request.interval)
     times = _given_times(paths, request)
+    if times is not None:
+        _require_as_exif(paths, times, request)
     if times is None:
         # A file that is no picture has no EXIF either; its error is reported later.
         readable = [path for path in paths if upright_size(path) is not None]
@@ -208,18 +208,18 @@ def _copies(paths: Sequence[Path]) -> Mapping[str, str]:
     return copies
 
 
-def _require_interval(paths: Sequence[Path], interval: float) -> None:
+def _require_as_exif(paths: Sequence[Path], times: PhotoTimes, request: TimeRequest) -> None:
     """Raise `SettingsError` if EXIF times of all photographs are of another order of interval."""
     taken = [exif_time(path) for path in paths]
     t = np.sort([each[0] for each in taken if each is not None])
     if len(t) < 2 or len(t) < len(paths):
         return
-    apart = float(np.median(np.diff(t)))
-    if apart > 0 and not 1 / MOST_APART < interval / apart < MOST_APART:
+    apart, given = (float(np.median(np.diff(each))) for each in (t, np.sort(times.t)))
+    if apart > 0 and not 1 / MOST_APART < given / apart < MOST_APART:
         raise SettingsError(
-            f"found {interval:g} s, but by their EXIF times the photographs are {apart:g} s apart; "
-            "the option is in seconds, and without it the EXIF times are used",
-            key="--interval",
+            f"found {given:g} s between photographs, which by their EXIF times are {apart:g} s "
+            "apart; it is in seconds, and without the option the EXIF times are used",
+            key="--interval" if request.table is None else "--times",
         )
 
 

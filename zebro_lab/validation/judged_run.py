@@ -3,16 +3,22 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from model.counted import counted
 from model.judgement import Judgement, TiltJudged, judge
 from model.metrics.consistency import FEWEST_DRAWS
+from model.path_draws import states_at
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.file import TrackFile
+from zebro_lab.validation.extents import unit_warning
 from zebro_lab.validation.shared_clock import shared_time
 from zebro_lab.walk.prediction_file import PredictionFile
+
+_NEAR: Final = 0.2
+"""Largest relative difference of the ratio of extents from the factor between two units [-]."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +73,19 @@ def judge_run(
         )
     judgement = judge(predicted.prediction, track.poses, anchor=anchor, rng=rng)
     notes = (
-        *track.notes, *predicted.notes, *_outside(inside, predicted.prediction.path.t),
-        *_not_testable(judgement),
+        *_sizes(judgement, track), *track.notes, *predicted.notes,
+        *_outside(inside, predicted.prediction.path.t), *_not_testable(judgement),
     )  # fmt: skip
     return JudgedRun(judgement.track, judgement.rows, judgement.band, name, notes)
+
+
+def _sizes(judgement: Judgement, track: TrackFile) -> tuple[str, ...]:
+    """Return a warning if track and prediction extend as if their units differed."""
+    seen = judgement.track
+    path = states_at(judgement.rows[0].path.draws(), seen.t)[0, :, :2]
+    return unit_warning(
+        (seen.position, f"the track {track.file}"), (path, "its prediction"), near=_NEAR
+    )
 
 
 def _outside(inside: np.ndarray, t: np.ndarray) -> Iterator[str]:

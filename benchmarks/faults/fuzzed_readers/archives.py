@@ -22,8 +22,9 @@ from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
 from zebro_lab.calibration.checkpoint import load_checkpoint
+from zebro_lab.calibration.folder import POSTERIOR
 from zebro_lab.calibration.slip_argument import NamedSlip
-from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws
+from zebro_lab.calibration.slip_draws import law_draws
 from zebro_lab.calibration.walks_folder import read_stored_walks
 from zebro_lab.walk.path_band import DRAWS, read_draws
 

@@ -75,6 +75,18 @@ def test_a_calibration_that_was_edited_by_hand_is_told(calibration):
     assert note.startswith(f"WARNING: {file} was changed after it was written")
 
 
+def test_a_posterior_that_was_deleted_is_told_but_not_one_that_never_was(calibration):
+    outputs = {"slip.toml": file_hash(calibration / "slip.toml"), "posterior.nc": "0"}
+    (calibration / "manifest.json").write_text(json.dumps({"outputs": outputs}))
+    (note,) = parse_slip(str(calibration)).notes
+    assert note.startswith(
+        f"WARNING: {calibration / 'posterior.nc'}, which manifest.json lists, is"
+    )
+    assert note.endswith("draws are those of the Gaussian in slip.toml")
+    (calibration / "posterior.nc").write_text("")
+    assert parse_slip(str(calibration)).notes == ()
+
+
 def test_a_calibration_that_does_not_exist_names_the_command_that_makes_one(tmp_path):
     with pytest.raises(NotFound, match=r"is not a file or folder; .*; calibrate-slip DATA writes"):
         parse_slip(str(tmp_path / "calibration"))

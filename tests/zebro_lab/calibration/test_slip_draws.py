@@ -11,8 +11,9 @@ import pytest
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
+from zebro_lab.calibration.folder import POSTERIOR
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
-from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws, slip_tables
+from zebro_lab.calibration.slip_draws import law_draws, slip_tables
 from zebro_lab.files.errors import DataError
 
 

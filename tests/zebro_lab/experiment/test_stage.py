@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-from rig.errors import LimitExceeded, RigError
+from rig.errors import RigError
 from rig.experiment.control import Control
 from rig.links.serve import PortServer
 from rig.safety import StopCategory
@@ -102,6 +102,14 @@ def test_an_experiment_is_not_begun_twice_nor_resumed_with_another_plan(lab, pla
         lab.run(plan, data, resume=True)
 
 
+@pytest.mark.parametrize("resume", [False, True])
+def test_points_without_their_journal_are_neither_repeated_nor_resumed(lab, plan, tmp_path, resume):
+    lab.run(plan, tmp_path)
+    (tmp_path / "experiment.jsonl").unlink()
+    with pytest.raises(AlreadyExists, match=r"experiment\.jsonl is missing; restore that file"):
+        lab.run(plan, tmp_path, resume=resume)
+
+
 def test_an_emergency_stop_stays_latched_on_disk_until_it_is_reset(lab, plan, tmp_path):
     data, control = tmp_path / "data", Control()
     stop = lab.StopAfter(2, lambda: control.stop.request(StopCategory.EMERGENCY, "planted"))
@@ -114,7 +122,7 @@ def test_an_emergency_stop_stays_latched_on_disk_until_it_is_reset(lab, plan, tm
 
 def test_a_plan_beyond_a_limit_leaves_nothing_behind(lab, plan, tmp_path):
     plan.write_text(plan.read_text().replace("omega_leg = 12.0", "omega_leg = 50.0"))
-    with pytest.raises(LimitExceeded, match="50 rad/s; its limit is 40 rad/s"):
+    with pytest.raises(SettingsError, match=r"plan\.toml: .* 50 rad/s; its limit is 40 rad/s"):
         lab.run(plan, tmp_path / "data")
     assert not (tmp_path / "data").exists()
 

@@ -102,6 +102,8 @@ FAULTS = {
     "sign of two": ("[legs]\nsign = [1, 1, 2, 1, 1, 1]", "expected a list of 6 signs, each 1"),
     "arc beyond a circle": ("[legs]\narc_deg = 400", "leg_arc is 400 degrees"),
     "arc that is a text": ("[legs]\narc_deg = 'half'", "arc_deg: found 'half'; expected a finite"),
+    "left hip on right": ("[hips]\n1 = [0.1, -0.1, 0]", "more than 0, as leg 1 is on the left"),
+    "right hip on left": ("[hips]\n6 = [0.1, 0.1, 0]", "less than 0, as leg 6 is on the"),
     "flat hip": ("[hips]\n1 = [0, 0]", "hips.1: found [0, 0]; expected a list of 3"),
     "marker nowhere": ("[marker]\nheight = 0.1", "marker.position: is missing"),
     "marker below ground": ("[marker]\nposition = [0, 0, 0]\nheight = -1", "height: is -1 m;"),

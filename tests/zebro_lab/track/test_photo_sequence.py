@@ -58,12 +58,16 @@ def test_a_copy_of_a_photograph_counts_once_and_is_named(tmp_path):
         assert sequence.left_out["p1 (1).jpg"].startswith("a copy of p1.jpg, byte for byte")
 
 
-def test_an_interval_in_milliseconds_is_told_by_the_photographs_own_times(tmp_path):
+@pytest.mark.parametrize("option", ["interval", "times"])
+def test_times_in_milliseconds_are_told_by_the_photographs_own_times(option, tmp_path):
     for number in range(3):
         photo(tmp_path / f"p{number}.jpg", 2.0 * number)
+    table = tmp_path / "times.csv"
+    table.write_text("photo,t_s\np0.jpg,0\np1.jpg,2000\np2.jpg,4000\n")
+    given = TimeRequest(interval=2000.0) if option == "interval" else TimeRequest(table=table)
     with (
-        pytest.raises(SettingsError, match=r"--interval: found 2000 s, but .* are 2 s apart"),
-        open_photos(tmp_path, TimeRequest(interval=2000.0)),
+        pytest.raises(SettingsError, match=rf"--{option}: found 2000 s .* are 2 s apart"),
+        open_photos(tmp_path, given),
     ):
         pass
 

@@ -97,3 +97,11 @@ def test_what_cannot_be_judged_is_told(draws, heading, told):
     assert bool(found.rows[0].consistency) == (draws >= 50)
     lines = [note for note in found.notes if "not testable" in note]
     assert [line[: len(start)] for line, start in zip(lines, told, strict=True)] == told
+
+
+@pytest.mark.parametrize(("factor", "units"), [(1000.0, "mm and m"), (0.01, "cm and m")])
+def test_a_track_in_another_unit_of_length_is_warned_of(factor, units):
+    note = judge(Poses(T, factor * PATH.position, PATH.yaw)).notes[0]
+    assert note.startswith("WARNING: ")
+    assert f"as {units} differ: lengths are taken in m" in note
+    assert judge(Poses(T, 2 * PATH.position, PATH.yaw)).notes[0] == "tracked"

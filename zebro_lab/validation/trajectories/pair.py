@@ -14,13 +14,10 @@ from model.rigid_path import RigidPath
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.names import shortest_distinct
 from zebro_lab.track.trajectory.file import Trajectory
+from zebro_lab.validation.extents import unit_warning
 
-_UNITS: Final = {
-    1000.0: "mm and m", 100.0: "cm and m", 10.0: "mm and cm", 25.4: "mm and inches",
-    39.37: "inches and m", 3.281: "feet and m", 57.296: "degrees and radians",
-}  # fmt: skip
-"""Units of which one number is larger than the other, by the factor between them."""
 _NEAR: Final = 0.05
+"""Largest relative difference of a ratio of extents from the factor between two units [-]."""
 FEWEST = 3  # two motions, so that an alignment leaves an error
 
 
@@ -118,19 +115,10 @@ def _sizes(
     reference: Trajectory, estimate: Trajectory, seen: RigidPath, found: RigidPath
 ) -> tuple[str, ...]:
     """Return a warning if the extents of both differ by about the factor between two units."""
-    spread = [float(np.linalg.norm(path.position.std(axis=0))) for path in (seen, found)]
-    if min(spread) <= 0:
-        return ()
-    ratio = spread[1] / spread[0]
-    factor = max(ratio, 1 / ratio)
-    units = next((pair for known, pair in _UNITS.items() if abs(factor / known - 1) < _NEAR), None)
-    if units is None:
-        return ()
-    large, small = (estimate, reference) if ratio > 1 else (reference, estimate)
-    return (
-        f"WARNING: {large.file} extends {factor:.4g} times as far as {small.file}, as {units} "
-        "differ: lengths are taken in m; convert one of them, or add --correct-scale",
+    said = unit_warning(
+        (seen.position, str(reference.file)), (found.position, str(estimate.file)), near=_NEAR
     )
+    return tuple(f"{each}, or add --correct-scale" for each in said)
 
 
 def _errors(

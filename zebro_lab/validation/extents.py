@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""Notice by the extents of two paths that their lengths are in different units."""
+
+from typing import Final
+
+import numpy as np
+
+from model.slip.law import Array
+
+_UNITS: Final = {
+    1000.0: "mm and m", 100.0: "cm and m", 10.0: "mm and cm", 25.4: "mm and inches",
+    39.37: "inches and m", 3.281: "feet and m", 57.296: "degrees and radians",
+}  # fmt: skip
+"""Units of which one number is larger than the other, by the factor between them."""
+
+
+def unit_warning(
+    reference: tuple[Array, str], estimate: tuple[Array, str], *, near: float
+) -> tuple[str, ...]:
+    """Return a warning if the extents of two paths differ by about the factor between two units.
+
+    Args:
+        reference: Positions, shape (n, d) [m], and their name for the warning.
+        estimate: The same of positions at the same times.
+        near: Largest relative difference of the ratio of extents from the factor [-].
+    """
+    spread = [float(np.linalg.norm(path.std(axis=0))) for path, _ in (reference, estimate)]
+    if min(spread) <= 0:
+        return ()
+    ratio = spread[1] / spread[0]
+    factor = max(ratio, 1 / ratio)
+    units = next((pair for known, pair in _UNITS.items() if abs(factor / known - 1) < near), None)
+    if units is None:
+        return ()
+    large, small = (estimate[1], reference[1]) if ratio > 1 else (reference[1], estimate[1])
+    return (
+        f"WARNING: {large} extends {factor:.4g} times as far as {small}, as {units} differ: "
+        "lengths are taken in m; convert one of them",
+    )

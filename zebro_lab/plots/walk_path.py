@@ -24,7 +24,7 @@ from zebro_lab.plots.walk_robot import outline, to_world
 
 _SNAPSHOTS = 6
 _LONGEST_SIDE = 8.5  # inches
-_NARROWEST, _LOWEST = 7.0, 3.4  # inches, for the title and for the axis labels
+_NARROWEST, _LOWEST = 7.0, 2.6  # inches, for the title and for the axis labels
 _WINDOW = 0.1  # s over which velocities are means: impacts take a hundredth of that
 _MEAN = f"mean of {_WINDOW:g} s"
 _TWICE = f"mean of that in {_WINDOW:g} s"
@@ -168,8 +168,8 @@ def _extent(path: WalkPath, bodies: Sequence[Array], robot: Robot) -> tuple[Arra
 def _sides(extent: Array) -> tuple[float, float]:
     """Compute width and height [inch] of a figure with axes about of the shape of `extent` [m].
 
-    The axes are 2 to 7.5 inches each way, the figure at least 7.0 by 3.4 inches.
+    The axes are 1 to 7.5 inches each way, the figure at least 7.0 by 2.6 inches.
     """
     scale = (_LONGEST_SIDE - 1.0) / float(max(extent[0], extent[1]))
-    width, height = (float(np.clip(scale * side, 2.0, 7.5)) for side in extent)
+    width, height = (float(np.clip(scale * side, 1.0, 7.5)) for side in extent)
     return max(width + 1.0, _NARROWEST), max(height + 1.6, _LOWEST)

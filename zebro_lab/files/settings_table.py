@@ -11,8 +11,6 @@ from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import factor_to_si, quantity_to_si
 
 _NO_UNIT: Final = "dimensionless"
-_SMALLER: Final = {"m": ("cm", "mm"), "kg": ("g", "g"), _NO_UNIT: ("%", "%")}
-"""Units that a number beyond the usual may be meant in: up to ten times beyond, and farther."""
 
 
 class SettingsTable(TomlTable):
@@ -41,8 +39,7 @@ class SettingsTable(TomlTable):
             default: Value if the key is missing, in SI; None if the key is required.
             above: Exclusive lower limit, in SI; holds for the default too.
             least: Inclusive lower limit, in SI; holds for the default too.
-            usual: Largest absolute value of a number without a unit; a larger one is taken for a
-                number in another unit. With its unit it is accepted.
+            usual: Largest absolute value of a number without a unit, as in `quantity_to_si`.
 
         Raises:
             SettingsError: The value is missing without a default, not a finite number (with a known
@@ -103,26 +100,9 @@ class SettingsTable(TomlTable):
             named = "" if unit == _NO_UNIT else f" in {unit} or a text such as '1 {unit}'"
             raise self.fault(f"found {found!r}; expected a number{named}", key)
         try:
-            number = quantity_to_si(found, unit)
+            return quantity_to_si(found, unit, usual=usual)
         except UnitError as error:
             raise self.fault(str(error), key) from error
-        if abs(number) > usual and (not isinstance(found, str) or _is_number(found)):
-            smaller = _SMALLER.get(unit, (unit, unit))[abs(number) >= 10 * usual]
-            raise self.fault(
-                f"is {_with_unit(number, unit)}, which is improbable; expected at most "
-                f"{_with_unit(usual, unit)} from a number without a unit: write it with its unit, "
-                f'such as "{number:g} {smaller}" (or "{number:g} {unit}")',
-                key,
-            )
-        return number
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _with_unit(number: float, unit: str) -> str:

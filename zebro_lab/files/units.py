@@ -43,6 +43,8 @@ _BASES = (
 )
 _POWER = r"(?:\^?-?[1-4]|[²³]|⁻[¹²]|\*\*-?[1-4])?"
 _UNIT_TEXT = re.compile(rf"(?:1|{_BASES}){_POWER}(?:[/*·. ](?:{_BASES}){_POWER})*")
+_SMALLER = {"m": ("cm", "mm"), "kg": ("g", "g"), "dimensionless": ("%", "%")}
+"""Units that a number beyond the usual may be meant in: up to ten times beyond, and farther."""
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
 
 _SHOWN = {"rad": (180 / math.pi, "deg"), "rad/m": (180 / math.pi, "deg/m"), "-": (100.0, "%")}
@@ -125,29 +127,41 @@ def is_unit_text(text: str) -> bool:
     return text.casefold() in _NO_UNIT or _UNIT_TEXT.fullmatch(text) is not None
 
 
-def quantity_to_si(quantity: str | float, si_unit: str) -> float:
+def quantity_to_si(quantity: str | float, si_unit: str, *, usual: float = math.inf) -> float:
     """Convert a quantity, such as "35 mm", to a number in SI.
 
     Args:
         quantity: Number in SI, or a string with a number and a unit; without a unit it is in SI.
         si_unit: SI unit of the result.
+        usual: Largest absolute value of a number without a unit; a larger one is taken for a
+            number in another unit. With its unit it is accepted.
 
     Raises:
-        UnitError: The string is not a number with a unit, the number is infinite or NaN, or the
-            unit is unknown or measures another quantity.
+        UnitError: The string is not a number with a unit, the number is infinite or NaN, the unit
+            is unknown or measures another quantity, or a number without a unit is beyond `usual`.
 
     >>> quantity_to_si("35 mm", "m"), quantity_to_si(0.035, "m")
     (0.035, 0.035)
     """
+    unit = ""
     if not isinstance(quantity, str):
         number, factor = float(quantity), 1.0
     elif match := _QUANTITY.fullmatch(quantity):
-        number = float(match[1])
-        factor = factor_to_si(match[2] or si_unit, si_unit)
+        number, unit = float(match[1]), match[2]
+        factor = factor_to_si(unit or si_unit, si_unit)
     else:
         raise UnitError(f"'{quantity}' is not a number with a unit such as '1 {si_unit}'", unit="")
     if not math.isfinite(number):
         raise UnitError(f"{quantity} is infinite or NaN; expected a finite number", unit=si_unit)
+    if abs(number) > usual and not unit:
+        smaller = _SMALLER.get(si_unit, (si_unit, si_unit))[abs(number) >= 10 * usual]
+        unit = "" if si_unit == "dimensionless" else f" {si_unit}"
+        raise UnitError(
+            f"is {number:g}{unit}, which is improbable; expected at most {usual:g}{unit} "
+            f'from a number without a unit: write it with its unit, such as "{number:g} {smaller}" '
+            f'(or "{number:g} {si_unit}")',
+            unit=si_unit,
+        )
     return number * factor
 
 
@@ -158,24 +172,15 @@ def option_to_si(text: str, si_unit: str, *, key: str, usual: float = math.inf) 
         text: Number with a unit, or without one in SI.
         si_unit: SI unit of the result.
         key: The option, for the error.
-        usual: Largest number that is believed without a unit.
+        usual: As in `quantity_to_si`.
 
     Raises:
-        SettingsError: The value cannot be converted, as in `quantity_to_si`, or is a number beyond
-            `usual` without a unit.
+        SettingsError: The value cannot be converted, as in `quantity_to_si`.
     """
     try:
-        number = quantity_to_si(text, si_unit)
+        return quantity_to_si(text, si_unit, usual=usual)
     except UnitError as error:
         raise SettingsError(str(error), key=key) from error
-    match = _QUANTITY.fullmatch(text)
-    if abs(number) > usual and match is not None and not match[2]:
-        raise SettingsError(
-            f"found {text} without a unit, which is {number:g} {si_unit} and improbable; append "
-            f"its unit, such as {text}m{si_unit} (or {text}{si_unit})",
-            key=key,
-        )
-    return number
 
 
 def is_unit_of(unit: str, si_unit: str) -> bool:

@@ -123,7 +123,7 @@ def _template(request: AnnotateRequest) -> MarkedTop | None:
 
 
 def _plate(request: AnnotateRequest) -> TopPlate:
-    margin = option_to_si(request.margin, "m", key="--margin")
+    margin = option_to_si(request.margin, "m", key="--margin", usual=LARGEST_PRINT)
     if request.plate is None:
         described = RobotFile() if request.robot is None else read_robot_file(request.robot)
         length, width, height = described.robot.body_size

@@ -11,7 +11,7 @@ from typer import Argument, BadParameter, Option
 
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import option_to_si
-from zebro_lab.robot.marker_print import parse_marker
+from zebro_lab.robot.marker_print import LARGEST_PRINT, parse_marker
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 
@@ -190,12 +190,16 @@ class TrackRequest:
     def standing_height(self) -> float | None:
         """Height of the body's centre while the robot stands [m]; None: from the marker's."""
         given = self.body_height
-        return None if given is None else option_to_si(given, "m", key="--body-height")
+        return (
+            None
+            if given is None
+            else option_to_si(given, "m", key="--body-height", usual=LARGEST_PRINT)
+        )
 
     @property
     def walking_height_sd(self) -> float:
         """Standard deviation of the height of the body's centre over a walk [m]."""
-        return option_to_si(self.height_sd, "m", key="--height-sd")
+        return option_to_si(self.height_sd, "m", key="--height-sd", usual=LARGEST_PRINT)
 
     @property
     def named(self) -> tuple[Path, ...]:

@@ -29,6 +29,6 @@ def test_a_side_that_is_no_length_names_the_option(side, problem):
 
 
 def test_a_side_of_metres_is_believed_with_its_unit_only():
-    with pytest.raises(SettingsError, match=r"--marker: found 120 without a unit, .* as 120mm"):
+    with pytest.raises(SettingsError, match=r"--marker: is 120 m, .* as .120 mm"):
         parse_marker("4x4_50:0:120")
     assert parse_marker("4x4_50:0:4m").side == 4.0

@@ -64,7 +64,7 @@ def test_the_top_and_points_of_the_floor_are_clicked_on(asked):
 
 def test_a_plate_in_millimetres_needs_their_unit(asked):
     corners = "1,2 3,2 3,8 1,8"
-    with pytest.raises(SettingsError, match=r"--plate: found 194 without a unit, .* as 194mm"):
+    with pytest.raises(SettingsError, match=r"--plate: is 194 m, .* as .194 mm"):
         annotate(replace(asked, photo="p1.png", corners=corners, plate="194x251@35"))
 
 

@@ -43,5 +43,9 @@ def test_lengths_and_frame_steps_are_those_of_the_help():
     assert replace(ASKED, height_sd="2 cm").walking_height_sd == pytest.approx(0.02)
     assert ASKED.standing_height is None
     assert replace(ASKED, body_height="60mm").standing_height == pytest.approx(0.06)
+    with pytest.raises(SettingsError, match=r'^--body-height: is 60 m, which is .* as "60 mm"'):
+        _ = replace(ASKED, body_height="60").standing_height
+    with pytest.raises(SettingsError, match=r"^--height-sd: is 5 m, which is improbable"):
+        _ = replace(ASKED, height_sd="5").walking_height_sd
     assert TimeRequest().frame_step == 0.5
     assert TimeRequest(every=0.0).frame_step == 0.0

@@ -190,7 +190,7 @@ def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
 def _draw_bands(axes: Axes, curve: _LoadCurve, *, hidden: bool) -> None:
     """Draw the bands of curves; `hidden`: none is wider than the line, which their key says."""
     low, lower, _, upper, high = curve.bands
-    note = ": hardly wider than the line" if hidden else ""
+    note = " (hardly seen)" if hidden else ""
     axes.fill_between(
         curve.slip, low, high, color=tint(0.25), lw=0, zorder=0.5, label=f"90 % of curves{note}"
     )

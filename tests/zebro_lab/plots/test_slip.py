@@ -74,5 +74,5 @@ def test_bands_that_the_line_hides_say_so_in_the_key(one_load, spread):
     factors = 1 + spread * np.linspace(-1, 1, 50)[:, None]
     figure = replace(one_load, draws=one_load.truth * factors).curves()
     keys = [text.get_text() for text in figure.legends[0].get_texts()]
-    note = ": hardly wider than the line" if spread < 1e-3 else ""
+    note = " (hardly seen)" if spread < 1e-3 else ""
     assert {f"90 % of curves{note}", f"50 % of curves{note}"} <= set(keys)

@@ -84,5 +84,12 @@ def _require_free(target: Path, present: str, kind: str | None) -> None:
     if not present:
         return
     document = read_toml_document(target, advice=f"expected a {COLUMNS_FILE}")
-    if kind in document or not is_sectioned(document):
-        raise AlreadyExists(f"{target} exists already; edit that file, or replace it with --force")
+    advice = "edit that file, or replace it with --force"
+    if not is_sectioned(document):
+        raise AlreadyExists(
+            f"{target} exists already, without sections, for one kind of table; {advice}; for a "
+            f"table of another kind move its keys into sections, such as [{RIG}.columns], or use "
+            "another folder"
+        )
+    if kind in document:
+        raise AlreadyExists(f"{target} exists already; {advice}")

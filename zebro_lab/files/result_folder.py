@@ -177,7 +177,7 @@ def _require_ground(out: Path) -> None:
         if place.is_symlink() and not place.exists():
             raise AlreadyExists(f"{place} is a broken link; choose another folder with --out")
         if place != out and place.exists() and not place.is_dir():
-            raise AlreadyExists(f"{place} is a file, not a folder; choose another --out")
+            raise AlreadyExists(f"{place} is a file, not a folder; name a folder")
 
 
 def _require_not_inside(out: Path, folder: Path) -> None:

@@ -198,7 +198,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
     if not (folder / MANIFEST).is_file():
         return Part(name, folder, {}, (), maker)
-    documents = {each: _read(folder / each) for each in (MANIFEST, *BESIDE.get(name, ()))}
+    documents = {MANIFEST: _read(folder / MANIFEST)}
     kind = documents[MANIFEST].get("kind")
     expected = ("predict", "walk") if name == PREDICTION else (name,)
     if kind not in expected:
@@ -206,6 +206,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
             f"'kind' is {kind or 'missing'}, expected {' or '.join(expected)} in this folder",
             file=folder / MANIFEST,
         )
+    documents |= {each: _read(folder / each) for each in BESIDE.get(name, ())}
     listed = documents[MANIFEST].get("outputs", {})
     if not isinstance(listed, dict):
         raise DataError(f"'outputs' is {listed!r}; expected an object", file=folder / MANIFEST)

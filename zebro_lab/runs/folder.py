@@ -122,7 +122,8 @@ def find_runs(data_dir: Path) -> list[Path]:
         NotFound: The folder does not exist.
     """
     if not data_dir.is_dir():
-        raise NotFound(f"{data_dir}: no such folder; give the folder that holds the run folders")
+        found = "is a file" if data_dir.exists() else "no such folder"
+        raise NotFound(f"{data_dir}: {found}; give the folder that holds the run folders")
     return sorted(file.parent for file in data_dir.rglob(MANIFEST_FILE))
 
 

@@ -151,7 +151,7 @@ def test_any_header_gives_a_template_that_parses(names, kind):
 def test_existing_file_is_kept_unless_forced(tmp_path):
     tyre().to_csv(tmp_path / "rig.csv", index=False)
     (tmp_path / "columns.toml").write_text("# mine")
-    with pytest.raises(AlreadyExists, match="replace it with --force"):
+    with pytest.raises(AlreadyExists, match=r"replace it with --force; .* such as \[rig\.columns"):
         write_columns_template(tmp_path / "rig.csv")
     assert (tmp_path / "columns.toml").read_text() == "# mine"
     write_columns_template(tmp_path / "rig.csv", force=True)

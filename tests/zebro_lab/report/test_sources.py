@@ -88,6 +88,11 @@ def test_a_picture_from_elsewhere_is_not_shown_and_one_that_is_gone_is_left_out(
     assert track.not_shown == ("../x.png",)
 
 
+def test_a_folder_of_another_kind_is_no_calibration(walk):
+    with pytest.raises(DataError, match="'kind' is predict, expected calibration"):
+        find_sources(walk, calibration=walk / "prediction")
+
+
 def test_a_folder_with_nothing_to_report_is_named(tmp_path):
     with pytest.raises(NotFound, match=r"holds neither a run \(run\.json\) nor a folder track"):
         find_sources(tmp_path, calibration=tmp_path)

@@ -51,5 +51,7 @@ def test_a_run_that_cannot_be_read_does_not_hide_the_others(tmp_path):
     assert first.name == bad.name
     assert first.state.startswith("unreadable: ")
     assert (second.name, second.state) == (good.name, "completed")
-    with pytest.raises(NotFound):
+    with pytest.raises(NotFound, match=r"run\.json: is a file; give the folder"):
+        list_runs(good / "run.json")
+    with pytest.raises(NotFound, match="absent: no such folder"):
         list_runs(tmp_path / "absent")

@@ -124,6 +124,7 @@ def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run_command):
 FAULTS = {
     "photographs of another day": (("--start", "2020-05-31T12:00:00"), "86400.0 to 86408.0 s"),
     "no run": (("--run", "photos"), "photos is not a run folder"),
+    "file of the run": (("--run", "run/run.json"), "run/run.json is a file, not a folder; name a"),
     "no clock in the picture": (("--clock", "photos/simulated_00.jpg"), "no QR clock is decoded"),
 }  # fmt: skip
 

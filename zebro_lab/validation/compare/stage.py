@@ -66,8 +66,8 @@ def _kind(path: Path) -> str:
     settle(path)
     if path.is_file() and path.suffix.lower() != ".toml":
         raise SettingsError(
-            f"{path} is a file and no slip.toml; compare two trajectories with: zebro-lab validate "
-            "REFERENCE ESTIMATE"
+            f"{path} is a file and no slip.toml; name a run by its folder, or compare two "
+            "trajectories with: zebro-lab validate REFERENCE ESTIMATE"
         )
     if path.is_file() or (path / SLIP_TOML).is_file():
         return "calibration"

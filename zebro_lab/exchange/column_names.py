@@ -12,7 +12,7 @@ from zebro_lab.tables.table_kinds import IMU, LEGS, RIG, TRACK
 _TIME = (
     r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|(time_?)?stamp|seconds|"
     r"zeit(stempel|punkt|achse)?|messzeit|sekunden|uhrzeit|clock|(wall|local)_?(clock|time)|time_of_day|datum(_?(und_?)?(uhr)?zeit)?|"
-    r"date(_?(and_?)?time)?|x_value|millis|micros|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|rosbagtimestamp"
+    r"date(_?(and_?)?time)?|x_value|millis|micros|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|secs?|rosbagtimestamp"
 )
 _SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschw(indigkeit)?|angular_(speed|velocity))"
 _LEG_DISC = r"(l|leg|leg_?disc|wheel|bein|beinscheibe|rad)"

@@ -18,7 +18,9 @@ from zebro_lab.tables.raw_table import RawTable
 ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
 LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
 LONGEST_TURN = 2.5  # rad between samples; from pi on the direction of rotation is ambiguous
-_ADVICE = "fill in the cell, or delete all rows up to it or from it on"
+_ADVICE = (
+    "fill in the cell, delete rows in which no leg has an angle, or all up to it or from it on"
+)
 LONGEST_WRAPPED = np.pi / 2  # the same where a whole turn may have been cut off between samples
 
 

@@ -23,7 +23,7 @@ _NUMBER = re.compile(rf"[-+\u2212]?(?:{_DIGITS}|{_GROUPED}|inf|Inf|INF|infinity|
 _DATE = re.compile(
     r"(?:\d{4}[-/]\d\d?[-/]\d\d?|\d\d?[-./]\d\d?[-./]\d{4}|\d\d?-[A-Z][a-z]{2}-\d{4})"
     r"(?:[T ]\s*\d\d?:\d\d.*)?"
-    r"|\d{1,3}:\d\d(?::\d\d(?:[.,:]\d+)?)?(?: ?[AaPp][Mm])?"
+    r"|\d{1,3}:\d\d(?::\d\d(?:[.,:]\d+)?|[.,]\d+)?(?: ?[AaPp][Mm])?"
 )
 _COMMA_DECIMAL = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
 _POINT_DECIMAL = re.compile(r"[-+]?\d*\.\d+(?:[eE][-+]?\d+)?")

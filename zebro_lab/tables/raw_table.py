@@ -244,6 +244,8 @@ class RawTable:
             advice = "; write the number alone, and its unit in the header or in columns.toml"
         elif kind_of(text) == "value":
             advice = '; if it is a time, state unit = "date", "date UTC" or "h:m:s" in columns.toml'
+        elif any(character.isdigit() for character in text):
+            advice = "; write one number alone in the cell, or delete the row"
         elif index == 0:
             advice = "; if the row holds units, delete it and give them in columns.toml"
         else:

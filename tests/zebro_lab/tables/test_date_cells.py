@@ -57,6 +57,8 @@ def test_times_of_day_go_on_past_midnight_and_an_earlier_one_of_the_day_stays():
         ("2026-03-04T05:06:07Z", "date UTC", "has a time zone of its own"),
         ("03/04/2026 05:06", "date UTC", "is not read as a date or time; write 2026-03-04T"),
         ("2026-13-04 05:06", "date UTC", "is not read as a date"),
+        ("00:05.10", "h:m:s", "is not read as a date or time; write 12:00:00.5"),
+        ("02:05:06 PM", "h:m:s", "is not read as a date or time; write 12:00:00.5"),
         ("noon", "h:m:s", "is not read as a date or time; write 12:00:00.5"),
     ],
 )

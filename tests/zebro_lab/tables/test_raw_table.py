@@ -104,6 +104,9 @@ def test_a_decimal_sign_is_understood_where_it_is_sure(cells, decimal, numbers):
         (["1'234.5"], ".", "without thousands separators"),
         (["5.2 N"], ".", "write the number alone, and its unit in the header"),
         (["2,5%"], ",", "write the number alone"),
+        (["5.01 ± 0.02"], ".", "write one number alone in the cell, or delete the row"),
+        (["(0.395)"], ".", "write one number alone"),
+        (["00:05.10"], ".", 'if it is a time, state unit = "date"'),
         (["2026-03-04"], ".", 'if it is a time, state unit = "date"'),
     ],
 )

@@ -16,9 +16,7 @@ import sys
 import tempfile
 import tomllib
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from unittest.mock import patch
 
 import tomlkit
 
@@ -27,8 +25,6 @@ from model.slip.law import Values
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.control import Control
 from rig.experiment.watcher import ExperimentWatcher
-from rig.slip_rig.simulated import SimulatedRig
-from zebro_lab.experiment import rig_at_hand
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.stage import run_experiment
 
@@ -140,8 +136,7 @@ def measure(plan: str, seed: int, data: Path, truth: Values) -> None:
             "--data", data)  # fmt: skip
         return
     request = RigRunRequest(file, "sim", data, fast=True, seed=seed)
-    with patch.object(rig_at_hand, "SimulatedRig", partial(SimulatedRig, THESIS_LAW, truth)):
-        run_experiment(request, ExperimentWatcher(), Control())
+    run_experiment(request, ExperimentWatcher(), Control(), law=(THESIS_LAW, truth))
 
 
 def follow(seed: int, folder: Path, plan: str, truth: Values) -> tuple[Found, Found | None]:

@@ -9,6 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from model.slip.law import SlipLaw, Values
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.backends import RigDevices, open_rig
 from rig.clock import SYSTEM_CLOCK, Clock, ManualClock
 from rig.experiment.acquire import PERIOD
@@ -96,6 +98,7 @@ def rig_at_hand(
     run: str = "",
     fast: bool = False,
     imperfections: RigImperfections | None = None,
+    law: tuple[SlipLaw, Values] = (THESIS_LAW, THESIS_VALUES),
 ) -> Iterator[RigAtHand]:
     """Open the rig that an address names; a twin is simulated while the context lasts.
 
@@ -107,6 +110,7 @@ def rig_at_hand(
         fast: Run a twin in simulated time, as fast as possible; only a profile with a board.
         imperfections: Errors of a twin's load cell, discs and sensors; by default drawn from the
             seed, so that each seed is another rig and an equal seed the same rig.
+        law: Slip law of a twin with its values; by default that of the thesis.
 
     Yields:
         The rig; its bench is not yet entered.
@@ -125,6 +129,7 @@ def rig_at_hand(
         return
     rng = _run_rng(seed, run)
     rig = SimulatedRig(
+        *law,
         plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
         imperfections=imperfections or draw_imperfections(np.random.default_rng([seed, 1])),
         dynamics=RigDynamics(ripple=0.005), rng=rng,

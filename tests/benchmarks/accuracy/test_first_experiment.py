@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+import json
 import tomllib
 
 import pytest
@@ -6,7 +7,14 @@ import tomlkit
 
 from benchmarks.accuracy import first_experiment
 from benchmarks.accuracy.calibrated_experiments import NAMES
-from benchmarks.accuracy.first_experiment import PLAN, SLIPS, advised_plan, read_found
+from benchmarks.accuracy.first_experiment import (
+    PLAN,
+    SLIPS,
+    TRUTHS,
+    advised_plan,
+    measure,
+    read_found,
+)
 from model.slip.thesis import THESIS_VALUES
 
 EVEN = PLAN.replace("SLIPS", SLIPS["even"])
@@ -58,6 +66,15 @@ def test_an_interval_holds_the_truth_or_does_not(tmp_path, stiffness, held):
     write_fit(tmp_path / "out", stiffness=stiffness * TRUTH["slip_stiffness"])
     found = read_found(tmp_path / "out", THESIS_VALUES)
     assert found.covered == (held, True)
+
+
+def test_a_rig_of_another_curve_is_measured_by_the_function_of_the_command(tmp_path):
+    short = PLAN.replace("SLIPS", "[0.9]").replace("[5.0, 10.0]", "[5.0]")
+    measure(
+        short.replace("duration = 1.0", "duration = 0.2"), 3, tmp_path / "data", TRUTHS["steep"]
+    )
+    (run,) = (tmp_path / "data").glob("*/run.json")
+    assert json.loads(run.read_text())["truth"]["rig"]["values"] == list(TRUTHS["steep"])
 
 
 def test_both_experiments_are_measured_and_the_second_fit_has_both(monkeypatch, tmp_path, rows):

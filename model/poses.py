@@ -11,8 +11,6 @@ from model.errors import DomainError, InsufficientData
 from model.slip.law import Array
 from model.told_apart import told_apart
 
-STANDING = 1e-6  # m: between poses closer than this there is no direction of travel
-
 
 @dataclass(frozen=True)
 class Poses:
@@ -102,20 +100,6 @@ class Poses:
         """Whether every heading is finite."""
         return bool(np.isfinite(self.yaw).all())
 
-    @property
-    def travelled(self) -> Array:
-        """Distance travelled up to each pose of one path, along straight lines, shape (n,) [m].
-
-        One zero for a path without poses.
-        """
-        steps = np.linalg.norm(np.diff(self.position, axis=0), axis=1)
-        return np.concatenate([[0.0], np.cumsum(steps)])
-
-    @property
-    def length(self) -> float:
-        """Length of the line through all poses of one path; 0 with fewer than two poses [m]."""
-        return float(self.travelled[-1]) if len(self) else 0.0
-
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "Poses":
         """Select poses by time, with their covariance.
 
@@ -187,23 +171,6 @@ def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
             f"path's {low} to {high} s; two are needed: do both keep the same clock?"
         )
     return inside
-
-
-def travel_direction(poses: Poses) -> Array:
-    """Compute the direction of travel at each pose of one path, shape (n,) [rad].
-
-    It is the direction from the pose before to the pose after; at the ends one of the two is the
-    pose itself. Where they are within `STANDING`, the last direction before is repeated, or the
-    first after; zero if the robot never moves.
-    """
-    before = np.maximum(np.arange(len(poses)) - 1, 0)
-    after = np.minimum(np.arange(len(poses)) + 1, len(poses) - 1)
-    chord = poses.position[after] - poses.position[before]
-    moving = np.flatnonzero(np.linalg.norm(chord, axis=1) > STANDING)
-    if len(moving) == 0:
-        return np.zeros(len(poses))
-    last = moving[np.maximum(np.searchsorted(moving, np.arange(len(poses)), side="right") - 1, 0)]
-    return np.arctan2(chord[last, 1], chord[last, 0])
 
 
 def compose(pose: Array, moves: Array) -> Array:

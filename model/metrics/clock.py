@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from model.errors import InsufficientData
 from model.poses import Poses
 from model.slip.law import Array
+from model.travel import travelled
 
 STEP = 0.05  # s between offsets that are tried; refined by a parabola
 FEWEST = 6  # least number of poses of a track
@@ -66,7 +67,8 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
             f"{len(track)} tracked poses cannot determine the clock offset; {FEWEST} are needed"
         )
     offsets = _possible(track, path)
-    misfit = np.array([_misfit(track, path, each) for each in offsets])
+    way = travelled(track)
+    misfit = np.array([_misfit(track, path, each, way=way) for each in offsets])
     best = int(np.argmin(misfit))
     if not np.isfinite(misfit[best]) or best in (0, len(offsets) - 1):
         raise InsufficientData(
@@ -117,22 +119,29 @@ def _possible(track: Poses, path: Poses) -> Array:
     return 0.5 * (path.t[0] + path.t[-1]) - middle + np.arange(-reach, reach + STEP, STEP)
 
 
-def _misfit(track: Poses, path: Poses, offset: float, *, share: float = SHARE) -> float:
+def _misfit(track: Poses, path: Poses, offset: float, *, way: Array | None = None) -> float:
     """Compute the misfit at an offset: squared distances over their degrees of freedom [m2].
 
     The distances are those that remain when the path is moved, turned and scaled to fit. Infinite
-    if fewer than four poses, or less than `share` of the track's poses or of its length, lie within
-    the path's times.
+    if fewer than four poses lie within the path's times, or less than `SHARE` of the track's poses
+    or of `way`, the distance travelled up to each of them, shape (n,) [m]; without `way`, if not
+    all poses do.
     """
     at = track.t + offset
     inside = (at >= path.t[0]) & (at <= path.t[-1])
     seen = track.part(inside)
-    if inside.mean() < share or len(seen) < 4 or seen.length < share * track.length:
+    if len(seen) < 4 or not _enough(inside, way):
         return np.inf
     x, y = _centred(path.at(at[inside])), _centred(seen)
     moving = float(np.abs(x * x.conj()).sum())
     shared = np.abs((y * x.conj()).sum()) ** 2 / moving if moving > 0 else 0.0
     return float((np.abs(y) ** 2).sum() - shared) / (2 * len(seen) - 4)
+
+
+def _enough(inside: NDArray[np.bool_], way: Array | None) -> bool:
+    if way is None:
+        return bool(inside.all())
+    return bool(inside.mean() >= SHARE and np.ptp(way[inside]) >= SHARE * way[-1])
 
 
 def _centred(poses: Poses) -> NDArray[np.complex128]:
@@ -173,7 +182,7 @@ def _sd_of_blocks(track: Poses, path: Poses, offsets: Array) -> float:
     for block in np.array_split(np.arange(len(track)), BLOCKS):
         rest = track.part(np.delete(np.arange(len(track)), block))
         # With all poses inside: one that leaves the path's time would no longer add to the misfit.
-        misfit = np.array([_misfit(rest, path, each, share=1.0) for each in offsets])
+        misfit = np.array([_misfit(rest, path, each) for each in offsets])
         best = int(np.argmin(misfit))
         if best in (0, len(offsets) - 1):
             return np.inf

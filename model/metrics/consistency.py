@@ -12,8 +12,9 @@ import numpy as np
 
 from model.errors import InsufficientData
 from model.metrics.scores import centred, with_tracker_noise
-from model.poses import Poses, travel_direction
+from model.poses import Poses
 from model.slip.law import Array
+from model.travel import travel_direction
 
 STATISTICS = ("nees", "along", "cross", "yaw")
 FEWEST_DRAWS = 50

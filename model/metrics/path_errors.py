@@ -8,9 +8,10 @@ import numpy as np
 from model.metrics.alignment import align
 from model.metrics.rigid_errors import motion_errors, pairs_by_distance
 from model.metrics.turning import fitted_radius, mean_yaw_rate
-from model.poses import Poses, overlap, travel_direction, wrap
+from model.poses import Poses, overlap, wrap
 from model.rigid_path import RigidPath
 from model.slip.law import Array
+from model.travel import path_length, travel_chord, travel_direction, travelled
 
 DISTANCES = (0.25, 0.5, 1.0)  # distances travelled over which relative errors are computed [m]
 
@@ -63,8 +64,10 @@ class PathErrors:
 
     Attributes:
         poses: Number of poses compared.
-        length: Length of the track between the first and the last of these poses [m].
-        length_ratio: Predicted over tracked length; NaN if the track has no length [-].
+        length: Length of the track from the first to the last of these poses, without its noise
+            (`model.travel`) [m].
+        length_ratio: Predicted over tracked length, both by the track's chord; NaN if the track has
+            no length [-].
         ate: Root mean square distance, unaligned [m].
         x: Root mean square error of x [m].
         y: Root mean square error of y [m].
@@ -146,11 +149,12 @@ def path_errors(predicted: Poses, tracked: Poses) -> PathErrors:
     errors = pose_errors(predicted, tracked)
     motion = align(predicted, tracked)
     moved = predicted.moved(rotation=motion.rotation, translation=motion.translation)
-    length = tracked.length
+    chord = travel_chord(tracked)
+    length = path_length(tracked, chord=chord)
     return PathErrors(
         poses=len(tracked),
         length=length,
-        length_ratio=predicted.length / length if length > 0 else float("nan"),
+        length_ratio=path_length(predicted, chord=chord) / length if length > 0 else float("nan"),
         ate=_rms(errors.distance),
         x=_rms(errors.translation[:, 0]),
         y=_rms(errors.translation[:, 1]),
@@ -181,7 +185,7 @@ def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> Rela
         tracked: Tracked poses.
         distance: Distance [m]; pairs may miss it by a tenth.
     """
-    start, end = pairs_by_distance(tracked.travelled, distance)
+    start, end = pairs_by_distance(travelled(tracked), distance)
     if len(start) == 0 or not (predicted.has_yaw and tracked.has_yaw):
         return RelativeError(distance, len(start), float("nan"), float("nan"))
     estimate, reference = RigidPath.of_poses(predicted), RigidPath.of_poses(tracked)

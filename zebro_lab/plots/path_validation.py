@@ -26,7 +26,7 @@ def path_validation(
 
     Args:
         paths: Prediction and baselines by name, in the track's frame and covering its times; at
-            most eight are drawn, none of length 0.
+            most eight are drawn, none that stands still.
         track: Tracked poses.
         band: Draws of the prediction, of which 60 are drawn, in the same frame; None without draws.
         title: Name of the walk.
@@ -43,7 +43,7 @@ def path_validation(
         f"Prediction and track: {title}", simulated=simulated, height=5.8, names=_PANELS
     )
     draw_band(above, band, label="draws of the prediction", color=BLUE, lw=0.5, alpha=0.15)
-    moving = {name: path for name, path in paths.items() if path.length > 0}
+    moving = {name: path for name, path in paths.items() if np.ptp(path.position, axis=0).any()}
     for (name, path), colour in zip(moving.items(), CYCLE, strict=False):
         above.plot(*path.position.T, color=colour, lw=1.2, label=name)
         errors = pose_errors(path.at(track.t), track)

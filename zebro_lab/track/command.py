@@ -89,17 +89,21 @@ def track_lines(result: "TrackResult") -> list[str]:
     """
     import numpy as np
 
+    from model.poses import Poses
+    from model.travel import path_length
     from zebro_lab.track.folder import written
 
     track, fit = result.tracked.track, result.tracked.floor.fit
     spread = np.sqrt(np.diagonal(track.covariance, axis1=1, axis2=2))
     simulated = "SIMULATED " if is_simulated(result.source) else ""
-    moves = np.where(track.gap_before[1:], 0.0, np.hypot(*np.diff(track.poses[:, :2], axis=0).T))
+    walked = Poses.of_states(np.asarray(track.t, dtype=float), np.asarray(track.poses, dtype=float))
+    parts = np.split(np.arange(len(walked)), np.flatnonzero(track.gap_before))
+    length = sum(path_length(walked.part(part)) for part in parts)
     lost = list(result.tracked.lost.items())
     what = "exposures" if result.is_composite else "photographs"
     return [
         f"{simulated}track (source {result.source}): {len(track.t)} of {result.photos} "
-        f"{what}, duration {track.t[-1] - track.t[0]:.4g} s, length {moves.sum():.3f} m",
+        f"{what}, duration {track.t[-1] - track.t[0]:.4g} s, length {length:.3f} m",
         f"times: {result.times}",
         f"standard deviations (median): x {1e3 * np.median(spread[:, 0]):.2f} mm, "
         f"y {1e3 * np.median(spread[:, 1]):.2f} mm, "

@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from model.poses import travel_direction, wrap
+from model.poses import wrap
 from model.slip.law import Array
+from model.travel import has_travelled, travel_direction
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
@@ -170,7 +171,7 @@ def _sideways(trajectory: Trajectory) -> tuple[str, ...]:
     """Return a note if the body's forward axis mostly points elsewhere than it travels."""
     poses = trajectory.poses
     apart = float(np.median(np.abs(wrap(poses.yaw - travel_direction(poses)))))
-    if apart < _SIDEWAYS:
+    if apart < _SIDEWAYS or not has_travelled(poses):
         return ()
     return (
         f"{trajectory.file.name}: the heading, that of the {trajectory.forward} axis, is mostly "

@@ -8,7 +8,8 @@ from model.errors import DomainError, InsufficientData
 from model.metrics.alignment import align
 from model.metrics.path_errors import path_errors, pose_errors, relative_error
 from model.metrics.turning import fitted_radius, mean_yaw_rate
-from model.poses import Poses, overlap, travel_direction
+from model.poses import Poses, overlap
+from model.travel import travel_direction
 
 angles = st.floats(-3.0, 3.0)
 shifts = st.tuples(st.floats(-5, 5), st.floats(-5, 5))

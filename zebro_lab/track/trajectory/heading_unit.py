@@ -5,8 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from model.poses import Poses, travel_direction
+from model.poses import Poses
 from model.slip.law import Array
+from model.travel import has_travelled, travel_direction
 
 _FITS: Final = 0.9
 """Alignment of heading and travel above which a unit fits the path [-]."""
@@ -31,7 +32,10 @@ def are_degrees(heading: Array, position: Array) -> bool:
     """
     if len(heading) == 0 or np.abs(heading).max() <= 2 * np.pi:
         return False
-    travel = travel_direction(Poses(np.arange(len(heading), dtype=float), position, heading))
+    poses = Poses(np.arange(len(heading), dtype=float), position, heading)
+    if not has_travelled(poses):
+        return False
+    travel = travel_direction(poses)
     in_radians, in_degrees = (
         np.abs(np.exp(1j * (each - travel)).mean()) for each in (heading, np.radians(heading))
     )

@@ -9,6 +9,7 @@ from model.metrics.turning import mean_yaw_rate
 from model.path_draws import states_at
 from model.poses import Poses
 from model.slip.law import Array
+from model.travel import path_length
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import TRACK
 from zebro_lab.files.replacement import settle
@@ -128,7 +129,8 @@ class _Run:
 def _summaries(t: Array, states: Array) -> Array:
     """Compute mean speed [m/s], yaw rate [rad/s] and curvature [1/m] of paths, shape (n, 3).
 
-    Speed is length over time, curvature yaw rate over speed, 0 for a path of length 0.
+    Speed is length, without noise (`model.travel`), over time; curvature is yaw rate over speed, 0
+    for a path of length 0.
 
     Args:
         t: Times, shape (k,) [s].
@@ -137,7 +139,7 @@ def _summaries(t: Array, states: Array) -> Array:
     rows = []
     for state in states:
         poses = Poses.of_states(t, state)
-        speed, rate = poses.length / float(np.ptp(t)), mean_yaw_rate(poses)
+        speed, rate = path_length(poses) / float(np.ptp(t)), mean_yaw_rate(poses)
         rows.append((speed, rate, rate / speed if speed > 0 else 0.0))
     return np.array(rows)
 

@@ -15,98 +15,102 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.errors import DomainError
-from model.gait.lines import FASTEST, Changes, Lines, Log, drawn, fitted, knots, rests, split
+from model.gait.lines import (
+    FASTEST,
+    SAME,
+    Lines,
+    Passing,
+    Samples,
+    chosen,
+    closest,
+    knots,
+    middle,
+    passing,
+    split,
+)
 from model.gait.reference import SampledReference
 from model.slip.law import Array
 
-SAME = 1e-9  # rad: angles no further apart are one count
 LARGEST_STEP = np.radians(10.0)  # of one count
 FEWEST_CHANGES = 8  # of count, to estimate the angle of one count
 SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
+# What a leg may be off a straight line in a draw, the larger of a share of a count and of what a
+# servo yields to its load [rad].
+ROUGH, YIELD = 0.01, np.radians(0.02)
+NEAR = 2  # samples on either side of a corner that may belong to either line
+TICK = 1e-4  # s, to which times of samples are compared
 DECIMALS = 6  # of a corner's time in seconds
 
 
 @dataclass(frozen=True)
 class CountedLeg:
-    """Straight lines through one leg's changes of count.
+    """Straight lines through one leg's counted angles.
 
     Attributes:
-        changes: The changes, at least one.
-        first: Index of each line's first change, then the number of changes, shape (k + 1,).
-        lines: The k lines, fitted with each change halfway between its two samples.
-        rested: Whether the leg rested between each line and the next, shape (k - 1,).
-        log: First and last sample, and the tolerance of a line.
+        samples: First and last sample of each stay at one count.
+        earliest: Least index of each line's first sample, where the fewest lines that pass all
+            samples are as early as they can be, then the number of samples, shape (k + 1,).
+        latest: Largest such index, where lines are as late as they can be, shape (k + 1,).
+        lines: All lines that pass each line's own samples.
+        alike: Number that lines share whose samples repeat: the same counts after the same times,
+            from 0, shape (k,).
+        step: Angle of one count [rad].
     """
 
-    changes: Changes
-    first: NDArray[np.intp]
-    lines: Lines
-    rested: NDArray[np.bool_]
-    log: Log
+    samples: Samples
+    earliest: NDArray[np.intp]
+    latest: NDArray[np.intp]
+    lines: Passing
+    alike: NDArray[np.intp]
+    step: float
 
     @classmethod
-    def of(cls, t: Array, theta: Array, step: float) -> "CountedLeg | None":
-        """Split the changes of count into the fewest groups that a line passes; fit a line to each.
+    def of(cls, t: Array, theta: Array, step: float) -> "CountedLeg":
+        """Split a leg's samples into the fewest groups that a line passes; find each one's lines.
 
         Args:
             t: Times of the samples, shape (n,) [s].
             theta: Counted angles, middles of their bins, shape (n,) [rad].
             step: Angle of one count [rad].
-
-        Returns:
-            The leg with its lines; None where the count never changes.
         """
-        at = np.flatnonzero(np.abs(np.diff(theta)) > SAME)
-        if len(at) == 0:
-            return None
+        changes = np.abs(np.diff(theta)) > SAME
+        ends = np.append(True, changes) | np.append(changes, True)
+        samples = Samples(t[ends], theta[ends])
         half = (0.5 + SLACK) * step
-        changes = Changes(t[at], t[at + 1], theta[at], theta[at + 1])
-        first = split(changes, half)
-        lines = fitted(changes, first, np.full(len(at), 0.5))
-        log = Log(float(t[0]), float(theta[0]), float(t[-1]), float(theta[-1]), half)
-        return cls(changes, first, lines, rests(lines, changes, first), log)
+        latest = split(samples, half)
+        reverse = Samples(-samples.t[::-1].copy(), samples.angle[::-1].copy())
+        earliest = len(samples.t) - split(reverse, half)[::-1]
+        own = _own_samples(samples, earliest, latest, half)
+        lines = _lines(samples, *own, step)
+        return cls(samples, earliest, latest, lines, _alike(samples, *own, step), step)
 
-    def drawn(self, step: float, rng: np.random.Generator) -> Lines:
-        """Draw lines that still pass every change, by random deviations from `lines`.
-
-        A line that does not pass its changes is moved all the same (`model.gait.lines.drawn`).
-
-        Twenty changes confine a line to a small polygon of offset and speed, far smaller than
-        twenty independent errors would leave. A direction is therefore taken from changes that fall
-        anywhere between their samples, and along it a point such that the polygon is filled evenly.
+    def drawn(self, rng: np.random.Generator) -> Lines:
+        """Draw one of the lines that pass, for each line, all equally likely.
 
         A gait whose cycle is a whole number of samples meets every count at the same phase again
-        and again, so its errors repeat and do not average out. A draw therefore takes one place for
-        each count, and one distance for the leg.
+        and again, so its errors repeat and do not average out. Lines whose samples repeat are
+        therefore drawn alike.
 
         Args:
-            step: Angle of one count [rad].
             rng: Source of randomness.
         """
-        turn = max(round(2 * np.pi / step), 1)
-        places = rng.uniform(0.0, 1.0, 2 * turn)
-        twice = np.round((self.changes.before + self.changes.after) / step).astype(int)
-        outwards = float(np.sqrt(rng.uniform()))
-        return drawn(
-            self.lines, self.changes, self.first, places[twice % (2 * turn)], outwards,
-            self.log.half,
-        )  # fmt: skip
+        return chosen(self.lines, rng.uniform(size=(self.alike.max() + 1, 2))[self.alike])
 
-    def corners(self, step: float, rng: np.random.Generator | None) -> tuple[Array, Array]:
-        """Compute the corners between the fitted lines or a draw of them, and the log's ends.
+    def corners(self, rng: np.random.Generator | None) -> tuple[Array, Array]:
+        """Compute the corners between the mean lines or a draw of them, and the log's ends.
 
         Args:
-            step: Angle of one count [rad].
-            rng: Source of randomness, to draw lines and the angle of rest, within 0.4 counts of a
-                count's middle; None for the fitted lines, with rests at the middle.
+            rng: Source of randomness, to draw lines and the angle of rests, within 0.4 counts of a
+                count's middle; None for the mean lines, with rests at the middle.
 
         Returns:
             Times [s], which do not decrease, and angles [rad] of the m corners, shape (m,) each.
         """
-        lines = self.lines if rng is None else self.drawn(step, rng)
-        rest = 0.0 if rng is None else float(rng.uniform(-0.4 * step, 0.4 * step))
-        t, theta = knots(lines, self.changes, self.first, self.rested, rest, self.log)
-        return _without_jumps(np.minimum(t, self.log.end), theta)
+        lines = middle(self.lines) if rng is None else self.drawn(rng)
+        rest = 0.0 if rng is None else float(rng.uniform(-0.4, 0.4)) * self.step
+        half = (0.5 + SLACK) * self.step
+        t, theta = knots(self.samples, self.earliest, self.latest, lines, rest, half)
+        return _through(self.samples, *_without_jumps(t, theta), half)
 
 
 @dataclass(frozen=True)
@@ -134,8 +138,8 @@ class QuantisedLog:
             raise DomainError(f"one count is {self.step:g} rad; expected more than zero, finite")
 
     @cached_property
-    def _legs(self) -> list[CountedLeg | None]:
-        """Fitted lines of each leg; None for a leg that never moves."""
+    def _legs(self) -> list[CountedLeg]:
+        """Lines of each leg."""
         return [CountedLeg.of(self.t, theta, self.step) for theta in self.theta.T]
 
     def smooth(self, rng: np.random.Generator | None = None) -> SampledReference:
@@ -143,30 +147,89 @@ class QuantisedLog:
 
         Args:
             rng: Source of randomness, to draw one of the motions that the counts allow; None for
-                the fitted lines. A leg that never moves is drawn within its count.
+                the mean lines. A leg that never moves is drawn within its count.
 
         Returns:
             The angles at the log's ends and at the times of all legs' corners, to a microsecond,
             less a constant offset: whether counts are rounded or truncated, half a count, is not
             known here. Times differ from draw to draw.
         """
-        legs = [
-            self._still(theta, rng) if leg is None else leg.corners(self.step, rng)
-            for theta, leg in zip(self.theta.T, self._legs, strict=True)
-        ]
+        legs = [leg.corners(rng) for leg in self._legs]
         # Corners of several legs within a microsecond become one, so that speeds stay accurate
         times = np.concatenate([self.t[[0, -1]], *(t for t, _ in legs)])
         times = np.unique(times.round(DECIMALS))
         return SampledReference(times, np.column_stack([np.interp(times, *leg) for leg in legs]))
 
-    def _still(self, theta: Array, rng: np.random.Generator | None) -> tuple[Array, Array]:
-        """Return times and angles at the log's ends of a leg that never moves.
 
-        The angle is drawn within half a count of the counted one; unchanged if `rng` is None.
-        """
-        half = 0.5 * self.step
-        shift = 0.0 if rng is None else rng.uniform(-half, half)
-        return self.t[[0, -1]], theta[[0, -1]] + shift
+def _lines(
+    samples: Samples, begin: NDArray[np.intp], end: NDArray[np.intp], step: float
+) -> Passing:
+    """Return all lines that pass each group of samples, from indices `begin` to below `end`."""
+    away = [closest(samples, *group)[1] for group in zip(begin, end, strict=True)]
+    return passing(samples, begin, end, np.maximum(0.5 * step, away) + max(ROUGH * step, YIELD))
+
+
+def _own_samples(
+    samples: Samples, earliest: NDArray[np.intp], latest: NDArray[np.intp], half: float
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return first and last index, plus one, of each line's own samples, shape (k,) each.
+
+    A corner lies anywhere between the earliest and the latest that a line may begin: the middle
+    is taken, and up to `NEAR` samples on either side are left out, since they may be of either
+    line. None is left out where fewer than two would remain; where no line passes them, it is the
+    longest group.
+    """
+    corner = (earliest + latest) // 2
+    begin = np.minimum(corner + NEAR, latest)[:-1]
+    end = np.maximum(corner - NEAR, earliest)[1:]
+    for i in range(len(begin)):
+        if end[i] - begin[i] < 2:
+            begin[i], end[i] = corner[i], corner[i + 1]
+        if end[i] - begin[i] < 2 or closest(samples, begin[i], end[i])[1] > half:
+            begin[i], end[i] = latest[i], latest[i + 1]
+    return begin, end
+
+
+def _alike(
+    samples: Samples, begin: NDArray[np.intp], end: NDArray[np.intp], step: float
+) -> NDArray[np.intp]:
+    """Number the groups of samples, those alike with the same number, shape (k,).
+
+    Alike are groups of the same counts after the same times, to a tenth of a millisecond, from
+    their first sample on.
+    """
+    numbers: dict[bytes, int] = {}
+    found = []
+    for one in map(slice, begin, end):
+        counts = (samples.angle[one] - samples.angle[one][0]) / step
+        times = (samples.t[one] - samples.t[one][0]) / TICK
+        pattern = np.round([counts, times]).astype(np.int64).tobytes()
+        found.append(numbers.setdefault(pattern, len(numbers)))
+    return np.array(found)
+
+
+def _through(samples: Samples, t: Array, theta: Array, half: float) -> tuple[Array, Array]:
+    """Add corners at samples that are missed by more than `half`, so that no sample is.
+
+    A leg that speeds up and slows down all the time has lines of few samples, which may miss
+    samples beside the next line, or meet it beyond the counts before and after. The samples on either side become corners as well, and a corner
+    between them from which the leg would jump is left out.
+    """
+    left = np.searchsorted(samples.t, t, side="right") - 1
+    right = np.minimum(np.searchsorted(samples.t, t), len(samples.t) - 1)
+    beside = np.stack([samples.angle[left], samples.angle[right]])
+    theta = np.clip(theta, beside.min(axis=0) - half, beside.max(axis=0) + half)
+    there = np.interp(samples.t, t, theta)
+    held = np.clip(there, samples.angle - half, samples.angle + half)
+    missed = np.flatnonzero(np.abs(held - there) > SAME)
+    before, after = np.maximum(missed - 1, 0), np.minimum(missed + 1, len(held) - 1)
+    jumps = np.abs(theta - held[missed, None]) > FASTEST * np.abs(t - samples.t[missed, None])
+    jumps &= (t > samples.t[before, None]) & (t < samples.t[after, None])
+    added = np.unique([before, missed, after])
+    keep = ~jumps.any(axis=0) & ~np.isin(t, samples.t[added])
+    t, theta = np.append(t[keep], samples.t[added]), np.append(theta[keep], held[added])
+    order = np.argsort(t, kind="stable")
+    return t[order], theta[order]
 
 
 def _without_jumps(t: Array, theta: Array) -> tuple[Array, Array]:

@@ -95,15 +95,58 @@ def test_a_robot_that_stands_first_stands_in_the_reconstruction():
     assert np.all(np.ptp(smooth[t < 1.3], axis=0) < 0.3 * STEP)
 
 
-def test_draws_spread_as_far_as_the_middle_errs():
-    t = np.arange(0, 10, 0.01)
-    theta = tripod(t)
-    log = QuantisedLog(t, counted(theta), STEP)
-    rng = np.random.default_rng(2)
-    draws = np.stack([log.smooth(rng).angles(t) for _ in range(30)])
-    spread = draws.std(axis=0).mean()
-    error = np.abs(log.smooth().angles(t) - theta).mean()
-    assert 0.3 * error < spread < 0.3 * STEP
+def coverage(step_deg, rate, *, draws=99):
+    """Return the shares of angles within the central 50 and 90 % of draws, of many gaits."""
+    step, rng = np.radians(step_deg), np.random.default_rng(8)
+    within = []
+    for _ in range(8):
+        cycle, began = rng.uniform(1.3, 3.0), rng.uniform(0.0, 3.0)
+        gait = buehler_reference(
+            *rng.uniform((-1.0, 0.5), (-0.5, 1.0)), ground_time=0.52 * cycle, cycle_time=cycle
+        )
+        t, fine = np.arange(0, 6, 1 / rate), rng.uniform(0.5, 5.5, 200)
+        log = QuantisedLog(t, step * np.round(gait.angles(t + began) / step), step)
+        truth = gait.angles(fine + began)
+        below = sum(log.smooth(rng).angles(fine) < truth for _ in range(draws))
+        within.append(np.abs(2 * (below + 0.5) / (draws + 1) - 1))
+    return [float(np.mean(np.concatenate(within) < share)) for share in (0.5, 0.9)]
+
+
+@pytest.mark.parametrize(("step_deg", "rate"), [(3.6, 50.0), (2.0, 20.0), (1.0, 50.0)])
+def test_draws_cover_the_angle_as_often_as_they_say(step_deg, rate):
+    half, most = coverage(step_deg, rate)
+    assert 0.45 < half < 0.8
+    assert 0.87 < most <= 1.0
+
+
+@given(cycle=st.floats(1.2, 3.0), began=st.floats(0.0, 3.0), rate=st.sampled_from([20.0, 50.0]))
+def test_fine_counts_at_low_rates_keep_fast_corners(cycle, began, rate):
+    step = np.radians(0.2)
+    gait = buehler_reference(-0.6, 0.7, ground_time=0.5 * cycle, cycle_time=cycle)
+    t, fine = np.arange(0, 6, 1 / rate), np.arange(0.7 * cycle, 6 - 0.7 * cycle, 1e-3)
+    log = QuantisedLog(t, step * np.round(gait.angles(t + began) / step), step)
+    error = log.smooth().angles(fine) - gait.angles(fine + began)
+    assert np.abs(error).max() < 0.1 * np.radians(0.2) * 360 / rate  # at most 2 % of a swing's step
+
+
+@settings(max_examples=30)
+@given(seed=st.integers(0, 1000), step_deg=st.floats(0.1, 5.0))
+def test_no_sample_is_missed_by_more_than_its_count(seed, step_deg):
+    rng, step = np.random.default_rng(seed), np.radians(step_deg)
+    speeds = rng.uniform(0, 6, (6, 20))
+    theta = np.cumsum(0.02 * np.repeat(speeds, 10, axis=1), axis=1).T
+    t = 0.02 * np.arange(len(theta))
+    log = QuantisedLog(t, step * np.round(theta / step), step)
+    for motion in (log.smooth(), log.smooth(rng)):
+        assert np.abs(motion.angles(t) - log.theta).max() < 0.6 * step
+
+
+def test_lines_whose_samples_repeat_are_drawn_alike():
+    t = np.arange(0, 9.99, 0.01)  # cycles of 200 samples
+    log = QuantisedLog(t, counted(tripod(t)), STEP)
+    off = log.smooth(np.random.default_rng(3)).angles(t) - log.smooth().angles(t)
+    assert np.abs(off[250:450] - off[450:650]).max() < 1e-6
+    assert np.abs(off[250:450]).max() > 1e-3
 
 
 def test_a_leg_that_never_moves_stays_in_its_count():

@@ -72,21 +72,22 @@ class Scored:
         return radius(at, walked.position, heading, self.walk.period) / theirs - 1, "of radius"
 
 
-def write_walk(folder: Path, walk: EngineWalk, *, seed: int) -> WalkOnFile:
+def write_walk(folder: Path, walk: EngineWalk, *, seed: int, counted: bool = True) -> WalkOnFile:
     """Write a walk as a lab would have it and read it back.
 
     Args:
         folder: Where to.
         walk: The engine's walk.
         seed: Of the tracker's noise.
+        counted: Whether leg angles are counted in steps of `STEP`; else they are the engine's.
     """
-    counted = STEP * np.round(walk.log.theta / STEP)
+    theta = STEP * np.round(walk.log.theta / STEP) if counted else walk.log.theta
     rng = np.random.default_rng(seed)
     seen = np.arange(0.0, walk.duration + 1e-9, EVERY)
     truth = [np.interp(seen, walk.truth["t"], walk.truth[c]) for c in ("x", "y", "yaw")]
     x, y, yaw = np.column_stack(truth).T + (rng.normal(size=(len(seen), 3)) * NOISE).T
     (folder / "track").mkdir(parents=True)
-    pd.DataFrame({"t": walk.log.t} | {f"theta{i + 1}": counted[:, i] for i in range(6)}).to_csv(
+    pd.DataFrame({"t": walk.log.t} | {f"theta{i + 1}": theta[:, i] for i in range(6)}).to_csv(
         folder / "legs.csv", index=False
     )
     covariance = dict(zip(("cov_xx", "cov_yy", "cov_yawyaw"), NOISE**2, strict=True))
@@ -116,9 +117,10 @@ def simulate_bent(leg: int, angle: float) -> pd.DataFrame:
 
 
 class Bench:
-    """All walks as a lab has them, and the rig's calibration."""
+    """All walks as a lab has them, counted or with the engine's leg angles; the calibration."""
 
-    def __init__(self, calibration: Path, scratch: Path) -> None:
+    def __init__(self, calibration: Path, scratch: Path, *, counted: bool = True) -> None:
+        self.counted = counted
         self.slip: NamedSlip = parse_slip(str(calibration))
         self._scratch = scratch
         self.engine = {
@@ -131,7 +133,7 @@ class Bench:
         folder = self._scratch / f"{name}-{again}"
         if not folder.exists():
             seed = 100 + sorted(self.engine).index(name) + 1000 * again
-            return write_walk(folder, self.engine[name], seed=seed)
+            return write_walk(folder, self.engine[name], seed=seed, counted=self.counted)
         return read_walk_on_file(folder)
 
     def bent(self, leg: int, degrees: float) -> str:

@@ -11,14 +11,14 @@ are made by the engine of `datasets/walk-sim`, which needs MuJoCo (the group `be
 
 Prints the tables of `docs/validation.md`.
 
-Usage: python -m benchmarks.accuracy.predicted_walks CALIBRATION [PART ...]
+Usage: python -m benchmarks.accuracy.predicted_walks CALIBRATION [--exact] [PART ...]
 
 CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
 half-circles, other-legs, floors, wrong-leg, wrong-leg-imu (the same walks, with roll and pitch by
 an IMU), straight (one of the half-circles' walks), tilt (roll and pitch alone) or
 fast-walk (of half-circles the one of one second a cycle, by few draws), all of them where none is
-named; with a number, as half-circles:0, one of its fits. The engine's walks are kept in
-ZEBRO_LAB_SCRATCH, or where temporary files are.
+named; with a number, as half-circles:0, one of its fits. With --exact leg angles are the engine's
+instead of counted. The engine's walks are kept in ZEBRO_LAB_SCRATCH, or where temporary files are.
 """
 
 import sys
@@ -206,11 +206,12 @@ PARTS = {
 
 def main() -> None:
     """Print the tables asked for; all without a name."""
-    if len(sys.argv) < 2:
+    given = [each for each in sys.argv[1:] if each != "--exact"]
+    if not given:
         raise SystemExit(__doc__)
     with tempfile.TemporaryDirectory() as scratch:
-        bench = Bench(Path(sys.argv[1]), Path(scratch))
-        for asked in sys.argv[2:] or PARTS:
+        bench = Bench(Path(given[0]), Path(scratch), counted="--exact" not in sys.argv)
+        for asked in given[1:] or PARTS:
             name, _, number = asked.partition(":")
             print(f"\n## {asked}")
             print_rows(list(PARTS[name](bench, [int(number)]) if number else PARTS[name](bench)))

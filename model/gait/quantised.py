@@ -4,8 +4,13 @@
 An encoder of few counts gives little information on an angle between two counts. When the count
 changes, however, the angle is the boundary between them, at a time known to one sample. Legs turn
 at constant speeds for most of a cycle, so the angles here are the fewest straight lines that pass
-every boundary at its time. A line through twenty boundaries is known far better than one count: to
-about a tenth of a degree where the count is 3.6 degrees and the log 100 Hz.
+every sample within half a count. A line that passes twenty changes of count is known far better
+than one count: to some hundredths of a degree where the count is 3.6 degrees and the log 100 Hz.
+
+Of each line all that pass its samples are equally likely, and their mean is the reconstruction.
+Samples near a corner may be of either line. How many lines pass, and so the uncertainty, depends on
+how speed, count and sampling meet: where a count takes a whole number of samples, as 8 at 45
+degrees a second, all changes are at the same phase, and say no more than one.
 """
 
 from dataclasses import dataclass
@@ -51,7 +56,8 @@ class CountedLeg:
         earliest: Least index of each line's first sample, where the fewest lines that pass all
             samples are as early as they can be, then the number of samples, shape (k + 1,).
         latest: Largest such index, where lines are as late as they can be, shape (k + 1,).
-        lines: All lines that pass each line's own samples.
+        lines: All lines that pass each line's own samples, within what a leg is off a line.
+        mean: Mean of those that pass them exactly.
         alike: Number that lines share whose samples repeat: the same counts after the same times,
             from 0, shape (k,).
         step: Angle of one count [rad].
@@ -61,6 +67,7 @@ class CountedLeg:
     earliest: NDArray[np.intp]
     latest: NDArray[np.intp]
     lines: Passing
+    mean: Lines
     alike: NDArray[np.intp]
     step: float
 
@@ -77,12 +84,11 @@ class CountedLeg:
         ends = np.append(True, changes) | np.append(changes, True)
         samples = Samples(t[ends], theta[ends])
         half = (0.5 + SLACK) * step
-        latest = split(samples, half)
-        reverse = Samples(-samples.t[::-1].copy(), samples.angle[::-1].copy())
-        earliest = len(samples.t) - split(reverse, half)[::-1]
+        earliest, latest = _first_samples(samples, half)
         own = _own_samples(samples, earliest, latest, half)
-        lines = _lines(samples, *own, step)
-        return cls(samples, earliest, latest, lines, _alike(samples, *own, step), step)
+        lines = _lines(samples, *own, step, max(ROUGH * step, YIELD))
+        mean = middle(_lines(samples, *own, step, 0.0))
+        return cls(samples, earliest, latest, lines, mean, _alike(samples, *own, step), step)
 
     def drawn(self, rng: np.random.Generator) -> Lines:
         """Draw one of the lines that pass, for each line, all equally likely.
@@ -106,7 +112,7 @@ class CountedLeg:
         Returns:
             Times [s], which do not decrease, and angles [rad] of the m corners, shape (m,) each.
         """
-        lines = middle(self.lines) if rng is None else self.drawn(rng)
+        lines = self.mean if rng is None else self.drawn(rng)
         rest = 0.0 if rng is None else float(rng.uniform(-0.4, 0.4)) * self.step
         half = (0.5 + SLACK) * self.step
         t, theta = knots(self.samples, self.earliest, self.latest, lines, rest, half)
@@ -161,12 +167,29 @@ class QuantisedLog:
         return SampledReference(times, np.column_stack([np.interp(times, *leg) for leg in legs]))
 
 
+def _first_samples(samples: Samples, half: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return least and largest index of each line's first sample, then their number, (k + 1,).
+
+    Splitting from the last sample backwards gives as few lines, each as early as it can begin. By
+    rounding it may give one more, where a line barely passes: then both are the latest.
+    """
+    latest = split(samples, half)
+    backwards = Samples(-samples.t[::-1].copy(), samples.angle[::-1].copy())
+    earliest = len(samples.t) - split(backwards, half)[::-1]
+    if len(earliest) != len(latest):
+        return latest, latest
+    return np.minimum(earliest, latest), latest
+
+
 def _lines(
-    samples: Samples, begin: NDArray[np.intp], end: NDArray[np.intp], step: float
+    samples: Samples, begin: NDArray[np.intp], end: NDArray[np.intp], step: float, off: float
 ) -> Passing:
-    """Return all lines that pass each group of samples, from indices `begin` to below `end`."""
+    """Return all lines that pass each group of samples, from indices `begin` to below `end`.
+
+    A line passes a sample within half a count, or within as much as one line can, and `off` [rad].
+    """
     away = [closest(samples, *group)[1] for group in zip(begin, end, strict=True)]
-    return passing(samples, begin, end, np.maximum(0.5 * step, away) + max(ROUGH * step, YIELD))
+    return passing(samples, begin, end, np.maximum(0.5 * step, away) + off)
 
 
 def _own_samples(
@@ -212,8 +235,9 @@ def _through(samples: Samples, t: Array, theta: Array, half: float) -> tuple[Arr
     """Add corners at samples that are missed by more than `half`, so that no sample is.
 
     A leg that speeds up and slows down all the time has lines of few samples, which may miss
-    samples beside the next line, or meet it beyond the counts before and after. The samples on either side become corners as well, and a corner
-    between them from which the leg would jump is left out.
+    samples beside the next line, or meet it beyond the counts before and after. The samples on
+    either side become corners as well, and a corner between them from which the leg would jump is
+    left out.
     """
     left = np.searchsorted(samples.t, t, side="right") - 1
     right = np.minimum(np.searchsorted(samples.t, t), len(samples.t) - 1)
@@ -221,12 +245,13 @@ def _through(samples: Samples, t: Array, theta: Array, half: float) -> tuple[Arr
     theta = np.clip(theta, beside.min(axis=0) - half, beside.max(axis=0) + half)
     there = np.interp(samples.t, t, theta)
     held = np.clip(there, samples.angle - half, samples.angle + half)
-    missed = np.flatnonzero(np.abs(held - there) > SAME)
-    before, after = np.maximum(missed - 1, 0), np.minimum(missed + 1, len(held) - 1)
-    jumps = np.abs(theta - held[missed, None]) > FASTEST * np.abs(t - samples.t[missed, None])
-    jumps &= (t > samples.t[before, None]) & (t < samples.t[after, None])
-    added = np.unique([before, missed, after])
-    keep = ~jumps.any(axis=0) & ~np.isin(t, samples.t[added])
+    missed = np.abs(held - there) > SAME
+    added = missed | np.append(missed[1:], False) | np.append(False, missed[:-1])
+    jumps = [
+        missed[k] & (np.abs(theta - held[k]) > FASTEST * np.abs(t - samples.t[k]))
+        for k in (left, right)
+    ]
+    keep = ~np.any(jumps, axis=0) & ~np.isin(t, samples.t[added])
     t, theta = np.append(t[keep], samples.t[added]), np.append(theta[keep], held[added])
     order = np.argsort(t, kind="stable")
     return t[order], theta[order]

@@ -7,6 +7,7 @@ from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns_file import require_checked
 from zebro_lab.tables.mapped_columns import MappedColumns, parse_mapped_columns
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
@@ -25,7 +26,8 @@ def trajectory_columns(file: Path, named: Path | None) -> MappedColumns | None:
 
     Raises:
         NotFound: The named file does not exist.
-        SettingsError: It cannot be read as TOML, or a key, a unit or a sign is invalid.
+        SettingsError: It cannot be read as TOML, a key, a unit or a sign is invalid, or a value is
+            a guess that nobody has checked.
     """
     beside = file.parent / COLUMNS_FILE
     chosen = named or (beside if beside.is_file() else None)
@@ -42,4 +44,5 @@ def trajectory_columns(file: Path, named: Path | None) -> MappedColumns | None:
 
 
 def _parsed(entries: dict[str, object], file: Path, section: str) -> MappedColumns:
+    require_checked(entries, file=file, path=section)
     return parse_mapped_columns(SettingsTable(entries, file=file, path=section), MAPPED_UNITS)

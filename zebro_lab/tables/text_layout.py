@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from model.counted import counted
+from zebro_lab.files.units import is_unit_text
 from zebro_lab.tables.cells import decimal_sign, kind_of
 from zebro_lab.tables.header_rows import (
     DataRows,
@@ -265,7 +266,17 @@ def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Lin
 
 
 def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> None:
-    """Raise if a row has more cells than the header, but for an empty one at its end."""
+    """Raise if a row has more cells than the header, but for an empty one at its end.
+
+    Or if a header such as `Time, s, Force, N` was split between names and units.
+    """
+    names = header.names
+    units = [name.split(" (")[0] for name in names[1::2]]  # repeated ones are numbered
+    if len(names) == 2 * data.width and all(map(is_unit_text, units)):
+        raise LayoutError(
+            f"the header has {len(names)} names, '{names[0]}', '{names[1]}', …, for "
+            f"{counted(data.width, 'column')}; write units in brackets: '{names[0]} [{names[1]}]'"
+        )
     for row, cells in enumerate(best.rows[data.first : data.stop], start=1):
         if any(cells[len(header.names) :]) or len(cells) > len(header.names) + 1:
             advice = "; write decimals with a point" if best.separator == "," else "; correct it"

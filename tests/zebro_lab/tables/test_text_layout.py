@@ -96,6 +96,7 @@ def test_the_settings_of_a_labview_file_are_no_data():
         ),
         ("a,0,1,2\na,5,6,7\n", "has no header: the first line"),
         ("t,F\nn/m,\n1,2\n3,4\n", "line 2, 'n/m,', stands between names and numbers"),
+        ("Time, s,F, N,G, N\n0,1,2\n1,2,3\n", r"write units in brackets: 'Time \[s\]'"),
         ("t;F\n1;2\n1;2;3\n", "has 3 cells, the header has 2"),
     ],
 )

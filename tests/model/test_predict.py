@@ -18,6 +18,7 @@ from model.predict import (
     with_contacts,
 )
 from model.robot import Robot
+from model.travel import path_length
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
@@ -102,5 +103,5 @@ def test_an_ensemble_takes_the_step_that_its_gait_needs():
     off = []
     for options in (DynamicsOptions(dt=STEPS[0]), chosen):
         path = planar_walk(carried, duration=12.0, options=options).poses
-        off.append(np.linalg.norm(path.position[-1] - fine.position[-1]) / fine.length)
+        off.append(np.linalg.norm(path.position[-1] - fine.position[-1]) / path_length(fine))
     assert off[1] < 0.01 < off[0]

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from model.poses import Poses
+from model.poses import Poses, wrap
 from model.slip.law import Array
 
 STANDING = 1e-6  # m: between poses closer than this there is no direction of travel
@@ -28,6 +28,8 @@ _PARTS = (
     50  # of the extent; what moves less, as noise that is correlated in time, is none of travel
 )
 _WINDOW = 5  # poses through which a cubic would pass without noise
+_CLEAR = np.radians(20.0)  # turn of a path of which neither noise nor sway leave the side open
+_ALIKE = 3.0  # ratio of the curvatures of two paths that may be mirror images
 _RAYLEIGH = np.sqrt(2 * np.log(2))  # median length of a vector of two standard normal numbers
 
 
@@ -130,6 +132,32 @@ def travel_direction(poses: Poses) -> Array:
         return np.zeros(len(poses))
     known = moving[np.maximum(np.searchsorted(moving, here, side="right") - 1, 0)]
     return np.arctan2(chord[known, 1], chord[known, 0])
+
+
+def travel_turn(poses: Poses) -> float:
+    """Compute by how much the direction of travel of one path turns in all, positive left [rad].
+
+    It is summed over the lines between poses that count. A reversal, by more than a right angle, is
+    no turn to either side; 0 for a path that does not move on.
+    """
+    if not has_travelled(poses):
+        return 0.0
+    x, y = np.diff(poses.position[_counted(poses, travel_chord(poses))], axis=0).T
+    turns = wrap(np.diff(np.arctan2(y, x)))
+    return float(turns[np.abs(turns) < np.pi / 2].sum())
+
+
+def turn_oppositely(first: Poses, second: Poses) -> bool:
+    """Return whether two paths clearly turn to opposite sides, by about the same curvature.
+
+    So do a path and its mirror image. Each must turn by `_CLEAR` or more, and turns over length may
+    differ by a factor of `_ALIKE`; they need not be of the same length or by the same clock.
+    """
+    turns = travel_turn(first), travel_turn(second)
+    if min(map(abs, turns)) < _CLEAR or turns[0] * turns[1] > 0:
+        return False
+    curvatures = [abs(t) / path_length(p) for t, p in zip(turns, (first, second), strict=True)]
+    return max(curvatures) < _ALIKE * min(curvatures)
 
 
 def _counted(poses: Poses, chord: float) -> NDArray[np.intp]:

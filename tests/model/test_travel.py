@@ -11,7 +11,9 @@ from model.travel import (
     position_noise,
     travel_chord,
     travel_direction,
+    travel_turn,
     travelled,
+    turn_oppositely,
 )
 
 RADIUS, SPEED, DURATION, REST = 1.2, 0.09, 22.0, 3.0  # m, m/s, s, s at either end
@@ -114,3 +116,31 @@ def test_a_robot_that_stands_in_noise_has_not_travelled():
     places = np.random.default_rng(1).normal(0, 0.002, (500, 2))
     assert not has_travelled(Poses(np.arange(500) / 120, places, np.zeros(500)))
     assert has_travelled(arc(120, 0.002))
+
+
+def mirrored(poses):
+    return Poses(poses.t, poses.position * [1, -1], -poses.yaw)
+
+
+@pytest.mark.parametrize("rate", [2, 120])
+@pytest.mark.parametrize("noise", [0, 2e-3])
+def test_a_mirror_image_turns_to_the_other_side(rate, noise):
+    seen = arc(rate, noise, seed=2)
+    assert travel_turn(seen) == pytest.approx(way(DURATION) / RADIUS, rel=0.15)
+    assert turn_oppositely(arc(30, 0), mirrored(seen))
+    assert not turn_oppositely(arc(30, 0), seen)
+
+
+def test_what_turns_little_or_by_another_curvature_is_no_mirror_image():
+    short = arc(30, 0).part(slice(200))
+    assert not turn_oppositely(short, mirrored(short))
+    t = np.linspace(0, 10, 200)
+    tight = Poses(t, 0.2 * np.column_stack([np.sin(t / 5), np.cos(t / 5)]), -t / 5)
+    assert not turn_oppositely(arc(30, 0), tight)
+
+
+def test_a_reversal_is_no_turn():
+    t = np.linspace(0, 10, 601)
+    place = 1 - np.abs(1 - t / 5)
+    noise = np.random.default_rng(1).normal(0, 1e-3, (601, 2))
+    assert abs(travel_turn(Poses(t, np.column_stack([place, 0 * t]) + noise, 0 * t))) < 0.4

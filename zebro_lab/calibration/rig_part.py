@@ -17,7 +17,8 @@ from zebro_lab.runs.manifest import RIG, TABLE
 from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.tables.columns import Columns, RunRule
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
+from zebro_lab.tables.rig_table import RigTable, normal_force
+from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
@@ -98,7 +99,7 @@ def read_part(
         raw, columns, files = _run_folder_table(source.path, columns)
     else:
         raw, files = read_table_file(source.path, sheet=columns.sheet), (source.path,)
-    table = RigTable(raw, columns, kept_rows(raw, columns))
+    table = RigTable(raw, columns, kept_rows(raw, columns.keep))
     slip_column, pressed, traction = slip(table), normal_force(table), table.si("traction_force")
     doubts = require_plausible(table, slip_column, pressed, traction)
     if wanted is not None:

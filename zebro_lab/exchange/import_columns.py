@@ -55,7 +55,7 @@ class ForeignColumns:
             return replace(canonical_columns(SERIES[what]), where=f"{what}.")
         if "topic" in self.table:
             self.table.value("topic")
-        return parse_mapped_columns(self.table, SERIES[what])
+        return parse_mapped_columns(self.table, SERIES[what], with_rows=what == TRACK)
 
     def rig(self) -> Columns:
         """Parse the column map of a rig table; without entries, the default `Columns()`.

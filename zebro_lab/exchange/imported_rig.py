@@ -20,7 +20,8 @@ from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns
-from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
+from zebro_lab.tables.rig_table import RigTable, normal_force
+from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import run_times, separate_runs
 from zebro_lab.tables.slip_source import slip
 from zebro_lab.tables.table_files import read_table_file
@@ -85,7 +86,7 @@ def rig_runs(
             repeats within a run, or no rig can have measured the numbers.
     """
     raw = read_table_file(path, sheet=columns.sheet)
-    table = RigTable(raw, columns, kept_rows(raw, columns))
+    table = RigTable(raw, columns, kept_rows(raw, columns.keep))
     if columns.runs.each_row:
         raise DataError(f"each row is the mean of a trial, not a sample, as {COLUMNS_FILE} states "
                         f"in [runs] each_row; {_ELSE}", file=path)  # fmt: skip

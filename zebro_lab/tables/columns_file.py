@@ -17,7 +17,7 @@ from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.tables.columns import CANONICAL, Columns, MappedColumn, RunRule, scaled
 from zebro_lab.tables.date_cells import is_date_unit
-from zebro_lab.tables.row_conditions import RowCondition, parse_row_condition
+from zebro_lab.tables.row_conditions import read_row_conditions
 from zebro_lab.tables.table_kinds import KINDS, LEGS, RIG
 
 _PLAIN: Final = (LEGS, RIG)
@@ -71,7 +71,7 @@ def parse_columns(table: SettingsTable) -> Columns:
         },
         constants=_quantities(table.table("constants"), _CONSTANTS),
         runs=_runs(table),
-        keep=_keep(table.table("rows")),
+        keep=read_row_conditions(table.table("rows")),
         load_cell=_load_cell(table.table("load_cell")),
     )
     table.finish()
@@ -241,15 +241,6 @@ def _runs(table: SettingsTable) -> RunRule:
         gap=runs.quantity("gap", "s", above=0.0) if "gap" in runs else None,
         each_row=runs.flag("each_row", False),
     )
-
-
-def _keep(rows: SettingsTable) -> tuple[RowCondition, ...]:
-    try:
-        return tuple(map(parse_row_condition, rows.texts("keep")))
-    except SettingsError:
-        raise
-    except ValueError as error:
-        raise rows.fault(str(error), "keep") from error
 
 
 def _quantities(table: SettingsTable, units: Mapping[str, str]) -> dict[str, float]:

@@ -15,6 +15,7 @@ from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn
 from zebro_lab.tables.columns_file import parse_mapped_column
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.row_conditions import RowCondition, read_row_conditions
 from zebro_lab.tables.table_kinds import looks_like_other
 
 INTERVALS: Final = (2e-5, 2.0)
@@ -37,6 +38,7 @@ class MappedColumns:
         where: Dotted section in the file, with a final dot; "" for the whole file.
         sheet: Sheet of a workbook to read; None for the only one.
         units: SI unit of each canonical column.
+        keep: Conditions that rows must meet to be read.
     """
 
     mapped: Mapping[str, MappedColumn]
@@ -45,6 +47,7 @@ class MappedColumns:
     where: str = ""
     sheet: str | None = None
     units: Mapping[str, str] = field(default_factory=dict)
+    keep: tuple[RowCondition, ...] = ()
 
     def has(self, table: RawTable, name: str) -> bool:
         """Return whether a table has a column, once or repeatedly, by the header it is mapped to.
@@ -185,13 +188,16 @@ def canonical_columns(units: Mapping[str, str]) -> MappedColumns:
     return MappedColumns(columns, units=units)
 
 
-def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> MappedColumns:
+def parse_mapped_columns(
+    table: SettingsTable, units: Mapping[str, str], *, with_rows: bool = False
+) -> MappedColumns:
     """Parse a column map; columns without an entry keep their canonical name and unit.
 
     Args:
         table: Table with the keys `source`, `sheet` and `columns`, all optional; no others are
             allowed.
         units: SI unit of each column, by canonical name.
+        with_rows: Whether it may have the section `rows`, too, which says which rows are read.
 
     Raises:
         SettingsError: A key, a header, a unit or a sign is invalid.
@@ -204,8 +210,10 @@ def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> Mapp
     }
     source = table.text("source") if "source" in table else None
     sheet = table.text("sheet") if "sheet" in table else None
+    keep = read_row_conditions(table.table("rows")) if with_rows else ()
     table.finish()
     where = f"{table.path}." if table.path else ""
     return MappedColumns(
-        {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where, sheet, units
-    )
+        {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where, sheet,
+        units, keep,
+    )  # fmt: skip

@@ -4,7 +4,7 @@
 import io
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -47,6 +47,7 @@ class RawTable:
         rows_from: Number of the first row of data in the sheet of a workbook; None for other files.
         units: Unit that the file states for a column, by header, as written in it.
         unreadable: Cell type of each column that has neither numbers nor strings, by header.
+        kept: Which rows of the file the columns hold, counted from 0, shape (n,); None for all.
     """
 
     path: Path
@@ -61,6 +62,7 @@ class RawTable:
     rows_from: int | None = None
     units: Mapping[str, str] = field(default_factory=dict)
     unreadable: Mapping[str, str] = field(default_factory=dict)
+    kept: NDArray[np.intp] | None = None
 
     def __len__(self) -> int:
         """Return the number of data rows; 0 for a table without columns."""
@@ -72,12 +74,19 @@ class RawTable:
         Args:
             problem: What was found, what was expected, what to try.
             column: Header of the column.
-            index: Data row, counted from 0; None for the whole column.
+            index: Row of the columns, counted from 0; None for the whole column.
             found: `value` and `unit` of the cell.
         """
-        row = None if index is None else index + 1
+        row = None if index is None else self.row(index)
         line = None if row is None else self._line(row)
         return DataError(problem, file=self.path, column=column, row=row, line=line, **found)
+
+    def part(self, rows: NDArray[np.intp]) -> "RawTable":
+        """Return some rows, by indices that increase; errors still name the rows of the file."""
+        columns = {
+            name: cells.iloc[rows].reset_index(drop=True) for name, cells in self.columns.items()
+        }
+        return replace(self, columns=columns, kept=rows if self.kept is None else self.kept[rows])
 
     def unit_of(self, name: str, si_unit: str) -> str | None:
         """Return the unit that the file states for a column; None if it states none.
@@ -203,6 +212,10 @@ class RawTable:
             column,
             index,
         )
+
+    def row(self, index: int) -> int:
+        """Return the data row of the file, counted from 1, that a row of the columns is."""
+        return 1 + (index if self.kept is None else int(self.kept[index]))
 
     def _line(self, row: int) -> int | None:
         """Return the line of a data row in a text file or the row of a sheet; None for others.

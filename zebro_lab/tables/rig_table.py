@@ -169,32 +169,6 @@ class RigTable:
         )
 
 
-def kept_rows(raw: RawTable, columns: Columns) -> NDArray[np.intp]:
-    """Return the indices of the rows that meet every condition of `[rows] keep`.
-
-    Args:
-        raw: Table as read.
-        columns: Column map with the conditions.
-
-    Returns:
-        Row indices, counted from 0, increasing.
-
-    Raises:
-        DataError: A condition names a missing, ambiguous or non-numeric column, or no row is left,
-            also of a table without rows.
-    """
-    keep = np.ones(len(raw), dtype=bool)
-    for condition in columns.keep:
-        keep &= condition.holds(raw.numbers(condition.column))
-    if not keep.any():
-        conditions = " and ".join(map(str, columns.keep))
-        raise DataError(
-            f"none of the {len(raw)} rows meets [rows] keep: {conditions}; check numbers and units",
-            file=raw.path,
-        )
-    return np.flatnonzero(keep)
-
-
 def normal_force(table: RigTable) -> Array:
     """Return the normal force, positive everywhere, shape (n,) [N].
 

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Conditions such as `slip > 0.05` that filter the rows of a table."""
+"""Conditions such as `slip > 0.05` that filter the rows of a table (`[rows] keep`)."""
 
 import operator
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.settings_table import SettingsTable
+from zebro_lab.tables.raw_table import RawTable
 
 _OPERATORS: Mapping[str, Callable[[Any, Any], Any]] = {
     "==": operator.eq,
@@ -73,3 +77,45 @@ def parse_row_condition(text: str) -> RowCondition:
         )
     column = match["quoted"] or match["plain"]
     return RowCondition(column, match["operator"], float(match["number"]))
+
+
+def read_row_conditions(rows: SettingsTable) -> tuple[RowCondition, ...]:
+    """Read the conditions `keep` of a section `[rows]`.
+
+    Raises:
+        SettingsError: One of them is no condition.
+    """
+    try:
+        return tuple(map(parse_row_condition, rows.texts("keep")))
+    except SettingsError:
+        raise
+    except ValueError as error:
+        raise rows.fault(str(error), "keep") from error
+
+
+def kept_rows(raw: RawTable, keep: Sequence[RowCondition], *, where: str = "") -> NDArray[np.intp]:
+    """Return the indices of the rows that meet every condition.
+
+    Args:
+        raw: Table as read.
+        keep: The conditions.
+        where: Dotted section of `rows` in the `columns.toml`, with a final dot, for the message.
+
+    Returns:
+        Row indices, counted from 0, increasing.
+
+    Raises:
+        DataError: A condition names a missing, ambiguous or non-numeric column, or no row is left,
+            also of a table without rows.
+    """
+    kept = np.ones(len(raw), dtype=bool)
+    for condition in keep:
+        kept &= condition.holds(raw.numbers(condition.column))
+    if not kept.any():
+        conditions = " and ".join(map(str, keep))
+        raise DataError(
+            f"none of the {len(raw)} rows meets [{where}rows] keep: {conditions}; check numbers "
+            "and units",
+            file=raw.path,
+        )
+    return np.flatnonzero(kept)

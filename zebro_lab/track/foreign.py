@@ -114,7 +114,7 @@ def read_foreign_track(
             "plane of the floor, such as xy or xz",
             key="--plane",
         )
-    own = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped)  # without headers
+    own = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped, keep=())
     track = track_of_foreign_table(_flat(trajectory), own)
     files = tuple(dict.fromkeys((*trajectory.files, *track.files[1:])))
     return replace(track, files=files, topic=trajectory.topic)
@@ -199,7 +199,7 @@ def track_of_foreign_table(table: RawTable, mapping: MappedColumns) -> ForeignTr
     si = {name: pd.Series(values) for name, values in columns.items()}
     source = mapping.source or table.source
     checked = RawTable(table.path, si, source=source, notes=(*table.notes, *read.notes),
-                       header_line=table.header_line)  # fmt: skip
+                       header_line=table.header_line, kept=read.table.kept)  # fmt: skip
     more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
     files = (table.path, *([mapping.file] if mapping.file else []))
     return ForeignTrack(track_of_table(checked), more, set(COVARIANCE) <= set(columns), files)

@@ -11,12 +11,17 @@ from model.counted import counted
 from model.judgement import Judgement, TiltJudged, judge
 from model.metrics.consistency import FEWEST_DRAWS
 from model.path_draws import states_at
+from model.poses import Poses
+from model.slip.law import Array
+from model.travel import turn_oppositely
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.extents import unit_warning
-from zebro_lab.validation.shared_clock import shared_time
+from zebro_lab.validation.shared_clock import mirrored_hint, shared_time
 from zebro_lab.walk.prediction_file import PredictionFile
 
+_GAP: Final = 5.0
+"""Times the usual time between poses, from which on poses are missing."""
 _NEAR: Final = 0.2
 """Largest relative difference of the ratio of extents from the factor between two units [-]."""
 
@@ -72,9 +77,11 @@ def judge_run(
             key="--anchor",
         )
     judgement = judge(predicted.prediction, track.poses, anchor=anchor, rng=rng)
+    seen = track.poses.part(inside)
     notes = (
         *_sizes(judgement, track), *track.notes, *predicted.notes,
-        *_outside(inside, predicted.prediction.path.t), *_not_testable(judgement),
+        *_outside(inside, predicted.prediction.path.t), *_gaps(seen.t),
+        *_mirrored(seen, predicted.prediction.path), *_not_testable(judgement),
     )  # fmt: skip
     return JudgedRun(judgement.track, judgement.rows, judgement.band, name, notes)
 
@@ -104,6 +111,24 @@ def _outside(inside: np.ndarray, t: np.ndarray) -> Iterator[str]:
             f"{counted(left_out, 'tracked pose')} {lie} outside the predicted time and "
             f"{'is' if left_out == 1 else 'are'} not scored"
         )
+
+
+def _gaps(t: Array) -> Iterator[str]:
+    """Yield a note if between some of the times `t` [s] are pauses of many usual steps."""
+    steps = np.diff(t)
+    usual = float(np.median(steps))
+    gaps = steps[steps > _GAP * usual]
+    if len(gaps):
+        yield (
+            f"the track has {counted(len(gaps), 'gap')}, the longest of {gaps.max():.3g} s: "
+            f"{(gaps - usual).sum():.3g} of {np.ptp(t):.3g} s are without poses, and not scored"
+        )
+
+
+def _mirrored(track: Poses, path: Poses) -> Iterator[str]:
+    """Yield a warning if the track turns to the other side than the predicted path in its time."""
+    if turn_oppositely(path.at(track.t), track):
+        yield f"WARNING: {mirrored_hint(track)}"
 
 
 def _not_testable(judgement: Judgement) -> Iterator[str]:

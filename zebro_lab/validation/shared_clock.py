@@ -11,6 +11,7 @@ from model.errors import InsufficientData
 from model.metrics.clock import estimate_offset
 from model.poses import Poses, overlap
 from model.slip.law import Array
+from model.travel import travel_turn, turn_oppositely
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
 
@@ -50,8 +51,11 @@ def estimated_clock(
     try:
         found = estimate_offset(track.poses, path)
     except InsufficientData as error:
+        why = f"{error}. {otherwise}"
+        if turn_oppositely(path, track.poses):
+            why = mirrored_hint(track.poses)
         raise DataError(
-            f"the clock's offset cannot be estimated: {error}. {otherwise}",
+            f"the clock's offset cannot be estimated: {why}",
             file=track.file,
         ) from error
     moved = shifted(track, found.value)
@@ -63,6 +67,16 @@ def estimated_clock(
     )
     poses = replace(moved.poses, covariance=widened)
     return replace(moved, poses=poses, notes=(*moved.notes, note)), found.value
+
+
+def mirrored_hint(track: Poses) -> str:
+    """Return the question to ask where a track turns to the other side than its prediction does."""
+    seen, predicted = ("left", "right") if travel_turn(track) > 0 else ("right", "left")
+    return (
+        f"predicted turns {predicted}, tracked {seen}, about as sharply: is the plane of the floor "
+        "mirrored? Import the track with the plane's axes exchanged, such as --plane zx instead of "
+        "xz, or with the other sign of y_m in columns.toml; else check signs and order of the legs"
+    )
 
 
 def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:

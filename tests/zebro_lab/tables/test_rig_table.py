@@ -12,8 +12,8 @@ from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import Columns, MappedColumn
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
-from zebro_lab.tables.row_conditions import parse_row_condition
+from zebro_lab.tables.rig_table import RigTable, normal_force
+from zebro_lab.tables.row_conditions import kept_rows, parse_row_condition
 
 
 def table_of(columns: dict[str, MappedColumn], constants: dict[str, float], **values) -> RigTable:
@@ -52,7 +52,7 @@ def test_an_overload_is_skipped_by_the_condition_that_is_proposed(factor, sign):
         table.si("traction_force")
     assert f'keep = ["{condition}"]' in str(raised.value)
     settings = Columns(columns=mapped, keep=(parse_row_condition(condition),))
-    assert kept_rows(table.raw, settings).tolist() == [0]
+    assert kept_rows(table.raw, settings.keep).tolist() == [0]
 
 
 def test_a_load_that_is_negative_nearly_everywhere_is_given_its_sign():

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.tables.columns_file import read_section
 from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
@@ -108,3 +109,68 @@ def test_a_faulty_tum_file_is_named_by_its_line(tmp_path, text, message):
     file.write_text(text)
     with pytest.raises(DataError, match=message):
         read(file)
+
+
+def mocap(tmp_path, **columns) -> Path:
+    """Write the table of a motion-capture system that lost the body in rows 3, 4 and 7."""
+    n = np.arange(9.0)
+    frame = pd.DataFrame({"Frame": n, "t": 0.1 * n, "x": 0.02 * n, "y": 0 * n, "yaw": 0 * n})
+    frame = frame.assign(**columns)
+    frame.loc[[2, 3, 6], ["x", "y", "yaw"]] = np.nan
+    frame.to_csv(tmp_path / "mocap.csv", index=False)
+    return tmp_path / "mocap.csv"
+
+
+def test_poses_without_any_number_are_gaps_and_counted(tmp_path):
+    path = read(mocap(tmp_path))
+    np.testing.assert_allclose(path.track.poses.t, [0, 0.1, 0.4, 0.5, 0.7, 0.8])
+    assert "mocap.csv: 3 empty poses left out in 2 gaps, the first from row 3" in path.track.notes
+
+
+def test_rows_after_a_gap_are_named_by_their_number_in_the_file(tmp_path):
+    t = [0, 0.1, 0.2, 0.3, 0.4, 0.2, 0.6, 0.7, 0.8]
+    with pytest.raises(DataError, match=r"row 6 \(line 7\): the stamp 0\.2 s is earlier than 0\.4"):
+        read(mocap(tmp_path, t=t))
+
+
+def test_a_pose_that_is_partly_empty_is_refused_and_left_out_as_the_message_says(tmp_path):
+    file = mocap(tmp_path)
+    frame = pd.read_csv(file)
+    frame.loc[4, "x"] = np.nan
+    frame.to_csv(file, index=False)
+    with pytest.raises(DataError, match=r"row 5 \(line 6\): is empty") as raised:
+        read(file)
+    advice = 'keep = ["`x` > -1e9"]'
+    assert advice in str(raised.value)
+    (tmp_path / "columns.toml").write_text(f"[track.rows]\n{advice}\n")
+    stated = foreign_columns("track", file, None).series("track")
+    path = read_foreign_track(file, stated, TrajectoryRequest())
+    np.testing.assert_allclose(path.track.poses.t, [0, 0.1, 0.5, 0.7, 0.8])
+
+
+def test_rows_of_a_track_are_kept_by_a_condition_on_any_column(tmp_path):
+    file = mocap(tmp_path)
+    (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["Frame < 5"]\n')
+    stated = foreign_columns("track", file, None).series("track")
+    path = read_foreign_track(file, stated, TrajectoryRequest())
+    np.testing.assert_allclose(path.track.poses.t, [0, 0.1, 0.4])
+    (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["Frame < -5"]\n')
+    stated = foreign_columns("track", file, None).series("track")
+    with pytest.raises(
+        DataError, match=r"none of the 9 rows meets \[track.rows\] keep: Frame < -5"
+    ):
+        read_foreign_track(file, stated, TrajectoryRequest())
+
+
+def test_a_trajectory_in_space_has_gaps_too(tmp_path):
+    n = np.arange(8.0)
+    frame = pd.DataFrame({"t": n, "x": n, "y": 0 * n, "z": 0 * n, "qx": 0 * n, "qy": 0 * n})
+    frame = frame.assign(qz=0 * n, qw=1 + 0 * n)
+    frame.loc[2:3, frame.columns[1:]] = np.nan
+    frame.loc[6, "qw"] = 3.0
+    frame.to_csv(tmp_path / "space.csv", index=False)
+    with pytest.raises(DataError, match=r"row 7 \(line 8\): quaternion length 3"):
+        read(tmp_path / "space.csv")
+    frame.loc[6, "qw"] = 1.0
+    frame.to_csv(tmp_path / "space.csv", index=False)
+    np.testing.assert_array_equal(read(tmp_path / "space.csv").track.poses.t, [0, 1, 4, 5, 6, 7])

@@ -105,3 +105,30 @@ def test_a_track_in_another_unit_of_length_is_warned_of(factor, units):
     assert note.startswith("WARNING: ")
     assert f"as {units} differ: lengths are taken in m" in note
     assert judge(Poses(T, 2 * PATH.position, PATH.yaw)).notes[0] == "tracked"
+
+
+def arc(*, left: bool, turn: float = 1.2) -> Poses:
+    t = np.linspace(0.0, 4.0, 90)
+    side, angle = 1 if left else -1, turn * t / 4
+    places = np.column_stack([np.sin(angle), side * (1 - np.cos(angle))])
+    return Poses(t, places + np.random.default_rng(3).normal(0, 1e-3, places.shape), side * angle)
+
+
+@pytest.mark.parametrize(("left", "said"), [(True, False), (False, True)])
+def test_a_track_that_turns_to_the_other_side_is_asked_about(monkeypatch, left, said):
+    monkeypatch.setitem(globals(), "PATH", arc(left=True))
+    found = judge(arc(left=left))
+    asked = [note for note in found.notes if "is the plane of the floor mirrored" in note]
+    assert bool(asked) == said
+    assert all("predicted turns left, tracked right" in note for note in asked)
+    assert all(note.startswith("WARNING: ") and "--plane zx" in note for note in asked)
+
+
+def test_seconds_without_poses_are_told():
+    t = np.delete(np.arange(0, 4.001, 0.05), slice(20, 40))
+    found = judge(Poses(t, np.column_stack([0.1 * t, 0 * t]), 0 * t))
+    assert (
+        "the track has 1 gap, the longest of 1.05 s: 1 of 4 s are without poses, and not scored"
+        in found.notes
+    )
+    assert not any("gap" in note for note in judge(PATH).notes)

@@ -104,3 +104,14 @@ def test_a_dense_track_that_begins_before_the_path_and_ends_after_it_is_shifted(
     assert offset == pytest.approx(3.0, abs=0.02)
     still = moved.covariance[[0, -1]]
     np.testing.assert_allclose(still, tracked.covariance[[0, -1]], atol=1e-12)
+
+
+def test_a_mirrored_floor_is_asked_about_where_the_offset_is_not_found(tmp_path):
+    path, seen = standing_walk(tmp_path, behind=1.5)
+    track = read_track(seen)
+    mirrored = track.poses.position * [1, -1]
+    mirrored_track = replace(track, poses=replace(track.poses, position=mirrored))
+    with pytest.raises(DataError, match="predicted turns left, tracked right") as raised:
+        estimated_clock(mirrored_track, read_track(path).poses)
+    assert "--plane zx" in str(raised.value)
+    assert "start and stop" not in str(raised.value)

@@ -45,4 +45,6 @@ def trajectory_columns(file: Path, named: Path | None) -> MappedColumns | None:
 
 def _parsed(entries: dict[str, object], file: Path, section: str) -> MappedColumns:
     require_checked(entries, file=file, path=section)
-    return parse_mapped_columns(SettingsTable(entries, file=file, path=section), MAPPED_UNITS)
+    return parse_mapped_columns(
+        SettingsTable(entries, file=file, path=section), MAPPED_UNITS, with_rows=True
+    )

@@ -8,12 +8,14 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from model.counted import counted
 from model.rigid_path import RigidPath, rotations_of_quaternions
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.trajectory.headers import named_columns
 from zebro_lab.track.trajectory.heading_unit import are_degrees
@@ -78,7 +80,7 @@ def read_table_trajectory(path: Path, mapping: MappedColumns | None) -> TableTra
         [columns.get(name, np.zeros_like(t)) for name in ("x_m", "y_m", "z_m")]
     )
     return TableTrajectory(
-        path=RigidPath(t, position, _rotation(columns, table)),
+        path=RigidPath(t, position, _rotation(columns, read.table)),
         in_space="z_m" in columns,
         source=mapping.source or table.source or "unknown",
         notes=(*table.notes, *read.notes),
@@ -90,18 +92,23 @@ class TableColumns(NamedTuple):
     """Columns of a path in a table.
 
     Attributes:
-        columns: Columns in SI by canonical name, without rows that repeat a stamp, shape (n,) each.
-        notes: Notes on stamps, one line each.
+        columns: Columns in SI by canonical name, without empty rows and those that repeat a stamp,
+            shape (n,) each.
+        notes: Notes on rows and stamps, one line each.
+        table: The rows of the table that they are.
     """
 
     columns: Mapping[str, Array]
     notes: tuple[str, ...]
+    table: RawTable
 
 
 def read_table_columns(
     table: RawTable, mapping: MappedColumns, units: Mapping[str, str], *, what: str = "trajectory"
 ) -> TableColumns:
     """Convert the columns of a path to SI, and check its stamps.
+
+    Rows without any number of a pose are gaps, as motion-capture systems write them: left out.
 
     Args:
         table: The table.
@@ -115,9 +122,10 @@ def read_table_columns(
             fit the path in degrees alone.
     """
     mapping = recognised(table, mapping)
+    table, empty = _with_poses(table, mapping)
     columns = {
         name: mapping.numbers(
-            table, name, what=f"{name} of the {what}", advice="leave such poses out"
+            table, name, what=f"{name} of the {what}", advice=_advice(mapping, name)
         )
         for name in units
         if name in NEEDED or mapping.has(table, name)
@@ -127,7 +135,7 @@ def read_table_columns(
     def fault(problem: str, index: int) -> DataError:
         return table.fault(problem, time.name, index)
 
-    notes = said = mapping.conversions(table)
+    notes = said = (*empty, *mapping.conversions(table))
     if time.name not in table.units and time.factor == 1.0:
         factor, more = stamp_factor(columns["t_s"], "s", fault=fault)
         notes = (*said, *more)
@@ -137,7 +145,32 @@ def read_table_columns(
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
     kept, more = kept_stamps(columns["t_s"], poses, fault=fault)
     notes = (*notes, *metres, *more)
-    return TableColumns({n: column[kept] for n, column in columns.items()}, notes)
+    columns = {n: column[kept] for n, column in columns.items()}
+    return TableColumns(columns, notes, table.part(kept))
+
+
+def _with_poses(table: RawTable, mapping: MappedColumns) -> tuple[RawTable, tuple[str, ...]]:
+    """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on the rest."""
+    if mapping.keep:
+        table = table.part(kept_rows(table, mapping.keep, where=mapping.where))
+    names = [name for name in POSE_UNITS if name != "t_s" and name in mapping.mapped]
+    headers = [mapping.mapped[name].name for name in names]
+    cells = [table.columns[header].isna() for header in headers if header in table.columns]
+    empty = np.all(cells, axis=0) if cells else np.zeros(len(table), dtype=bool)
+    if not empty.any() or empty.all():
+        return table, ()
+    gaps = int(np.count_nonzero(np.diff(empty.astype(int), prepend=0) > 0))
+    where = f"in {counted(gaps, 'gap')}, the first from row {table.row(int(np.argmax(empty)))}"
+    note = f"{table.path.name}: {counted(int(empty.sum()), 'empty pose')} left out {where}"
+    return table.part(np.flatnonzero(~empty)), (note,)
+
+
+def _advice(mapping: MappedColumns, name: str) -> str:
+    header = mapping.mapped[name].name
+    return (
+        f'leave such poses out, as by [{mapping.where}rows] keep = ["`{header}` > -1e9"] in '
+        f"{COLUMNS_FILE}"
+    )
 
 
 def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]) -> None:

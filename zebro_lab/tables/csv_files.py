@@ -6,6 +6,7 @@ import re
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -14,7 +15,7 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 from zebro_lab.tables.cells import NO_VALUE
 from zebro_lab.tables.raw_table import RawTable, differing_headers
-from zebro_lab.tables.row_checks import require_full_rows
+from zebro_lab.tables.row_checks import require_full_rows, words_between_numbers
 from zebro_lab.tables.text_encoding import WINDOWS, decoded, possible_encodings
 from zebro_lab.tables.text_layout import (
     BLANKS,
@@ -68,7 +69,7 @@ def read_csv_file(path: Path) -> RawTable:
     table = _table(path, layout, frame, encoding)
     if layout.separator == BLANKS:
         require_full_rows(table)
-    return table
+    return replace(table, notes=(*table.notes, *words_between_numbers(table)))
 
 
 def _head(path: Path) -> tuple[tuple[str, ...], list[Line]]:

@@ -237,7 +237,7 @@ class RawTable:
 
     def _not_a_number(self, name: str, index: int) -> DataError:
         text = str(self.column(name).iloc[index])
-        if index and self._is_line_of_words(index):
+        if index and self.is_line_of_words(index):
             return self.fault(
                 f"'{text}' is not a number, but in a line of words between the numbers: delete the "
                 "line, or, if another table or recording begins there, make a file of each",
@@ -265,8 +265,12 @@ class RawTable:
             advice = "; correct or delete the row"
         return self.fault(f"'{text}' is not a number{advice}", name, index, value=text)
 
-    def _is_line_of_words(self, index: int) -> bool:
-        """Return whether no cell of a row is a value, and several are words or all others empty."""
+    def is_line_of_words(self, index: int) -> bool:
+        """Return whether a row holds words alone, in all cells or in one, the others empty.
+
+        Args:
+            index: Data row, counted from 0.
+        """
         kinds = [kind_of(_cell_text(cells.iloc[index])) for cells in self.columns.values()]
         words = kinds.count("text")
         return len(kinds) > 1 and "value" not in kinds and words in (1, len(kinds))

@@ -72,6 +72,21 @@ def require_no_footer(table: RawTable) -> None:
         raise table.fault(problem, name, first + found[0])
 
 
+def words_between_numbers(table: RawTable) -> tuple[str, ...]:
+    """Return a note on the first line of words below numbers, where another table may begin."""
+    for name, cells in table.columns.items():
+        if cells.dtype.kind in "ifbMm" or not len(cells) or not _are_values(cells):
+            continue
+        texts = (i for i, cell in enumerate(cells) if kind_of(str(cell)) == "text")
+        index = next((i for i in texts if table.is_line_of_words(i)), None)
+        if index is None:
+            return ()
+        line = table.fault("", name, index).line
+        return (f"{table.path.name}: line {line}, '{cells.iloc[index]}', is one of words between "
+                "the numbers; another table or recording may begin there",)  # fmt: skip
+    return ()
+
+
 def _are_values(cells: "pd.Series") -> bool:
     return len(cells) > 0 and kind_of(str(cells.iloc[0])) == "value"
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Rows that look like data and are none are refused."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -53,3 +55,18 @@ def test_words_in_a_column_of_words_are_no_footer(tmp_path):
     file = tmp_path / "a.csv"
     file.write_text("what,F\nmin,2\nmax,3\n")
     assert len(read_table_file(file)) == 2
+
+
+@pytest.mark.parametrize(
+    ("rows", "line"),
+    [
+        ("0,5\n1,6\n\nTrajectories,\n2,7\n", 5), ("0,5\n1,6\nt,F\n2,7\n", 4),
+        ("0,5\n1,n/m\n2,7\n", None), ("0,\n1,6\n2,7\n", None), ("0,5\nok,6\n2,7\n", None),
+    ],
+)  # fmt: skip
+def test_a_line_of_words_between_numbers_is_noted_when_a_table_is_read(tmp_path, rows, line):
+    (tmp_path / "a.csv").write_text("t,F\n" + rows)
+    notes = [note for note in read_table_file(tmp_path / "a.csv").notes if "of words" in note]
+    expected = f"a.csv: line {line}, .* another table or recording may begin there"
+    assert len(notes) == (line is not None)
+    assert line is None or re.match(expected, notes[0])

@@ -25,5 +25,5 @@ def judged_walk(name: str, *, off: float) -> JudgedRun:
     shifts = np.linspace(-0.1, 0.1, 41)[:, None] + 0 * T
     band = Poses(T, np.stack([path.position[:, 0] + 0 * shifts, shifts], axis=-1), 0.1 * shifts)
     track = TrackFile(Poses(T, path.position + np.array([0.0, off]), path.yaw), "real", Path("x"))
-    prediction = PredictionFile(Prediction(path, band), "sim:dynamics", ())
+    prediction = PredictionFile(Prediction(path, band), ("sim:dynamics",), ())
     return judge_run(name, prediction, track, anchor=False, rng=np.random.default_rng(1))

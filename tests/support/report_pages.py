@@ -90,6 +90,12 @@ def part(folder, kind, rng, *, pictures=(), **content):
         picture(folder / name, rng=rng)
 
 
+def change_manifest(folder, **content):
+    """Replace values of a folder's manifest."""
+    file = folder / "manifest.json"
+    write_json(file, {**json.loads(file.read_text()), **content})
+
+
 def metrics(rng):
     names = ["ate_m", "ate_of_length", "x_rms_m", "y_rms_m", "along_rms_m", "cross_rms_m",
              "yaw_rms_deg", "final_m", "ate_aligned_m", "radius_m", "radius_tracked_m", "length_m",

@@ -31,14 +31,14 @@ class NamedSlip(Slip):
             convert.
         walks: Posterior of legs and floor after tracked walks; None if no walks were fitted, or
             they were not read.
-        doubt: Headline of the verdict of a fit that cannot be trusted; else None.
+        doubts: A warning with the verdict's headline if the fit cannot be trusted; else nothing.
     """
 
     text: str
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()
     walks: StoredWalks | None = None
-    doubt: str | None = None
+    doubts: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -86,10 +86,11 @@ def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
         f"WARNING: {each}: draws are those of the Gaussian in {SLIP_TOML}"
         for each in lost_output(read.file.with_name(POSTERIOR))
     ]
-    if read.doubt is not None:
-        notes.append(f"WARNING: the calibration is not trustworthy: {read.doubt}")
     if read.curve.definition is not SlipDefinition.MATERIAL:
         notes.append(f"slip: fitted to '{read.curve.definition}' slip, converted when evaluated")
     walks = read_stored_walks(read.file) if with_walks else None
     files = (read.file, *(walks.files if walks is not None else ()))
-    return NamedSlip(read.curve, read.source, text, files, tuple(notes), walks, read.doubt)
+    doubts = ()
+    if read.doubt is not None:
+        doubts = (f"WARNING: the calibration is not trustworthy: {read.doubt}",)
+    return NamedSlip(read.curve, read.source, text, files, (*notes, *doubts), walks, doubts)

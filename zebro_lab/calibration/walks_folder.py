@@ -11,8 +11,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from model.bayes.walks.posterior import WalkPosterior
+from model.bayes.walks.posterior import FEW, WalkPosterior
 from model.bayes.walks.prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
+from model.counted import counted
 from model.predict import ModelSpread
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.documents import read_toml_document
@@ -46,12 +47,26 @@ class StoredWalks:
         legs: Parameters of the robot whose legs were fitted, as `describe_legs` returns them.
         logs: SHA-256 of the leg log of each walk, in the order of `posterior.walks`.
         folder: The folder `walks/` that it was read from.
+        source: Sources of slip law and walks, joined by commas; "unknown" if not stated.
     """
 
     posterior: WalkPosterior
     legs: Mapping[str, Any]
     logs: tuple[str, ...]
     folder: Path
+    source: str = "unknown"
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """A warning if the fit of the walks is not reliable; else nothing."""
+        if self.posterior.reliable:
+            return ()
+        draws = counted(round(self.posterior.effective), "effective draw")
+        return (
+            f"WARNING: the fit of walks in {self.folder} is not reliable: {draws}, expected {FEW} "
+            "or more; check the tracks' covariances and robot.toml, fit the walks again with "
+            f"calibrate-slip --walks, or delete {self.folder}",
+        )
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -171,6 +186,7 @@ def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
             content["legs"],
             tuple(each["leg_log"] for each in content["walk"]),
             folder,
+            str(content.get("source", "unknown")),
         )
 
 

@@ -54,8 +54,10 @@ def number(
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         return ABSENT
     path = "/".join(str(key).replace("~", "~0").replace("/", "~1") for key in keys)
+    shown = value if rule is None else rule(value)
+    shown = shown if scale == 1 else scale * shown  # a count stays an integer
     return Markup('<data value="{}" data-file="{}" data-key="/{}">{}</data>').format(
-        repr(value), file, path, spelled(scale * (value if rule is None else rule(value)), digits)
+        repr(value), file, path, spelled(shown, digits)
     )
 
 

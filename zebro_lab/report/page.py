@@ -94,6 +94,7 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
             coverage_out_of_range=_coverage_out_of_range,
             error_columns=ERROR_COLUMNS,
             number=_number,
+            whole=partial(_number, rule=round),
             informed=partial(_number, scale=100.0, rule=informed),
             unit_symbol=unit_symbol,
             shown_unit=shown_unit,

@@ -19,7 +19,7 @@ from zebro_lab.files.source_names import is_simulated
 from zebro_lab.report.pictures import SUFFIXES, VALIDATION, lies_in, place_of
 from zebro_lab.runs.folder import find_runs
 from zebro_lab.runs.manifest import MANIFEST_FILE, is_track_alone
-from zebro_lab.walk.folder import PREDICTION
+from zebro_lab.walk.folder import PREDICTION, measured_sources
 
 MANIFEST, SUMMARY = "manifest.json", "summary.csv"
 CALIBRATION = "calibration"
@@ -73,6 +73,11 @@ class Part:
     def source(self) -> str:
         """Where the data come from, as in the manifest; "unknown" if not stated."""
         return str(self.manifest.get("source", "unknown"))
+
+    @property
+    def measured(self) -> Sequence[str]:
+        """Sources of the data; of a prediction those of what it was computed from."""
+        return measured_sources(self.manifest) if self.name == PREDICTION else (self.source,)
 
 
 @dataclass(frozen=True)
@@ -140,8 +145,8 @@ class Sources:
 
     @property
     def simulated(self) -> Sequence[str]:
-        """Sources of present parts and of runs that contain `sim:`, sorted, each once."""
-        named = [part.source for part in self.parts if not part.missing]
+        """Sources of the data of present parts and of runs with `sim:`, sorted, each once."""
+        named = [each for part in self.parts if not part.missing for each in part.measured]
         named += [str(run.recorded.get("source", "")) for run in self.runs]
         return sorted(
             {each.strip() for one in named for each in one.split(",") if is_simulated(each)}

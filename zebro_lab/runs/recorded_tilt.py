@@ -13,7 +13,7 @@ from rig.imu.profile import decode_orientation, load_imu_profile
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import profile_file, read_manifest
 from zebro_lab.runs.profile_views import IMU
 
 
@@ -25,12 +25,14 @@ class Tilt:
         t: Time since the start of the run, increasing, shape (n,) [s].
         angles: Roll and pitch, columns in this order, shape (n, 2) [rad].
         files: Files read: log and profile.
+        source: Where the IMU's data come from, as in the run's manifest.
         notes: Of a run with several IMUs a note on which one this is.
     """
 
     t: Array
     angles: Array
     files: tuple[Path, ...]
+    source: str
     notes: tuple[str, ...] = ()
 
 
@@ -41,7 +43,8 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
     whose time does not increase are dropped; a damaged log is read up to the damage.
 
     Raises:
-        DataError: The log cannot be opened or is not MCAP, or the IMU's profile is invalid.
+        DataError: The log cannot be opened or is not MCAP, or the IMU's profile is invalid, or
+            `run.json` is damaged.
     """
     log = folder / LOG_FILE
     names = sorted(file.stem for file in profile_file(folder, IMU).parent.glob(f"{IMU}*.toml"))
@@ -62,4 +65,6 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
     angles = np.column_stack([decoded.roll, decoded.pitch])
     others = ", ".join(other for other in names if other != name)
     notes = (f"roll and pitch are those of {name}; not used: {others}",) if others else ()
-    return Tilt(t[later], angles[later], (log, profile), notes)
+    manifest = read_manifest(folder)
+    source = manifest.sources.get(name, manifest.source)
+    return Tilt(t[later], angles[later], (log, profile), source, notes)

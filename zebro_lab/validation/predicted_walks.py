@@ -44,9 +44,10 @@ class PredictedWalk:
     not_shown: tuple[str, ...]
 
     @property
-    def sources(self) -> tuple[str, str]:
-        """Sources of the prediction and of the track."""
-        return self.prediction.source, self.track.source
+    def sources(self) -> tuple[str, ...]:
+        """Sources of what was measured: of the prediction's data, of the track and of the IMU."""
+        tilt = () if self.tilt is None else (self.tilt.source,)
+        return (*self.prediction.sources, self.track.source, *tilt)
 
     def files_of(self, judged: JudgedRun) -> tuple[Path, ...]:
         """Return the files of prediction and track, and of the IMU if `judged` has tilt errors.

@@ -26,6 +26,7 @@ from zebro_lab.tables.table_files import read_table_file
 SCHEMA = 1
 PREDICTION = "prediction"  # of a run
 KINDS = ("walk", "predict")
+_NOT_MEASURED = ("assumed", "thesis")  # sources of slip laws without data
 INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 PICTURES = (
     "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
@@ -166,6 +167,35 @@ def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
     """
     settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)
+
+
+def measured_sources(manifest: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the sources of the data that a walk was computed from, not of the computed path.
+
+    They are those of leg angles, slip law and fitted walks. Of a walk whose leg angles are those of
+    a gait, it is the source of the walk itself.
+
+    Args:
+        manifest: Content of the walk's manifest.
+
+    >>> measured_sources({"source": "sim:dynamics", "settings": {"leg_angles": "real"}})
+    ('real',)
+    >>> measured_sources({"source": "sim:dynamics", "settings": {}})
+    ('sim:dynamics',)
+    """
+    settings = manifest.get("settings") or {}
+    if "leg_angles" not in settings:
+        return (str(manifest.get("source", "unknown")),)
+    others = (settings.get(name) or {} for name in ("slip", "walks"))
+    found = [settings["leg_angles"], *(each["source"] for each in others if "source" in each)]
+    named = (one.strip() for each in found for one in str(each).split(", "))
+    return tuple(dict.fromkeys(one for one in named if one not in _NOT_MEASURED))
+
+
+def doubts(manifest: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return why the slip law or fitted walks of a walk cannot be trusted, a warning for each."""
+    settings = manifest.get("settings") or {}
+    return tuple(map(str, settings.get("doubts") or ()))
 
 
 def _path_from(numbers: Array) -> WalkPath:

@@ -25,13 +25,17 @@ class InformedLegs:
             the floor alone, with legs drawn from the prior.
         index: Index of this walk among the fitted walks; None for a new walk.
         folder: The folder `walks/` that the posterior was read from.
+        source: Sources of the walks and of the slip law that they were fitted with.
         notes: Notes, one line each.
+        doubts: A warning if the fit is not reliable, one of the notes; else nothing.
     """
 
     posterior: WalkPosterior
     index: int | None
     folder: Path
+    source: str
     notes: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
 
     @property
     def middle(self) -> LegState:
@@ -48,13 +52,14 @@ class InformedLegs:
         return self.posterior.draw(n, rng=rng, walk=self.index)
 
     def settings(self) -> dict[str, object]:
-        """Return folder, fitted walks, this walk and `middle`'s values, JSON-serialisable, SI.
+        """Return folder, source, walks, this walk and `middle`'s values, JSON-serialisable, SI.
 
         `this_walk` is the name of the fitted walk that this is; None for a new one.
         """
         legs = self.middle
         return {
             "folder": str(self.folder),
+            "source": self.source,
             "walks": list(self.posterior.walks),
             "this_walk": None if self.index is None else self.posterior.walks[self.index],
             "leg_offset": legs.offset[0].tolist(),
@@ -90,7 +95,9 @@ def informed_legs(
         floor = walks.posterior.of_floor_alone(rng=np.random.default_rng(_SEED))
         why = "another robot walked them" if same_legs is None else "the leg angles are exact"
         note = f"walks: of the fit to {names} the floor alone is used, since {why}"
-        return InformedLegs(floor, None, walks.folder, (note,))
+        return InformedLegs(
+            floor, None, walks.folder, walks.source, (note, *walks.doubts), walks.doubts
+        )
     index = _index(walks, logs)
     notes = [f"walks: legs and floor are those fitted to {names}"]
     if index is not None:
@@ -98,7 +105,9 @@ def informed_legs(
             f"walks: {walks.posterior.walks[index]} is this walk: the prediction was fitted to its "
             "own track, which is therefore no independent test"
         )
-    return InformedLegs(walks.posterior, index, walks.folder, tuple(notes))
+    return InformedLegs(
+        walks.posterior, index, walks.folder, walks.source, (*notes, *walks.doubts), walks.doubts
+    )
 
 
 def _index(walks: StoredWalks, logs: Sequence[Path]) -> int | None:

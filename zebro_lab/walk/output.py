@@ -53,6 +53,7 @@ def write_walk(
         "toe": request.toe,
         "slip": None if slip is None else {"named": slip.text, "source": slip.source},
         "robot": _robot_settings(described.robot),
+        "doubts": list(walked.doubts),
         "walks": None if walked.informed is None else walked.informed.settings(),
         **settings,
         **({} if walked.band is None else {"band": band_settings(request.band)}),

@@ -19,7 +19,14 @@ from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.track.file import read_poses
-from zebro_lab.walk.folder import DRAWS, MANIFEST, read_walk, read_walk_manifest
+from zebro_lab.walk.folder import (
+    DRAWS,
+    MANIFEST,
+    doubts,
+    measured_sources,
+    read_walk,
+    read_walk_manifest,
+)
 from zebro_lab.walk.path_band import read_draws
 
 
@@ -37,15 +44,15 @@ class PredictionFile:
 
     Attributes:
         prediction: The predicted path with its draws and baselines.
-        source: Where the path comes from, as in its manifest; "unknown" if not stated or for a
-            table of poses.
+        sources: Where the data come from that the path was computed from, see
+            `measured_sources`; "unknown" for a table of poses.
         files: The table; or `path.csv` and, if there are draws, `draws.npz`, without the manifest.
         notes: Notes, one line each.
         walk: The single path with roll, pitch, legs and robot; None for a table of poses.
     """
 
     prediction: Prediction
-    source: str
+    sources: tuple[str, ...]
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
     walk: WalkedPath | None = None
@@ -63,7 +70,7 @@ def read_prediction(path: Path) -> PredictionFile:
     folder = file.parent
     if file.name != PATH_CSV or not (folder / MANIFEST).is_file():
         note = f"{path.name}: not a walk folder, so '{STAND_STILL}' is the only baseline"
-        return PredictionFile(Prediction(poses), "unknown", (file,), (note,))
+        return PredictionFile(Prediction(poses), ("unknown",), (file,), (note,))
     manifest = read_walk_manifest(folder)
     has_draws = (folder / DRAWS).is_file()
     draws = read_draws(folder) if has_draws else None
@@ -72,10 +79,11 @@ def read_prediction(path: Path) -> PredictionFile:
     changed = (f"WARNING: {each}" for each in changed_output(file))
     return PredictionFile(
         Prediction(poses, draws, baselines),
-        str(manifest.get("source", "unknown")),
+        measured_sources(manifest),
         (file, *([folder / DRAWS] if has_draws else [])),
         (
             *changed,
+            *doubts(manifest),
             *notes,
             *(() if has_draws else ("no draws, so no band: run predict with --draws 500",)),
         ),

@@ -54,6 +54,11 @@ class Walked:
     informed: InformedLegs | None = None
     band: Poses | None = None
 
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Why the slip law or the fitted walks cannot be trusted, a warning for each."""
+        return tuple(line for part in (self.slip, self.informed) if part for line in part.doubts)
+
     def delayed(self, delay: float) -> "Walked":
         """Return a copy with `delay` [s] added to times of path and band, not of `reference`."""
         path = replace(self.path, t=self.path.t + delay)

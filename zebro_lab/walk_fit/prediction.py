@@ -142,4 +142,4 @@ def predict_from(
     reference = SampledReference(t, angles.angles(t))
     direction = "left" if single.yaw[-1] >= single.yaw[0] else "right"
     baselines, notes = baseline_paths(robot, reference, direction=direction)
-    return PredictionFile(Prediction(single, band, baselines), walk.source, walk.files, notes)
+    return PredictionFile(Prediction(single, band, baselines), (walk.source,), walk.files, notes)

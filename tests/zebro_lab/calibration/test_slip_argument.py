@@ -63,6 +63,7 @@ def test_untrustworthy_calibration_is_said_to_be(calibration):
     (calibration / "slip.toml").write_text(text)
     (note,) = parse_slip(str(calibration)).notes
     assert note == "WARNING: the calibration is not trustworthy: NOT CONVERGED"
+    assert parse_slip(str(calibration)).doubts == (note,)
 
 
 def test_a_calibration_that_was_edited_by_hand_is_told(calibration):

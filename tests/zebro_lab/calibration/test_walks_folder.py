@@ -2,6 +2,7 @@
 """What walks said, stored beside a calibration, and what predictions make of it."""
 
 import json
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -28,6 +29,7 @@ from zebro_lab.report.stage import report
 from zebro_lab.walk.folder import read_walk, read_walk_manifest
 from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.prediction_file import read_prediction
 from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 
 
@@ -139,8 +141,25 @@ def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs,
     text = page.read_text()
     assert "Legs and floor estimated from tracked walks" in text
     assert "Mounted wrong: leg 3" in text
-    assert "SIMULATED: sim:dynamics, sim:test" in text
+    assert "SIMULATED: sim:rig-sweep, sim:test" in text
     assert text.count("data:image/webp") >= 1
     told = read_stored_walks(calibration / "slip.toml").posterior.contractions()
     silent = next(each.name for each in told if not each.informed)
     assert silent.replace("_", " ") in text
+
+
+def test_too_few_effective_draws_are_a_doubt_that_predictions_and_their_readers_repeat(
+    calibration, legs, tmp_path
+):
+    sure = posterior_of(None)
+    weight = np.r_[0.5, 0.5, np.zeros(len(sure.weight) - 2)]
+    assert stored(calibration, legs, sure).doubts == ()
+    (doubt,) = stored(calibration, legs, replace(sure, weight=weight)).doubts
+    assert f"walks in {calibration / FOLDER} is not reliable: 2 effective draws, expected" in doubt
+    assert doubt.startswith("WARNING: ")
+    walked = predict_log(tmp_path, legs[0], str(calibration))
+    assert doubt in walked.notes
+    assert read_walk_manifest(tmp_path / "prediction")["settings"]["doubts"] == [doubt]
+    assert doubt in read_prediction(tmp_path / "prediction").notes
+    unused = predict_log(tmp_path, legs[0], str(calibration), name="x", model="no-slip")
+    assert doubt not in unused.notes

@@ -41,7 +41,8 @@ def test_counts_are_spelled_whole_and_other_numbers_rounded():
 
 CONTENT = {
     "runs": {"a/b~c": [0.0123]},
-    "count": 62_000,
+    "count": 62_001,
+    "poses": 2315.0,
     "true": True,
     "nan": float("nan"),
     "t": "x",
@@ -53,7 +54,12 @@ def test_a_number_is_marked_with_its_value_file_and_key():
     assert found == (
         '<data value="0.0123" data-file="a&#34;b.json" data-key="/runs/a~1b~0c/0">12.3</data>'
     )
-    assert ">62000<" in number(CONTENT, "count", file="x", digits=2)
+
+
+def test_counts_are_shown_whole_also_those_stored_with_a_point():
+    assert ">62001<" in number(CONTENT, "count", file="x", digits=2)
+    assert ">2315<" in number(CONTENT, "poses", file="x", rule=round)
+    assert ">124000<" in number(CONTENT, "count", file="x", scale=2.0)
 
 
 @pytest.mark.parametrize("keys", [("none",), ("runs", "a/b~c", 1), ("true",), ("nan",), ("t", "x")])

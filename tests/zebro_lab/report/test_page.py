@@ -8,8 +8,10 @@ import re
 from importlib.resources import files
 from pathlib import Path
 
+import pytest
+
 import zebro_lab.report
-from support.report_pages import HOSTILE, MADE, SLIP, made, write_json
+from support.report_pages import HOSTILE, MADE, SLIP, change_manifest, made, write_json
 from zebro_lab.report.page import PAGES, STYLE, render_report
 from zebro_lab.report.sources import find_sources
 
@@ -87,7 +89,26 @@ def test_simulated_sources_stand_in_the_title_and_on_top(walk):
     page = made(walk)
     title = (walk.parent / "report.html").read_text().split("<title>")[1]
     assert title.startswith("SIMULATED")
-    assert "SIMULATED: sim:robot, sim:test" in page.text
+    assert "SIMULATED: sim:rig, sim:robot, sim:test" in page.text
+
+
+@pytest.mark.parametrize("rig", ["real", "sim:rig"])
+def test_a_prediction_from_measured_data_is_simulated_only_where_data_are(walk, rig):
+    for name in ("track", "validation", "../calibration"):
+        change_manifest(walk / name, source="real")
+    slip = {"named": "calibration", "source": rig}
+    settings = {"model": "dynamics", "slip": slip, "leg_angles": "real"}
+    change_manifest(walk / "prediction", source="sim:dynamics", settings=settings)
+    write_json(walk / "run.json", {"kind": "walk", "source": "real", "streams": {}})
+    page = made(walk)
+    assert ("SIMULATED: sim:rig. " in page.text) == (rig == "sim:rig")
+    assert ("SIMULATED" in page.text) == (rig == "sim:rig")
+
+
+def test_a_doubt_of_what_a_prediction_used_stands_beside_it(walk):
+    doubt = "WARNING: the fit of walks in c/walks is not reliable: 2 effective draws"
+    change_manifest(walk / "prediction", settings={"model": "dynamics", "doubts": [doubt]})
+    assert doubt in made(walk).text
 
 
 def test_lines_of_advice_stay_lines_that_can_be_copied(walk):

@@ -74,7 +74,7 @@ def test_parts_are_found_with_their_documents_and_pictures_in_order(walk):
     assert set(found.calibration.documents) == {"manifest.json", "slip.toml", "summary.csv"}
     assert found.calibration.documents["summary.csv"]["shape"]["r_hat"] == 1.0007
     assert [file.name for file in found.calibration.pictures] == ["curves.png", "corner.png"]
-    assert found.simulated == ["sim:robot", "sim:test"]
+    assert found.simulated == ["sim:rig", "sim:robot", "sim:test"]
     assert (found.together, found.walks) == (None, None)
 
 

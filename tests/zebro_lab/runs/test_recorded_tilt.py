@@ -8,6 +8,7 @@ import pytest
 
 from support.written_runs import make_run
 from zebro_lab.files.errors import DataError
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
 from zebro_lab.runs.signals import read_signals
 
@@ -20,6 +21,7 @@ def test_roll_and_pitch_are_in_radians_at_increasing_times(recorded):
         degrees = np.interp(tilt.t, shown.t, shown.lines[name])
         np.testing.assert_allclose(np.degrees(values), degrees, atol=1e-9)
     assert [file.name for file in tilt.files] == ["log.mcap", "imu.toml"]
+    assert tilt.source == read_manifest(recorded).sources["imu"]
 
 
 def test_a_run_without_an_imu_or_log_has_no_tilt(recorded, tmp_path):

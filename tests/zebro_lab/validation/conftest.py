@@ -14,6 +14,7 @@ def walk(tmp_path_factory):
     """Return a folder with legs.csv, track/track.csv and prediction/."""
     folder = tmp_path_factory.mktemp("walk")
     legs, track = write_walk_data(folder)
+    (folder / "columns.toml").write_text('source = "sim:legs"\n[legs]\n')
     (folder / "track").mkdir()
     track.rename(folder / "track" / "track.csv")
     predicted(folder, legs)

@@ -16,7 +16,7 @@ from zebro_lab.validation.stage import validate
 def test_the_folder_holds_tables_pictures_tum_files_and_a_manifest(validated, walk):
     folder = walk / "validation"
     manifest = json.loads((folder / "manifest.json").read_text())
-    assert "sim:dynamics" in manifest["source"]
+    assert "sim:legs" in manifest["source"]
     assert len(manifest["inputs"]) == 3
     assert set(manifest["outputs"]) == {p.name for p in folder.iterdir()} - {"manifest.json"}
     metrics = pd.read_csv(folder / "metrics.csv").set_index("model")

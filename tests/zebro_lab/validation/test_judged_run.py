@@ -41,7 +41,7 @@ def judge(track: Poses, *, anchor: bool = False, draws: int = 0):
     rng = np.random.default_rng(1)
     moved = PATH.position + rng.normal(0, 0.01, (draws, 1, 2))
     band = Poses(T, moved, np.tile(PATH.yaw, (draws, 1))) if draws else None
-    prediction = PredictionFile(Prediction(PATH, band), "sim:x", (), ("predicted",))
+    prediction = PredictionFile(Prediction(PATH, band), ("sim:x",), (), ("predicted",))
     return judge_run("walk", prediction, file, anchor=anchor, rng=rng)
 
 

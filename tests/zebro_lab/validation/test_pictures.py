@@ -32,7 +32,7 @@ def judged(track, walked, *, measured=None):
     seen = path.at(photos.t)
     seen = Poses(seen.t, seen.position + np.array([0.0, 0.01]), seen.yaw)
     walk = WalkedPath(walked, Robot())
-    prediction = PredictionFile(Prediction(path), "sim:dynamics", (), walk=walk)
+    prediction = PredictionFile(Prediction(path), ("sim:dynamics",), (), walk=walk)
     run = judge_run(
         "walk", prediction, TrackFile(seen, "sim:photographs", track),
         anchor=False, rng=np.random.default_rng(1),
@@ -51,7 +51,7 @@ def test_a_validation_shows_photographs_beside_poses_and_the_band_over_the_floor
     track, walked, tmp_path
 ):
     retimed(track, [1.0, 3.0])
-    measured = Tilt(walked.t, walked.orientation[:, :2] + 0.01, ())
+    measured = Tilt(walked.t, walked.orientation[:, :2] + 0.01, (), "real")
     undrawn = draw_validation(tmp_path, judged(track, walked, measured=measured), simulated=True)
     assert undrawn == ()
     drawn = {file.name for file in tmp_path.glob("*.png")}

@@ -31,8 +31,7 @@ def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
 def test_a_walk_has_its_folders_name_its_sources_and_why_there_are_no_photographs(walk):
     (found,) = read_predicted_walks([pairs_of_run(walk)])
     assert found.name == walk.name
-    assert found.sources == (found.prediction.source, found.track.source)
-    assert found.prediction.source == "sim:dynamics"
+    assert found.sources == (*found.prediction.sources, found.track.source)
     assert (found.tilt, found.photos, found.duplicates) == (None, None, ())
     assert found.not_shown[0].startswith("photographs are not shown: ")
 

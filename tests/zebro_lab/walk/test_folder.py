@@ -16,6 +16,8 @@ from model.walk.path import WalkPath
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.walk.folder import (
     COLUMNS,
+    doubts,
+    measured_sources,
     read_walk,
     read_walk_manifest,
     walk_folder,
@@ -165,3 +167,27 @@ def test_manifest_of_no_walk_is_refused(text, tmp_path):
     (tmp_path / "manifest.json").write_text(text)
     with pytest.raises(DataError, match=r"manifest\.json"):
         read_walk_manifest(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("settings", "sources"),
+    [
+        ({"leg_angles": "real", "slip": {"named": "c", "source": "real"}}, ("real",)),
+        ({"leg_angles": "real", "slip": {"source": "assumed"}, "walks": None}, ("real",)),
+        ({"leg_angles": "real", "slip": {"source": "sim:rig"}}, ("real", "sim:rig")),
+        ({"leg_angles": "sim:zebro", "slip": None}, ("sim:zebro",)),
+        (
+            {"leg_angles": "real", "slip": {"source": "real"}, "walks": {"source": "real, sim:x"}},
+            ("real", "sim:x"),
+        ),
+        ({"dt": 0.01}, ("sim:dynamics",)),  # a gait is computed, and so is the walk
+    ],
+)
+def test_sources_are_those_of_data_and_not_of_the_model(settings, sources):
+    manifest = {"source": "sim:dynamics", "settings": settings}
+    assert measured_sources(manifest) == sources
+
+
+def test_doubts_are_read_and_older_manifests_have_none():
+    assert doubts({"settings": {"doubts": ["WARNING: x"]}}) == ("WARNING: x",)
+    assert doubts({"settings": {}}) == ()

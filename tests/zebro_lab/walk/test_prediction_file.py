@@ -42,7 +42,7 @@ def test_a_table_of_poses_has_no_baseline_but_the_robot_that_stands_still(tmp_pa
     (tmp_path / "poses.csv").write_text("t,x,y,yaw\n0,0,0,0\n1,0.1,0,0\n2,0.2,0,0\n")
     found = read_prediction(tmp_path / "poses.csv")
     np.testing.assert_array_equal(found.prediction.path.position[:, 0], [0.0, 0.1, 0.2])
-    assert (found.walk, found.source) == (None, "unknown")
+    assert (found.walk, found.sources) == (None, ("unknown",))
     assert "is the only baseline" in found.notes[0]
     assert found.files == (tmp_path / "poses.csv",)
 

@@ -59,7 +59,7 @@ def compare_calibrations(
         notes=(*(note for slip in slips for note in slip.notes), *notes),
         curves=tuple(shown),
         definition=str(curves[0].definition),
-        doubted=(slips[0].doubt is not None, slips[1].doubt is not None),
+        doubted=(bool(slips[0].doubts), bool(slips[1].doubts)),
     )
 
 
@@ -125,7 +125,8 @@ def _walk_quantities(
 ) -> tuple[list[Quantity], list[str]]:
     """Return the parameters of legs and floor that walks constrain in either calibration.
 
-    Without a fit of walks in both, the list is empty; there is a note if only one has a fit.
+    Without a fit of walks in both, the list is empty; there is a note if only one has a fit,
+    and a warning for a fit that is not reliable.
     """
     one, other = (slip.walks for slip in slips)
     if one is None or other is None:
@@ -142,7 +143,7 @@ def _walk_quantities(
         scale, shown = shown_unit(unit)
         draws = (scale * first[:, i], scale * second[:, i])
         quantities.append(Quantity(name.replace("_", " "), shown, draws))
-    return quantities, []
+    return quantities, [*one.doubts, *other.doubts]
 
 
 def _drawn(posterior: WalkPosterior, rng: np.random.Generator) -> Array:

@@ -16,7 +16,7 @@ from zebro_lab.files.replacement import settle
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.validation.compare.values import Comparison, Quantity, RunPaths
-from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk_manifest
+from zebro_lab.walk.folder import DRAWS, PREDICTION, doubts, measured_sources, read_walk_manifest
 from zebro_lab.walk.path_band import read_draws
 
 TRACKS = 1000  # paths drawn with a track's covariance
@@ -86,7 +86,9 @@ class _Run:
         if (folder / PREDICTION / DRAWS).is_file():
             self.band = read_draws(folder / PREDICTION)
             self.files.append(folder / PREDICTION / DRAWS)
-            self.sources.append(str(read_walk_manifest(folder / PREDICTION).get("source")))
+            manifest = read_walk_manifest(folder / PREDICTION)
+            self.sources += measured_sources(manifest)
+            self.notes += doubts(manifest)
         if not self.files:
             raise NotFound(f"{folder} holds neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{DRAWS}")
 

@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from model.bayes.block_edges import BY_CHANCE, block_starts
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
-
-BY_CHANCE = 1e-6  # probability; one false wander can cost hundreds of nats where the curve is steep
 
 
 @dataclass(frozen=True)
@@ -174,22 +173,21 @@ def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array
 
 
 def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
-    """Average the samples over blocks of about `length` samples, none across two runs.
+    """Average the samples over blocks of about `length` samples, cut by `block_starts`.
 
-    Every sample is used: a run of n samples is cut into round(n / length) blocks, at least one, of
-    nearly equal size. Slip is not the plain mean but that of `_calibrate_slip`.
+    Every sample is used. Slip is not the plain mean but that of `_calibrate_slip`.
 
     Args:
         samples: The samples.
         length: Wanted number of samples in a block, at least 1.
     """
-    starts, run = _block_starts(samples, length)
+    noise = slip_noise_variance(samples)
+    starts, run = block_starts(samples, length, noise=noise)
     count = np.diff(starts)
     slip, load, force = (
         _mean(values, starts)
         for values in (samples.slip, samples.normal_force, samples.traction_force)
     )
-    noise = slip_noise_variance(samples)
     slip_deviation = samples.slip - np.repeat(slip, count)
     load_deviation = samples.normal_force - np.repeat(load, count)
     spread = np.add.reduceat(slip_deviation**2, starts[:-1]) / np.maximum(count - 1, 1)
@@ -210,17 +208,6 @@ def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
         slip_load_covariance=_mean(slip_deviation * load_deviation, starts),
         run_slip_error=run_slip_error,
     )
-
-
-def _block_starts(samples: SlipSamples, length: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Cut runs into blocks; return each block's first sample, with the end last, and its run."""
-    starts, run = [], []
-    for index, part in enumerate(samples.slices()):
-        n_blocks = max(1, round((part.stop - part.start) / length))
-        edges = np.linspace(part.start, part.stop, n_blocks + 1).round().astype(np.intp)
-        starts.append(edges[:-1])
-        run.append(np.full(n_blocks, index, dtype=np.intp))
-    return np.append(np.concatenate(starts), len(samples)), np.concatenate(run)
 
 
 def _mean(values: Array, starts: NDArray[np.intp]) -> Array:

@@ -193,13 +193,13 @@ def test_steady_blocks_and_lively_ones_are_told_apart_without_bias(noise):
     assert slope == pytest.approx(1.0, abs=0.15)
 
 
-def test_a_jump_of_slip_stays_in_its_block():
+def test_a_jump_too_near_a_runs_end_for_a_block_of_its_own_stays_in_its_block():
     rng = np.random.default_rng(13)
     true = np.zeros((20, 250))
-    true[7, 135:] = 0.2  # within the sixth block of 25
+    true[7, 240:] = 0.2  # within the last block of 25
     blocks = block_means(samples(true + white(rng, true.shape, 0.001)), 25)
     jumped = np.argmax(blocks.slip_wander)
-    assert jumped == 7 * 10 + 5
+    assert jumped == 7 * 10 + 9
     assert blocks.slip_wander[jumped] == pytest.approx(0.2**2 * 0.6 * 0.4, rel=0.05)
     assert np.delete(blocks.slip_wander, jumped).max() < 0.001**2
 

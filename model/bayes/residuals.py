@@ -195,6 +195,19 @@ def load_levels(blocks: SlipBlocks) -> Array:
     return np.quantile(blocks.normal_force, (np.arange(MAX_LOAD_LEVELS) + 0.5) / MAX_LOAD_LEVELS)
 
 
+def tested_loads(blocks: SlipBlocks) -> Array:
+    """Compute the load of the middle of the measurements at each of `load_levels`, shape (m,) [N].
+
+    It is the median of the blocks nearest to the level, at which a curve passes through the middle
+    its points. The level itself is lower, since it is made of lower quartiles.
+    """
+    levels = load_levels(blocks)
+    load = np.maximum(blocks.normal_force, 1e-9)
+    nearest = nearest_level(load, levels)
+    near = [load[nearest == i] for i in range(len(levels))]
+    return np.array([np.median(each) if len(each) else levels[i] for i, each in enumerate(near)])
+
+
 def nearest_level(load: Array, levels: Array) -> NDArray[np.intp]:
     """Find the load level nearest to each load, by the ratio of the two.
 

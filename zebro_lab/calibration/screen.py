@@ -117,7 +117,10 @@ def _interval(e: Estimate) -> str:
 
 
 def _curve_table(calibration: Calibration) -> Table:
-    title = "slip curve at each tested load: median, and 90 % interval on the second line"
+    title = (
+        "slip curve at the median measured load of each load tested: median, and 90 % interval on "
+        "the second line"
+    )
     headings = (f"{e.parameter.symbol} [{_unit(e)}]" for e in calibration.curves[0])
     table = plain_table(title, (), ("Fn [N]", *headings))
     for load, row in zip(calibration.levels, calibration.curves, strict=True):

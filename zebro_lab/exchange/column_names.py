@@ -15,9 +15,9 @@ _TIME = (
     r"date(_?(and_?)?time)?|x_value|millis|micros|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|secs?|rosbagtimestamp"
 )
 _SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschw(indigkeit)?|angular_(speed|velocity))"
-_LEG_DISC = r"(l|leg|leg_?disc|wheel|bein|beinscheibe|rad)"
+_LEG_DISC = r"(l|(leg|foot|wheel)(_?disc)?|(bein|fuss|rad)_?(scheibe)?)"
 _GROUND = r"(g|ground|ground_?disc|table|boden|bodenscheibe|teller|tisch|belt|road|fahrbahn)"
-_TURNS = "n_?(leg|leg_?disc|wheel|bein|beinscheibe|rad)"  # German for speed: n
+_TURNS = rf"n_?{_LEG_DISC}"  # German for speed: n
 _GROUND_TURNS = "(n|drehzahl)_?(ground|ground_?disc|belt|boden|bodenscheibe|teller|tisch|scheibe)"
 _CELL = r"(_?(load_?cell|sensor|transducer|kraft(aufnehmer|sensor)|aufnehmer|messdose|kmd))?"
 _ORIENTATION = r"(.*_)?(orientation|quat(ernion)?|imu_orientation|q)_?"

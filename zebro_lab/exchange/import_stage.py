@@ -118,7 +118,10 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     suspected: tuple[str, ...] = ()
     if legs is not None:
         suspected = leg_warnings(
-            legs.reference, leg_sign=robot.leg_sign, leg_offset=robot.robot.leg_offset
+            legs.reference,
+            leg_sign=robot.leg_sign,
+            leg_offset=robot.robot.leg_offset,
+            columns=legs.columns_file,
         )
     manifest = _manifest(request, start, _sources(request, legs, imu, track))
     walk = ImportedWalk(manifest, zero, legs, imu, track, robot, suspected)

@@ -12,6 +12,7 @@ from model.robot import N_LEGS
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.robot.leg_gaps import bridged_gaps
+from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
 
@@ -39,6 +40,11 @@ class LegLog:
     source: str
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
+
+    @property
+    def columns_file(self) -> Path | None:
+        """The `columns.toml` that was read; None without one."""
+        return next((file for file in self.files if file.name == COLUMNS_FILE), None)
 
 
 def legs_of_table(

@@ -2,6 +2,7 @@
 """Warn of leg angles whose sign, zero, order or unit is probably not the one that is assumed."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -25,6 +26,7 @@ def leg_warnings(
     *,
     leg_sign: Sequence[int] = (1,) * N_LEGS,
     leg_offset: Array | None = None,
+    columns: Path | None = None,
 ) -> tuple[str, ...]:
     """Return what is suspected of leg angles, a line for each fault, and a note of turning back.
 
@@ -34,6 +36,7 @@ def leg_warnings(
         log: Leg angles over time, as in the log.
         leg_sign: Signs that are still to be applied, shape (6,).
         leg_offset: Offsets that are added to the angles after that, shape (6,) [rad]; None for 0.
+        columns: The `columns.toml` that the log was read with; None if it is not known.
     """
     theta = log.theta * np.asarray(leg_sign) + (0.0 if leg_offset is None else leg_offset)
     rate = float(np.median(np.abs(theta[-1] - theta[0]))) / (2 * np.pi * (log.t[-1] - log.t[0]))
@@ -43,7 +46,10 @@ def leg_warnings(
     if motion is None:
         return ()
     faults = leg_faults(motion)
-    return tuple(map(_text, faults)) if faults else _backward(motion)
+    if not faults:
+        return _backward(motion)
+    named = "the columns.toml of the log's table" if columns is None else str(columns)
+    return tuple(_text(fault, named) for fault in faults)
 
 
 def _too_fast(rate: float) -> str:
@@ -53,10 +59,10 @@ def _too_fast(rate: float) -> str:
     )
 
 
-def _text(fault: LegFault) -> str:
+def _text(fault: LegFault, columns: str) -> str:
     match fault:
         case SignFault(legs):
-            return _sign(legs)
+            return _sign(legs, columns)
         case DirectionFault(legs):
             return (
                 f"{WARNING}{_named(legs)} {_verb(legs, 'turn')} against the other legs of the "
@@ -68,11 +74,12 @@ def _text(fault: LegFault) -> str:
             return _order(fault)
 
 
-def _sign(legs: Sequence[int]) -> str:
+def _sign(legs: Sequence[int], columns: str) -> str:
     return (
         f"{WARNING}{_named(legs)} {_verb(legs, 'turn')} backwards and {_verb(legs, 'pass')} -90 "
         "deg, straight up, where slow as on the ground; expected 90 deg, straight down: sign = -1 "
-        f"for {_angles(legs)} in columns.toml, or in legs.sign of robot.toml, would repair both"
+        f"for {_angles(legs)} in [legs.columns] of {columns}, or in legs.sign of "
+        "robot.toml, would repair both"
     )
 
 

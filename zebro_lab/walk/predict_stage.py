@@ -65,7 +65,9 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         request.log, columns=request.columns, leg_sign=described.leg_sign,
         names=LegNames(joint_names(request.joints), request.topic),
     )  # fmt: skip
-    suspected = leg_warnings(log.reference, leg_offset=described.robot.leg_offset)
+    suspected = leg_warnings(
+        log.reference, leg_offset=described.robot.leg_offset, columns=log.columns_file
+    )
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
     pictures = request.model.pictures
     require_shown_times(pictures.snapshots, pictures.window, start, end)

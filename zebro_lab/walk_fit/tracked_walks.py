@@ -143,7 +143,9 @@ def read_walk_on_file(
     described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
     log = read_leg_log(log_file, leg_sign=described.leg_sign)
     start = float(log.reference.t[0])
-    suspected = leg_warnings(log.reference, leg_offset=described.robot.leg_offset)
+    suspected = leg_warnings(
+        log.reference, leg_offset=described.robot.leg_offset, columns=log.columns_file
+    )
     legs, counted = angles_from(log, start)
     track = shifted(read_track(track_file), -start)
     track = track if clock is None else clock(track, legs, described.robot)

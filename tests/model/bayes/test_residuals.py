@@ -19,6 +19,7 @@ from model.bayes.residuals import (
     largest_slips,
     load_levels,
     nearest_level,
+    tested_loads,
 )
 from model.slip import MagicFormula, SlipDefinition
 
@@ -302,6 +303,15 @@ def test_the_loads_that_were_set_are_found_whatever_their_order(order):
     data = blocks(np.linspace(0, 1, 10), np.array(order), np.random.default_rng(5))
     found = load_levels(data)
     np.testing.assert_allclose(found, [2.13, 6.63, 8.13, 12.75], rtol=0.1)
+
+
+def test_a_tested_load_is_the_middle_of_its_blocks_and_not_their_lower_quartile():
+    rng = np.random.default_rng(8)
+    data = blocks(np.linspace(0.01, 0.5, 24), np.array([3.0, 12.0]), rng)
+    load = np.where(data.normal_force > 6, 12.0, 3.0)
+    data = replace(data, normal_force=load * rng.uniform(0.96, 1.04, len(load)))
+    np.testing.assert_allclose(tested_loads(data), [3.0, 12.0], rtol=0.01)
+    assert np.all(load_levels(data) < 0.99 * np.array([3.0, 12.0]))  # lower quartiles
 
 
 def test_a_swept_load_is_stood_for_by_quantiles():

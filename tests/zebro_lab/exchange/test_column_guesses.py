@@ -144,7 +144,8 @@ def test_set_point_is_what_changes_seldom():
         ("Längskraft (N)", "traction_force", "N"), ("ω_leg [rad/s]", "omega_leg", "rad/s"),
         ("FZ [lbs]", "normal_force", "lbf?"), ("stamp_ms", "t", "ms"),
         ("Winkelgeschw. Bein [°/s]", "omega_leg", "°/s"), ("millis", "t", "ms?"),
-        ("Zugkraft_kN", "traction_force", "kN"),
+        ("Zugkraft_kN", "traction_force", "kN"), ("Drehzahl Fußscheibe", "omega_leg", "rpm?"),
+        ("foot disc speed [rpm]", "omega_leg", "rpm"),
     ],
 )  # fmt: skip
 def test_a_header_gives_name_and_unit_and_what_is_not_stated_is_in_doubt(header, canonical, unit):

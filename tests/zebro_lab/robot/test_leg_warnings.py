@@ -2,6 +2,7 @@
 """A warning says what was seen, what was expected and what would repair it; following it does."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,7 +26,9 @@ def test_a_reversed_leg_is_named_with_its_repair():
     sign = [1, 1, -1, 1, 1, -1]
     (line,) = warn(THETA * sign)
     assert line.startswith(f"{WARNING}legs 3 and 6 turn backwards and pass -90 deg")
-    assert "sign = -1 for theta3 and theta6 in columns.toml" in line
+    assert "sign = -1 for theta3 and theta6 in [legs.columns] of the columns.toml of the" in line
+    (named,) = warn(THETA * sign, columns=Path("walk/columns.toml"))
+    assert "theta3 and theta6 in [legs.columns] of walk/columns.toml, or in legs.sign" in named
     assert warn(THETA * sign, leg_sign=sign) == ()
 
 

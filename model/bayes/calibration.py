@@ -21,7 +21,7 @@ from model.bayes.estimate import (
 from model.bayes.fit import LawComparison, PreparedFit
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import SlipPosterior
-from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, tested_loads
+from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
 from model.bayes.sampler import Chains
 from model.bayes.samples import SlipSamples
 from model.bayes.verdict import Verdict, judge
@@ -41,7 +41,7 @@ class Calibration:
         draws: Posterior draws, at most `DRAWS_PER_ENSEMBLE` of each ensemble.
         parameters: Posterior of every parameter, fixed ones included: the law's, then the
             measurement's.
-        levels: Median measured load at each load that was set, by `tested_loads`, shape (m,) [N].
+        levels: Median measured load at each load that was set, by `middle_loads`, shape (m,) [N].
         curves: Posterior of the curve's features, as by `curve_estimates`, at each load level.
         convergence: Convergence diagnostics of the sampler.
         residuals: Analysis of the residuals.
@@ -111,7 +111,7 @@ def conclude(
         posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
     )
     narrowed = contraction(posterior, draws)
-    levels = tested_loads(posterior.blocks)
+    levels = middle_loads(posterior.blocks)
     validation = fit.cross_validation
     return Calibration(
         fit=fit,

@@ -195,7 +195,7 @@ def load_levels(blocks: SlipBlocks) -> Array:
     return np.quantile(blocks.normal_force, (np.arange(MAX_LOAD_LEVELS) + 0.5) / MAX_LOAD_LEVELS)
 
 
-def tested_loads(blocks: SlipBlocks) -> Array:
+def middle_loads(blocks: SlipBlocks) -> Array:
     """Compute the load of the middle of the measurements at each of `load_levels`, shape (m,) [N].
 
     It is the median of the blocks nearest to the level, at which a curve passes through the middle

@@ -18,8 +18,8 @@ from model.bayes.residuals import (
     lag_correlation,
     largest_slips,
     load_levels,
+    middle_loads,
     nearest_level,
-    tested_loads,
 )
 from model.slip import MagicFormula, SlipDefinition
 
@@ -310,7 +310,7 @@ def test_a_tested_load_is_the_middle_of_its_blocks_and_not_their_lower_quartile(
     data = blocks(np.linspace(0.01, 0.5, 24), np.array([3.0, 12.0]), rng)
     load = np.where(data.normal_force > 6, 12.0, 3.0)
     data = replace(data, normal_force=load * rng.uniform(0.96, 1.04, len(load)))
-    np.testing.assert_allclose(tested_loads(data), [3.0, 12.0], rtol=0.01)
+    np.testing.assert_allclose(middle_loads(data), [3.0, 12.0], rtol=0.01)
     assert np.all(load_levels(data) < 0.99 * np.array([3.0, 12.0]))  # lower quartiles
 
 

@@ -183,6 +183,22 @@ def test_counting_is_found_and_its_absence_too():
     assert find_step(np.zeros((100, 6))) is None
 
 
+@pytest.mark.parametrize("turn", [100, 360, 1000, 1020, 1024, 1030, 1500, 4096, 8192, 16384])
+@pytest.mark.parametrize("rate", [50, 100, 1000])
+def test_steps_are_found_that_a_leg_takes_many_of_between_two_samples(turn, rate):
+    t = np.arange(0, 10, 1 / rate)
+    step, theta = 2 * np.pi / turn, tripod(t, cycle=1.93, slow=1.31)
+    assert find_step(step * np.round(theta / step)) == pytest.approx(step, rel=1e-4)
+    assert find_step(np.round(step * np.round(theta / step), 5)) == pytest.approx(step, rel=1e-2)
+
+
+@pytest.mark.parametrize("decimals", [4, 15])
+@pytest.mark.parametrize(("cycle", "rate"), [(2.0, 100), (3.0, 50), (1.0, 200), (1.0, 10)])
+def test_speeds_that_are_multiples_of_each_other_are_no_counts(cycle, rate, decimals):
+    gait = buehler_reference(-0.6, 0.7, ground_time=0.6 * cycle, cycle_time=cycle)
+    assert find_step(gait.angles(np.arange(0, 12, 1 / rate)).round(decimals)) is None
+
+
 def test_a_count_of_nothing_is_refused():
     with pytest.raises(DomainError, match="more than zero"):
         QuantisedLog(np.arange(3.0), np.zeros((3, 6)), 0.0)

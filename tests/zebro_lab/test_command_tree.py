@@ -23,6 +23,7 @@ REFUSED_TEXTS = {
     "auto|peak|constant|E": ("2", "nan", "-inf", "steep"),
     "INNER[,OUTER]": ("x", "nan", "1,2,3", ","),
     "LENGTH": ("5 kg", "wide", "nan m"),
+    "ANGLE": ("5 kg", "wide", "nan deg", "0 deg", "90 deg"),
     "DICTIONARY:NUMBER:SIDE": ("4x4_50", "4x4_50:x:1cm", "4x4_50:0:1kg", "4x4_50:0:0mm"),
     "real|sim:WHAT": ("simulated", "sim:"),
     "U,V": ("1", "1,2,3", "x,y", "nan,1"),

@@ -25,7 +25,8 @@ _TOP: Final = """\
 # How the columns of {file} map to those that {reads}.
 # A value that ends in "?" is a guess: compare it with the table, correct it where it is wrong, and
 # delete the "?". Until then no command reads the table. docs/formats.md explains every key.
-# It applies to all tables of this kind in this folder and in subfolders without a {columns_file}.
+# It applies to all tables of this kind in this folder, and in subfolders without a {columns_file}
+# for this kind.
 """
 _SOURCE: Final = """
 # Where the data come from: "real", or "sim:WHAT" for simulated data.

@@ -9,6 +9,7 @@ from typing import Annotated, Final
 from typer import BadParameter, Option
 
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.units import option_to_si
 from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
@@ -68,15 +69,56 @@ class ImportRequest:
             "[s]; validate RUN --estimate-offset finds what is left.",
         ),
     ] = 0.0
+    track_sd: Annotated[
+        str | None,
+        Option(
+            metavar="LENGTH",
+            help="Standard deviation of x and of y of each tracked pose, such as '1 mm', where the "
+            "file has none; a fit of walks (calibrate-slip --walks) needs it.",
+        ),
+    ] = None
+    track_sd_yaw: Annotated[
+        str | None,
+        Option(
+            metavar="ANGLE",
+            help="Standard deviation of the heading of each tracked pose, such as '0.2 deg'.",
+        ),
+    ] = None
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the person who recorded.")] = "unknown"
     trajectory: TrajectoryRequest = field(default_factory=TrajectoryRequest)
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for a wrong `--start`, or `--joints` that are not six names."""
+        """Raise `SettingsError` for a wrong `--start`, `--joints` or standard deviation."""
         joint_names(self.joints)
+        _ = self.pose_sd
         if self.start is not None:
             _require_start(self.start)
+
+    @property
+    def pose_sd(self) -> tuple[float, float | None] | None:
+        """Standard deviations of tracked positions [m] and headings [rad], as far as given.
+
+        Raises:
+            SettingsError: One is no length or angle, not above 0, or implausibly large; or that of
+                the heading stands alone.
+        """
+        given = ((self.track_sd, "m", 0.5, "--track-sd"),
+                 (self.track_sd_yaw, "rad", 1.0, "--track-sd-yaw"))  # fmt: skip
+        position, yaw = (
+            None if text is None else _sd(text, unit, most=most, key=key)
+            for text, unit, most, key in given
+        )
+        if position is None and yaw is not None:
+            raise SettingsError("needs that of the position, too", key="--track-sd")
+        return None if position is None else (position, yaw)
+
+
+def _sd(text: str, si_unit: str, *, most: float, key: str) -> float:
+    found = option_to_si(text, si_unit, key=key)
+    if not 0 < found <= most:
+        raise SettingsError(f"found {text}; expected above 0, at most {most:g} {si_unit}", key=key)
+    return found
 
 
 def _require_start(start: datetime) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from model.progress import Watcher
 from model.slip.law import Array
 from model.told_apart import told_apart
-from zebro_lab.exchange.import_columns import foreign_columns
+from zebro_lab.exchange.import_columns import columns_above, foreign_columns
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
@@ -30,9 +30,10 @@ from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.table_files import read_table_file, table_stem
-from zebro_lab.tables.table_kinds import IMU, LEGS, RIG, TRACK
+from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import ForeignTrack, read_foreign_track
+from zebro_lab.track.foreign_sd import PoseSd
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 _UNIX: Final = 1e9
@@ -84,7 +85,9 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
     for i, run in enumerate(rig):
         watcher.step("writing", i / len(rig))
         folders.append(write_rig_run(request.data, run))
-    return Imported(tuple(folders), (*walk_notes, *rig_notes))
+    above = [line for kind in KINDS
+             for line in columns_above(kind, getattr(request, kind), request.columns)]  # fmt: skip
+    return Imported(tuple(folders), (*walk_notes, *rig_notes, *above))
 
 
 def _require_something(request: ImportRequest) -> None:
@@ -97,6 +100,8 @@ def _require_something(request: ImportRequest) -> None:
     if request.track is None and request.trajectory != TrajectoryRequest():
         raise SettingsError("--plane, --forward, --times and --layout say how a track is read; add "
                             "its file", key="--track")  # fmt: skip
+    if request.track is None and request.pose_sd is not None:
+        raise SettingsError("is that of a track; add its file, with --track", key="--track-sd")
     if request.track_offset and (request.track is None or request.legs is None):
         raise SettingsError("brings a track to the clock of the legs; give the files of both",
                             key="--track-offset")  # fmt: skip
@@ -190,8 +195,9 @@ def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None
     alone = request.legs is None and request.rig is None
     columns = foreign_columns(TRACK, path, request.columns, alone=alone)
     track = read_foreign_track(
-        path, columns.series(TRACK), request.trajectory, topic=columns.topic, topics=request.topic
-    )
+        path, columns.series(TRACK), request.trajectory, topic=columns.topic, topics=request.topic,
+        sd=None if request.pose_sd is None else PoseSd(*request.pose_sd),
+    )  # fmt: skip
     return track, track.topic
 
 
@@ -235,7 +241,8 @@ def _start(
     if given is not None and is_unix:
         raise SettingsError(
             f"times in the file are seconds since 1970 already: the first is {began.isoformat()}; "
-            "leave out --start, or count times from 0",
+            "leave out --start, or count times from 0; to state instead when the clock of a track "
+            f"was 0, add --track-offset {given.timestamp():.3f}",
             key="--start",
         )
     if given is not None:
@@ -264,7 +271,7 @@ def _require_shared_time(
             continue
         times, file = other
         first, last, start, end = told_apart(*(times[[0, -1]] + zero), *(t[[0, -1]] + zero))
-        later = f"{t[0] - times[0]:.10g}"
+        later = f"{t[0] - times[0]:.3f}".rstrip("0").rstrip(".")
         offset = {
             TRACK: f"add --track-offset {later}",
             IMU: f"state offset = {later} in [{IMU}.columns.t] of {COLUMNS_FILE}",

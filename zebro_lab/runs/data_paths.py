@@ -10,7 +10,9 @@ from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns_file import nearest_columns
 from zebro_lab.tables.table_files import PLAIN_SUFFIXES, is_table_file
+from zebro_lab.tables.table_kinds import RIG
 
 CALIBRATION_FILE = "slip.toml"  # a folder with this file is a calibration folder, not data
 
@@ -21,8 +23,8 @@ class DataSource:
 
     Attributes:
         path: The table file or the run folder.
-        root: Folder where the upward search for `columns.toml` ends: the folder named on the
-            command line, or the parent of the named file.
+        root: The folder named on the command line, or the parent of the named file; there the
+            upward search for the `columns.toml` of a run folder ends.
     """
 
     path: Path
@@ -34,8 +36,10 @@ class DataSource:
         return self.path.is_dir()
 
     def columns_file(self) -> Path | None:
-        """Find the nearest `columns.toml`, from the data's folder up to the root; None without."""
-        folder = self.path if self.is_run_folder else self.path.parent
+        """Find the nearest `columns.toml`; of a run folder, up to the root only; None without."""
+        if not self.is_run_folder:
+            return nearest_columns(RIG, self.path.parent)
+        folder = self.path
         while True:
             if (folder / COLUMNS_FILE).is_file():
                 return folder / COLUMNS_FILE

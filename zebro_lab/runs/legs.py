@@ -16,8 +16,7 @@ from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
-from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import read_section
+from zebro_lab.tables.columns_file import nearest_columns, read_section
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.tables.table_kinds import LEGS
@@ -142,8 +141,7 @@ def _table_of(path: Path) -> Path:
 
 
 def _columns_file(table: Path, named: Path | None) -> Path | None:
-    beside = table.parent / COLUMNS_FILE
-    return named or (beside if beside.is_file() else None)
+    return named or nearest_columns(LEGS, table.parent)
 
 
 def _read_columns(file: Path | None) -> tuple[MappedColumns, str | None]:

@@ -5,7 +5,7 @@ The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commen
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,7 +15,14 @@ from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
-from zebro_lab.tables.columns import CANONICAL, Columns, MappedColumn, RunRule, scaled
+from zebro_lab.tables.columns import (
+    CANONICAL,
+    COLUMNS_FILE,
+    Columns,
+    MappedColumn,
+    RunRule,
+    scaled,
+)
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.row_conditions import read_row_conditions
 from zebro_lab.tables.table_kinds import KINDS, LEGS, RIG
@@ -159,6 +166,36 @@ def read_section(kind: str, file: Path, *, alone: bool = False) -> SettingsTable
     require_checked(entries, file=file, path=path)
     source = {"source": document["source"]} if "source" in document else {}
     return SettingsTable(source | entries, file=file, path=path)
+
+
+def nearest_columns(kind: str, folder: Path) -> Path | None:
+    """Find the `columns.toml` for a kind of table: in its folder, or in the nearest one above.
+
+    One that has nothing for this kind is passed over, but taken, for its source, if there is no
+    other.
+
+    Args:
+        kind: One of `KINDS`.
+        folder: Folder of the table.
+
+    Raises:
+        SettingsError: A `columns.toml` on the way cannot be read as TOML.
+    """
+    found = [file for each in (folder, *_above(folder)) if (file := each / COLUMNS_FILE).is_file()]
+    return next((file for file in found if _is_for(kind, file)), found[0] if found else None)
+
+
+def _above(folder: Path) -> Iterator[Path]:
+    """Yield the folders above a folder, from the working folder if that is how it is named."""
+    working = Path.cwd()
+    for each in folder.resolve().parents:
+        is_within = each.is_relative_to(working) and not folder.is_absolute()
+        yield each.relative_to(working) if is_within else each
+
+
+def _is_for(kind: str, file: Path) -> bool:
+    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
+    return kind in document if is_sectioned(document) else kind in _PLAIN
 
 
 def is_sectioned(document: Mapping[str, Any]) -> bool:

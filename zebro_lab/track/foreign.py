@@ -17,6 +17,7 @@ from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.file import TrackFile, track_of_table, tum_lines
+from zebro_lab.track.foreign_sd import ADVICE, PoseSd
 from zebro_lab.track.trajectory.file import Trajectory, number_lines_of, read_trajectory
 from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
 from zebro_lab.track.trajectory.table import (
@@ -85,6 +86,7 @@ def read_foreign_track(
     *,
     topic: str | None = None,
     topics: Collection[str] = (),
+    sd: PoseSd | None = None,
 ) -> ForeignTrack:
     """Read a path tracked by another program: a table, a TUM, KITTI or EuRoC trajectory, a ROS log.
 
@@ -94,6 +96,7 @@ def read_foreign_track(
         request: How a trajectory is read.
         topic: Topic to read from a ROS log; None for one of `topics`, else the only one with poses.
         topics: Topics of a ROS log to prefer, also such of other messages.
+        sd: Standard deviations of the poses of a file without covariance; None if not known.
 
     Raises:
         NotFound: A file does not exist.
@@ -104,7 +107,7 @@ def read_foreign_track(
     table = None if is_ros_log(path) else _planar_table(path, mapping, request)
     if table is not None:
         _require_unused(path, request)
-        return track_of_foreign_table(table, mapping)
+        return track_of_foreign_table(table, mapping, sd=sd)
     trajectory = read_trajectory(path, request, mapping=mapping, topic=topic, topics=topics)
     if not trajectory.timed:
         raise DataError("has no times; give the file of its times with --times", file=path)
@@ -115,7 +118,7 @@ def read_foreign_track(
             key="--plane",
         )
     own = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped, keep=())
-    track = track_of_foreign_table(_flat(trajectory), own)
+    track = track_of_foreign_table(_flat(trajectory), own, sd=sd)
     files = tuple(dict.fromkeys((*trajectory.files, *track.files[1:])))
     return replace(track, files=files, topic=trajectory.topic)
 
@@ -179,15 +182,19 @@ def _sideways(trajectory: Trajectory) -> tuple[str, ...]:
     )
 
 
-def track_of_foreign_table(table: RawTable, mapping: MappedColumns) -> ForeignTrack:
+def track_of_foreign_table(
+    table: RawTable, mapping: MappedColumns, *, sd: PoseSd | None = None
+) -> ForeignTrack:
     """Convert a path in a table of another program to SI and validate it.
 
     Args:
         table: The table.
         mapping: Header, unit and sign of each column of `TRACK_UNITS`; the headers `t`, `x`, `y`,
             `z` and `yaw` are recognised without an entry.
+        sd: Standard deviations of the poses of a table without covariance; None if not known.
 
     Raises:
+        SettingsError: `sd` does not fit the table.
         DataError: Time, x or y is missing, a cell holds no finite number, time does not increase, a
             covariance has a negative eigenvalue, or there are fewer than three poses; names the
             cell.
@@ -195,11 +202,16 @@ def track_of_foreign_table(table: RawTable, mapping: MappedColumns) -> ForeignTr
     import pandas as pd
 
     read = read_table_columns(table, mapping, TRACK_UNITS, what="track")
-    columns = read.columns
+    columns = dict(read.columns)
+    if sd is not None:
+        columns |= sd.columns(columns, table.path)
     si = {name: pd.Series(values) for name, values in columns.items()}
     source = mapping.source or table.source
     checked = RawTable(table.path, si, source=source, notes=(*table.notes, *read.notes),
                        header_line=table.header_line, kept=read.table.kept)  # fmt: skip
     more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
     files = (table.path, *([mapping.file] if mapping.file else []))
-    return ForeignTrack(track_of_table(checked), more, set(COVARIANCE) <= set(columns), files)
+    track, with_covariance = track_of_table(checked), set(COVARIANCE) <= set(columns)
+    if track.poses.has_yaw and not with_covariance:
+        track = replace(track, notes=(*track.notes, f"a fit of walks needs a covariance: {ADVICE}"))
+    return ForeignTrack(track, more, with_covariance, files)

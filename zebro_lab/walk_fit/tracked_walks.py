@@ -26,6 +26,7 @@ from zebro_lab.runs.recorded_tilt import read_recorded_tilt
 from zebro_lab.tables.table_files import TABLE_SUFFIXES
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.track.foreign_sd import ADVICE
 from zebro_lab.validation.shared_clock import shifted
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk_fit.clocks import Clock
@@ -226,6 +227,7 @@ def _require_states(track: TrackFile) -> None:
     if not np.all(np.linalg.eigvalsh(track.covariance) > 0):
         raise DataError(
             "has no covariance, or a singular one (a variance of 0); a fit of walks needs columns "
-            "cov_xx, cov_xy, cov_xyaw, cov_yy, cov_yyaw, cov_yawyaw, positive definite",
+            "cov_xx, cov_xy, cov_xyaw, cov_yy, cov_yyaw, cov_yawyaw, positive definite: "
+            f"{ADVICE}",
             file=track.file,
         )

@@ -142,7 +142,7 @@ def test_nearest_columns_file_wins_and_an_explicit_one_over_all(tmp_path):
     columns(tmp_path, "source = 'real'")
     path = write(tmp_path / "below" / "deep", given_slip())
     assert read_rig_data([tmp_path]).source == "real"
-    assert read_rig_data([path]).source == "unknown"  # the folder above was not named
+    assert read_rig_data([path]).source == "real"  # also where the folder above was not named
     columns(tmp_path / "below", "source = 'sim:a'")
     assert read_rig_data([tmp_path]).source == "sim:a"
     elsewhere = columns(tmp_path / "elsewhere", "source = 'sim:b'")

@@ -51,6 +51,43 @@ def test_a_track_is_what_validate_takes(files, tmp_path, track):
     assert exact == (track == "path.tum")
 
 
+def test_standard_deviations_that_are_stated_are_those_of_the_track(files, tmp_path):
+    stated = {"track_sd": "2 mm", "track_sd_yaw": "0.2 deg"}
+    imported = taken(tmp_path, legs=files / "legs.csv", track=files / "path.tum", **stated)
+    tracked = read_track(imported.folders[0] / "track")
+    expected = np.diag([2e-3, 2e-3, np.radians(0.2)]) ** 2
+    np.testing.assert_allclose(tracked.covariance, np.tile(expected, (len(tracked.poses), 1, 1)))
+    assert not any("exact" in note or "--track-sd" in note for note in imported.notes)
+
+
+def test_a_track_without_covariance_is_noted_with_what_states_it(files, tmp_path):
+    notes = taken(tmp_path, legs=files / "legs.csv", track=files / "path.tum").notes
+    assert any("fit of walks" in note and "--track-sd '1 mm'" in note for note in notes)
+
+
+def test_columns_of_a_folder_above_hold_for_every_kind_and_are_named(files, tmp_path):
+    below = files / "deep" / "below"
+    below.mkdir(parents=True)
+    for name in ("legs.csv", "imu.csv", "track.csv"):
+        (files / name).rename(below / name)
+    (files / "deep" / "columns.toml").write_text('[rig.columns.t]\nname = "x"\n')
+    folder, notes = everything_below(files, below, tmp_path)
+    assert read_leg_log(folder).source == "sim:other-lab"
+    turned = read_leg_log(folder).reference.theta[:, 1]
+    np.testing.assert_allclose(np.diff(turned), np.diff(THETA[:, 1]), atol=1e-9)
+    for kind in ("legs", "imu", "track"):
+        line = f"{kind}.csv: columns are those of {files / 'columns.toml'}, the nearest for {kind}"
+        assert any(note.startswith(line) for note in notes)
+
+
+def everything_below(files, below, tmp_path):
+    imported = taken(
+        tmp_path, legs=below / "legs.csv", imu=below / "imu.csv", track=below / "track.csv",
+        robot=files / "robot.toml",
+    )  # fmt: skip
+    return imported.folders[0], imported.notes
+
+
 def test_suspected_leg_angles_are_warned_of_and_kept_with_the_run(tmp_path):
     theta = tripod().angles(T12) * [1, -1, 1, -1, 1, -1]
     table = {"t": T12} | {f"theta{leg}": theta[:, leg - 1] for leg in range(1, 7)}
@@ -92,6 +129,11 @@ def test_times_since_1970_tell_when_a_run_began(files, tmp_path):
     assert read_leg_log(folder).reference.t[0] == pytest.approx(0.0, abs=1e-6)
     with pytest.raises(SettingsError, match=r"^--start: .* since 1970 .* 2026-03-04.*leave out"):
         taken(tmp_path, legs=files / "legs.csv", start=datetime(2026, 3, 4, tzinfo=UTC))
+    with pytest.raises(SettingsError, match=r"add --track-offset 1772582400\.500$"):
+        taken(
+            tmp_path, legs=files / "legs.csv",
+            start=datetime(2026, 3, 4, microsecond=500_000, tzinfo=UTC),
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["imu.csv", "track.csv"])
@@ -176,10 +218,17 @@ def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
         ({"track": "track.csv", "imu": "imu.csv"}, "^--imu: belongs to a walk"),
         ({"legs": "legs.csv", "trajectory": TrajectoryRequest(plane=Plane.XY)}, "^--track: .*add"),
         ({"track": "track.csv", "track_offset": 2.0}, "^--track-offset: .*files of both"),
+        ({"legs": "legs.csv", "track_sd": "1 mm"}, "^--track-sd: is that of a track"),
+        ({"track": "track.csv", "track_sd_yaw": "1 deg"}, "^--track-sd: needs that of the pos"),
+        ({"track": "track.csv", "track_sd": "1 mm"}, "^--track-sd: .*track.csv has a covariance"),
+        ({"track": "path.tum", "track_sd": "1 mm"}, "^--track-sd-yaw: .*path.tum has headings"),
+        ({"track": "track.csv", "track_sd": "0 mm"}, "^--track-sd: found 0 mm; expected above 0"),
+        ({"track": "track.csv", "track_sd": "2 m"}, "^--track-sd: found 2 m; .*at most 0.5 m"),
+        ({"track": "track.csv", "track_sd": "1 deg"}, "^--track-sd: .*deg"),
     ],
 )
 def test_half_a_request_is_refused(files, tmp_path, changes, message):
-    named = {k: files / v if isinstance(v, str) else v for k, v in changes.items()}
+    named = {k: files / v if str(v).endswith((".csv", ".tum")) else v for k, v in changes.items()}
     with pytest.raises(SettingsError, match=message):
         taken(tmp_path, **named)
 

@@ -96,11 +96,11 @@ def test_a_map_without_sections_is_for_the_only_file(tmp_path):
 
 def test_a_track_of_another_clock_is_brought_to_that_of_the_legs(files, tmp_path):
     table = pd.read_csv(files / "track.csv")
-    table.assign(t=table.t - 1000.0).to_csv(files / "track.csv", index=False)
+    table.assign(t=table.t - 1000.25).to_csv(files / "track.csv", index=False)
     both = {"legs": files / "legs.csv", "track": files / "track.csv"}
-    with pytest.raises(DataError, match="no second is shared; add --track-offset 1000 where both"):
+    with pytest.raises(DataError, match=r"shared; add --track-offset 1000\.25 where both"):
         taken(tmp_path, **both)
-    (folder,) = taken(tmp_path, **both, track_offset=1000.0).folders
+    (folder,) = taken(tmp_path, **both, track_offset=1000.25).folders
     np.testing.assert_allclose(read_track(folder / "track").poses.t, T[::20], atol=1e-9)
 
 

@@ -10,7 +10,7 @@ import pytest
 from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.tables.columns import Columns, MappedColumn, RunRule
-from zebro_lab.tables.columns_file import read_columns, read_section
+from zebro_lab.tables.columns_file import nearest_columns, read_columns, read_section
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition
 
@@ -204,3 +204,18 @@ def test_guesses_of_another_kind_of_table_do_not_matter(tmp_path):
 def test_what_is_no_section_is_refused(tmp_path, text, problem):
     with pytest.raises(SettingsError, match=problem):
         section(tmp_path, text, "legs")
+
+
+def test_the_nearest_columns_with_something_for_the_kind_are_taken(tmp_path, monkeypatch):
+    deep = tmp_path / "a" / "b"
+    deep.mkdir(parents=True)
+    assert nearest_columns("track", deep) is None
+    (tmp_path / "columns.toml").write_text("[track.columns.y_m]\nsign = -1\n")
+    (tmp_path / "a" / "columns.toml").write_text('source = "real"\n')
+    assert nearest_columns("track", deep) == tmp_path / "columns.toml"
+    assert nearest_columns("imu", deep) == tmp_path / "a" / "columns.toml"  # for its source
+    assert nearest_columns("rig", deep) == tmp_path / "a" / "columns.toml"
+    (deep / "columns.toml").write_text("[track]\n")
+    assert nearest_columns("track", deep) == deep / "columns.toml"
+    monkeypatch.chdir(tmp_path)
+    assert nearest_columns("rig", Path("a/b")) == Path("a/columns.toml")

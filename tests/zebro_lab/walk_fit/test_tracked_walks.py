@@ -37,7 +37,7 @@ def test_poses_outside_the_log_are_left_out_and_said(tmp_path):
     ("options", "problem"),
     [
         ({"late": 1000.0}, "do both keep the same clock"),
-        ({"covariance": False}, "no covariance"),
+        ({"covariance": False}, "no covariance.*: import the track with --track-sd '1 mm' --track"),
         ({"yaw": False}, "no headings"),
         ({"every": 6.0}, "has 2 poses"),
     ],

@@ -20,6 +20,8 @@ FRICTION: Final = (0.01, 4.0)
 
 STRAY: Final = 10.0
 """Ratio of one traction force to the largest normal force that no friction explains [-]."""
+_ALL_LARGE: Final = 0.75  # slip ratio above which no sweep lies as a whole
+_REACHES: Final = 0.25  # slip ratio that each sweep goes below
 _SLIPPING: Final = 0.02  # slip ratio beyond which traction exceeds the zero error of a load cell
 _FEWEST: Final = 8  # rows that slip, to judge their sign
 _OPPOSED: Final = 0.9  # share of them
@@ -37,7 +39,8 @@ def require_plausible(
         traction_force: Traction forces, shape (n,) [N].
 
     Returns:
-        A note where the ratio of the forces is improbable, although their units are stated.
+        Notes: where the radii are probably exchanged, and where the ratio of the forces is
+        improbable, although their units are stated.
 
     Raises:
         DataError: A radius is above `LARGEST_RADIUS`, most slip ratios computed from speeds are
@@ -45,21 +48,23 @@ def require_plausible(
             one of them is not stated; or the traction opposes the slip, or is far beyond the
             largest normal force in a row.
     """
+    doubts: tuple[str, ...] = ()
     if slip.column == "omega_leg":
         _require_radii(table)
         _require_slip(table, slip.ratio)
+        doubts = _exchanged_radii(table)
     _require_one_sign(table, slip.ratio, traction_force)
     ratio = float(np.quantile(np.abs(traction_force) / normal_force, 0.95))
     if FRICTION[0] <= ratio <= FRICTION[1]:
         _require_no_stray(table, normal_force, traction_force)
-        return ()
+        return doubts
     found = (
         f"the traction force is {ratio:.2g} times the normal force, {_typical(traction_force)} to "
         f"{_typical(normal_force)} N; expected {FRICTION[0]:g} to {FRICTION[1]:g}"
     )
     unstated = [n for n in ("normal_force", "traction_force") if not _is_stated(table, n)]
     if not unstated:
-        return (f"IMPROBABLE FORCES: {found}: check their units",)
+        return (*doubts, f"IMPROBABLE FORCES: {found}: check their units")
     raise table.raw.fault(
         f"{found}; state the unit of the forces in {COLUMNS_FILE}, such as "
         + " and ".join(f'[columns.{name}] unit = "N"' for name in unstated)
@@ -124,6 +129,21 @@ def _require_slip(table: RigTable, ratio: Array) -> None:
     raise table.raw.fault(
         f"{found}; {advice}, or give the slip ratio itself as a column",
         table.required("omega_leg").name,
+    )
+
+
+def _exchanged_radii(table: RigTable) -> tuple[str, ...]:
+    """Return a note if all slips are large, and would reach down to none with radii exchanged."""
+    turns = table.si("omega_ground") / table.si("omega_leg")
+    radii = (table.constant_or_column(name) for name in ("radius_ground", "radius_leg"))
+    ratio = np.divide(*radii)
+    stated, exchanged = (np.quantile(np.abs(1 - turns * r), 0.05) for r in (ratio, 1 / ratio))
+    if stated < _ALL_LARGE or exchanged > _REACHES:
+        return ()
+    return (
+        f"IMPROBABLE SLIP: the slip ratios of {table.raw.path.name} are {stated:.2g} or more; with "
+        f"the radii of the discs exchanged the least is {exchanged:.2g}: are radius_leg and "
+        f"radius_ground exchanged in {COLUMNS_FILE}?",
     )
 
 

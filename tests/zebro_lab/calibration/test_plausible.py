@@ -33,6 +33,20 @@ def table(tmp_path):
 
 def test_a_plausible_sweep_is_read_without_a_doubt(table):
     assert not any("IMPROBABLE" in note for note in read_rig_data([table()]).notes)
+    fast = table(omega_ground=lambda d: d.omega_leg * 35 / 120 * np.linspace(0.05, 0.2, 60))
+    assert not any("IMPROBABLE" in note for note in read_rig_data([fast]).notes)
+
+
+def test_exchanged_radii_are_asked_about(table):
+    exchanged = table(omega_ground=lambda d: d.omega_leg * 120 / 35 * (1 - SLIP))
+    with pytest.raises(DataError, match=r"beyond 1\.5 in"):
+        read_rig_data([exchanged])
+    file = table(leg='"120 mm"')
+    columns = file.with_name("columns.toml")
+    columns.write_text(columns.read_text().replace('ground = "120 mm"', 'ground = "35 mm"'))
+    (note,) = (note for note in read_rig_data([file]).notes if "IMPROBABLE" in note)
+    assert "slip ratios of sweep.csv are 0.92 or more; with the radii of the discs exch" in note
+    assert note.endswith("are radius_leg and radius_ground exchanged in columns.toml?")
 
 
 @pytest.mark.parametrize(

@@ -135,8 +135,7 @@ def _require_slip(table: RigTable, ratio: Array) -> None:
 def _exchanged_radii(table: RigTable) -> tuple[str, ...]:
     """Return a note if all slips are large, and would reach down to none with radii exchanged."""
     turns = table.si("omega_ground") / table.si("omega_leg")
-    radii = (table.constant_or_column(name) for name in ("radius_ground", "radius_leg"))
-    ratio = np.divide(*radii)
+    ratio = table.constant_or_column("radius_ground") / table.constant_or_column("radius_leg")
     stated, exchanged = (np.quantile(np.abs(1 - turns * r), 0.05) for r in (ratio, 1 / ratio))
     if stated < _ALL_LARGE or exchanged > _REACHES:
         return ()

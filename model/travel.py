@@ -24,9 +24,7 @@ from model.slip.law import Array
 
 STANDING = 1e-6  # m: between poses closer than this there is no direction of travel
 _NOISES = 30.0  # chord in standard deviations of the noise
-_PARTS = (
-    50  # of the extent; what moves less, as noise that is correlated in time, is none of travel
-)
+_PARTS = 50  # of the extent; smaller moves, as noise that hangs together in time, are no travel
 _WINDOW = 5  # poses through which a cubic would pass without noise
 _CLEAR = np.radians(20.0)  # turn of a path of which neither noise nor sway leave the side open
 _ALIKE = 3.0  # ratio of the curvatures of two paths that may be mirror images

@@ -8,6 +8,7 @@ import pytest
 
 from zebro_lab.calibration.coulomb_argument import MOST_FRICTION
 from zebro_lab.calibration.plausible import FRICTION, LARGEST_RADIUS, LARGEST_SLIP, STRAY
+from zebro_lab.exchange.import_request import LARGEST_SD, LARGEST_SD_YAW
 from zebro_lab.robot.gait_argument import LEAST_DEG
 from zebro_lab.robot.imu_log import LARGEST_TILT, NEAR_G
 from zebro_lab.robot.leg_gaps import LONGEST_BRIDGED
@@ -40,6 +41,7 @@ LIMITS = {
     "gap in a leg log": (LONGEST_BRIDGED,),
     "specific force": (1, NEAR_G),
     "roll and pitch": (LARGEST_TILT,),
+    "`--track-sd`": (LARGEST_SD, LARGEST_SD_YAW),
     "mean speed of a path": (FASTEST,),
     "interval by": (MOST_APART, 1 / MOST_APART),
 }

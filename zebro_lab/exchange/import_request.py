@@ -19,6 +19,10 @@ _START = (
     "default: 1970 for times of 1e9 s and more, else now."
 )
 FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
+LARGEST_SD: Final = 0.5
+"""Largest standard deviation of tracked positions [m]."""
+LARGEST_SD_YAW: Final = 1.0
+"""Largest standard deviation of tracked headings [rad]."""
 LAST: Final = datetime(2038, 1, 19, tzinfo=UTC)
 """Before it a run starts and ends: the ROS stamps of a log hold seconds since 1970 in 32 bits."""
 
@@ -103,8 +107,8 @@ class ImportRequest:
             SettingsError: One is no length or angle, not above 0, or implausibly large; or that of
                 the heading stands alone.
         """
-        given = ((self.track_sd, "m", 0.5, "--track-sd"),
-                 (self.track_sd_yaw, "rad", 1.0, "--track-sd-yaw"))  # fmt: skip
+        given = ((self.track_sd, "m", LARGEST_SD, "--track-sd"),
+                 (self.track_sd_yaw, "rad", LARGEST_SD_YAW, "--track-sd-yaw"))  # fmt: skip
         position, yaw = (
             None if text is None else _sd(text, unit, most=most, key=key)
             for text, unit, most, key in given

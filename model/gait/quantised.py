@@ -11,6 +11,9 @@ Of each line all that pass its samples are equally likely, and their mean is the
 Samples near a corner may be of either line. How many lines pass, and so the uncertainty, depends on
 how speed, count and sampling meet: where a count takes a whole number of samples, as 8 at 45
 degrees a second, all changes are at the same phase, and say no more than one.
+
+Angles with noise are rebuilt likewise: by the fewest straight lines that pass every sample within
+its noise. Of each line, the reconstruction is then the one of least squares.
 """
 
 from dataclasses import dataclass
@@ -23,6 +26,7 @@ from model.errors import DomainError
 from model.gait.lines import (
     FASTEST,
     SAME,
+    SPEEDS,
     Lines,
     Passing,
     Samples,
@@ -46,6 +50,7 @@ SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock ji
 # What a leg may be off a straight line in a draw, the larger of a share of a count and of what a
 # servo yields to its load [rad].
 ROUGH, YIELD = 0.01, np.radians(0.02)
+REACH = 4.5  # standard deviations of noise, within which a line passes every sample
 NEAR = 2  # samples on either side of a corner that may belong to either line
 TICK = 1e-4  # s, to which times of samples are compared
 DECIMALS = 6  # of a corner's time in seconds
@@ -60,11 +65,12 @@ class CountedLeg:
         earliest: Least index of each line's first sample, where the fewest lines that pass all
             samples are as early as they can be, then the number of samples, shape (k + 1,).
         latest: Largest such index, where lines are as late as they can be, shape (k + 1,).
-        lines: All lines that pass each line's own samples, within what a leg is off a line.
+        lines: All lines that pass each line's own samples, within what a leg is off a line; where
+            the angles have noise those about as far from that of least squares as it may be off.
         mean: Mean of those that pass them exactly.
         alike: Number that lines share whose samples repeat: the same counts after the same times,
             from 0, shape (k,).
-        step: Angle of one count [rad].
+        step: Angle of one count, or twice what a sample's noise may be [rad].
     """
 
     samples: Samples
@@ -76,20 +82,26 @@ class CountedLeg:
     step: float
 
     @classmethod
-    def of(cls, t: Array, theta: Array, step: float) -> "CountedLeg":
+    def of(cls, t: Array, theta: Array, step: float, noise: float = 0.0) -> "CountedLeg":
         """Split a leg's samples into the fewest groups that a line passes; find each one's lines.
 
         Args:
             t: Times of the samples, shape (n,) [s].
             theta: Counted angles, middles of their bins, shape (n,) [rad].
             step: Angle of one count [rad].
+            noise: Standard deviation of the angles' noise, in which counts are not seen; zero for
+                counts without noise [rad].
         """
+        step = 2 * REACH * noise if noise else step
         changes = np.abs(np.diff(theta)) > SAME
         ends = np.append(True, changes) | np.append(changes, True)
         samples = Samples(t[ends], theta[ends])
         half = (0.5 + SLACK) * step
         earliest, latest = _first_samples(samples, half)
         own = _own_samples(samples, earliest, latest, half)
+        if noise:
+            lines, alike = _likely_lines(samples, *own, noise), np.arange(len(own[0]))
+            return cls(samples, earliest, latest, lines, middle(lines), alike, step)
         lines = _lines(samples, *own, step, max(ROUGH * step, YIELD))
         mean = middle(_lines(samples, *own, step, 0.0))
         return cls(samples, earliest, latest, lines, mean, _alike(samples, *own, step), step)
@@ -125,32 +137,41 @@ class CountedLeg:
 
 @dataclass(frozen=True)
 class QuantisedLog:
-    """Leg angles of a log as an encoder counts them, each the middle of its bin.
+    """Leg angles of a log as an encoder counts them, each the middle of its bin, or with noise.
 
     Attributes:
         t: Times, strictly increasing, shape (n,) [s].
         theta: Unwrapped angles, whole multiples of `step` apart, shape (n, 6) [rad].
-        step: Angle of one count [rad].
+        step: Angle of one count; zero if the angles have noise instead [rad].
+        noise: Standard deviation of each leg's noise, shape (6,) [rad]; None for counts alone.
 
     Raises:
-        DomainError: The step is not positive and finite, the times do not increase, there are
-            fewer than two, or the legs are not six.
+        DomainError: The step is not positive and finite, and there is no noise; the noise is not;
+            the times do not increase, there are fewer than two, or the legs are not six.
     """
 
     t: Array
     theta: Array
     step: float
+    noise: Array | None = None
 
     def __post_init__(self) -> None:
         """Check times, shapes, and that the angle of a count is positive and finite."""
         SampledReference(self.t, self.theta)
-        if not (self.step > 0 and np.isfinite(self.step)):
+        if self.noise is not None:
+            if self.noise.shape != (6,) or not np.all((self.noise > 0) & np.isfinite(self.noise)):
+                raise DomainError(f"noise is {self.noise} rad; expected six of more than zero")
+        elif not (self.step > 0 and np.isfinite(self.step)):
             raise DomainError(f"one count is {self.step:g} rad; expected more than zero, finite")
 
     @cached_property
     def _legs(self) -> list[CountedLeg]:
         """Lines of each leg."""
-        return [CountedLeg.of(self.t, theta, self.step) for theta in self.theta.T]
+        noise = np.zeros(6) if self.noise is None else self.noise
+        return [
+            CountedLeg.of(self.t, theta, self.step, float(sd))
+            for theta, sd in zip(self.theta.T, noise, strict=True)
+        ]
 
     def smooth(self, rng: np.random.Generator | None = None) -> SampledReference:
         """Reconstruct smooth leg angles from the counts, with every leg's corners.
@@ -194,6 +215,28 @@ def _lines(
     """
     away = [closest(samples, *group)[1] for group in zip(begin, end, strict=True)]
     return passing(samples, begin, end, np.maximum(0.5 * step, away) + off)
+
+
+def _likely_lines(
+    samples: Samples, begin: NDArray[np.intp], end: NDArray[np.intp], noise: float
+) -> Passing:
+    """Return lines about that of least squares through each group of samples, evenly distributed.
+
+    They have the standard deviations of angle and speed that the noise [rad] leaves, and leave a
+    leg what it may be off a straight line.
+    """
+    k = len(begin)
+    x, angle, speed = np.empty(k), np.empty((k, 2)), np.empty((k, 2))
+    for i, one in enumerate(map(slice, begin, end)):
+        t, theta = samples.t[one], samples.angle[one]
+        x[i], spread = t.mean(), float(np.linalg.norm(t - t.mean()))
+        slope = (t - x[i]) @ theta / spread**2 if spread > 0 else 0.0
+        off = np.array([-1.0, 1.0]) * (np.sqrt(3.0) * noise / np.sqrt(len(t)) + YIELD)
+        angle[i] = theta.mean() + off
+        speed[i] = slope + (off * np.sqrt(len(t)) / spread if spread > 0 else 0.0)
+    speeds = np.linspace(speed[:, 0], speed[:, 1], SPEEDS, axis=1)
+    low, high = (np.repeat(each[:, None], SPEEDS, axis=1) for each in angle.T)
+    return Passing(x, speeds, low, high)
 
 
 def _own_samples(

@@ -119,11 +119,11 @@ def _leg_state(
 
 
 def _offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
-    """Return the leg offsets' sd [deg]: as requested, else encoder step / sqrt(12), else 0.3."""
+    """Return the leg offsets' sd [deg]: as requested, else 0.3 or more, encoder step / sqrt(12)."""
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg
     if isinstance(legs, QuantisedLog):
-        return float(np.degrees(legs.step) / np.sqrt(12.0))
+        return max(float(np.degrees(legs.step) / np.sqrt(12.0)), ASSUMED_OFFSET_DEG)
     return ASSUMED_OFFSET_DEG
 
 

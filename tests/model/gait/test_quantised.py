@@ -199,6 +199,27 @@ def test_speeds_that_are_multiples_of_each_other_are_no_counts(cycle, rate, deci
     assert find_step(gait.angles(np.arange(0, 12, 1 / rate)).round(decimals)) is None
 
 
+@pytest.mark.parametrize("sd", [1e-4, 5e-4, 2e-3])
+@pytest.mark.parametrize("rate", [50, 100])
+def test_noise_leaves_speeds_and_corners_and_draws_hold_the_angles(sd, rate):
+    rng = np.random.default_rng(5)
+    t = np.arange(0, 10, 1 / rate)
+    t = np.delete(t, slice(3 * rate, 3 * rate + 5))
+    theta = tripod(t)
+    log = QuantisedLog(t, theta + rng.normal(0, sd, theta.shape), 0.0, np.full(6, sd))
+    assert np.abs(log.smooth().angles(t) - theta).max() < 2 * sd
+    assert np.sqrt(np.mean((log.smooth().angles(t) - theta) ** 2)) < 0.4 * sd
+    draws = np.stack([log.smooth(rng).angles(t) for _ in range(60)])
+    low, high = np.quantile(draws, [0.05, 0.95], axis=0)
+    assert np.mean((low <= theta) & (theta <= high)) > 0.8
+
+
+def test_noise_is_of_six_legs_and_more_than_nothing():
+    for noise in (np.zeros(6), np.full(5, 1e-3), np.full(6, np.nan)):
+        with pytest.raises(DomainError, match="six of more than zero"):
+            QuantisedLog(T, np.zeros((len(T), 6)), 0.0, noise)
+
+
 def test_a_count_of_nothing_is_refused():
     with pytest.raises(DomainError, match="more than zero"):
         QuantisedLog(np.arange(3.0), np.zeros((3, 6)), 0.0)

@@ -37,3 +37,14 @@ def test_counted_angles_are_recognised_and_others_taken_as_they_are():
     assert counted.step == pytest.approx(step)
     assert counted.t[0] == 0.0
     assert "counted in steps of 3.6 deg" in notes[0]
+
+
+def test_noise_is_said_and_reconstructed():
+    t = 0.01 * np.arange(900)
+    theta = 1.3 * t[:, None] + np.zeros(6)
+    noise = np.random.default_rng(0).normal(0.0, 5e-4, theta.shape)
+    legs, notes = angles_from(leg_log(theta + noise), 5.0)
+    assert isinstance(legs, QuantisedLog)
+    np.testing.assert_allclose(legs.noise, 5e-4, rtol=0.3)
+    assert np.abs(legs.smooth().angles(t) - theta).max() < 1.5e-4
+    assert "noise of 0.029 deg (0.51 mrad), reconstructed" in notes[0]

@@ -86,6 +86,8 @@ def test_offsets_spread_as_asked_by_the_count_or_as_assumed():
     counted = QuantisedLog(t, np.zeros((11, 6)), np.radians(3.6))
     assert _offset_sd_deg(BandRequest(2, offset_sd_deg=0.7), counted) == 0.7
     assert _offset_sd_deg(request, counted) == pytest.approx(3.6 / np.sqrt(12))
+    fine = QuantisedLog(t, np.zeros((11, 6)), np.radians(0.1))
+    assert _offset_sd_deg(request, fine) == ASSUMED_OFFSET_DEG
     assert _offset_sd_deg(request, GAIT) == ASSUMED_OFFSET_DEG
 
 

@@ -15,8 +15,9 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.tables import print_table
-from model.gait.quantised import QuantisedLog, find_step
+from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference, SampledReference
+from model.gait.resolution import find_step
 from model.robot import GRAVITY
 from model.slip.law import Array
 from model.walk.dynamics import walk

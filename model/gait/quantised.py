@@ -40,12 +40,6 @@ from model.gait.lines import (
 from model.gait.reference import SampledReference
 from model.slip.law import Array
 
-LARGEST_STEP = np.radians(10.0)  # of one count
-SMALLEST_STEP = 1.5e-4  # rad, 42,000 counts a turn: finer ones move a path by less than 0.1 %
-# rad: angles no further apart may be of one count; of two, angles rounded to 4 decimals are
-UNCHANGED = (0.9e-4, 1e-3)
-FEWEST_CHANGES = 8  # of count, to estimate the angle of one count
-MOST_COUNTS = 30  # of a change that tells whether angles are whole counts
 SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
 # What a leg may be off a straight line in a draw, the larger of a share of a count and of what a
 # servo yields to its load [rad].
@@ -313,48 +307,3 @@ def _without_jumps(t: Array, theta: Array) -> tuple[Array, Array]:
         i = int(np.argmax(fast))
         t, theta = (np.r_[a[:i], a[i : i + 2].mean(), a[i + 2 :]] for a in (t, theta))
     return t, theta
-
-
-def find_step(theta: Array) -> float | None:
-    """Estimate the angle of one count from changes that differ by it from those on either side.
-
-    A leg of constant speed changes by n or n + 1 counts from sample to sample, and the rarer of the
-    two always stands alone. Angles that are not counted have no such changes.
-
-    Args:
-        theta: Unwrapped angles, shape (n, legs) [rad].
-
-    Returns:
-        The step [rad]; None with fewer than 8 such changes, if 2 % or more of all changes of up to
-        `MOST_COUNTS` counts are no multiple, or if the step is not between `SMALLEST_STEP` and 10
-        degrees. A multiple may be off by 2 %, by a tenth of a count at most, and by a twentieth in
-        any case: for angles that were rounded when they were printed.
-
-    >>> counted = np.radians(3.6) * np.arange(0.0, 20.0, 0.4).round()[:, None]
-    >>> float(np.degrees(find_step(counted)).round(3))
-    3.6
-    """
-    change = np.diff(theta, axis=0)
-    more = np.abs(change[1:-1] - change[:-2])
-    alone = np.abs(change[2:] - change[:-2]) < 0.2 * more
-    for least in UNCHANGED:
-        ones = more[alone & (more > least)]
-        step = _common_step(ones, np.abs(change)) if len(ones) >= FEWEST_CHANGES else None
-        if step is not None and SMALLEST_STEP < step < LARGEST_STEP:
-            return step
-    return None
-
-
-def _common_step(ones: Array, change: Array) -> float | None:
-    """Return the step that most of `ones` are, if nearly all changes are its multiples [rad]."""
-    step = float(np.median(ones))
-    for most in (1.5, 10.5, MOST_COUNTS):  # counts, of which the step is known ever better
-        few = change[(0.5 * step < change) & (change < most * step)]
-        few = np.append(few, ones[ones < 1.5 * step])
-        counts = np.maximum((few / step).round(), 1.0)
-        step = float(few @ counts / (counts @ counts))
-    counts = change[change < MOST_COUNTS * step] / step
-    counts = np.append(counts[counts > 0.1], ones / step)
-    whole = np.abs(counts - counts.round()) < np.clip(0.02 * counts, 0.05, 0.1)
-    # Almost no difference of a leg that turns freely would be a multiple of another.
-    return step if whole.mean() > 0.98 else None

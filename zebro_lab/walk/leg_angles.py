@@ -3,9 +3,9 @@
 
 import numpy as np
 
-from model.gait.angle_noise import SEEN, find_noise
-from model.gait.quantised import QuantisedLog, find_step
+from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
+from model.gait.resolution import SEEN, find_noise, find_step
 from zebro_lab.robot.leg_log import LegLog
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from model.errors import DomainError
 from model.gait.buehler import buehler_reference
 from model.gait.lines import FASTEST
-from model.gait.quantised import QuantisedLog, find_step
+from model.gait.quantised import QuantisedLog
 
 STEP = np.radians(3.6)
 T = np.arange(0, 6, 0.01)
@@ -172,31 +172,6 @@ def test_legs_may_turn_backwards():
     theta = -tripod(t)
     smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.sqrt(np.mean((smooth - theta) ** 2)) < 0.12 * STEP
-
-
-def test_counting_is_found_and_its_absence_too():
-    t = np.arange(0, 10, 0.01)
-    assert find_step(counted(tripod(t))) == pytest.approx(STEP, rel=1e-9)
-    assert find_step(np.round(counted(tripod(t)), 4)) == pytest.approx(STEP, rel=1e-2)
-    assert find_step(tripod(t)) is None
-    assert find_step(tripod(t) + np.random.default_rng(1).normal(0, 1e-3, (len(t), 6))) is None
-    assert find_step(np.zeros((100, 6))) is None
-
-
-@pytest.mark.parametrize("turn", [100, 360, 1000, 1020, 1024, 1030, 1500, 4096, 8192, 16384])
-@pytest.mark.parametrize("rate", [50, 100, 1000])
-def test_steps_are_found_that_a_leg_takes_many_of_between_two_samples(turn, rate):
-    t = np.arange(0, 10, 1 / rate)
-    step, theta = 2 * np.pi / turn, tripod(t, cycle=1.93, slow=1.31)
-    assert find_step(step * np.round(theta / step)) == pytest.approx(step, rel=1e-4)
-    assert find_step(np.round(step * np.round(theta / step), 5)) == pytest.approx(step, rel=1e-2)
-
-
-@pytest.mark.parametrize("decimals", [4, 15])
-@pytest.mark.parametrize(("cycle", "rate"), [(2.0, 100), (3.0, 50), (1.0, 200), (1.0, 10)])
-def test_speeds_that_are_multiples_of_each_other_are_no_counts(cycle, rate, decimals):
-    gait = buehler_reference(-0.6, 0.7, ground_time=0.6 * cycle, cycle_time=cycle)
-    assert find_step(gait.angles(np.arange(0, 12, 1 / rate)).round(decimals)) is None
 
 
 @pytest.mark.parametrize("sd", [1e-4, 5e-4, 2e-3])

@@ -14,7 +14,7 @@ from zebro_lab.walk.leg_angles import angles_from
 def test_the_log_of_the_bundled_walk_is_counted():
     from pathlib import Path
 
-    from model.gait.quantised import find_step
+    from model.gait.resolution import find_step
 
     log = read_leg_log(Path(__file__).parents[3] / "datasets/walk-sim/legs.csv")
     assert np.degrees(find_step(log.reference.theta)) == pytest.approx(3.6, rel=1e-3)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""Resolution of measured leg angles: the angle of one count, or their noise."""
+
+import numpy as np
+
+from model.slip.law import Array
+
+LARGEST_STEP = np.radians(10.0)  # of one count
+SMALLEST_STEP = 1.5e-4  # rad, 42,000 counts a turn: finer ones move a path by less than 0.1 %
+# rad: angles no further apart may be of one count; of two, angles rounded to 4 decimals are
+UNCHANGED = (0.9e-4, 1e-3)
+FEWEST_CHANGES = 8  # of count, to estimate the angle of one count
+MOST_COUNTS = 30  # of a change that tells whether angles are whole counts
+ORDERS = (2, 4, 6, 8)  # of differences: they vanish for polynomials of a lower degree
+MEDIAN = 0.6745  # median size of a standard normal variable
+SEEN = 7e-5  # rad: less hardly moves a path, and is left in the angles, as rounding to 4 decimals
+
+
+def find_noise(t: Array, theta: Array) -> Array | None:
+    """Estimate the standard deviation of white noise of each leg's angles.
+
+    Differences of neighbouring samples, divided by their times, vanish where a leg turns evenly,
+    and are small where it turns smoothly. Their median is not affected by the corners of its
+    motion, unless these are in every other difference. Of several orders the least is taken: low
+    orders meet few corners, high ones see through accelerations.
+
+    Args:
+        t: Times, strictly increasing, shape (n,) [s].
+        theta: Unwrapped angles, shape (n, legs) [rad].
+
+    Returns:
+        Standard deviation of each leg's noise, shape (legs,) [rad]; None if the samples are too
+        few to tell, or if that of no leg reaches `SEEN`.
+
+    >>> t = np.arange(0.0, 5.0, 0.01)
+    >>> noise = np.random.default_rng(0).normal(0.0, 5e-4, (500, 1))
+    >>> find_noise(t, t[:, None] + noise).round(4)
+    array([0.0005])
+    """
+    if len(t) <= 2 * max(ORDERS):
+        return None
+    sizes = np.stack([_size(t, theta, order) for order in ORDERS]).min(axis=0)
+    return sizes if sizes.max() >= SEEN else None
+
+
+def _size(t: Array, theta: Array, order: int) -> Array:
+    """Return the noise's standard deviation by the median of divided differences, (legs,) [rad]."""
+    near = np.lib.stride_tricks.sliding_window_view(t, order + 1)
+    near = (near - near[:, :1]) / (near[:, -1:] - near[:, :1])
+    apart = near[:, :, None] - near[:, None, :] + np.eye(order + 1)
+    weights = 1 / apart.prod(axis=2)
+    weights /= np.linalg.norm(weights, axis=1, keepdims=True)
+    angles = np.lib.stride_tricks.sliding_window_view(theta, order + 1, axis=0)
+    return np.median(np.abs(np.einsum("nk,nlk->nl", weights, angles)), axis=0) / MEDIAN
+
+
+def find_step(theta: Array) -> float | None:
+    """Estimate the angle of one count from changes that differ by it from those on either side.
+
+    A leg of constant speed changes by n or n + 1 counts from sample to sample, and the rarer of the
+    two always stands alone. Angles that are not counted have no such changes.
+
+    Args:
+        theta: Unwrapped angles, shape (n, legs) [rad].
+
+    Returns:
+        The step [rad]; None with fewer than 8 such changes, if 2 % or more of all changes of up to
+        `MOST_COUNTS` counts are no multiple, or if the step is not between `SMALLEST_STEP` and 10
+        degrees. A multiple may be off by 2 %, by a tenth of a count at most, and by a twentieth in
+        any case: for angles that were rounded when they were printed.
+
+    >>> counted = np.radians(3.6) * np.arange(0.0, 20.0, 0.4).round()[:, None]
+    >>> float(np.degrees(find_step(counted)).round(3))
+    3.6
+    """
+    change = np.diff(theta, axis=0)
+    more = np.abs(change[1:-1] - change[:-2])
+    alone = np.abs(change[2:] - change[:-2]) < 0.2 * more
+    for least in UNCHANGED:
+        ones = more[alone & (more > least)]
+        step = _common_step(ones, np.abs(change)) if len(ones) >= FEWEST_CHANGES else None
+        if step is not None and SMALLEST_STEP < step < LARGEST_STEP:
+            return step
+    return None
+
+
+def _common_step(ones: Array, change: Array) -> float | None:
+    """Return the step that most of `ones` are, if nearly all changes are its multiples [rad]."""
+    step = float(np.median(ones))
+    for most in (1.5, 10.5, MOST_COUNTS):  # counts, of which the step is known ever better
+        few = change[(0.5 * step < change) & (change < most * step)]
+        few = np.append(few, ones[ones < 1.5 * step])
+        counts = np.maximum((few / step).round(), 1.0)
+        step = float(few @ counts / (counts @ counts))
+    counts = change[change < MOST_COUNTS * step] / step
+    counts = np.append(counts[counts > 0.1], ones / step)
+    whole = np.abs(counts - counts.round()) < np.clip(0.02 * counts, 0.05, 0.1)
+    # Almost no difference of a leg that turns freely would be a multiple of another.
+    return step if whole.mean() > 0.98 else None

@@ -13,6 +13,7 @@ from model.slip.definition import SlipDefinition
 from rig.nearest_name import nearest
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError, UnitError
+from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.tables.columns import (
@@ -172,7 +173,8 @@ def nearest_columns(kind: str, folder: Path) -> Path | None:
     """Find the `columns.toml` for a kind of table: in its folder, or in the nearest one above.
 
     One that has nothing for this kind is passed over, but taken, for its source, if there is no
-    other.
+    other. One without sections above the table's folder is for legs if it maps their angles, else
+    for rigs. Results of commands have their own headers: for them nothing above is looked up.
 
     Args:
         kind: One of `KINDS`.
@@ -182,20 +184,33 @@ def nearest_columns(kind: str, folder: Path) -> Path | None:
         SettingsError: A `columns.toml` on the way cannot be read as TOML.
     """
     found = [file for each in (folder, *_above(folder)) if (file := each / COLUMNS_FILE).is_file()]
-    return next((file for file in found if _is_for(kind, file)), found[0] if found else None)
+    fits = (file for file in found if _is_for(kind, file, beside=file.parent == folder))
+    return next(fits, None) or next((file for file in found if _has_source_alone(kind, file)), None)
 
 
 def _above(folder: Path) -> Iterator[Path]:
-    """Yield the folders above a folder, from the working folder if that is how it is named."""
+    """Yield the folders above one, named as it is; of a result of a command none."""
+    if result_kind(folder) is not None:
+        return
     working = Path.cwd()
     for each in folder.resolve().parents:
         is_within = each.is_relative_to(working) and not folder.is_absolute()
         yield each.relative_to(working) if is_within else each
 
 
-def _is_for(kind: str, file: Path) -> bool:
+def _is_for(kind: str, file: Path, *, beside: bool) -> bool:
     document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
-    return kind in document if is_sectioned(document) else kind in _PLAIN
+    if is_sectioned(document):
+        return kind in document
+    columns = document.get("columns")
+    if beside or not isinstance(columns, dict):
+        return kind in _PLAIN
+    return kind == (LEGS if any(name.startswith("theta") for name in columns) else RIG)
+
+
+def _has_source_alone(kind: str, file: Path) -> bool:
+    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
+    return kind not in _PLAIN or is_sectioned(document)
 
 
 def is_sectioned(document: Mapping[str, Any]) -> bool:

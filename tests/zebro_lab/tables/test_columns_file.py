@@ -219,3 +219,24 @@ def test_the_nearest_columns_with_something_for_the_kind_are_taken(tmp_path, mon
     assert nearest_columns("track", deep) == deep / "columns.toml"
     monkeypatch.chdir(tmp_path)
     assert nearest_columns("rig", Path("a/b")) == Path("a/columns.toml")
+
+
+def test_a_map_of_a_rig_above_is_none_of_legs_and_the_other_way_round(tmp_path):
+    below = tmp_path / "walks"
+    below.mkdir()
+    (tmp_path / "columns.toml").write_text('[columns]\nnormal_force = "FZ"\n')
+    assert nearest_columns("legs", below) is None
+    assert nearest_columns("rig", below) == tmp_path / "columns.toml"
+    (tmp_path / "columns.toml").write_text('[columns]\ntheta1 = "fl"\n')
+    assert nearest_columns("rig", below) is None
+    assert nearest_columns("legs", below) == tmp_path / "columns.toml"
+    assert nearest_columns("rig", tmp_path) == tmp_path / "columns.toml"
+
+
+def test_a_result_of_a_command_takes_no_columns_from_above(tmp_path):
+    result = tmp_path / "walk"
+    result.mkdir()
+    (tmp_path / "columns.toml").write_text('[legs.columns]\ntheta1 = "fl"\n')
+    assert nearest_columns("legs", result) == tmp_path / "columns.toml"
+    (result / "manifest.json").write_text('{"kind": "walk", "schema": 1, "outputs": {}}')
+    assert nearest_columns("legs", result) is None

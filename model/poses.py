@@ -100,6 +100,14 @@ class Poses:
         """Whether every heading is finite."""
         return bool(np.isfinite(self.yaw).all())
 
+    @property
+    def length(self) -> float:
+        """Length of the line through all poses of one path [m].
+
+        That of a computed path. In a measured one noise adds to it: see `model.travel.path_length`.
+        """
+        return float(np.linalg.norm(np.diff(self.position, axis=0), axis=1).sum())
+
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "Poses":
         """Select poses by time, with their covariance.
 

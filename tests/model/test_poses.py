@@ -53,8 +53,7 @@ def test_some_times_are_taken_of_every_draw_and_of_the_covariance():
 
 def test_a_motion_keeps_lengths_and_adds_to_headings():
     moved = LINE.moved(rotation=0.7, translation=[1.0, -2.0])
-    lengths = [np.linalg.norm(np.diff(a.position, axis=0), axis=1) for a in (moved, LINE)]
-    np.testing.assert_allclose(*lengths)
+    assert moved.length == pytest.approx(LINE.length) == 2.0
     np.testing.assert_allclose(moved.yaw - LINE.yaw, 0.7)
     np.testing.assert_allclose(moved.position[0], [1.0, -2.0])
 

@@ -6,15 +6,18 @@ steps of several sizes at several rates, rebuilt, and drawn. The first table has
 mean motion, and how many of the true angles, at times between the samples, the draws' central 50
 and 90 % hold. The second has what the counts do to a turning radius: each of the engine's walks is
 walked by the project's model with the engine's friction, from the engine's angles and from counts
-of 3.6 degrees at 100 Hz whose zero lies elsewhere each time, as that of a real encoder may.
+of 3.6 degrees at 100 Hz whose zero lies elsewhere each time, as that of a real encoder may. The
+third has what encoders of 100 to 65536 counts a turn, and noise, do to the radius of three walks
+where `predict` is left to find the counts or the noise, and the 90 % band of its draws.
 
 Prints tables of `docs/validation.md`.
 
-Usage: python -m benchmarks.accuracy.counted_angles [coverage | radii]
+Usage: python -m benchmarks.accuracy.counted_angles [coverage | radii | found]
 """
 
 import sys
 from collections.abc import Callable, Iterator
+from itertools import repeat
 
 import numpy as np
 
@@ -23,10 +26,16 @@ from benchmarks.tables import print_table
 from model.gait.buehler import buehler_reference
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference, SampledReference
+from model.leg_state import LegState
+from model.predict import ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.traction import VelocityCoulomb
+from zebro_lab.robot.leg_log import LegLog
+from zebro_lab.walk.leg_angles import angles_from
+from zebro_lab.walk.path_band import offset_sd_deg
+from zebro_lab.walk.request import BandRequest
 
 COUNTS = (0.05, 0.2, 0.5, 1.0, 2.0, 3.6)  # deg
 RATES = (20.0, 50.0, 100.0, 200.0)  # Hz
@@ -37,6 +46,14 @@ ENGINE = (
     "tripod_s1.20_left_mu0.38_tc2", "tripod_s1.30_left_mu0.38_tc2_arc200real", "tetrapod_mu0.20_tc3"
 )  # fmt: skip
 ZEROS = 12  # of an encoder
+TURNING = (
+    "tripod_s1.10_left_mu0.38_tc2", "tripod_s1.30_right_mu0.38_tc2",
+    "tripod_s1.30_left_mu0.38_tc2_arc200real",
+)  # fmt: skip
+TURNS = (100, 360, 1000, 1024, 1200, 2048, 4096, 8192, 16384, 65536)  # counts
+NOISE = (5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3)  # rad
+MIXED = ((1024, 5e-4), (4096, 5e-4))
+BAND = 40  # draws
 STEP, STRAIGHT = np.radians(3.6), 5.0  # of an encoder [rad]; a radius beyond is a straight line's
 
 Angles = Callable[[Array], Array]
@@ -126,11 +143,55 @@ def _of(off: Array) -> tuple[str, str, str]:
     return f"{off.mean():+.2f}", f"{np.sqrt(np.mean(off**2)):.2f}", f"{np.abs(off).max():.2f}"
 
 
-PARTS = {"coverage": print_coverage, "radii": print_radii}
+def print_found() -> None:
+    """Print what counts and noise that must be found first do to the radius of three walks."""
+    rng = np.random.default_rng(1)
+    walks = [one for one in engine_walks() if one.name in TURNING]
+    rows = [("as they are", *(found_radius(one, one.log.theta, rng) for one in walks))]
+    for turn in TURNS:
+        step = 2 * np.pi / turn
+        counted = [step * np.round(one.log.theta / step) for one in walks]
+        cells = map(found_radius, walks, counted, repeat(rng))
+        rows.append((f"{turn} counts a turn", *cells))
+    for sd in NOISE:
+        cells = []
+        for one in walks:
+            noise = rng.normal(0.0, sd, one.log.theta.shape)
+            cells.append(found_radius(one, one.log.theta + noise, rng))
+        rows.append((f"noise of {1e3 * sd:g} mrad", *cells))
+    for turn, sd in MIXED:
+        step, cells = 2 * np.pi / turn, []
+        for one in walks:
+            noisy = one.log.theta + rng.normal(0.0, sd, one.log.theta.shape)
+            cells.append(found_radius(one, step * np.round(noisy / step), rng))
+        rows.append((f"noise of {1e3 * sd:g} mrad in {turn} counts", *cells))
+    print_table(("angles", *(one.name.removeprefix("tripod_") for one in walks)), *rows)
+
+
+def found_radius(one: EngineWalk, theta: Array, rng: np.random.Generator) -> str:
+    """Say by how much the radius from measured angles differs, and the draws' 90 % band [%]."""
+    legs, _ = angles_from(LegLog(SampledReference(one.log.t, theta), "sim:engine", ()), 0.0)
+    rebuilt = legs.smooth() if isinstance(legs, QuantisedLog) else legs
+    known = walked_radius(one, one.log)
+    off = 100 * (walked_radius(one, rebuilt) / known - 1)
+    offset = np.radians(offset_sd_deg(BandRequest(BAND), legs))
+    state = LegState.of_prior(BAND, offset_sd=float(offset), rng=rng)
+    table = VelocityCoulomb(one.friction).table(weight=one.robot.mass * GRAVITY)
+    t = np.arange(0.0, one.duration, 0.05)
+    paths = predict_paths(
+        walk_draws(one.robot, legs, [table], state, rng=rng), t,
+        state=state, error=ModelSpread(), rng=rng, options=DynamicsOptions(dt=0.005),
+    )  # fmt: skip
+    each = [radius(t, states[:, :2], states[:, 2], one.period) for states in paths.states]
+    low, high = np.sort(100 * (1 / (known * np.quantile(1 / np.array(each), [0.05, 0.95])) - 1))
+    return f"{off:+.2f} ({low:+.1f} to {high:+.1f})"
+
+
+PARTS = {"coverage": print_coverage, "radii": print_radii, "found": print_found}
 
 
 def main() -> None:
-    """Print the tables asked for; both without a name."""
+    """Print the tables asked for; all without a name."""
     for part in sys.argv[1:] or PARTS:
         PARTS[part]()
 

@@ -136,8 +136,9 @@ class QuantisedLog:
     Attributes:
         t: Times, strictly increasing, shape (n,) [s].
         theta: Unwrapped angles, whole multiples of `step` apart, shape (n, 6) [rad].
-        step: Angle of one count; zero if the angles have noise instead [rad].
-        noise: Standard deviation of each leg's noise, shape (6,) [rad]; None for counts alone.
+        step: Angle of one count; zero if the angles have noise alone [rad].
+        noise: Standard deviation of each leg's noise, in which counts are lost, shape (6,) [rad];
+            None for counts alone.
 
     Raises:
         DomainError: The step is not positive and finite, and there is no noise; the noise is not;
@@ -166,6 +167,11 @@ class QuantisedLog:
             CountedLeg.of(self.t, theta, self.step, float(sd))
             for theta, sd in zip(self.theta.T, noise, strict=True)
         ]
+
+    @property
+    def lines(self) -> int:
+        """Number of straight lines that make up all legs."""
+        return sum(len(leg.mean.x) for leg in self._legs)
 
     def smooth(self, rng: np.random.Generator | None = None) -> SampledReference:
         """Reconstruct smooth leg angles from the counts, with every leg's corners.

@@ -6,7 +6,14 @@ import numpy as np
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from model.gait.resolution import SEEN, find_noise, find_step
+from model.robot import N_LEGS
+from model.slip.law import Array
 from zebro_lab.robot.leg_log import LegLog
+
+# Counts to which noise was added before they were counted flicker at their boundaries: lines within
+# half a count are more than these times as many as lines within the noise of counts, from a tenth
+# of a count of noise on. Without noise they are up to twice as many, where servos yield.
+JAGGED = 2.5
 
 
 def angles_from(
@@ -22,19 +29,26 @@ def angles_from(
         The angles, a `QuantisedLog` if they are encoder counts or have noise; and notes.
     """
     t, theta = log.reference.t - start, log.reference.theta
-    step = find_step(theta)
-    if step is not None:
-        note = (
-            f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg, reconstructed as "
-            "straight lines through the changes of count"
-        )
-        return QuantisedLog(t, theta, step), (note,)
-    noise = find_noise(t, theta)
-    if noise is None:
-        return SampledReference(t, theta), ()
+    step, noise = find_step(theta), find_noise(t, theta)
+    if step is None:
+        if noise is None:
+            return SampledReference(t, theta), ()
+        noisy = QuantisedLog(t, theta, 0.0, np.maximum(noise, SEEN))
+        return noisy, (f"leg log: angles carry {_told(noise)}",)
+    counts = f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg"
+    counted = QuantisedLog(t, theta, step)
+    least = step / np.sqrt(12.0)  # the standard deviation of what counting leaves out
+    noise = np.full(N_LEGS, least) if noise is None else np.maximum(noise, least)
+    noisy = QuantisedLog(t, theta, step, noise)
+    if counted.lines > JAGGED * noisy.lines:
+        return noisy, (f"{counts} and carry {_told(noise)}",)
+    return counted, (f"{counts}, reconstructed as straight lines through the changes of count",)
+
+
+def _told(noise: Array) -> str:
+    """Say how large the legs' noise is at most, and what is done about it."""
     worst = float(noise.max())
-    note = (
-        f"leg log: angles carry noise of {np.degrees(worst):.2g} deg ({1e3 * worst:.2g} mrad), "
-        "reconstructed as straight lines through the samples"
+    return (
+        f"noise of {np.degrees(worst):.2g} deg ({1e3 * worst:.2g} mrad), reconstructed as "
+        "straight lines through the samples"
     )
-    return QuantisedLog(t, theta, 0.0, np.maximum(noise, SEEN)), (note,)

@@ -107,7 +107,7 @@ def _leg_state(
     rng: np.random.Generator,
 ) -> LegState:
     if informed is None:
-        offset_sd = np.radians(_offset_sd_deg(request, legs))
+        offset_sd = np.radians(offset_sd_deg(request, legs))
         return LegState.of_prior(request.draws, offset_sd=offset_sd, rng=rng)
     if request.offset_sd_deg is not None:
         raise SettingsError(
@@ -118,7 +118,7 @@ def _leg_state(
     return informed.draw(request.draws, rng=rng)
 
 
-def _offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
+def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
     """Return the leg offsets' sd [deg]: as requested, else 0.3 or more, encoder step / sqrt(12)."""
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg

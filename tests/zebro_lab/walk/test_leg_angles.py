@@ -48,3 +48,18 @@ def test_noise_is_said_and_reconstructed():
     np.testing.assert_allclose(legs.noise, 5e-4, rtol=0.3)
     assert np.abs(legs.smooth().angles(t) - theta).max() < 1.5e-4
     assert "noise of 0.029 deg (0.51 mrad), reconstructed" in notes[0]
+
+
+def test_counts_of_noisy_angles_are_told_from_counts_alone():
+    t = 0.01 * np.arange(900)
+    theta = 1.3 * t[:, None] + np.arange(6) ** 1.3
+    step = np.radians(0.35)
+    for share, words in (
+        (0.0, "0.35 deg, reconstructed"),
+        (0.3, "0.35 deg and carry noise of 0.1"),
+    ):
+        noise = np.random.default_rng(0).normal(0.0, share * step, theta.shape)
+        legs, notes = angles_from(leg_log(step * np.round((theta + noise) / step)), 5.0)
+        assert isinstance(legs, QuantisedLog)
+        assert words in notes[0]
+        assert np.abs(legs.smooth().angles(t) - theta).max() < 0.3 * step

@@ -19,7 +19,7 @@ from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.path_band import (
     ASSUMED_OFFSET_DEG,
     DRAWS,
-    _offset_sd_deg,
+    offset_sd_deg,
     predict_band,
     read_draws,
 )
@@ -84,11 +84,11 @@ def test_offsets_spread_as_asked_by_the_count_or_as_assumed():
     request = BandRequest(2)
     t = np.linspace(0.0, 1.0, 11)
     counted = QuantisedLog(t, np.zeros((11, 6)), np.radians(3.6))
-    assert _offset_sd_deg(BandRequest(2, offset_sd_deg=0.7), counted) == 0.7
-    assert _offset_sd_deg(request, counted) == pytest.approx(3.6 / np.sqrt(12))
+    assert offset_sd_deg(BandRequest(2, offset_sd_deg=0.7), counted) == 0.7
+    assert offset_sd_deg(request, counted) == pytest.approx(3.6 / np.sqrt(12))
     fine = QuantisedLog(t, np.zeros((11, 6)), np.radians(0.1))
-    assert _offset_sd_deg(request, fine) == ASSUMED_OFFSET_DEG
-    assert _offset_sd_deg(request, GAIT) == ASSUMED_OFFSET_DEG
+    assert offset_sd_deg(request, fine) == ASSUMED_OFFSET_DEG
+    assert offset_sd_deg(request, GAIT) == ASSUMED_OFFSET_DEG
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,8 @@ from zebro_lab.robot.leg_log import LegLog
 
 # Counts to which noise was added before they were counted flicker at their boundaries: lines within
 # half a count are more than these times as many as lines within the noise of counts, from a tenth
-# of a count of noise on. Without noise they are up to twice as many, where servos yield.
+# of a count of noise on. Without noise they are up to twice as many where servos yield, and up to
+# five times beyond 10,000 counts a turn, where what servos yield is itself more than a count.
 JAGGED = 2.5
 
 
@@ -41,7 +42,7 @@ def angles_from(
     noise = np.full(N_LEGS, least) if noise is None else np.maximum(noise, least)
     noisy = QuantisedLog(t, theta, step, noise)
     if counted.lines > JAGGED * noisy.lines:
-        return noisy, (f"{counts} and carry {_told(noise)}",)
+        return noisy, (f"{counts} and leave straight lines by more than counting: {_told(noise)}",)
     return counted, (f"{counts}, reconstructed as straight lines through the changes of count",)
 
 

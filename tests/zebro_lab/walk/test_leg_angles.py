@@ -56,7 +56,7 @@ def test_counts_of_noisy_angles_are_told_from_counts_alone():
     step = np.radians(0.35)
     for share, words in (
         (0.0, "0.35 deg, reconstructed"),
-        (0.3, "0.35 deg and carry noise of 0.1"),
+        (0.3, "by more than counting: noise of 0.1"),
     ):
         noise = np.random.default_rng(0).normal(0.0, share * step, theta.shape)
         legs, notes = angles_from(leg_log(step * np.round((theta + noise) / step)), 5.0)

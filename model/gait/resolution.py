@@ -6,7 +6,7 @@ import numpy as np
 from model.slip.law import Array
 
 LARGEST_STEP = np.radians(10.0)  # of one count
-SMALLEST_STEP = 1.5e-4  # rad, 42,000 counts a turn: finer ones move a path by less than 0.1 %
+SMALLEST_STEP = 1.5e-4  # rad, 42,000 counts a turn: finer ones move a radius by 0.1 %
 # rad: angles no further apart may be of one count; of two, angles rounded to 4 decimals are
 UNCHANGED = (0.9e-4, 1e-3)
 FEWEST_CHANGES = 8  # of count, to estimate the angle of one count

@@ -177,4 +177,6 @@ def _print_verdict(console: Console, calibration: Calibration) -> None:
                 )
             )
     for step in verdict.next_steps():
-        console.print(plain(f"  next: {advice_text(step)}"))
+        first, *others = advice_text(step).split("\n")
+        for line in (f"next: {first}", *(f"  {other}" for other in others)):
+            console.print(plain(f"  {line}"), soft_wrap=True)

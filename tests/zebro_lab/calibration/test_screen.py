@@ -2,10 +2,13 @@
 """What is printed of a calibration has the fit's numbers, its faults and its files."""
 
 import io
+from dataclasses import replace
 
 import pytest
 from rich.console import Console
 
+from model.bayes.advice import ExcludeRuns, MeasureSlips
+from model.bayes.verdict import Check
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import read_rig_data
@@ -60,7 +63,23 @@ def test_faults_are_marked_with_their_evidence(printed):
     assert {check.passed for check in checks} == set(marks)
     assert "FAIL" in printed
     for step in verdict.next_steps():
-        assert f"next: {advice_text(step)[:60]}" in printed
+        assert f"  next: {advice_text(step).splitlines()[0]}\n" in printed
+
+
+def test_lines_of_a_plan_and_commands_are_printed_as_lines_to_copy(tmp_path):
+    finished = short_calibration()
+    steps = (MeasureSlips("x", (5.0, 10.0), (0.01, 0.2)), ExcludeRuns("y", ("one", "two")))
+    check = Check("sampler", False, "too short")
+    checks = tuple(replace(check, advice=step) for step in steps)
+    verdict = replace(finished.verdict, convergence=checks)
+    console = Console(file=io.StringIO(), width=80)
+    print_calibration(console, replace(finished, verdict=verdict), tmp_path)
+    lines = [line.strip() for line in console.file.getvalue().splitlines()]
+    plan = lines[lines.index("[points]") : lines.index("[controls]")]
+    assert plan == ["[points]", "loads = [5, 10]", "slips = [0.01, 0.2]",
+                    'length = "duration"', "duration = 2.0"]  # fmt: skip
+    commands = [f"zebro-lab exclude DATA/{name} --why REASON" for name in ("one", "two")]
+    assert [line for line in lines if line.startswith("zebro-lab")] == commands
 
 
 def test_data_source_and_files_are_told_and_names_are_no_markup(printed):

@@ -14,23 +14,29 @@ MOST_COUNTS = 30  # of a change that tells whether angles are whole counts
 ORDERS = (2, 4, 6, 8)  # of differences: they vanish for polynomials of a lower degree
 MEDIAN = 0.6745  # median size of a standard normal variable
 SEEN = 7e-5  # rad: less hardly moves a path, and is left in the angles, as rounding to 4 decimals
+LARGEST_NOISE = np.radians(1.0)  # more is motion between samples that are too far apart
+AGREE = 2.3  # times the least of all orders: the second of white noise is no larger
+HELD = 0.05  # of all samples begin to repeat, where angles come less often than the log is written
 
 
-def find_noise(t: Array, theta: Array) -> Array | None:
+def find_noise(t: Array, theta: Array, step: float = 0.0) -> Array | None:
     """Estimate the standard deviation of white noise of each leg's angles.
 
     Differences of neighbouring samples, divided by their times, vanish where a leg turns evenly,
     and are small where it turns smoothly. Their median is not affected by the corners of its
     motion, unless these are in every other difference. Of several orders the least is taken: low
-    orders meet few corners, high ones see through accelerations.
+    orders meet few corners, high ones see through accelerations. White noise has the same size in
+    all orders that see through the motion, so two must agree, or the samples are too far apart.
 
     Args:
         t: Times, strictly increasing, shape (n,) [s].
         theta: Unwrapped angles, shape (n, legs) [rad].
+        step: Angle of one count, whose noise may exceed `LARGEST_NOISE`; zero if not counted [rad].
 
     Returns:
         Standard deviation of each leg's noise, shape (legs,) [rad]; None if the samples are too
-        few to tell, or if that of no leg reaches `SEEN`.
+        few to tell, or if that of no leg reaches `SEEN`. It is nan of a leg whose samples are too
+        far apart, or repeat too often, to tell noise from motion.
 
     >>> t = np.arange(0.0, 5.0, 0.01)
     >>> noise = np.random.default_rng(0).normal(0.0, 5e-4, (500, 1))
@@ -39,8 +45,19 @@ def find_noise(t: Array, theta: Array) -> Array | None:
     """
     if len(t) <= 2 * max(ORDERS):
         return None
-    sizes = np.stack([_size(t, theta, order) for order in ORDERS]).min(axis=0)
-    return sizes if sizes.max() >= SEEN else None
+    least, second = np.sort([_size(t, theta, order) for order in ORDERS], axis=0)[:2]
+    if least.max() < SEEN:
+        return None
+    told = (second <= AGREE * least) & (least <= max(LARGEST_NOISE, step))
+    if not step:
+        told &= not _held(theta)
+    return np.where(told | (least < SEEN), least, np.nan)
+
+
+def _held(theta: Array) -> bool:
+    """Tell whether all legs repeat their angles again and again between changes."""
+    still = ~np.any(np.diff(theta, axis=0), axis=1)
+    return bool((still[1:] & ~still[:-1]).mean() > HELD)
 
 
 def _size(t: Array, theta: Array, order: int) -> Array:

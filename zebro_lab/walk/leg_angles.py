@@ -15,6 +15,11 @@ from zebro_lab.robot.leg_log import LegLog
 # of a count of noise on. Without noise they are up to twice as many where servos yield, and up to
 # five times beyond 10,000 counts a turn, where what servos yield is itself more than a count.
 JAGGED = 2.5
+_THROUGH_COUNTS = ", reconstructed as straight lines through the changes of count"
+_TOO_COARSE = (
+    "leg log: angles change too much between samples, or repeat too often, to tell noise from "
+    "motion; they are taken as they are. Log new angles more often"
+)
 
 
 def angles_from(
@@ -30,20 +35,25 @@ def angles_from(
         The angles, a `QuantisedLog` if they are encoder counts or have noise; and notes.
     """
     t, theta = log.reference.t - start, log.reference.theta
-    step, noise = find_step(theta), find_noise(t, theta)
+    step = find_step(theta)
+    noise = find_noise(t, theta, step or 0.0)
     if step is None:
         if noise is None:
             return SampledReference(t, theta), ()
+        if np.isnan(noise).any():
+            return SampledReference(t, theta), (_TOO_COARSE,)
         noisy = QuantisedLog(t, theta, 0.0, np.maximum(noise, SEEN))
         return noisy, (f"leg log: angles carry {_told(noise)}",)
     counts = f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg"
     counted = QuantisedLog(t, theta, step)
+    if noise is not None and np.isnan(noise).any():
+        return counted, (f"{counts}{_THROUGH_COUNTS}",)
     least = step / np.sqrt(12.0)  # the standard deviation of what counting leaves out
     noise = np.full(N_LEGS, least) if noise is None else np.maximum(noise, least)
     noisy = QuantisedLog(t, theta, step, noise)
     if counted.lines > JAGGED * noisy.lines:
         return noisy, (f"{counts} and leave straight lines by more than counting: {_told(noise)}",)
-    return counted, (f"{counts}, reconstructed as straight lines through the changes of count",)
+    return counted, (f"{counts}{_THROUGH_COUNTS}",)
 
 
 def _told(noise: Array) -> str:

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from model.gait.buehler import buehler_reference
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from zebro_lab.robot.leg_log import LegLog
@@ -37,6 +38,16 @@ def test_counted_angles_are_recognised_and_others_taken_as_they_are():
     assert counted.step == pytest.approx(step)
     assert counted.t[0] == 0.0
     assert "counted in steps of 3.6 deg" in notes[0]
+
+
+def test_coarse_angles_are_taken_as_they_are_with_a_note():
+    gait = buehler_reference(-0.6, 0.7, ground_time=0.51, cycle_time=1.0)
+    t = np.arange(0.0, 12.0, 0.2)
+    coarse = gait.angles(t)
+    legs, notes = angles_from(LegLog(SampledReference(t, coarse), "real", ()), 0.0)
+    assert isinstance(legs, SampledReference)
+    np.testing.assert_array_equal(legs.theta, coarse)
+    assert "too much between samples" in notes[0]
 
 
 def test_noise_is_said_and_reconstructed():

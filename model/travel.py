@@ -12,7 +12,14 @@ The chord is
 with :math:`\sigma` the noise of the positions, estimated from the path itself, and e the path's
 extent. Noise across a line lengthens it by :math:`\sigma^2 / c^2` of its length, so by about a
 thousandth at most; a chord shortens a circle of radius R by :math:`c^2 / 24 R^2` of its length.
-Where poses are farther apart than the chord, as in photographs, all of them count.
+
+Of poses far apart, as in photographs, no polynomial follows the motion, and most of what looks like
+noise is motion: 30 times it would drop poses that are needed. Noise that lengthens a path lies
+across it. Where neighbours are usually :math:`10\,\sigma_\perp` apart or more, with
+:math:`\sigma_\perp` what lies across the way, lines through all poses are too long by a hundredth
+at most, and half the usual distance is enough in place of :math:`30\,\sigma`. It is not where
+neighbours are within :math:`2\,\sigma`, as then their distance is the noise along the way. Below
+about five poses a turn, motion cannot be told from noise.
 """
 
 import numpy as np
@@ -26,9 +33,13 @@ STANDING = 1e-6  # m: between poses closer than this there is no direction of tr
 _NOISES = 30.0  # chord in standard deviations of the noise
 _PARTS = 50  # of the extent; smaller moves, as noise that hangs together in time, are no travel
 _WINDOW = 5  # poses through which a cubic would pass without noise
+_WIDE = 9  # the same of a polynomial of seventh order, from about five poses a turn on
+_CLEAR_OF_NOISE = 10.0  # distance of neighbours in what lies across, which adds a hundredth then
+_MOVING = 2.0  # the same in the noise: neighbours in noise alone are 1.7 standard deviations apart
 _CLEAR = np.radians(20.0)  # turn of a path of which neither noise nor sway leave the side open
 _ALIKE = 3.0  # ratio of the curvatures of two paths that may be mirror images
 _RAYLEIGH = np.sqrt(2 * np.log(2))  # median length of a vector of two standard normal numbers
+_HALF_NORMAL = 0.6745  # median size of a standard normal number
 
 
 def position_noise(poses: Poses) -> float:
@@ -52,12 +63,7 @@ def position_noise(poses: Poses) -> float:
     """
     if len(poses) < _WINDOW:
         return 0.0
-    t = sliding_window_view(poses.t, _WINDOW)
-    apart = (t[:, :, None] - t[:, None, :]) / np.ptp(t, axis=1)[:, None, None]
-    weight = 1 / (apart + np.eye(_WINDOW)).prod(axis=2)
-    weight /= np.linalg.norm(weight, axis=1, keepdims=True)
-    rest = np.einsum("nj,nkj->nk", weight, sliding_window_view(poses.position, _WINDOW, axis=0))
-    return float(np.median(np.linalg.norm(rest, axis=1)) / _RAYLEIGH)
+    return float(np.median(np.linalg.norm(_differences(poses, _WINDOW), axis=1)) / _RAYLEIGH)
 
 
 def travel_chord(poses: Poses) -> float:
@@ -68,7 +74,7 @@ def travel_chord(poses: Poses) -> float:
     if len(poses) == 0:
         return 0.0
     away = np.linalg.norm(poses.position - poses.position.mean(axis=0), axis=1)
-    return max(_NOISES * position_noise(poses), 2 * float(away.max()) / _PARTS)
+    return max(_noise_chord(poses), 2 * float(away.max()) / _PARTS)
 
 
 def travelled(poses: Poses, *, chord: float | None = None) -> Array:
@@ -156,6 +162,40 @@ def turn_oppositely(first: Poses, second: Poses) -> bool:
         return False
     curvatures = [abs(t) / path_length(p) for t, p in zip(turns, (first, second), strict=True)]
     return max(curvatures) < _ALIKE * min(curvatures)
+
+
+def _noise_chord(poses: Poses) -> float:
+    """Return the chord that noise asks for: half the usual distance where poses are far apart."""
+    noise = position_noise(poses)
+    if noise == 0:
+        return 0.0
+    usual = float(np.median(np.linalg.norm(np.diff(poses.position, axis=0), axis=1)))
+    far = usual >= max(_CLEAR_OF_NOISE * _noise_across(poses), _MOVING * noise)
+    return min(_NOISES * noise, usual / 2) if far else _NOISES * noise
+
+
+def _noise_across(poses: Poses) -> float:
+    """Return the standard deviation of what lies across the way; 0 for fewer than nine poses [m].
+
+    Across is to the line through the neighbours of each middle pose, so that a robot that slows
+    down and speeds up between poses adds little.
+    """
+    if len(poses) < _WIDE:
+        return 0.0
+    line = (poses.position[2:] - poses.position[:-2])[_WIDE // 2 - 1 : 1 - _WIDE // 2]
+    rest = _differences(poses, _WIDE)
+    length = np.linalg.norm(line, axis=1)
+    across = (rest[:, 0] * line[:, 1] - rest[:, 1] * line[:, 0]) / np.where(length > 0, length, 1.0)
+    return float(np.median(np.abs(across)) / _HALF_NORMAL)
+
+
+def _differences(poses: Poses, window: int) -> Array:
+    """Return the divided differences of `window` poses in a row, shape (n - window + 1, 2) [m]."""
+    t = sliding_window_view(poses.t, window)
+    apart = (t[:, :, None] - t[:, None, :]) / np.ptp(t, axis=1)[:, None, None]
+    weight = 1 / (apart + np.eye(window)).prod(axis=2)
+    weight /= np.linalg.norm(weight, axis=1, keepdims=True)
+    return np.einsum("nj,nkj->nk", weight, sliding_window_view(poses.position, window, axis=0))
 
 
 def _counted(poses: Poses, chord: float) -> NDArray[np.intp]:

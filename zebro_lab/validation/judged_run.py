@@ -23,7 +23,7 @@ from zebro_lab.walk.prediction_file import PredictionFile
 _GAP: Final = 5.0
 """Times the usual time between poses, from which on poses are missing."""
 _NEAR: Final = 0.2
-"""Largest relative difference of the ratio of extents from the factor between two units [-]."""
+"""Largest relative difference of the ratio of extents from a large factor between two units [-]."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def judge_run(
 
 
 def _sizes(judgement: Judgement, track: TrackFile) -> tuple[str, ...]:
-    """Return a warning if track and prediction extend as if their units differed."""
+    """Return a question if track and prediction extend as if their units differed."""
     seen = judgement.track
     path = states_at(judgement.rows[0].path.draws(), seen.t)[0, :, :2]
     return unit_warning(

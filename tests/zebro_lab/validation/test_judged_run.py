@@ -99,12 +99,19 @@ def test_what_cannot_be_judged_is_told(draws, heading, told):
     assert [line[: len(start)] for line, start in zip(lines, told, strict=True)] == told
 
 
-@pytest.mark.parametrize(("factor", "units"), [(1000.0, "mm and m"), (0.01, "cm and m")])
-def test_a_track_in_another_unit_of_length_is_warned_of(factor, units):
+@pytest.mark.parametrize(
+    ("factor", "units"),
+    [(1000.0, "mm and m"), (0.01, "cm and m"), (85.0, "cm and m"), (3.281, "feet and m")],
+)
+def test_a_track_in_another_unit_of_length_is_asked_about(factor, units):
     note = judge(Poses(T, factor * PATH.position, PATH.yaw)).notes[0]
     assert note.startswith("WARNING: ")
-    assert f"as {units} differ: lengths are taken in m" in note
-    assert judge(Poses(T, 2 * PATH.position, PATH.yaw)).notes[0] == "tracked"
+    assert f"about as {units} differ: is one in another unit?" in note
+
+
+@pytest.mark.parametrize("factor", [2, 2.8, 3.9, 1 / 2.8, 8.5, 11.5, 15])
+def test_a_prediction_that_goes_several_times_as_far_is_not_asked_for_its_unit(factor):
+    assert judge(Poses(T, factor * PATH.position, PATH.yaw)).notes[0] == "tracked"
 
 
 def arc(*, left: bool, turn: float = 1.2) -> Poses:

@@ -114,7 +114,7 @@ def judge_pair(
 def _sizes(
     reference: Trajectory, estimate: Trajectory, seen: RigidPath, found: RigidPath
 ) -> tuple[str, ...]:
-    """Return a warning if the extents of both differ by about the factor between two units."""
+    """Return a question if the extents of both differ by about the factor between two units."""
     said = unit_warning(
         (seen.position, str(reference.file)), (found.position, str(estimate.file)), near=_NEAR
     )

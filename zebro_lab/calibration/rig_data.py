@@ -21,11 +21,11 @@ from zebro_lab.runs.counted_once import (
     first_of_each,
     named_like_a_copy,
 )
-from zebro_lab.runs.data_paths import DataSource, find_sources
+from zebro_lab.runs.data_paths import DataSource, columns_above_roots, find_sources
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
-from zebro_lab.tables.columns import Columns
-from zebro_lab.tables.columns_file import parse_definition, read_columns
+from zebro_lab.tables.columns import Columns, parse_definition
+from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.table_files import table_stem
 
 _LEAST_SAMPLES = 20  # of a recording, to estimate its noise
@@ -103,7 +103,13 @@ def read_rig_data(
         samples=samples,
         files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
         source=_joined_source(parts),
-        notes=(*_notes(parts), *others, *skipped, *duplicates),
+        notes=(
+            *_notes(parts),
+            *others,
+            *skipped,
+            *duplicates,
+            *columns_above_roots(sources, columns),
+        ),
         load_cell=_joined_load_cell(parts),
         repeated=duplicates,
     )
@@ -167,9 +173,9 @@ def _is_cut_short(run: Path) -> bool:
 
 
 def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[DataSource, Columns]:
-    files = {source: override or source.columns_file() for source in sources}
-    read = {file: read_columns(file) for file in dict.fromkeys(files.values()) if file is not None}
-    return {source: read[file] if file else Columns() for source, file in files.items()}
+    if override is not None:
+        return dict.fromkeys(sources, read_columns(override))
+    return {source: source.columns() for source in sources}
 
 
 def _labels(sources: Sequence[DataSource]) -> list[str]:

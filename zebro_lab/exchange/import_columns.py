@@ -10,7 +10,7 @@ from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.robot.imu_log import IMU_UNITS
 from zebro_lab.robot.leg_log import LEG_UNITS
 from zebro_lab.tables.columns import Columns
-from zebro_lab.tables.columns_file import nearest_columns, parse_columns, read_section
+from zebro_lab.tables.columns_file import parse_columns, read_nearest, read_section
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_kinds import IMU, LEGS, TRACK
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
@@ -66,23 +66,6 @@ class ForeignColumns:
         return Columns() if self.table is None else parse_columns(self.table)
 
 
-def columns_above(what: str, table: Path | None, named: Path | None) -> tuple[str, ...]:
-    """Return a note if the `columns.toml` for a file is not beside it but in a folder above.
-
-    Args:
-        what: Kind of file, as in `foreign_columns`.
-        table: Path of the imported file; None without one.
-        named: The `columns.toml` that is named; None if none is.
-
-    Raises:
-        SettingsError: A `columns.toml` cannot be read as TOML.
-    """
-    found = None if table is None or named else nearest_columns(what, table.parent)
-    if table is None or found is None or found.parent == table.parent:
-        return ()
-    return (f"{table.name}: columns are those of {found}, the nearest for {what} above it",)
-
-
 def foreign_columns(
     what: str, table: Path, named: Path | None, *, alone: bool = False
 ) -> ForeignColumns:
@@ -102,7 +85,6 @@ def foreign_columns(
         SettingsError: The `columns.toml` cannot be read as TOML, has unknown keys beside its
             sections, a section is no table, or it has guesses that nobody has checked.
     """
-    file = named or nearest_columns(what, table.parent)
-    if file is None:
-        return ForeignColumns()
-    return ForeignColumns(read_section(what, file, alone=alone and named is not None))
+    if named is None:
+        return ForeignColumns(read_nearest(what, table.parent))
+    return ForeignColumns(read_section(what, named, alone=alone))

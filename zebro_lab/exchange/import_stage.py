@@ -12,7 +12,7 @@ import numpy as np
 from model.progress import Watcher
 from model.slip.law import Array
 from model.told_apart import told_apart
-from zebro_lab.exchange.import_columns import columns_above, foreign_columns
+from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
@@ -29,6 +29,7 @@ from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns_file import columns_above
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.terminal.leg_options import joint_names
@@ -85,8 +86,8 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
     for i, run in enumerate(rig):
         watcher.step("writing", i / len(rig))
         folders.append(write_rig_run(request.data, run))
-    above = [line for kind in KINDS
-             for line in columns_above(kind, getattr(request, kind), request.columns)]  # fmt: skip
+    files = [(kind, file) for kind in KINDS if (file := getattr(request, kind)) is not None]
+    above = [line for each in files for line in columns_above(*each, request.columns)]
     return Imported(tuple(folders), (*walk_notes, *rig_notes, *above))
 
 

@@ -14,9 +14,8 @@ from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.files.opening import read_text
 from zebro_lab.mcap.ros_log import is_ros_log, read_messages
 from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import is_sectioned
 from zebro_lab.tables.table_files import read_table_file
-from zebro_lab.tables.table_kinds import RIG
+from zebro_lab.tables.table_kinds import RIG, is_sectioned
 
 _JOINTS: Final = "sensor_msgs/msg/JointState"
 Kind = Literal["rig", "legs", "imu", "track"]

@@ -9,8 +9,8 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
-from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import nearest_columns
+from zebro_lab.tables.columns import COLUMNS_FILE, Columns
+from zebro_lab.tables.columns_file import columns_above, parse_columns, read_columns, read_nearest
 from zebro_lab.tables.table_files import PLAIN_SUFFIXES, is_table_file
 from zebro_lab.tables.table_kinds import RIG
 
@@ -35,10 +35,19 @@ class DataSource:
         """Whether the path is a run folder, not a table file."""
         return self.path.is_dir()
 
-    def columns_file(self) -> Path | None:
-        """Find the nearest `columns.toml`; of a run folder, up to the root only; None without."""
-        if not self.is_run_folder:
-            return nearest_columns(RIG, self.path.parent)
+    def columns(self) -> Columns:
+        """Read the nearest `columns.toml`; of a run folder, up to the root only.
+
+        Raises:
+            SettingsError: It cannot be read, or has an invalid value.
+        """
+        if self.is_run_folder:
+            file = self._columns_of_run()
+            return Columns() if file is None else read_columns(file)
+        entries = read_nearest(RIG, self.path.parent)
+        return Columns() if entries is None else parse_columns(entries)
+
+    def _columns_of_run(self) -> Path | None:
         folder = self.path
         while True:
             if (folder / COLUMNS_FILE).is_file():
@@ -46,6 +55,21 @@ class DataSource:
             if folder in (self.root, folder.parent):
                 return None
             folder = folder.parent
+
+
+def columns_above_roots(sources: Sequence[DataSource], named: Path | None) -> tuple[str, ...]:
+    """Return notes on tables whose columns or source are stated above the folder that was named.
+
+    Args:
+        sources: The data; the same of several tables of one folder is said once.
+        named: The `columns.toml` that is named; None if none is.
+    """
+    first = {source.path.parent: source for source in reversed(sources) if source.path.is_file()}
+    return tuple(
+        line
+        for source in reversed(first.values())
+        for line in columns_above(RIG, source.path, named, root=source.root)
+    )
 
 
 def find_sources(paths: Sequence[Path]) -> list[DataSource]:

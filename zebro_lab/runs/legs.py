@@ -16,7 +16,7 @@ from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
-from zebro_lab.tables.columns_file import nearest_columns, read_section
+from zebro_lab.tables.columns_file import columns_above, read_nearest, read_section
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.tables.table_kinds import LEGS
@@ -72,11 +72,11 @@ def read_leg_log(
         mapping = canonical_columns(LEG_UNITS)
         return legs_of_table(table, mapping, files=files, leg_sign=leg_sign, mending=_IN_A_RUN)
     file = path if is_ros_log(path) else _table_of(path)
-    mapping, topic = _read_columns(_columns_file(file, columns))
+    mapping, topic = _read_columns(file, columns)
     names = replace(names or LegNames(), topic=topic)
     log, used = legs_of_file(file, mapping, names=names, leg_sign=leg_sign)
     require_used(names.topics, [used])
-    return log
+    return replace(log, notes=(*log.notes, *columns_above(LEGS, file, columns)))
 
 
 def legs_of_file(
@@ -140,14 +140,10 @@ def _table_of(path: Path) -> Path:
     )
 
 
-def _columns_file(table: Path, named: Path | None) -> Path | None:
-    return named or nearest_columns(LEGS, table.parent)
-
-
-def _read_columns(file: Path | None) -> tuple[MappedColumns, str | None]:
-    """Return the column map of leg logs, and the topic of a ROS log if it states one."""
-    if file is None:
+def _read_columns(file: Path, named: Path | None) -> tuple[MappedColumns, str | None]:
+    """Return the column map of a leg log, and the topic of a ROS log if it states one."""
+    table = read_section(LEGS, named) if named else read_nearest(LEGS, file.parent)
+    if table is None:
         return canonical_columns(LEG_UNITS), None
-    table = read_section(LEGS, file)
     topic = table.text("topic") if "topic" in table else None
     return parse_mapped_columns(table, LEG_UNITS), topic

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.definition import SlipDefinition
-from zebro_lab.files.errors import UnitError
+from rig.nearest_name import nearest
+from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
 from zebro_lab.tables.header_units import unit_in_header
@@ -182,3 +183,23 @@ class Columns:
     runs: RunRule = RunRule()
     keep: tuple[RowCondition, ...] = ()
     load_cell: Mapping[str, float] = field(default_factory=dict)
+
+
+def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
+    """Parse the name of a slip definition.
+
+    Args:
+        text: Name of the definition: material, travel or larger.
+        file: File that it was read from, for the error message.
+        key: Key or column that it was read from, for the error message.
+
+    Raises:
+        SettingsError: There is no definition of this name.
+    """
+    try:
+        return SlipDefinition(str(text))
+    except ValueError as error:
+        advice = nearest(str(text), list(SlipDefinition))
+        raise SettingsError(
+            f"unknown slip definition '{text}'; {advice}", file=file, key=key
+        ) from error

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from model.slip.definition import SlipDefinition
 from rig.nearest_name import nearest
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError, UnitError
@@ -22,14 +21,13 @@ from zebro_lab.tables.columns import (
     Columns,
     MappedColumn,
     RunRule,
+    parse_definition,
     scaled,
 )
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.row_conditions import read_row_conditions
-from zebro_lab.tables.table_kinds import KINDS, LEGS, RIG
+from zebro_lab.tables.table_kinds import KINDS, PLAIN, RIG, gives_source, is_for, is_sectioned
 
-_PLAIN: Final = (LEGS, RIG)
-"""Kinds whose columns.toml may be without sections."""
 DOUBT: Final = "?"
 """End of a value that was guessed and that nobody has checked."""
 _GUESSED: Final = ("columns", "constants", "runs")
@@ -118,27 +116,27 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
     return MappedColumn(header, unit, factor, definition, stated, offset, nanoseconds, scale)
 
 
-def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
-    """Parse the name of a slip definition.
+def read_nearest(kind: str, folder: Path) -> SettingsTable | None:
+    """Read the entries for a kind of table of the nearest `columns.toml`; None without one.
+
+    The source is that of the nearest one that states a source, which may be another file.
 
     Args:
-        text: Name of the definition: material, travel or larger.
-        file: File that it was read from, for the error message.
-        key: Key or column that it was read from, for the error message.
+        kind: One of `KINDS`.
+        folder: Folder of the table.
 
     Raises:
-        SettingsError: There is no definition of this name.
+        SettingsError: As `read_section` and `nearest_columns`.
     """
-    try:
-        return SlipDefinition(str(text))
-    except ValueError as error:
-        advice = nearest(str(text), list(SlipDefinition))
-        raise SettingsError(
-            f"unknown slip definition '{text}'; {advice}", file=file, key=key
-        ) from error
+    file, stated = nearest_columns(kind, folder), _nearest_source(kind, folder)
+    if file is None:
+        return None
+    return read_section(kind, file, source=None if stated is None else stated[1])
 
 
-def read_section(kind: str, file: Path, *, alone: bool = False) -> SettingsTable:
+def read_section(
+    kind: str, file: Path, *, alone: bool = False, source: str | None = None
+) -> SettingsTable:
     """Read the entries of a `columns.toml` that are for one kind of table.
 
     Without any section, all entries apply to leg and rig tables, and only `source` to the others.
@@ -147,6 +145,7 @@ def read_section(kind: str, file: Path, *, alone: bool = False) -> SettingsTable
         kind: One of `KINDS`.
         file: The `columns.toml`.
         alone: Whether all entries of a file without sections are for this kind.
+        source: Source that holds instead of that of the file; None for the file's.
 
     Raises:
         NotFound: There is no such file.
@@ -160,13 +159,14 @@ def read_section(kind: str, file: Path, *, alone: bool = False) -> SettingsTable
             if key not in (known := ("source", *KINDS)):
                 raise SettingsError(f"unknown key; {nearest(key, known)}", file=file, key=key)
         entries, path = document.get(kind, {}), kind
-    elif kind not in _PLAIN and not alone:
+    elif kind not in PLAIN and not alone:
         entries = {}
     if not isinstance(entries, dict):
         raise SettingsError(f"found {entries!r}; expected a section [{kind}]", file=file, key=kind)
     require_checked(entries, file=file, path=path)
-    source = {"source": document["source"]} if "source" in document else {}
-    return SettingsTable(source | entries, file=file, path=path)
+    common = {"source": document["source"]} if "source" in document else {}
+    nearest_one = {} if source is None else {"source": source}
+    return SettingsTable(common | entries | nearest_one, file=file, path=path)
 
 
 def nearest_columns(kind: str, folder: Path) -> Path | None:
@@ -183,9 +183,60 @@ def nearest_columns(kind: str, folder: Path) -> Path | None:
     Raises:
         SettingsError: A `columns.toml` on the way cannot be read as TOML.
     """
-    found = [file for each in (folder, *_above(folder)) if (file := each / COLUMNS_FILE).is_file()]
-    fits = (file for file in found if _is_for(kind, file, beside=file.parent == folder))
-    return next(fits, None) or next((file for file in found if _has_source_alone(kind, file)), None)
+    found = _documents(folder)
+    fits = (file for file, content, beside in found if is_for(kind, content, beside=beside))
+    others = (file for file, content, _ in _documents(folder) if gives_source(kind, content))
+    return next(fits, None) or next(others, None)
+
+
+def columns_above(
+    kind: str, table: Path, named: Path | None, *, root: Path | None = None
+) -> tuple[str, ...]:
+    """Return notes if columns or source of a table are stated above its folder.
+
+    Args:
+        kind: One of `KINDS`.
+        table: Path of the table.
+        named: The `columns.toml` that is named; None if none is.
+        root: Folder named on the command line, in which nothing is noted; None for the table's.
+
+    Raises:
+        SettingsError: A `columns.toml` cannot be read as TOML, or the source is no text.
+    """
+    if named is not None:
+        return ()
+    root = table.parent if root is None else root
+    mapping, stated = nearest_columns(kind, table.parent), _nearest_source(kind, table.parent)
+    notes = []
+    if mapping and not mapping.is_relative_to(root) and _has_entries(kind, mapping):
+        notes += [f"{table.name}: columns are those of {mapping}, the nearest for {kind} above it"]
+    if stated and not stated[0].is_relative_to(root):
+        notes += [f"{table.name}: its source, {stated[1]}, is stated in {stated[0]}, above it"]
+    return tuple(notes)
+
+
+def _has_entries(kind: str, file: Path) -> bool:
+    return bool(set(read_section(kind, file).left) - {"source"})
+
+
+def _nearest_source(kind: str, folder: Path) -> tuple[Path, str] | None:
+    """Return the nearest `columns.toml` that states a source for a kind of table, and that."""
+    for file, document, beside in _documents(folder):
+        if not (gives_source(kind, document) or is_for(kind, document, beside=beside)):
+            continue
+        for entries, path in ((document.get(kind), kind), (document, "")):
+            if isinstance(entries, dict) and "source" in entries:
+                table = SettingsTable(entries, file=file, path=path)
+                return file, (_source(table) or "") if kind == RIG else table.text("source")
+    return None
+
+
+def _documents(folder: Path) -> Iterator[tuple[Path, dict[str, Any], bool]]:
+    """Yield each `columns.toml` in a folder and above, its content, and whether it is in it."""
+    for each in (folder, *_above(folder)):
+        if (file := each / COLUMNS_FILE).is_file():
+            advice = f"expected a {COLUMNS_FILE}"
+            yield file, read_toml_document(file, advice=advice), each == folder
 
 
 def _above(folder: Path) -> Iterator[Path]:
@@ -196,26 +247,6 @@ def _above(folder: Path) -> Iterator[Path]:
     for each in folder.resolve().parents:
         is_within = each.is_relative_to(working) and not folder.is_absolute()
         yield each.relative_to(working) if is_within else each
-
-
-def _is_for(kind: str, file: Path, *, beside: bool) -> bool:
-    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
-    if is_sectioned(document):
-        return kind in document
-    columns = document.get("columns")
-    if beside or not isinstance(columns, dict):
-        return kind in _PLAIN
-    return kind == (LEGS if any(name.startswith("theta") for name in columns) else RIG)
-
-
-def _has_source_alone(kind: str, file: Path) -> bool:
-    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
-    return kind not in _PLAIN or is_sectioned(document)
-
-
-def is_sectioned(document: Mapping[str, Any]) -> bool:
-    """Return whether the content of a `columns.toml` has sections of kinds of tables."""
-    return bool(set(document) & set(KINDS))
 
 
 def require_checked(entries: Mapping[str, Any], *, file: Path, path: str = "") -> None:

@@ -9,8 +9,7 @@ from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
 from model.slip.law import Array
 from rig.nearest_name import nearest
-from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, MappedColumn
-from zebro_lab.tables.columns_file import parse_definition
+from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, MappedColumn, parse_definition
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.table_kinds import looks_like_other
 

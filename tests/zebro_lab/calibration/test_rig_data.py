@@ -151,6 +151,17 @@ def test_nearest_columns_file_wins_and_an_explicit_one_over_all(tmp_path):
     assert data.files == (path, elsewhere)
 
 
+def test_columns_above_the_named_folder_are_noted_once_for_a_folder(tmp_path):
+    file = columns(tmp_path, RADII)
+    for number, table in enumerate((speeds(), louder(speeds()))):
+        write(tmp_path / "below", table, f"{number}.csv")
+    line = f"0.csv: columns are those of {file}, the nearest for rig above it"
+    assert [n for n in read_rig_data([tmp_path / "below"]).notes if "above" in n] == [line]
+    assert not any("above" in note for note in read_rig_data([tmp_path]).notes)
+    override = read_rig_data([tmp_path / "below"], columns=file)
+    assert not any("above" in note for note in override.notes)
+
+
 def test_source_in_parquet_is_kept_and_mixing_is_visible(tmp_path):
     import pyarrow as pa
     import pyarrow.parquet as pq

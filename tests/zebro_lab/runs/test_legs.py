@@ -77,6 +77,19 @@ def test_fault_in_columns_toml_names_file_and_key(columns, message, read):
     assert message in str(caught.value)
 
 
+def test_a_column_map_above_the_log_is_noted(read, tmp_path):
+    read(leg_table(), "[legs.columns]\ntheta1 = {sign = -1}\n")
+    below = tmp_path / "day"
+    below.mkdir()
+    (tmp_path / "legs.csv").rename(below / "legs.csv")
+    found = read_leg_log(below / "legs.csv")
+    assert found.notes[-1] == (
+        f"legs.csv: columns are those of {tmp_path / 'columns.toml'}, the nearest for legs above it"
+    )
+    named = read_leg_log(below / "legs.csv", columns=tmp_path / "columns.toml")
+    assert not any("above it" in note for note in named.notes)
+
+
 def test_named_columns_file_must_exist(read, tmp_path):
     with pytest.raises(NotFound, match=r"expected a columns\.toml"):
         read(leg_table(), columns=tmp_path / "none.toml")

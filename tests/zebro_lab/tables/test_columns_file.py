@@ -10,7 +10,13 @@ import pytest
 from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.tables.columns import Columns, MappedColumn, RunRule
-from zebro_lab.tables.columns_file import nearest_columns, read_columns, read_section
+from zebro_lab.tables.columns_file import (
+    columns_above,
+    nearest_columns,
+    read_columns,
+    read_nearest,
+    read_section,
+)
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition
 
@@ -231,6 +237,52 @@ def test_a_map_of_a_rig_above_is_none_of_legs_and_the_other_way_round(tmp_path):
     assert nearest_columns("rig", below) is None
     assert nearest_columns("legs", below) == tmp_path / "columns.toml"
     assert nearest_columns("rig", tmp_path) == tmp_path / "columns.toml"
+
+
+@pytest.mark.parametrize(
+    ("above", "beside", "source"),
+    [
+        ("[track]\n", 'source = "sim:robot"\n[legs]\n', "sim:robot"),
+        ('source = "real"\n[track]\n', 'source = "sim:robot"\n[legs]\n', "sim:robot"),
+        ("[track]\n", 'source = "sim:robot"\n[columns]\nt = "ET"\n', "sim:robot"),
+        ('source = "sim:robot"\n[legs]\n', "[track]\n", "sim:robot"),
+        ('source = "real"\n[track]\n', '[track]\nsource = "sim:robot"\n', "sim:robot"),
+    ],
+)
+def test_the_source_is_the_nearest_whichever_file_maps_the_columns(tmp_path, above, beside, source):
+    below = tmp_path / "run"
+    below.mkdir()
+    (tmp_path / "columns.toml").write_text(above)
+    (below / "columns.toml").write_text(beside)
+    found = read_nearest("track", below)
+    assert found is not None
+    assert found.text("source") == source
+
+
+def test_a_nearer_source_that_is_none_names_its_own_file(tmp_path):
+    below = tmp_path / "run"
+    below.mkdir()
+    (tmp_path / "columns.toml").write_text("[rig]\n")
+    (below / "columns.toml").write_text('source = "simulated"\n[legs]\n')
+    with pytest.raises(SettingsError, match="found 'simulated'; expected real") as raised:
+        read_nearest("rig", below)
+    assert raised.value.file == below / "columns.toml"
+
+
+def test_what_is_stated_above_the_named_folder_is_noted(tmp_path):
+    below = tmp_path / "run"
+    below.mkdir()
+    table, file = below / "a.csv", tmp_path / "columns.toml"
+    assert columns_above("track", table, None) == ()
+    file.write_text('source = "real"\n[track.columns.y_m]\nsign = -1\n')
+    mapped, source = columns_above("track", table, None)
+    assert mapped == f"a.csv: columns are those of {file}, the nearest for track above it"
+    assert source == f"a.csv: its source, real, is stated in {file}, above it"
+    assert columns_above("legs", table, None) == (source,)
+    assert columns_above("track", table, file) == ()
+    assert columns_above("track", table, None, root=tmp_path) == ()
+    (below / "columns.toml").write_text("[track]\n")
+    assert columns_above("track", table, None) == (source,)
 
 
 def test_a_result_of_a_command_takes_no_columns_from_above(tmp_path):

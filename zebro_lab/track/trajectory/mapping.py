@@ -4,20 +4,20 @@
 from pathlib import Path
 
 from zebro_lab.files.documents import read_toml_document
-from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import nearest_columns, require_checked
+from zebro_lab.tables.columns_file import read_nearest, read_section, require_checked
 from zebro_lab.tables.mapped_columns import MappedColumns, parse_mapped_columns
 from zebro_lab.tables.table_kinds import TRACK
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 
 def trajectory_columns(file: Path, named: Path | None) -> MappedColumns | None:
-    """Read the column map of a trajectory; None if there is none.
+    """Read the column map of a trajectory; None if nothing is stated.
 
     It is the section `[track]` of the file that is named, or of the nearest `columns.toml`, from
-    the trajectory's folder upwards; a named file without this section is taken as a whole.
+    the trajectory's folder upwards, with the nearest source that is stated; a named file without
+    this section is taken as a whole.
 
     Args:
         file: The trajectory.
@@ -28,21 +28,16 @@ def trajectory_columns(file: Path, named: Path | None) -> MappedColumns | None:
         SettingsError: It cannot be read as TOML, a key, a unit or a sign is invalid, or a value is
             a guess that nobody has checked.
     """
-    chosen = named or nearest_columns(TRACK, file.parent)
-    if chosen is None:
+    if named is None:
+        entries = read_nearest(TRACK, file.parent)
+    else:
+        document = read_toml_document(named, advice=f"expected a {COLUMNS_FILE}")
+        entries = read_section(TRACK, named) if TRACK in document else _whole(document, named)
+    if entries is None or entries.empty:
         return None
-    document = read_toml_document(chosen, advice=f"expected a {COLUMNS_FILE}")
-    source = {"source": document["source"]} if "source" in document else {}
-    if TRACK not in document:
-        return None if named is None else _parsed(document, chosen, "")
-    entries = document[TRACK]
-    if not isinstance(entries, dict):
-        raise SettingsError(f"found {entries!r}; expected a section", file=chosen, key=TRACK)
-    return _parsed(source | entries, chosen, TRACK)
+    return parse_mapped_columns(entries, MAPPED_UNITS, with_rows=True)
 
 
-def _parsed(entries: dict[str, object], file: Path, section: str) -> MappedColumns:
-    require_checked(entries, file=file, path=section)
-    return parse_mapped_columns(
-        SettingsTable(entries, file=file, path=section), MAPPED_UNITS, with_rows=True
-    )
+def _whole(document: dict[str, object], file: Path) -> SettingsTable:
+    require_checked(document, file=file)
+    return SettingsTable(document, file=file)

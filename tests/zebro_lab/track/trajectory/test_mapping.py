@@ -32,6 +32,12 @@ def test_a_section_beside_the_file_or_a_whole_named_file_is_read(beside, tmp_pat
         trajectory_columns(tmp_path / "a.csv", tmp_path / "other.toml")
 
 
+@pytest.mark.parametrize("rest", ["[legs]\n", MAP])
+def test_the_source_of_a_file_that_maps_other_tables_is_kept(beside, rest):
+    found = beside(f'source = "sim:x"\n{rest}')
+    assert (found.source, found.mapped["x_m"].name) == ("sim:x", "x_m")
+
+
 def test_guesses_that_nobody_has_checked_are_named(beside, tmp_path):
     guessed = 'x_m = {name = "east?", unit = "mm?"}\n'
     message = r"2 values are guesses .*x_m\.name = \"east\?\", .*x_m\.unit = \"mm\?\""

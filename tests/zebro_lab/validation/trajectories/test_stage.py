@@ -188,3 +188,16 @@ def test_what_a_ros_log_does_not_tell_is_asked_for(run_command, log, tmp_path, m
     assert ended.code == code
     assert message in ended.err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_column_map_beside_or_above_states_the_source_and_is_named(run_command, files, tmp_path):
+    (tmp_path / "columns.toml").write_text('source = "sim:x"\n[legs]\n')
+    ended = run_command("validate", *files, "--out", tmp_path / "out")
+    assert ended.out.startswith("SIMULATED: sim:x")
+    below = tmp_path / "below"
+    below.mkdir()
+    moved = [file.rename(below / file.name) for file in files]
+    ended = run_command("validate", *moved, "--out", tmp_path / "out")
+    said = " ".join(ended.out.split())
+    assert ended.out.startswith("SIMULATED: sim:x")
+    assert "truth.txt: its source, sim:x, is stated in" in said

@@ -13,7 +13,8 @@ how speed, count and sampling meet: where a count takes a whole number of sample
 degrees a second, all changes are at the same phase, and say no more than one.
 
 Angles with noise are rebuilt likewise: by the fewest straight lines that pass every sample within
-its noise. Of each line, the reconstruction is then the one of least squares.
+its noise. Of each line, the reconstruction is then the one of least squares. A leg that is further
+from its lines than its noise turns unevenly, and is smoothed instead.
 """
 
 from dataclasses import dataclass
@@ -38,6 +39,7 @@ from model.gait.lines import (
     split,
 )
 from model.gait.reference import SampledReference
+from model.gait.smoothed import SmoothedLeg
 from model.slip.law import Array
 
 SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
@@ -45,6 +47,7 @@ SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock ji
 # servo yields to its load [rad].
 ROUGH, YIELD = 0.01, np.radians(0.02)
 REACH = 4.5  # standard deviations of noise, within which a line passes every sample
+UNEVEN = 1.3  # times the noise off the lines: more is motion; straight lines leave up to 1.1
 NEAR = 2  # samples on either side of a corner that may belong to either line
 TICK = 1e-4  # s, to which times of samples are compared
 DECIMALS = 6  # of a corner's time in seconds
@@ -160,18 +163,37 @@ class QuantisedLog:
             raise DomainError(f"one count is {self.step:g} rad; expected more than zero, finite")
 
     @cached_property
-    def _legs(self) -> list[CountedLeg]:
+    def _noise(self) -> Array:
+        """Standard deviation of each leg's noise, zero for counts alone, shape (6,) [rad]."""
+        return np.zeros(6) if self.noise is None else self.noise
+
+    @cached_property
+    def _lines(self) -> list[CountedLeg]:
         """Lines of each leg."""
-        noise = np.zeros(6) if self.noise is None else self.noise
         return [
             CountedLeg.of(self.t, theta, self.step, float(sd))
-            for theta, sd in zip(self.theta.T, noise, strict=True)
+            for theta, sd in zip(self.theta.T, self._noise, strict=True)
         ]
+
+    @cached_property
+    def _legs(self) -> list[CountedLeg | SmoothedLeg]:
+        """Lines of each leg, or the smooth angles of a noisy one that they do not fit."""
+        found: list[CountedLeg | SmoothedLeg] = []
+        for leg, theta, sd in zip(self._lines, self.theta.T, self._noise, strict=True):
+            off = theta - np.interp(self.t, *leg.corners(None))
+            uneven = sd > 0 and np.sqrt(np.mean(off**2)) > UNEVEN * sd
+            found.append(SmoothedLeg(self.t, theta) if uneven else leg)
+        return found
 
     @property
     def lines(self) -> int:
         """Number of straight lines that make up all legs."""
-        return sum(len(leg.mean.x) for leg in self._legs)
+        return sum(len(leg.mean.x) for leg in self._lines)
+
+    @property
+    def uneven(self) -> int:
+        """Number of noisy legs that straight lines do not fit, and that are smoothed instead."""
+        return sum(isinstance(leg, SmoothedLeg) for leg in self._legs)
 
     def smooth(self, rng: np.random.Generator | None = None) -> SampledReference:
         """Reconstruct smooth leg angles from the counts, with every leg's corners.

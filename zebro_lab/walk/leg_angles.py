@@ -43,7 +43,7 @@ def angles_from(
         if np.isnan(noise).any():
             return SampledReference(t, theta), (_TOO_COARSE,)
         noisy = QuantisedLog(t, theta, 0.0, np.maximum(noise, SEEN))
-        return noisy, (f"leg log: angles carry {_told(noise)}",)
+        return noisy, (f"leg log: angles carry {_told(noisy, noise)}",)
     counts = f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg"
     counted = QuantisedLog(t, theta, step)
     if noise is not None and np.isnan(noise).any():
@@ -52,14 +52,18 @@ def angles_from(
     noise = np.full(N_LEGS, least) if noise is None else np.maximum(noise, least)
     noisy = QuantisedLog(t, theta, step, noise)
     if counted.lines > JAGGED * noisy.lines:
-        return noisy, (f"{counts} and leave straight lines by more than counting: {_told(noise)}",)
+        told = _told(noisy, noise)
+        return noisy, (f"{counts} and leave straight lines by more than counting: {told}",)
     return counted, (f"{counts}{_THROUGH_COUNTS}",)
 
 
-def _told(noise: Array) -> str:
+def _told(log: QuantisedLog, noise: Array) -> str:
     """Say how large the legs' noise is at most, and what is done about it."""
     worst = float(noise.max())
-    return (
+    told = (
         f"noise of {np.degrees(worst):.2g} deg ({1e3 * worst:.2g} mrad), reconstructed as "
         "straight lines through the samples"
     )
+    if log.uneven:
+        told += f"; {log.uneven} of {N_LEGS} legs turn unevenly and are smoothed as curves instead"
+    return told

@@ -189,6 +189,20 @@ def test_noise_leaves_speeds_and_corners_and_draws_hold_the_angles(sd, rate):
     assert np.mean((low <= theta) & (theta <= high)) > 0.8
 
 
+@pytest.mark.parametrize("sd", [2e-4, 1e-3, 1e-2])
+def test_noisy_legs_that_turn_unevenly_are_smoothed_and_others_are_not(sd):
+    rng = np.random.default_rng(5)
+    t = np.arange(0, 10, 0.01)
+    theta = tripod(t)
+    theta[:, ::2] = np.pi * t[:, None] + 0.8 * np.sin(np.pi * t[:, None])
+    log = QuantisedLog(t, theta + rng.normal(0, sd, theta.shape), 0.0, np.full(6, sd))
+    assert log.uneven == 3
+    assert np.sqrt(np.mean((log.smooth().angles(t) - theta) ** 2, axis=0)).max() < 0.6 * sd
+    draws = np.stack([log.smooth(rng).angles(t) for _ in range(60)])
+    low, high = np.quantile(draws, [0.05, 0.95], axis=0)
+    assert np.mean((low <= theta) & (theta <= high), axis=0).min() > 0.8
+
+
 def test_noise_is_of_six_legs_and_more_than_nothing():
     for noise in (np.zeros(6), np.full(5, 1e-3), np.full(6, np.nan)):
         with pytest.raises(DomainError, match="six of more than zero"):

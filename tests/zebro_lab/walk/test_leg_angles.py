@@ -61,6 +61,14 @@ def test_noise_is_said_and_reconstructed():
     assert "noise of 0.029 deg (0.51 mrad), reconstructed" in notes[0]
 
 
+def test_noisy_legs_that_turn_unevenly_are_named():
+    t = 0.01 * np.arange(900)
+    theta = np.pi * t[:, None] + 0.8 * np.sin(np.pi * t[:, None]) * (np.arange(6) < 2)
+    noise = np.random.default_rng(0).normal(0.0, 1e-3, theta.shape)
+    _, notes = angles_from(leg_log(theta + noise), 5.0)
+    assert "2 of 6 legs turn unevenly and are smoothed as curves instead" in notes[0]
+
+
 def test_counts_of_noisy_angles_are_told_from_counts_alone():
     t = 0.01 * np.arange(900)
     theta = 1.3 * t[:, None] + np.arange(6) ** 1.3

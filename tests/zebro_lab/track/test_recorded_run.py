@@ -94,7 +94,7 @@ def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab,
     assert code == 0
     code, out, _ = run_command("validate", "run")
     assert code == 0
-    assert "SIMULATED: sim:dynamics, sim:photographs" in out
+    assert "SIMULATED: sim:photographs, sim:walk-sim" in out
     metrics = pd.read_csv("run/validation/metrics.csv")
     row = metrics[metrics["model"] == "prediction"].iloc[0]
     assert row["ate_m"] < 0.02

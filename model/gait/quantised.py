@@ -47,7 +47,7 @@ SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock ji
 # servo yields to its load [rad].
 ROUGH, YIELD = 0.01, np.radians(0.02)
 REACH = 4.5  # standard deviations of noise, within which a line passes every sample
-UNEVEN = 1.3  # times the noise off the lines: more is motion; straight lines leave up to 1.1
+UNEVEN = 1.8  # times the noise off the lines: more is motion; servos under load leave up to 1.6
 NEAR = 2  # samples on either side of a corner that may belong to either line
 TICK = 1e-4  # s, to which times of samples are compared
 DECIMALS = 6  # of a corner's time in seconds

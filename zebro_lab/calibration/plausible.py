@@ -7,7 +7,6 @@ import numpy as np
 
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.slip_source import SlipColumn
 
@@ -66,7 +65,7 @@ def require_plausible(
     if not unstated:
         return (*doubts, f"IMPROBABLE FORCES: {found}: check their units")
     raise table.raw.fault(
-        f"{found}; state the unit of the forces in {COLUMNS_FILE}, such as "
+        f"{found}; state the unit of the forces in {table.columns.stated_in}, such as "
         + " and ".join(f'[columns.{name}] unit = "N"' for name in unstated)
         + " if it is right",
         table.required(unstated[0]).name,
@@ -83,7 +82,7 @@ def _require_no_stray(table: RigTable, normal_force: Array, traction_force: Arra
         lambda value: (
             f"found {value}, more than {STRAY:g} times the largest normal force, "
             f"{limit / STRAY:.3g} N; if it stands for a missing value, skip such rows with [rows] "
-            f"keep, a condition on `{header}`, in {COLUMNS_FILE}"
+            f"keep, a condition on `{header}`, in {table.columns.stated_in}"
         ),
     )
 
@@ -117,13 +116,16 @@ def _require_slip(table: RigTable, ratio: Array) -> None:
     beyond = float(np.mean(np.abs(ratio) > LARGEST_SLIP))
     if opposite > 0.9:
         found = f"the discs turn in opposite directions in {opposite:.0%} of the rows"
-        advice = f"set sign = -1 of one of the speeds in {COLUMNS_FILE}"
+        advice = f"set sign = -1 of one of the speeds in {table.columns.stated_in}"
     elif beyond > 0.5:
         found = (
             f"the slip ratio computed from speeds and radii is beyond {LARGEST_SLIP:g} in "
             f"{beyond:.0%} of the rows, {np.median(ratio):.3g} in the middle"
         )
-        advice = f"are the speeds exchanged, or a radius or a unit wrong? Correct {COLUMNS_FILE}"
+        advice = (
+            "are the speeds exchanged, or a radius or a unit wrong? Correct "
+            f"{table.columns.stated_in}"
+        )
     else:
         return
     raise table.raw.fault(
@@ -142,7 +144,7 @@ def _exchanged_radii(table: RigTable) -> tuple[str, ...]:
     return (
         f"IMPROBABLE SLIP: the slip ratios of {table.raw.path.name} are {stated:.2g} or more; with "
         f"the radii of the discs exchanged the least is {exchanged:.2g}: are radius_leg and "
-        f"radius_ground exchanged in {COLUMNS_FILE}?",
+        f"radius_ground exchanged in {table.columns.stated_in}?",
     )
 
 
@@ -156,6 +158,6 @@ def _require_one_sign(table: RigTable, ratio: Array, traction_force: Array) -> N
     raise table.raw.fault(
         f"the traction force opposes the slip in {np.mean(opposed):.0%} of the rows that slip; "
         "expected both positive where the leg drives: set [columns.traction_force] sign = "
-        f"{-1 if source.factor > 0 else 1} in {COLUMNS_FILE}, or the sign of slip_ratio",
+        f"{-1 if source.factor > 0 else 1} in {table.columns.stated_in}, or the sign of slip_ratio",
         source.name,
     )

@@ -184,6 +184,11 @@ class Columns:
     keep: tuple[RowCondition, ...] = ()
     load_cell: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def stated_in(self) -> str:
+        """The `columns.toml` by its path, for messages; by its name alone where there is none."""
+        return str(self.file or COLUMNS_FILE)
+
 
 def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
     """Parse the name of a slip definition.

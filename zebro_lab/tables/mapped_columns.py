@@ -49,6 +49,11 @@ class MappedColumns:
     units: Mapping[str, str] = field(default_factory=dict)
     keep: tuple[RowCondition, ...] = ()
 
+    @property
+    def stated_in(self) -> str:
+        """The `columns.toml` by its path, for messages; by its name alone where there is none."""
+        return str(self.file or COLUMNS_FILE)
+
     def has(self, table: RawTable, name: str) -> bool:
         """Return whether a table has a column, once or repeatedly, by the header it is mapped to.
 
@@ -116,7 +121,7 @@ class MappedColumns:
             frames = _frames(table) if self.units[name] == "s" else ""
             raise table.fault(
                 f"the column of the {what} is missing{other}; {known}; if its header differs, map "
-                f"it in {COLUMNS_FILE}: [{self.where}columns.{name}]{frames}",
+                f"it in {self.stated_in}: [{self.where}columns.{name}]{frames}",
                 mapped.name,
             )
         mapped = mapped.in_unit_of(table, self.units[name])

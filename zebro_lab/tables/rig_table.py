@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from model.slip.law import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, Columns, MappedColumn
+from zebro_lab.tables.columns import CANONICAL, Columns, MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.raw_table import OVERLOAD, RawTable, is_measured, missing_text
 from zebro_lab.tables.table_kinds import looks_like_other
@@ -65,8 +65,8 @@ class RigTable:
             other = looks_like_other(self.raw.columns, CANONICAL)
             raise self.raw.fault(
                 f"is missing{other}; {nearest(name, list(self.raw.columns))}; if it has another "
-                f"header, map it in {COLUMNS_FILE}: [columns.{name}] (zebro-lab init writes that "
-                "file)",
+                f"header, map it in {self.columns.stated_in}: [columns.{name}] (zebro-lab init "
+                "writes that file)",
                 name,
             )
         return source
@@ -101,14 +101,15 @@ class RigTable:
         if constant is not None and source is not None:
             raise self.raw.fault(
                 f"the radius is given twice, in this column and as [constants] {name} = "
-                f"{constant:g} m in {COLUMNS_FILE}; delete one of them",
+                f"{constant:g} m in {self.columns.stated_in}; delete one of them",
                 source.name,
             )
         if constant is None:
             if source is None:
                 raise self.raw.fault(
                     "the radius is missing, but needed with the speeds of the discs; give it in "
-                    f'{COLUMNS_FILE}, such as [constants] {name} = "35 mm", or in a column',
+                    f'{self.columns.stated_in}, such as [constants] {name} = "35 mm", or in a '
+                    "column",
                     name,
                 )
             values = self.si(name)
@@ -161,7 +162,7 @@ class RigTable:
         raise self.raw.fault(
             f"is {missing_text(values[index])}; expected finite numbers, which {np.sum(~good)} of "
             f"{len(good)} rows do not have, this row first. Delete these rows, or skip them with "
-            f'[rows] keep = ["`{source.name}` {bound}"] in {COLUMNS_FILE}',
+            f'[rows] keep = ["`{source.name}` {bound}"] in {self.columns.stated_in}',
             source.name,
             int(self.rows[index]),
             value=float(values[index]),
@@ -180,9 +181,9 @@ def normal_force(table: RigTable) -> Array:
     mostly_negative = np.mean(force < 0) > 0.9
     advice = (
         "nearly all rows are negative: set [columns.normal_force] sign = "
-        f"{-1 if table.required('normal_force').factor > 0 else 1} in {COLUMNS_FILE}"
+        f"{-1 if table.required('normal_force').factor > 0 else 1} in {table.columns.stated_in}"
         if mostly_negative
-        else f"skip unloaded rows with [rows] keep in {COLUMNS_FILE}"
+        else f"skip unloaded rows with [rows] keep in {table.columns.stated_in}"
     )
     table.require(
         "normal_force",

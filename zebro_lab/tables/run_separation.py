@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.law import Array
-from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import require_usual_steps
 from zebro_lab.tables.rig_table import RigTable
 
@@ -76,8 +75,8 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
     step = np.diff(time, prepend=-np.inf)
     inside = np.diff(runs.index, prepend=-1) == 0
     advice = (
-        f"if a new run begins here, state in {COLUMNS_FILE} what separates runs, by one of "
-        '[runs] by = ["COLUMN"] or, for a table of means of trials, each_row = true'
+        f"if a new run begins here, state in {table.columns.stated_in} what separates runs, by one "
+        'of [runs] by = ["COLUMN"] or, for a table of means of trials, each_row = true'
     )
     table.require(
         "t",
@@ -98,7 +97,10 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
 def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
     source = table.source_of("t")
     if source is None:
-        problem = "is missing, but [runs] gap needs times; map them in columns.toml: [columns.t]"
+        problem = (
+            "is missing, but [runs] gap needs times; map them in "
+            f"{table.columns.stated_in}: [columns.t]"
+        )
         raise table.raw.fault(problem, "t")
     time = source.in_si(table.raw)
     known = np.flatnonzero(np.isfinite(time))  # a row without time belongs to the run before it

@@ -9,7 +9,7 @@ from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
 from model.slip.law import Array
 from rig.nearest_name import nearest
-from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, MappedColumn, parse_definition
+from zebro_lab.tables.columns import CANONICAL, MappedColumn, parse_definition
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.table_kinds import looks_like_other
 
@@ -63,7 +63,7 @@ def slip(table: RigTable) -> SlipColumn:
         f"is missing{other}; expected 'slip_ratio' with its definition, or 'omega_leg' and "
         "'omega_ground' with the radii; "
         f"{nearest('slip_ratio', list(table.raw.columns))}; if they have other "
-        f"headers, map them in {COLUMNS_FILE} (zebro-lab init writes that file)",
+        f"headers, map them in {table.columns.stated_in} (zebro-lab init writes that file)",
         "slip_ratio",
     )
 
@@ -96,7 +96,7 @@ def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) 
             index,
             lambda _: (
                 f"the '{source}' slip ratio {ratio[index]:g} is infinite in the definition "
-                f"'{target}'; skip such rows with [rows] keep in {COLUMNS_FILE}"
+                f"'{target}'; skip such rows with [rows] keep in {table.columns.stated_in}"
             ),
         )
     return SlipColumn(values, target, column, f"{slip_column.origin}, converted to {target}")
@@ -134,8 +134,9 @@ def _given_slip(
 ) -> SlipColumn:
     if definition is None:
         raise table.raw.fault(
-            f"the definition of the slip ratio is not known; state in {COLUMNS_FILE} what it is "
-            f"divided by: [columns.slip_ratio] definition = one of {', '.join(SlipDefinition)}",
+            f"the definition of the slip ratio is not known; state in {table.columns.stated_in} "
+            "what it is divided by: [columns.slip_ratio] definition = one of "
+            f"{', '.join(SlipDefinition)}",
             given.name,
         )
     ratio = table.si("slip_ratio")
@@ -157,7 +158,8 @@ def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition)
             _first_rejected(inner, definition, other),
             lambda value: (
                 f"the slip ratio is {value}, impossible for the definition '{definition}' "
-                f'({_RANGES[definition]}); check in {COLUMNS_FILE} definition, sign and unit = "%"'
+                f"({_RANGES[definition]}); check in {table.columns.stated_in} definition, sign and "
+                'unit = "%"'
             ),
         ) from error
 
@@ -172,7 +174,7 @@ def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipCo
         np.isfinite(ratio),
         lambda value: (
             f"the leg disc stands still ({value}), so that slip is undefined; skip such rows with "
-            f'[rows] keep = ["`{header}` > 0.1"] in {COLUMNS_FILE}'
+            f'[rows] keep = ["`{header}` > 0.1"] in {table.columns.stated_in}'
         ),
     )
     origin = "computed from disc speeds and radii, definition material"

@@ -46,7 +46,18 @@ def test_exchanged_radii_are_asked_about(table):
     columns.write_text(columns.read_text().replace('ground = "120 mm"', 'ground = "35 mm"'))
     (note,) = (note for note in read_rig_data([file]).notes if "IMPROBABLE" in note)
     assert "slip ratios of sweep.csv are 0.92 or more; with the radii of the discs exch" in note
-    assert note.endswith("are radius_leg and radius_ground exchanged in columns.toml?")
+    assert note.endswith(f"are radius_leg and radius_ground exchanged in {columns}?")
+
+
+def test_a_refusal_names_the_column_map_that_was_read_from_above(table):
+    sweep = table(more="[columns.traction_force]\nsign = -1\n")
+    below = sweep.parent / "deep" / "day"
+    below.mkdir(parents=True)
+    moved = sweep.rename(below / sweep.name)
+    columns = sweep.with_name("columns.toml")
+    with pytest.raises(DataError, match="opposes the slip") as raised:
+        read_rig_data([moved])
+    assert f"[columns.traction_force] sign = 1 in {columns}, or" in str(raised.value)
 
 
 @pytest.mark.parametrize(

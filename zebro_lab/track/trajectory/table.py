@@ -12,7 +12,6 @@ from model.counted import counted
 from model.rigid_path import RigidPath, rotations_of_quaternions
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import kept_rows
@@ -169,7 +168,7 @@ def _advice(mapping: MappedColumns, name: str) -> str:
     header = mapping.mapped[name].name
     return (
         f'leave such poses out, as by [{mapping.where}rows] keep = ["`{header}` > -1e9"] in '
-        f"{COLUMNS_FILE}"
+        f"{mapping.stated_in}"
     )
 
 
@@ -184,8 +183,8 @@ def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[s
         largest = float(np.abs(columns["yaw_rad"]).max())
         raise table.fault(
             f"the heading goes up to {largest:.4g} rad and fits the direction of travel only in "
-            f'degrees; state its unit in {COLUMNS_FILE}: [track.columns.yaw_rad] unit = "deg", or '
-            '"rad" if that is right',
+            f"degrees; state its unit in {mapping.stated_in}: [track.columns.yaw_rad] "
+            'unit = "deg", or "rad" if that is right',
             heading.name,
         )
 
@@ -208,8 +207,9 @@ def _require_metres(
     if speed > FASTEST:
         raise table.fault(
             f"the path goes at {speed:.3g} m/s, if positions are in m; expected at most "
-            f"{FASTEST:g} m/s where their unit is not stated: state it in {COLUMNS_FILE}, such as "
-            f'[{mapping.where}columns.x_m] unit = "mm", and so for y_m, or "m" if that is right',
+            f"{FASTEST:g} m/s where their unit is not stated: state it in {mapping.stated_in}, "
+            f'such as [{mapping.where}columns.x_m] unit = "mm", and so for y_m, or "m" if that is '
+            "right",
             east.name,
         )
     return (f"positions ('{east.name}', …) are taken in m, since no unit of them is stated",)

@@ -198,8 +198,8 @@ def load_levels(blocks: SlipBlocks) -> Array:
 def middle_loads(blocks: SlipBlocks) -> Array:
     """Compute the load of the middle of the measurements at each of `load_levels`, shape (m,) [N].
 
-    It is the median of the blocks nearest to the level, at which a curve passes through the middle
-    its points. The level itself is lower, since it is made of lower quartiles.
+    It is the median of the blocks nearest to the level, at which a curve passes through the
+    middle of its points. The level itself is lower, since it is made of lower quartiles.
     """
     levels = load_levels(blocks)
     load = np.maximum(blocks.normal_force, 1e-9)

@@ -55,7 +55,7 @@ DECIMALS = 6  # of a corner's time in seconds
 
 @dataclass(frozen=True)
 class CountedLeg:
-    """Straight lines through one leg's counted angles.
+    """Straight lines through one leg's counted or noisy angles.
 
     Attributes:
         samples: First and last sample of each stay at one count.
@@ -84,8 +84,8 @@ class CountedLeg:
 
         Args:
             t: Times of the samples, shape (n,) [s].
-            theta: Counted angles, middles of their bins, shape (n,) [rad].
-            step: Angle of one count [rad].
+            theta: Angles; if counted, the middles of their bins, shape (n,) [rad].
+            step: Angle of one count; not used if there is noise [rad].
             noise: Standard deviation of the angles' noise, in which counts are not seen; zero for
                 counts without noise [rad].
         """
@@ -134,11 +134,11 @@ class CountedLeg:
 
 @dataclass(frozen=True)
 class QuantisedLog:
-    """Leg angles of a log as an encoder counts them, each the middle of its bin, or with noise.
+    """Measured leg angles of a log: counted by an encoder, each the middle of its bin, or noisy.
 
     Attributes:
         t: Times, strictly increasing, shape (n,) [s].
-        theta: Unwrapped angles, whole multiples of `step` apart, shape (n, 6) [rad].
+        theta: Unwrapped angles; of an encoder whole multiples of `step` apart, shape (n, 6) [rad].
         step: Angle of one count; zero if the angles have noise alone [rad].
         noise: Standard deviation of each leg's noise, in which counts are lost, shape (6,) [rad];
             None for counts alone.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Analysis of the residuals: whitened residuals, run means, and structure along the curve."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ LOAD_GAP = 1.1  # ratio of successive loads above which they are two levels
 FAR_SCORE = 2.0  # below, a run mean is not far out, however close the others are
 RARE_LEVEL = 0.05  # least share of the runs at a level
 MAX_LOAD_LEVELS = 8
+CROSSED = 2.0  # groups of slip that a run crosses on average, from which runs are sweeps
 MISFIT_P = 1e-3  # p-value below which a misfit is none of chance
 
 
@@ -39,6 +40,8 @@ class Residuals:
             load [-].
         misfit_p: p-value of the F test of `misfit` against the scatter between runs, of a single
             load times the number of loads; NaN if no two runs share a slip and load [-].
+        detectable: Misfit over all loads that would have the p-value `MISFIT_P`, at the scatter
+            found; NaN if no two runs share a slip and load [-].
         r_squared: Fraction of the variance of the fitted block means that is explained [-].
         rmse: Root-mean-square residual of block means [N].
         rmse_over_load: Root-mean-square of each block's residual over its measured load [-].
@@ -51,6 +54,7 @@ class Residuals:
     inside_p: float
     misfit: float
     misfit_p: float
+    detectable: float
     r_squared: float
     rmse: float
     rmse_over_load: float
@@ -73,7 +77,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     score = _run_scores(blocks, residual, factors, blocks.run_mean(predicted.force).std(axis=0))
     inside = int(np.sum(np.abs(score) <= norm.ppf(0.95)))
     whitened = _whiten(blocks, residual, factors)
-    misfit, misfit_p = _structure(blocks, residual, predicted.force.mean(axis=0))
+    repeating = _structure(blocks, residual, predicted)
     variance = np.mean((blocks.traction_force - blocks.traction_force.mean()) ** 2)
     return Residuals(
         whitened=whitened,
@@ -81,8 +85,9 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
         run_score=score,
         inside=inside / blocks.n_runs,
         inside_p=float(binomtest(inside, blocks.n_runs, 0.9).pvalue),
-        misfit=misfit,
-        misfit_p=misfit_p,
+        misfit=repeating.misfit,
+        misfit_p=repeating.p,
+        detectable=repeating.detectable,
         r_squared=float(1 - np.mean(residual**2) / variance),
         rmse=float(np.sqrt(np.mean(residual**2))),
         rmse_over_load=float(np.sqrt(np.mean((residual / blocks.normal_force) ** 2))),
@@ -233,7 +238,16 @@ def largest_slips(blocks: SlipBlocks) -> Array:
     )
 
 
-def _structure(blocks: SlipBlocks, residual: Array, force: Array) -> tuple[float, float]:
+@dataclass(frozen=True)
+class _Repeating:
+    """Standard deviation of what repeats, its p-value, and the least one of p-value `MISFIT_P`."""
+
+    misfit: float
+    p: float
+    detectable: float
+
+
+def _structure(blocks: SlipBlocks, residual: Array, predicted: PredictedForces) -> _Repeating:
     """Split the residual into a part that repeats along the curve and the scatter between runs.
 
     The groups are `SLIP_BINS` bins of slip at each of `load_levels`, a group's replicates the means
@@ -242,48 +256,88 @@ def _structure(blocks: SlipBlocks, residual: Array, force: Array) -> tuple[float
     Args:
         blocks: The block means.
         residual: Measured minus predicted traction of each block, shape (n,) [N].
-        force: Predicted traction of each block, shape (n,) [N].
+        predicted: Predicted tractions and slopes, each shape (draws, n).
 
     Returns:
-        What repeats, over the largest predicted traction, and its p-value; 0 and NaN if no group
-        has two runs. It is that of one load alone if that is larger and none of chance: over all
-        loads together the small ones hardly count. The largest traction at one load is the load
-        times the largest share of the load at any; its p-value is times the number of loads.
+        What repeats, over the largest predicted traction; 0 and NaN if no group has two runs. It is
+        that of one load alone if that is larger and none of chance: over all loads together the
+        small ones hardly count. The largest traction at one load is the load times the largest
+        share of the load at any; its p-value is times the number of loads. Detectable is what
+        would be found over all loads.
     """
+    force, slope = predicted.force.mean(axis=0), predicted.slope.mean(axis=0)
     levels = load_levels(blocks)
     level = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
     edges = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, SLIP_BINS + 1)[1:-1]))
     group = level * (SLIP_BINS + 1) + np.searchsorted(edges, blocks.slip, side="right")
-    found = [_repeating(residual / np.abs(force).max(), group, blocks.run)]
+    found = _repeating(residual / np.abs(force).max(), slope, group, blocks.run)
     peaks = [np.abs(force[level == i]).max(initial=0.0) for i in range(len(levels))]
     share = float((peaks / levels).max())
     for i, load in enumerate(levels):
         mine = level == i
-        misfit, p = _repeating(residual[mine] / (share * load), group[mine], blocks.run[mine])
-        found.append((misfit, p * len(levels)))
-    return max(found, key=lambda each: each[0] * (each[1] < MISFIT_P))
+        part = residual[mine] / (share * load), slope[mine], group[mine], blocks.run[mine]
+        alone = _repeating(*part)
+        found += [replace(each, p=each.p * len(levels)) for each in alone]
+    if not found:
+        return _Repeating(0.0, float("nan"), float("nan"))
+    most = max(found, key=lambda each: each.misfit * (each.p < MISFIT_P))
+    return replace(most, detectable=found[0].detectable)
 
 
 def _repeating(
-    values: Array, group: NDArray[np.intp], run: NDArray[np.intp]
-) -> tuple[float, float]:
-    """Split values by a one-way analysis of variance over the means of each run in each group.
+    values: Array, slope: Array, group: NDArray[np.intp], run: NDArray[np.intp]
+) -> list[_Repeating]:
+    """Split values by analyses of variance over the means of each run in each group.
 
-    Returns the standard deviation of what repeats in the groups, and the p-value of the F test; 0
-    and NaN if no group has two runs. The means of one run in several groups, as in a sweep, share
-    its offset: they count as one for the degrees of freedom.
+    Where runs cross two groups or more on average, as sweeps do, the first is two-way: each run's
+    offset and slip error (a multiple of the curve's slope) are taken out. The last is one-way:
+    there the means of one run share its offset and count as one for the degrees of freedom. An
+    analysis without two runs in a group is left out.
     """
+    if not len(values):
+        return []
     cells, index = np.unique(np.stack([group, run]), axis=1, return_inverse=True)
     means = np.bincount(index.ravel(), values) / np.bincount(index.ravel())
-    _, member = np.unique(cells[0], return_inverse=True)
-    size = np.bincount(member)
-    spare = len(means) - len(size)
-    if spare < 1:
-        return 0.0, float("nan")
-    centre = np.bincount(member, means) / size
-    between = np.sum(size * centre**2) / len(size)
-    within = np.sum((means - centre[member]) ** 2) / spare
-    repeating = max(0.0, float(between - within) / float(size.mean()))
-    shared = len(means) / len(np.unique(cells[1]))  # groups of a run
-    p = f.sf(between / max(within, 1e-300), len(size) / shared, spare / shared)
-    return float(np.sqrt(repeating)), float(p)
+    design = (cells[0][:, None] == np.unique(cells[0])).astype(float)
+    _, runs = np.unique(cells[1], return_inverse=True)
+    shared = len(means) / (runs.max() + 1)  # groups of a run
+    found = [_analysed(means, design, 0, shared)]
+    if shared >= CROSSED:
+        slopes = np.bincount(index.ravel(), slope) / np.bincount(index.ravel())
+        rest, taken = np.column_stack([means, design]), 0
+        for each in range(runs.max() + 1):
+            mine = runs == each
+            own = np.column_stack([np.ones(mine.sum()), slopes[mine]])
+            solution, _, rank, _ = np.linalg.lstsq(own, rest[mine], rcond=1e-9)
+            rest[mine] -= own @ solution
+            taken += int(rank)
+        found.insert(0, _analysed(rest[:, 0], rest[:, 1:], taken, 1.0))
+    return [each for each in found if each is not None]
+
+
+def _analysed(values: Array, design: Array, taken: int, shared: float) -> _Repeating | None:
+    """Test what a design explains of values against the rest, with degrees of freedom / `shared`.
+
+    Args:
+        values: Shape (n,).
+        design: Shape (n, groups).
+        taken: Degrees of freedom that are no longer in the values.
+        shared: Number of values that count as one.
+
+    Returns:
+        None if no degree of freedom is left.
+    """
+    solution, _, rank, _ = np.linalg.lstsq(design, values, rcond=1e-9)
+    spare = len(values) - taken - int(rank)
+    if spare < 1 or rank < 1:
+        return None
+    explained = design @ solution
+    between = float(np.sum(explained**2)) / rank
+    within = max(float(np.sum((values - explained) ** 2)) / spare, 1e-300)
+    size = float(np.sum(design**2)) / rank  # values of a group
+    ratio = f(rank / shared, spare / shared)
+    return _Repeating(
+        misfit=float(np.sqrt(max(0.0, between - within) / size)),
+        p=float(ratio.sf(between / within)),
+        detectable=float(np.sqrt((ratio.isf(MISFIT_P) - 1) * within / size)),
+    )

@@ -239,14 +239,22 @@ def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks
     """Check that the misfit that all runs share is small or not significant, at each load too.
 
     It fails above `MAX_MISFIT` of the peak force at its load with a p-value below `MISFIT_P`. Not
-    testable if no two runs share a slip and load.
+    testable if no two runs share a slip and load, or too few do for a misfit of that size to show.
     """
     name = "the law fits the shape of the curve"
     if np.isnan(residuals.misfit_p):
         return _not_testable(name, "no two runs share a slip and load; repeat runs")
+    failed = residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P
+    if not failed and residuals.detectable > MAX_MISFIT:
+        return _not_testable(
+            name,
+            "runs scatter so much, or so few share a slip and load, that a misfit of "
+            f"{residuals.detectable:.1%} of the peak force or less is not told from chance, limit "
+            f"{MAX_MISFIT:.0%}; repeat runs",
+        )
     return Check(
         name,
-        not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
+        not failed,
         f"the misfit that all runs share is {residuals.misfit:.1%} of the peak force, limit "
         f"{MAX_MISFIT:.0%} where p is below {MISFIT_P:g} (p = {residuals.misfit_p:.2g})",
         _law_advice(blocks, law),

@@ -34,7 +34,7 @@ CONVERGED = Convergence(
 )  # fmt: skip
 CLEAN = Residuals(
     whitened=np.zeros(48), lag_one=0.0, run_score=np.zeros(12), inside=11 / 12, inside_p=1.0,
-    misfit=0.001, misfit_p=0.5, r_squared=0.999, rmse=0.01, rmse_over_load=0.002,
+    misfit=0.001, misfit_p=0.5, detectable=0.01, r_squared=0.999, rmse=0.01, rmse_over_load=0.002,
 )  # fmt: skip
 LAW = MagicFormula("constant")
 RIG_VALUES = (34.34 * 1.564 * 0.38, 1.564, 0.38, 0.0)
@@ -130,6 +130,17 @@ def test_fault_in_the_residuals_costs_the_trust_but_not_the_convergence(check):
     assert not verdict.trustworthy
     assert "NOT TRUSTWORTHY" in verdict.headline()
     assert verdict.next_steps()[0].reason.startswith(advice)
+
+
+@pytest.mark.parametrize("misfit", [0.001, 0.08])
+def test_a_shape_of_which_the_limit_would_not_show_is_not_testable(misfit):
+    blind = replace(CLEAN, misfit=misfit, misfit_p=0.02, detectable=0.12)
+    verdict = verdict_on(residuals=blind)
+    assert verdict.not_testable == ("the law fits the shape of the curve",)
+    (check,) = [check for check in verdict.trust if check.passed is None]
+    assert "12.0% of the peak force" in check.evidence
+    found = verdict_on(residuals=replace(blind, misfit=0.2, misfit_p=1e-4))
+    assert [c.name for c in failed(found)] == ["the law fits the shape of the curve"]
 
 
 @pytest.mark.parametrize("changes", [{"lag_one": -0.6}, {"lag_one": 0.6, "misfit_p": 1e-4}])

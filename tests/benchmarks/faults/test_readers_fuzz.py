@@ -5,9 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[3]
 
 
+@pytest.mark.long
 def test_a_few_generated_files_end_in_one_line_each():
     process = subprocess.run(
         [sys.executable, "-m", "benchmarks.faults.readers_fuzz", "--inputs", "25",

@@ -7,6 +7,7 @@ import pytest
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="terminals and pipes of POSIX")
+@pytest.mark.long
 def test_one_trial_of_each_fault_is_a_row_and_nothing_is_lost(rows):
     from benchmarks.faults.recording_faults import main  # terminals of POSIX
 

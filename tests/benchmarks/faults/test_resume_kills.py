@@ -3,9 +3,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[3]
 
 
+@pytest.mark.long
 def test_killed_experiments_are_resumed_so_that_each_point_counts_once():
     command = [sys.executable, "-m", "benchmarks.faults.resume_kills", "4", "3"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=200, cwd=ROOT)

@@ -9,6 +9,7 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="both processes must share one clock")
+@pytest.mark.long
 def test_a_stop_and_a_guard_end_as_line_code_and_journal_say():
     process = subprocess.run(
         [sys.executable, "-m", "benchmarks.faults.stop_latency", "1", "SIGTERM", "normal force"],

@@ -9,7 +9,9 @@ from tracking.composite.steps import steady_chain
 from tracking.errors import CompositeError
 
 
-@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
+@pytest.mark.parametrize(
+    "kind", ["pasted", "mean", pytest.param("darkest", marks=pytest.mark.long)]
+)
 def test_exposures_that_overlap_are_found_in_order_and_none_is_made_up(kind):
     step = np.array([0.11, 0.0, 0.12])
     walk = steady_chain(np.array([-0.22, -0.1, 0.15]), step, 0.0, 4, 0)

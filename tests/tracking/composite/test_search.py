@@ -64,7 +64,9 @@ def merged(pairs, kind):
     return np.repeat(whole.astype(np.uint8)[:, :, None], 3, axis=2)
 
 
-@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
+@pytest.mark.parametrize(
+    "kind", ["pasted", "mean", pytest.param("darkest", marks=pytest.mark.long)]
+)
 def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
     picture = merged(exposures, kind)
     found = find_exposures(

@@ -132,6 +132,7 @@ def test_resumed_fit_is_bitwise_the_uninterrupted_one(
     assert_same_fit(out, uninterrupted)
 
 
+@pytest.mark.long
 def test_killed_fit_goes_on_from_its_last_periodic_checkpoint(
     uninterrupted, request_for, tmp_path, no_pictures, monkeypatch
 ):

@@ -20,6 +20,7 @@ def test_a_tighter_turn_is_told_from_a_wide_one_wherever_it_was_walked(tmp_path)
     np.testing.assert_allclose([*start.position[0], start.yaw[0]], 0, atol=1e-12)
 
 
+@pytest.mark.long
 def test_runs_that_differ_by_noise_alone_are_not_told_apart_more_often_than_stated(tmp_path):
     told = 0
     for seed in range(20):

@@ -121,7 +121,8 @@ def read_trajectory(
     stated = request.layout_of(which)
     if is_ros_log(path):
         _require_no_other(path, request, which)
-        return _of_ros_log(path, request, read_logged_poses(path, topic=topic, topics=topics))
+        found = read_logged_poses(path, topic=topic, topics=topics)
+        return _with_all_rows(_of_ros_log(path, request, found), mapping)
     if stated is Layout.ROS:
         raise DataError("is no ROS log by its name; expected .mcap, .db3, .bag or a bag's folder, "
                         "or another --layout", file=path)  # fmt: skip
@@ -145,7 +146,7 @@ def read_trajectory(
         notes=_named(path, (*notes, *more)),
         files=(path, *files),
     )
-    return _with_doubts(trajectory)
+    return _with_all_rows(_with_doubts(trajectory), mapping)
 
 
 def number_lines_of(path: Path, stated: Layout | None) -> NumberLines | None:
@@ -246,6 +247,17 @@ def _of_ros_log(path: Path, request: TrajectoryRequest, found: LoggedPoses) -> T
         covariance=None if found.covariance is None else found.covariance[kept].reshape(-1, 6, 6),
     )
     return _with_doubts(trajectory)
+
+
+def _with_all_rows(trajectory: Trajectory, mapping: MappedColumns | None) -> Trajectory:
+    """Add a note that rows are chosen from tables only, where `[rows] keep` is stated."""
+    if mapping is None or not mapping.keep:
+        return trajectory
+    note = (
+        f"all poses are read; [{mapping.where}rows] keep in {mapping.stated_in} applies to tables "
+        f"only, not to {trajectory.layout}"
+    )
+    return replace(trajectory, notes=(*trajectory.notes, *_named(trajectory.file, [note])))
 
 
 def _with_doubts(trajectory: Trajectory) -> Trajectory:

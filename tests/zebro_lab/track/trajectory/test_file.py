@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from support.foreign_trajectories import HEADER, drive, euroc, kitti, tum, written
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.track.trajectory.file import read_trajectory
+from zebro_lab.track.trajectory.mapping import trajectory_columns
 from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
 
 UNIX = 1_400_000_000.0
@@ -241,3 +242,12 @@ def test_a_unit_that_cannot_be_one_of_time_is_refused(tmp_path):
     np.savetxt(tmp_path / "c.txt", seconds)
     with pytest.raises(DataError, match="1 ns apart, if they are in ns"):
         read(tmp_path / "c.txt", layout=(Layout.EUROC,))
+
+
+def test_rows_are_chosen_from_tables_alone_and_that_is_said(tmp_path):
+    (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["x < 5"]\n')
+    file = written(tmp_path / "a.tum", tum(T, POSITION, ROTATION))
+    mapping = trajectory_columns(file, None)
+    note = same(read_trajectory(file, TrajectoryRequest(), mapping=mapping)).notes[-1]
+    assert "all poses are read; [track.rows] keep" in note
+    assert note.endswith("applies to tables only, not to tum")

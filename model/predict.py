@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.errors import DomainError
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import LegState, law_in, robot_in
 from model.path_draws import bent
@@ -65,7 +65,7 @@ class ModelSpread:
 
 def walk_draws(
     robot: Robot,
-    legs: LegReference | QuantisedLog,
+    legs: LegReference | InexactLog,
     tables: Sequence[TractionTable],
     state: LegState,
     *,
@@ -75,7 +75,7 @@ def walk_draws(
 
     Args:
         robot: The robot as described.
-        legs: Leg angles from time zero on; of a quantised log `MOST_MOTIONS` motions at most are
+        legs: Leg angles from time zero on; of an inexact log `MOST_MOTIONS` motions at most are
             drawn, and repeated in turn beyond.
         tables: Draws of the slip law, repeated in turn when fewer than those of the state.
         state: Draws of the legs' state. Offsets and arc change the robot; grip, slip stiffness and
@@ -94,16 +94,16 @@ def walk_draws(
 
 
 def motions(
-    legs: LegReference | QuantisedLog, n: int, rng: np.random.Generator
+    legs: LegReference | InexactLog, n: int, rng: np.random.Generator
 ) -> Sequence[LegReference]:
-    """Draw n leg motions that agree with a quantised log; other leg angles are one motion.
+    """Draw n leg motions that agree with an inexact log; other leg angles are one motion.
 
     Args:
         legs: Leg angles; without quantisation the result has `legs` as its only element.
-        n: Number of motions of a quantised log.
+        n: Number of motions of an inexact log.
         rng: Source of randomness.
     """
-    return [legs.smooth(rng) for _ in range(n)] if isinstance(legs, QuantisedLog) else [legs]
+    return [legs.smooth(rng) for _ in range(n)] if isinstance(legs, InexactLog) else [legs]
 
 
 def ensemble_step(

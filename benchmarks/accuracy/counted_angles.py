@@ -24,7 +24,7 @@ import numpy as np
 from benchmarks.accuracy.engine_walks import SHARED, EngineWalk, radius, read_walk
 from benchmarks.tables import print_table
 from model.gait.buehler import buehler_reference
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference, SampledReference
 from model.leg_state import LegState
 from model.predict import ModelSpread, predict_paths, walk_draws
@@ -77,7 +77,7 @@ def engine_walks() -> Iterator[EngineWalk]:
 def judged(truth: Angles, step: float, rate: float, rng: np.random.Generator) -> Array:
     """Compare rebuilt angles with true ones: squared error [rad2], held by 50 and by 90 %, (3,)."""
     t = np.arange(0.0, DURATION, 1 / rate)
-    log = QuantisedLog(t, step * np.round(truth(t) / step), step)
+    log = InexactLog(t, step * np.round(truth(t) / step), step)
     at = np.sort(rng.uniform(INNER, DURATION - INNER, PLACES))
     known = truth(at)
     below = sum((log.smooth(rng).angles(at) < known for _ in range(DRAWS)), np.zeros(known.shape))
@@ -117,7 +117,7 @@ def walked_radius(one: EngineWalk, legs: LegReference) -> float:
 
 def counted_from(one: EngineWalk, zero: float) -> SampledReference:
     """Rebuild a walk's angles from counts of an encoder whose zero lies at an angle [rad]."""
-    log = QuantisedLog(one.log.t, STEP * np.round((one.log.theta + zero) / STEP), STEP)
+    log = InexactLog(one.log.t, STEP * np.round((one.log.theta + zero) / STEP), STEP)
     rebuilt = log.smooth()
     return SampledReference(rebuilt.t, rebuilt.theta - zero)
 
@@ -171,7 +171,7 @@ def print_found() -> None:
 def found_radius(one: EngineWalk, theta: Array, rng: np.random.Generator) -> str:
     """Say by how much the radius from measured angles differs, and the draws' 90 % band [%]."""
     legs, _ = angles_from(LegLog(SampledReference(one.log.t, theta), "sim:engine", ()), 0.0)
-    rebuilt = legs.smooth() if isinstance(legs, QuantisedLog) else legs
+    rebuilt = legs.smooth() if isinstance(legs, InexactLog) else legs
     known = walked_radius(one, one.log)
     off = 100 * (walked_radius(one, rebuilt) / known - 1)
     offset = np.radians(offset_sd_deg(BandRequest(BAND), legs))

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.tables import print_table
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference, SampledReference
 from model.gait.resolution import find_step
 from model.robot import GRAVITY
@@ -60,7 +60,7 @@ def leg_angles(truth: pd.DataFrame) -> dict[str, LegReference]:
     step = find_step(counted)
     if step is None:
         raise ValueError("the log's angles are not counted")
-    rebuilt = QuantisedLog(times, counted, step).smooth()
+    rebuilt = InexactLog(times, counted, step).smooth()
     return {
         "the engine's, every 10 ms": SampledReference(t, theta),
         "the engine's, every 20 ms, corners between samples": SampledReference(

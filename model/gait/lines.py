@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Straight lines through one leg's counted angles, compiled; see `model.gait.quantised`."""
+"""Straight lines through one leg's counted angles, compiled; see `model.gait.inexact_log`."""
 
 from typing import NamedTuple
 

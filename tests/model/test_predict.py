@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from model.errors import DomainError
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
@@ -34,7 +34,7 @@ def counted_log():
     t = np.arange(0.0, 4.2, 0.01)
     theta = GAIT.angles(t)
     step = np.radians(3.6)
-    return QuantisedLog(t, step * np.round(theta / step), step)
+    return InexactLog(t, step * np.round(theta / step), step)
 
 
 def predicted(n=12, *, seed=1, offset_sd=0.0175, error=EXACT, legs=None):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.gait.resolution import SEEN, find_noise, find_step
 from model.robot import N_LEGS
@@ -22,9 +22,7 @@ _TOO_COARSE = (
 )
 
 
-def angles_from(
-    log: LegLog, start: float
-) -> tuple[SampledReference | QuantisedLog, tuple[str, ...]]:
+def angles_from(log: LegLog, start: float) -> tuple[SampledReference | InexactLog, tuple[str, ...]]:
     """Shift a leg log to start at time zero; find the step of its angles, or their noise.
 
     Args:
@@ -32,7 +30,7 @@ def angles_from(
         start: Time of the log that becomes zero [s].
 
     Returns:
-        The angles, a `QuantisedLog` if they are encoder counts or have noise; and notes.
+        The angles, a `InexactLog` if they are encoder counts or have noise; and notes.
     """
     t, theta = log.reference.t - start, log.reference.theta
     step = find_step(theta)
@@ -42,22 +40,22 @@ def angles_from(
             return SampledReference(t, theta), ()
         if np.isnan(noise).any():
             return SampledReference(t, theta), (_TOO_COARSE,)
-        noisy = QuantisedLog(t, theta, 0.0, np.maximum(noise, SEEN))
+        noisy = InexactLog(t, theta, 0.0, np.maximum(noise, SEEN))
         return noisy, (f"leg log: angles carry {_told(noisy, noise)}",)
     counts = f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg"
-    counted = QuantisedLog(t, theta, step)
+    counted = InexactLog(t, theta, step)
     if noise is not None and np.isnan(noise).any():
         return counted, (f"{counts}{_THROUGH_COUNTS}",)
     least = step / np.sqrt(12.0)  # the standard deviation of what counting leaves out
     noise = np.full(N_LEGS, least) if noise is None else np.maximum(noise, least)
-    noisy = QuantisedLog(t, theta, step, noise)
+    noisy = InexactLog(t, theta, step, noise)
     if counted.lines > JAGGED * noisy.lines:
         told = _told(noisy, noise)
         return noisy, (f"{counts} and leave straight lines by more than counting: {told}",)
     return counted, (f"{counts}{_THROUGH_COUNTS}",)
 
 
-def _told(log: QuantisedLog, noise: Array) -> str:
+def _told(log: InexactLog, noise: Array) -> str:
     """Say how large the legs' noise is at most, and what is done about it."""
     worst = float(noise.max())
     told = (

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import LegState
 from model.path_draws import LEVELS, STATES, anchored, quantiles
@@ -40,7 +40,7 @@ def band_settings(request: BandRequest) -> dict[str, object]:
 def predict_band(
     request: BandRequest,
     walked: Walked,
-    legs: LegReference | QuantisedLog,
+    legs: LegReference | InexactLog,
     *,
     duration: float,
     toe: ToeLaw,
@@ -102,7 +102,7 @@ def _every(steps: int, watcher: Watcher) -> Callable[[float], None]:
 
 def _leg_state(
     request: BandRequest,
-    legs: LegReference | QuantisedLog,
+    legs: LegReference | InexactLog,
     informed: InformedLegs | None,
     rng: np.random.Generator,
 ) -> LegState:
@@ -118,11 +118,11 @@ def _leg_state(
     return informed.draw(request.draws, rng=rng)
 
 
-def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
+def offset_sd_deg(request: BandRequest, legs: LegReference | InexactLog) -> float:
     """Return the leg offsets' sd [deg]: as requested, else 0.3 or more, encoder step / sqrt(12)."""
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg
-    if isinstance(legs, QuantisedLog):
+    if isinstance(legs, InexactLog):
         return max(float(np.degrees(legs.step) / np.sqrt(12.0)), ASSUMED_OFFSET_DEG)
     return ASSUMED_OFFSET_DEG
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.progress import Watcher
 from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
@@ -76,7 +76,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     walked = walk_with(
         request.model,
         described,
-        legs.smooth() if isinstance(legs, QuantisedLog) else legs,
+        legs.smooth() if isinstance(legs, InexactLog) else legs,
         duration=end - start,
         what=f"{'simulated' if is_simulated(log.source) else 'logged'} leg angles",
         direction=request.direction,

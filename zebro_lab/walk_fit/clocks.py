@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 from model.bayes.walks.misfit import middle
 from model.errors import InsufficientData
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.metrics.clock import estimate_offset
 from model.poses import Poses
@@ -21,7 +21,7 @@ LARGEST_OFFSET = (
     0.5  # s, and three standard deviations; wrong leg offsets look like a few tenths of a second
 )
 
-Legs: TypeAlias = SampledReference | QuantisedLog
+Legs: TypeAlias = SampledReference | InexactLog
 Clock: TypeAlias = Callable[[TrackFile, Legs, Robot], TrackFile]
 """Function that shifts a track to the clock of leg angles that start at zero, or raises."""
 

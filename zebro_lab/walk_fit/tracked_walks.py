@@ -9,7 +9,7 @@ import numpy as np
 
 from model.bayes.walks.misfit import FEWEST_POSES, TrackedWalk
 from model.bayes.walks.tilt import FEWEST, TIME, MeasuredTilt
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.told_apart import told_apart
 from zebro_lab.calibration.walks_folder import describe_legs
@@ -52,7 +52,7 @@ class WalkOnFile:
 
     name: str
     robot: RobotFile
-    legs: SampledReference | QuantisedLog
+    legs: SampledReference | InexactLog
     track: TrackFile
     source: str
     files: tuple[Path, ...]

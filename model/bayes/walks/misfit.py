@@ -19,7 +19,7 @@ import numpy as np
 from model.bayes.walks.terms import Terms
 from model.bayes.walks.tilt import MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import LegState, law_in, robot_in
 from model.path_draws import bent, states_at
@@ -59,7 +59,7 @@ class TrackedWalk:
     """
 
     name: str
-    legs: LegReference | QuantisedLog
+    legs: LegReference | InexactLog
     t: Array
     states: Array
     covariance: Array
@@ -302,6 +302,6 @@ class WalkMisfit:
         return moved.T @ moved
 
 
-def middle(legs: LegReference | QuantisedLog) -> LegReference:
-    """Return the middle motion that a quantised log allows; other leg angles as they are."""
-    return legs.smooth() if isinstance(legs, QuantisedLog) else legs
+def middle(legs: LegReference | InexactLog) -> LegReference:
+    """Return the middle motion that an inexact log allows; other leg angles as they are."""
+    return legs.smooth() if isinstance(legs, InexactLog) else legs

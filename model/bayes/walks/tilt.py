@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.errors import InsufficientData
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.slip.law import Array
 from model.told_apart import told_apart
@@ -61,7 +61,7 @@ class TiltMisfit:
     strides: float
 
     @classmethod
-    def of(cls, seen: MeasuredTilt, t: Array, legs: LegReference | QuantisedLog) -> "TiltMisfit":
+    def of(cls, seen: MeasuredTilt, t: Array, legs: LegReference | InexactLog) -> "TiltMisfit":
         """Average measured roll and pitch over the intervals that have samples of path and IMU.
 
         Args:
@@ -112,8 +112,8 @@ def _means(t: Array, k: int) -> NDArray[np.float64]:
     return within / np.maximum(within.sum(axis=1, keepdims=True), 1)
 
 
-def _strides(legs: LegReference | QuantisedLog, t: Array) -> float:
+def _strides(legs: LegReference | InexactLog, t: Array) -> float:
     """Compute the legs' turns between the first and last time, averaged over legs; at least 1."""
-    angles = legs.smooth() if isinstance(legs, QuantisedLog) else legs
+    angles = legs.smooth() if isinstance(legs, InexactLog) else legs
     first, last = angles.angles(t[[0, -1]])
     return max(float(np.abs(last - first).mean()) / (2 * np.pi), 1.0)

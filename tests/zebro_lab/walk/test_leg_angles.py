@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.gait.buehler import buehler_reference
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.runs.legs import read_leg_log
@@ -34,7 +34,7 @@ def test_counted_angles_are_recognised_and_others_taken_as_they_are():
     assert notes == ()
     step = np.radians(3.6)
     counted, notes = angles_from(leg_log(step * np.round(theta / step)), 5.0)
-    assert isinstance(counted, QuantisedLog)
+    assert isinstance(counted, InexactLog)
     assert counted.step == pytest.approx(step)
     assert counted.t[0] == 0.0
     assert "counted in steps of 3.6 deg" in notes[0]
@@ -55,7 +55,7 @@ def test_noise_is_said_and_reconstructed():
     theta = 1.3 * t[:, None] + np.zeros(6)
     noise = np.random.default_rng(0).normal(0.0, 5e-4, theta.shape)
     legs, notes = angles_from(leg_log(theta + noise), 5.0)
-    assert isinstance(legs, QuantisedLog)
+    assert isinstance(legs, InexactLog)
     np.testing.assert_allclose(legs.noise, 5e-4, rtol=0.3)
     assert np.abs(legs.smooth().angles(t) - theta).max() < 1.5e-4
     assert "noise of 0.029 deg (0.51 mrad), reconstructed" in notes[0]
@@ -79,6 +79,6 @@ def test_counts_of_noisy_angles_are_told_from_counts_alone():
     ):
         noise = np.random.default_rng(0).normal(0.0, share * step, theta.shape)
         legs, notes = angles_from(leg_log(step * np.round((theta + noise) / step)), 5.0)
-        assert isinstance(legs, QuantisedLog)
+        assert isinstance(legs, InexactLog)
         assert words in notes[0]
         assert np.abs(legs.smooth().angles(t) - theta).max() < 0.3 * step

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from model.gait import tripod_angles, tripod_reference
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from model.poses import Poses
 from support.validated_walks import predicted, write_walk_data
 from support.watchers import Nobody
@@ -83,10 +83,10 @@ def test_a_model_that_does_not_slip_has_no_band(band):
 def test_offsets_spread_as_asked_by_the_count_or_as_assumed():
     request = BandRequest(2)
     t = np.linspace(0.0, 1.0, 11)
-    counted = QuantisedLog(t, np.zeros((11, 6)), np.radians(3.6))
+    counted = InexactLog(t, np.zeros((11, 6)), np.radians(3.6))
     assert offset_sd_deg(BandRequest(2, offset_sd_deg=0.7), counted) == 0.7
     assert offset_sd_deg(request, counted) == pytest.approx(3.6 / np.sqrt(12))
-    fine = QuantisedLog(t, np.zeros((11, 6)), np.radians(0.1))
+    fine = InexactLog(t, np.zeros((11, 6)), np.radians(0.1))
     assert offset_sd_deg(request, fine) == ASSUMED_OFFSET_DEG
     assert offset_sd_deg(request, GAIT) == ASSUMED_OFFSET_DEG
 

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.gait.quantised import QuantisedLog
+from model.gait.inexact_log import InexactLog
 from support.tracked_walks import SD, WALK, write_walk
 from support.watchers import Nobody
 from zebro_lab.exchange.import_request import ImportRequest
@@ -19,7 +19,7 @@ from zebro_lab.walk_fit.tracked_walks import read_walk_on_file, read_walks
 
 def test_a_walk_comes_with_its_time_from_zero_and_its_counts_recognised(tmp_path):
     walk = read_walk_on_file(write_walk(tmp_path / "walk"))
-    assert isinstance(walk.legs, QuantisedLog)
+    assert isinstance(walk.legs, InexactLog)
     assert np.degrees(walk.legs.step) == pytest.approx(3.6)
     assert walk.legs.t[0] == 0
     assert walk.tracked.t[0] == pytest.approx(0.0)

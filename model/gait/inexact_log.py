@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reconstruction of smooth leg angles from encoder counts, with their uncertainty.
+"""Reconstruction of smooth leg angles from encoder counts or noisy angles, with uncertainty.
 
 An encoder of few counts gives little information on an angle between two counts. When the count
 changes, however, the angle is the boundary between them, at a time known to one sample. Legs turn
@@ -54,7 +54,7 @@ DECIMALS = 6  # of a corner's time in seconds
 
 
 @dataclass(frozen=True)
-class CountedLeg:
+class LegLines:
     """Straight lines through one leg's counted or noisy angles.
 
     Attributes:
@@ -79,7 +79,7 @@ class CountedLeg:
     step: float
 
     @classmethod
-    def of(cls, t: Array, theta: Array, step: float, noise: float = 0.0) -> "CountedLeg":
+    def of(cls, t: Array, theta: Array, step: float, noise: float = 0.0) -> "LegLines":
         """Split a leg's samples into the fewest groups that a line passes; find each one's lines.
 
         Args:
@@ -133,7 +133,7 @@ class CountedLeg:
 
 
 @dataclass(frozen=True)
-class QuantisedLog:
+class InexactLog:
     """Measured leg angles of a log: counted by an encoder, each the middle of its bin, or noisy.
 
     Attributes:
@@ -168,17 +168,17 @@ class QuantisedLog:
         return np.zeros(6) if self.noise is None else self.noise
 
     @cached_property
-    def _lines(self) -> list[CountedLeg]:
+    def _lines(self) -> list[LegLines]:
         """Lines of each leg."""
         return [
-            CountedLeg.of(self.t, theta, self.step, float(sd))
+            LegLines.of(self.t, theta, self.step, float(sd))
             for theta, sd in zip(self.theta.T, self._noise, strict=True)
         ]
 
     @cached_property
-    def _legs(self) -> list[CountedLeg | SmoothedLeg]:
+    def _legs(self) -> list[LegLines | SmoothedLeg]:
         """Lines of each leg, or the smooth angles of a noisy one that they do not fit."""
-        found: list[CountedLeg | SmoothedLeg] = []
+        found: list[LegLines | SmoothedLeg] = []
         for leg, theta, sd in zip(self._lines, self.theta.T, self._noise, strict=True):
             off = theta - np.interp(self.t, *leg.corners(None))
             uneven = sd > 0 and np.sqrt(np.mean(off**2)) > UNEVEN * sd

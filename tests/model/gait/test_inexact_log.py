@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.gait.buehler import buehler_reference
+from model.gait.inexact_log import InexactLog
 from model.gait.lines import FASTEST
-from model.gait.quantised import QuantisedLog
 
 STEP = np.radians(3.6)
 T = np.arange(0, 6, 0.01)
@@ -32,7 +32,7 @@ def within(gait, began):
     """Return a gait's log from a time on, and times and true angles half a cycle from its ends."""
     half = 0.5 * gait.period
     fine = EVERYWHERE[(half < EVERYWHERE) & (half < EVERYWHERE[-1] - EVERYWHERE)]
-    return QuantisedLog(T, counted(gait.angles(T + began)), STEP), fine, gait.angles(fine + began)
+    return InexactLog(T, counted(gait.angles(T + began)), STEP), fine, gait.angles(fine + began)
 
 
 def errors(motion, fine, truth):
@@ -71,7 +71,7 @@ def test_legs_that_change_speed_all_the_time_never_jump(seed):
     corners = np.arange(0, 6.01, 0.05)
     speeds = rng.uniform(0, 6, (6, len(corners)))
     theta = np.column_stack([np.interp(T, corners, 0.05 * np.cumsum(each)) for each in speeds])
-    log = QuantisedLog(T, counted(theta), STEP)
+    log = InexactLog(T, counted(theta), STEP)
     for motion in (log.smooth(), log.smooth(rng)):
         assert np.diff(motion.t).min() > 0.9e-6
         assert np.abs(motion.speeds(motion.t)).max() < 1.01 * FASTEST
@@ -81,7 +81,7 @@ def test_legs_that_change_speed_all_the_time_never_jump(seed):
 def test_angles_come_back_far_closer_than_a_count(cycle, slow, rate):
     t = np.arange(0, 10, 1 / rate)
     theta = tripod(t, cycle=cycle, slow=slow)
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth()
+    smooth = InexactLog(t, counted(theta), STEP).smooth()
     error = smooth.angles(t) - theta
     assert np.sqrt(np.mean(error**2)) < 0.25 * STEP
     assert np.all(np.abs(error.mean(axis=0)) < 0.12 * STEP)
@@ -90,7 +90,7 @@ def test_angles_come_back_far_closer_than_a_count(cycle, slow, rate):
 def test_a_robot_that_stands_first_stands_in_the_reconstruction():
     t = np.arange(0, 8, 0.01)
     theta = tripod(t, stood=1.5)
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
+    smooth = InexactLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.abs(smooth - theta).max() < 0.7 * STEP
     assert np.all(np.ptp(smooth[t < 1.3], axis=0) < 0.3 * STEP)
 
@@ -105,7 +105,7 @@ def coverage(step_deg, rate, *, draws=99):
             *rng.uniform((-1.0, 0.5), (-0.5, 1.0)), ground_time=0.52 * cycle, cycle_time=cycle
         )
         t, fine = np.arange(0, 6, 1 / rate), rng.uniform(0.5, 5.5, 200)
-        log = QuantisedLog(t, step * np.round(gait.angles(t + began) / step), step)
+        log = InexactLog(t, step * np.round(gait.angles(t + began) / step), step)
         truth = gait.angles(fine + began)
         below = sum(log.smooth(rng).angles(fine) < truth for _ in range(draws))
         within.append(np.abs(2 * (below + 0.5) / (draws + 1) - 1))
@@ -124,7 +124,7 @@ def test_fine_counts_at_low_rates_keep_fast_corners(cycle, began, rate):
     step = np.radians(0.2)
     gait = buehler_reference(-0.6, 0.7, ground_time=0.5 * cycle, cycle_time=cycle)
     t, fine = np.arange(0, 6, 1 / rate), np.arange(0.7 * cycle, 6 - 0.7 * cycle, 1e-3)
-    log = QuantisedLog(t, step * np.round(gait.angles(t + began) / step), step)
+    log = InexactLog(t, step * np.round(gait.angles(t + began) / step), step)
     error = log.smooth().angles(fine) - gait.angles(fine + began)
     assert np.abs(error).max() < 0.1 * np.radians(0.2) * 360 / rate  # at most 2 % of a swing's step
 
@@ -136,14 +136,14 @@ def test_no_sample_is_missed_by_more_than_its_count(seed, step_deg):
     speeds = rng.uniform(0, 6, (6, 20))
     theta = np.cumsum(0.02 * np.repeat(speeds, 10, axis=1), axis=1).T
     t = 0.02 * np.arange(len(theta))
-    log = QuantisedLog(t, step * np.round(theta / step), step)
+    log = InexactLog(t, step * np.round(theta / step), step)
     for motion in (log.smooth(), log.smooth(rng)):
         assert np.abs(motion.angles(t) - log.theta).max() < 0.6 * step
 
 
 def test_lines_whose_samples_repeat_are_drawn_alike():
     t = np.arange(0, 9.99, 0.01)  # cycles of 200 samples
-    log = QuantisedLog(t, counted(tripod(t)), STEP)
+    log = InexactLog(t, counted(tripod(t)), STEP)
     off = log.smooth(np.random.default_rng(3)).angles(t) - log.smooth().angles(t)
     assert np.abs(off[250:450] - off[450:650]).max() < 1e-6
     assert np.abs(off[250:450]).max() > 1e-3
@@ -152,7 +152,7 @@ def test_lines_whose_samples_repeat_are_drawn_alike():
 def test_a_leg_that_never_moves_stays_in_its_count():
     t = np.arange(0, 2, 0.01)
     still = np.zeros((len(t), 6))
-    log = QuantisedLog(t, still, STEP)
+    log = InexactLog(t, still, STEP)
     np.testing.assert_array_equal(log.smooth().angles(t), 0)
     drawn = log.smooth(np.random.default_rng(1)).angles(t)
     assert np.all(np.abs(drawn) <= 0.5 * STEP)
@@ -163,14 +163,14 @@ def test_a_pause_in_the_middle_stays_a_pause():
     t = np.arange(0, 9, 0.01)
     walked = np.where(t < 4.03, t, np.maximum(4.03, t - 1.5))
     theta = tripod(walked)
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
+    smooth = InexactLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.abs(smooth - theta).max() < 1.0 * STEP
 
 
 def test_legs_may_turn_backwards():
     t = np.arange(0, 6, 0.01)
     theta = -tripod(t)
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
+    smooth = InexactLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.sqrt(np.mean((smooth - theta) ** 2)) < 0.12 * STEP
 
 
@@ -181,7 +181,7 @@ def test_noise_leaves_speeds_and_corners_and_draws_hold_the_angles(sd, rate):
     t = np.arange(0, 10, 1 / rate)
     t = np.delete(t, slice(3 * rate, 3 * rate + 5))
     theta = tripod(t)
-    log = QuantisedLog(t, theta + rng.normal(0, sd, theta.shape), 0.0, np.full(6, sd))
+    log = InexactLog(t, theta + rng.normal(0, sd, theta.shape), 0.0, np.full(6, sd))
     assert np.abs(log.smooth().angles(t) - theta).max() < 2 * sd
     assert np.sqrt(np.mean((log.smooth().angles(t) - theta) ** 2)) < 0.4 * sd
     draws = np.stack([log.smooth(rng).angles(t) for _ in range(60)])
@@ -195,7 +195,7 @@ def test_noisy_legs_that_turn_unevenly_are_smoothed_and_others_are_not(sd):
     t = np.arange(0, 10, 0.01)
     theta = tripod(t)
     theta[:, ::2] = np.pi * t[:, None] + 0.8 * np.sin(np.pi * t[:, None])
-    log = QuantisedLog(t, theta + rng.normal(0, sd, theta.shape), 0.0, np.full(6, sd))
+    log = InexactLog(t, theta + rng.normal(0, sd, theta.shape), 0.0, np.full(6, sd))
     assert log.uneven == 3
     assert np.sqrt(np.mean((log.smooth().angles(t) - theta) ** 2, axis=0)).max() < 0.6 * sd
     draws = np.stack([log.smooth(rng).angles(t) for _ in range(60)])
@@ -206,17 +206,17 @@ def test_noisy_legs_that_turn_unevenly_are_smoothed_and_others_are_not(sd):
 def test_noise_is_of_six_legs_and_more_than_nothing():
     for noise in (np.zeros(6), np.full(5, 1e-3), np.full(6, np.nan)):
         with pytest.raises(DomainError, match="six of more than zero"):
-            QuantisedLog(T, np.zeros((len(T), 6)), 0.0, noise)
+            InexactLog(T, np.zeros((len(T), 6)), 0.0, noise)
 
 
 def test_a_count_of_nothing_is_refused():
     with pytest.raises(DomainError, match="more than zero"):
-        QuantisedLog(np.arange(3.0), np.zeros((3, 6)), 0.0)
+        InexactLog(np.arange(3.0), np.zeros((3, 6)), 0.0)
 
 
 def test_times_that_do_not_increase_are_refused():
     with pytest.raises(DomainError, match="expected increasing times"):
-        QuantisedLog(np.array([0.0, 2.0, 1.0]), np.zeros((3, 6)), STEP)
+        InexactLog(np.array([0.0, 2.0, 1.0]), np.zeros((3, 6)), STEP)
 
 
 @pytest.mark.reference
@@ -224,5 +224,5 @@ def test_counted_angles_of_an_engine_s_servos_come_back(shared):
     table = pd.read_csv(shared / "virtual-world/walks/tripod_s1.20_left_mu0.38_tc2.csv.gz")
     theta = table[[f"th{leg}" for leg in range(1, 7)]].to_numpy()
     t = table["t"].to_numpy()
-    smooth = QuantisedLog(t, counted(theta), STEP).smooth().angles(t)
+    smooth = InexactLog(t, counted(theta), STEP).smooth().angles(t)
     assert np.degrees(np.sqrt(np.mean((smooth - theta) ** 2))) < 0.15

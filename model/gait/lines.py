@@ -89,20 +89,29 @@ def _reach(samples, start, half):
     The number of samples if there is none.
     """
     n = len(samples.t)
-    m = 0.0
-    for end in range(start + 2, n + 1):
-        low, high = -FASTEST, FASTEST
-        fits = False
-        for attempt in range(HALVINGS):
-            m = m if attempt == 0 else 0.5 * (low + high)  # that of one sample less first
-            floor, ceiling, rise = _range(samples, start, end, half, m)
-            fits = floor <= ceiling
-            if fits:
-                break
-            low, high = (low, m) if rise > 0 else (m, high)
-        if not fits:
-            return end - 1
-    return n
+    passed, failed = start + 1, n + 1  # a line passes up to the first, none up to the second
+    span, m = 2, 0.0
+    while passed < n and failed - passed > 1:
+        end = min(start + span, n) if failed > n else (passed + failed) // 2
+        fits, m = _slope(samples, start, end, half, m)
+        if fits:
+            passed, span = end, 2 * span
+        else:
+            failed = end
+    return passed
+
+
+@compiled
+def _slope(samples, start, end, half, m):
+    """Return whether a line passes all samples, and the last slope tried, beginning with m."""
+    low, high = -FASTEST, FASTEST
+    for attempt in range(HALVINGS):
+        m = m if attempt == 0 else 0.5 * (low + high)
+        floor, ceiling, rise = _range(samples, start, end, half, m)
+        if floor <= ceiling:
+            return True, m
+        low, high = (low, m) if rise > 0 else (m, high)
+    return False, m
 
 
 @compiled

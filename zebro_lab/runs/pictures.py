@@ -37,7 +37,7 @@ def raw_streams(run: RunSignals, at: Sequence[float] = ()) -> Figure:
     rows = len(drawn) + bool(run.events)
     title = f"{run.name}: raw streams, {run.state}"
     events = min(len(run.events), _MOST_EVENTS + 1)
-    heights = [0.25 + 0.16 * events] * bool(run.events) + [1.4] * len(drawn)
+    heights = [0.25 + 0.2 * events] * bool(run.events) + [1.4] * len(drawn)
     figure = new_figure(title, is_simulated(run.source), width=10.0, height=1.0 + sum(heights))
     grid = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     if run.events:
@@ -157,7 +157,7 @@ def _list_events(axes: Axes, events: Sequence[Event]) -> None:
         axes.plot(event.t, row, marker="|", ms=7, color=colour)
         axes.annotate(
             event.text[:_LONGEST_TEXT], (event.t, row), xytext=(-6 if late else 6, 0),
-            textcoords="offset points", ha="right" if late else "left", va="center", fontsize=7,
+            textcoords="offset points", ha="right" if late else "left", va="center", fontsize=9,
             color=colour, annotation_clip=False,
         )  # fmt: skip
     more = len(events) - len(shown)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from model.errors import DomainError
 from model.gait.cyclic import CyclicReference
-from model.gait.maxplus import eigenvalue, eigenvector, otimes, solve_implicit
+from model.gait.maxplus import coupling_time, eigenvalue, eigenvector, otimes, solve_implicit
 from model.gait.notation import Gait
 from model.gait.reference import SampledReference
 from model.gait.stance import Intervals, event_intervals, require_stance_angles
@@ -81,6 +81,14 @@ class EventSystem:
     def cycle_time(self) -> float:
         """Cycle time of the steady state, the eigenvalue of `matrix`; -inf without repeats [s]."""
         return eigenvalue(self.matrix)
+
+    @cached_property
+    def coupling_time(self) -> int:
+        """Number of cycles after which events are periodic, whatever the start.
+
+        Raises `DomainError` if events do not repeat.
+        """
+        return coupling_time(self.matrix)
 
     @cached_property
     def steady_state(self) -> EventTimes:

@@ -8,8 +8,12 @@ epsilon is the zero (neutral for the maximum, absorbing for the sum), e the one.
 arrays of floats, times are in seconds.
 """
 
+from collections import deque
+from math import gcd, lcm
+
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.sparse.csgraph import connected_components, shortest_path
 
 from model.errors import DomainError
 from model.slip.law import Array
@@ -17,6 +21,7 @@ from model.slip.law import Array
 EPSILON = -np.inf
 ONE = 0.0
 _ROUNDING = 1e-9  # s: circuits whose means differ by less are equal
+_LONGEST = 10_000  # powers in which a matrix is given time to couple
 
 
 def oplus(a: ArrayLike, b: ArrayLike) -> Array:
@@ -194,3 +199,73 @@ def eigenvector(A: Array) -> Array:
     critical = np.diagonal(paths) > -_ROUNDING
     paths = oplus(identity(len(A)), paths)
     return (paths[:, critical] + paths[critical].max(axis=1)).max(axis=1)
+
+
+def cyclicity(A: Array) -> int:
+    r"""Compute after how many powers those of a matrix repeat, its cyclicity c.
+
+    It is the least common multiple, over the strongly connected parts of the critical graph (the
+    circuits whose mean is the eigenvalue), of the greatest common divisor of their circuits'
+    lengths.
+
+    Args:
+        A: Square matrix, shape (n, n).
+
+    Raises:
+        DomainError: The matrix has no circuits, hence no eigenvalue.
+
+    >>> cyclicity(np.array([[EPSILON, 3.0], [1.0, EPSILON]]))
+    2
+    """
+    mean = eigenvalue(A)
+    if mean == EPSILON:
+        raise DomainError("the max-plus matrix has no circuit, so events do not repeat")
+    critical = (A - mean) + plus(A - mean).T > -_ROUNDING  # from column to row, and back
+    graph = np.ascontiguousarray(critical.T, dtype=float)
+    _, part = connected_components(graph, connection="strong")
+    steps = shortest_path(graph, unweighted=True)
+    lengths = [1]
+    for start in np.unique(part[critical.any(axis=1)], return_index=True)[0]:
+        inside = part == start
+        depth = steps[np.flatnonzero(inside)[0]]
+        ends, begins = np.nonzero(critical & inside[:, None] & inside[None, :])
+        lengths.append(gcd(*(depth[begins] + 1 - depth[ends]).astype(int).tolist()))
+    return lcm(*lengths)
+
+
+def coupling_time(A: Array) -> int:
+    r"""Compute the coupling time: after how many cycles events are periodic, from any start.
+
+    It is the least k_0 >= 1 for which, with the eigenvalue lambda and the cyclicity c,
+
+    .. math::
+        A^{\otimes (k + c)} = \lambda^{\otimes c} \otimes A^{\otimes k}, \qquad k \ge k_0 .
+
+    Args:
+        A: Square matrix, shape (n, n).
+
+    Raises:
+        DomainError: The matrix has no circuits, or does not couple within 10,000 powers, as where
+            parts that do not wait for each other have different cycle times.
+
+    >>> coupling_time(np.array([[EPSILON, 3.0], [1.0, EPSILON]]))
+    1
+    """
+    step, cycle = A - eigenvalue(A), cyclicity(A)
+    powers = deque([step], maxlen=cycle + 1)  # A^k - k lambda, the last c + 1
+    for k in range(1, _LONGEST + cycle):
+        if len(powers) > cycle and _same(powers[0], powers[-1]):
+            return k - cycle
+        powers.append(otimes(step, powers[-1]))
+    raise DomainError(
+        f"events of the max-plus matrix are not periodic within {_LONGEST:,} cycles: legs that do "
+        "not wait for each other step at different rates, or at almost the same"
+    )
+
+
+def _same(a: Array, b: Array) -> bool:
+    """Return whether two matrices are equal but for rounding, epsilon in the same places."""
+    finite = np.isfinite(a)
+    if not np.array_equal(finite, np.isfinite(b)):
+        return False
+    return bool(np.all(np.abs(a[finite] - b[finite]) < _ROUNDING))

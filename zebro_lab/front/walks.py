@@ -8,7 +8,7 @@ from model.gait.direction import Direction
 from model.poses import Poses
 from model.walk.path import WalkPath
 from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
-from zebro_lab.robot.gait_request import GaitName, GaitRequest
+from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.walk.path_band import read_draws
@@ -60,7 +60,7 @@ def read_legs(path: PathLike, *, columns: PathLike | None = None) -> LegLog:
 
 
 def walk_gait(
-    gait: GaitName = "tripod",
+    gait: str = "tripod",
     *,
     slip: str | None = "thesis",
     duration: float = 10.0,
@@ -75,7 +75,8 @@ def walk_gait(
     """Simulate a gait and compute the robot's path, as `zebro-lab walk` does.
 
     Args:
-        gait: "tripod", "suriana", "maxplus", "tetrapod" or "buehler".
+        gait: "tripod", "suriana", "maxplus", "tetrapod" or "buehler", or groups of legs in the
+            order of their steps, such as "{1,4} < {2,5} < {3,6}".
         slip: A calibration folder or `slip.toml`, "coulomb:MU[:V]" or "thesis"; None for a model
             without slip.
         duration: Duration of the walk [s].

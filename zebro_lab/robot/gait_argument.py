@@ -8,12 +8,16 @@ from types import MappingProxyType
 import numpy as np
 
 from model.gait import (
+    TETRAPOD,
     TRIPOD,
     CyclicReference,
     Direction,
+    EventSystem,
+    Gait,
     TripodAngles,
     buehler_reference,
     inner_legs,
+    parse_gait,
     scheduled_reference,
     suriana_reference,
     tetrapod_reference,
@@ -21,6 +25,7 @@ from model.gait import (
     tripod_reference,
     turning_system,
 )
+from model.robot import N_LEGS
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest
@@ -34,11 +39,13 @@ class NamedGait:
         reference: Leg angles over time.
         what: Name of the gait with its main parameters, for titles.
         direction: Side that the gait turns to, if it turns: the one requested, "left" by default.
+        schedule: The max-plus system that gave the times; None where none did.
     """
 
     reference: CyclicReference
     what: str
     direction: Direction = "left"
+    schedule: EventSystem | None = None
 
 
 @dataclass(frozen=True)
@@ -65,12 +72,13 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
     >>> gait.what, np.degrees(gait.reference.liftoff).round(1).tolist()[:2]
     ('tripod, s = 1.1, left', [118.0, 120.7])
     """
-    if request.name not in GAITS:
+    kind = _GROUPS if "{" in request.name else GAITS.get(request.name)
+    if kind is None:
         raise SettingsError(
-            f"'{request.name}' is not a gait; {nearest(request.name, list(GAITS))}",
+            f"'{request.name}' is not a gait; {nearest(request.name, list(GAITS))}, or groups of "
+            'legs such as "{1,4} < {2,5} < {3,6}"',
             key="--gait",
         )
-    kind = GAITS[request.name]
     for option in request.given():
         if option not in kind.options:
             known = ", ".join(map(_flag, kind.options))
@@ -113,19 +121,34 @@ def _suriana(request: GaitRequest, _: float) -> NamedGait:
 
 
 def _maxplus(request: GaitRequest, _: float) -> NamedGait:
-    times, inner = _turn_times(request), inner_legs(request.side)
-    touchdown, liftoff = _stance(request, *_THESIS_TURN)
-    system = turning_system(TRIPOD, inner=inner, **times)
+    return _scheduled(request, TRIPOD, "max-plus", _stance(request, *_THESIS_TURN))
+
+
+def _groups(request: GaitRequest, _: float) -> NamedGait:
+    gait = parse_gait(request.name, N_LEGS)
+    return _scheduled(request, gait, str(gait), _stance(request, *_THESIS_TURN))
+
+
+def _scheduled(
+    request: GaitRequest, gait: Gait, name: str, stance: tuple[float, float], **defaults: float
+) -> NamedGait:
+    """Schedule a gait of any groups; `defaults` are for `_turn_times`, angles in radians."""
+    times, inner = _turn_times(request, **defaults), inner_legs(request.side)
+    touchdown, liftoff = stance
+    waits = _or(request.tau_double, 0.0)
+    system = turning_system(gait, inner=inner, double_stance=waits, **times)
     reference = scheduled_reference(
         system, touchdown, liftoff=liftoff, inner=inner if times["turn_time"] else ()
     )
-    return NamedGait(reference, _turn_name("max-plus", request, times), request.side)
+    return NamedGait(reference, _turn_name(name, request, times), request.side, system)
 
 
-def _turn_times(request: GaitRequest) -> dict[str, float]:
+def _turn_times(
+    request: GaitRequest, *, ground: float = 0.8, flight: float = 0.8
+) -> dict[str, float]:
     return {
-        "ground_time": _or(request.tau_ground, 0.8),
-        "flight_time": _or(request.tau_flight, 0.8),
+        "ground_time": _or(request.tau_ground, ground),
+        "flight_time": _or(request.tau_flight, flight),
         "turn_time": _or(request.tau_turn, 0.0),
     }
 
@@ -137,10 +160,14 @@ def _turn_name(name: str, request: GaitRequest, times: Mapping[str, float]) -> s
 
 def _tetrapod(request: GaitRequest, _: float) -> NamedGait:
     touchdown, liftoff = _stance(request, 45.0, 135.0)  # 5-5-1 of the thesis
+    cycle = _or(request.cycle, 3.0)
+    if any(option in _SCHEDULED for option in request.given()):
+        return _scheduled(
+            request, TETRAPOD, "tetrapod", (touchdown, liftoff),
+            ground=2 * cycle / 3, flight=cycle / 3,
+        )  # fmt: skip
     # Other angles than the thesis's put legs 2 and 5 out of rhythm if they start at 90 degrees.
-    reference = tetrapod_reference(
-        touchdown, liftoff, cycle_time=_or(request.cycle, 3.0), middle_start=None
-    )
+    reference = tetrapod_reference(touchdown, liftoff, cycle_time=cycle, middle_start=None)
     return NamedGait(reference, "tetrapod")
 
 
@@ -158,14 +185,17 @@ _THESIS_TURN = (35.0, 130.0)  # touchdown and lift-off of 5-2-4 [deg]
 LEAST_DEG = 3.2  # in degrees a leg would touch down far ahead of the body, or lift off there
 _ANGLES = ("touchdown_deg", "liftoff_deg")
 _TIMES = ("tau_ground", "tau_flight", "tau_turn")
+_SCHEDULED = (*_TIMES, "tau_double")  # any of them has the tetrapod scheduled
+_SCHEDULE = ("direction", *_SCHEDULED)
 GAITS: Mapping[str, _Kind] = MappingProxyType({
     "tripod": _Kind(("steering", "direction", *_ANGLES, "cycle"), _tripod),
     "suriana": _Kind(("direction", *_ANGLES, *_TIMES), _suriana),
-    "maxplus": _Kind(("direction", *_ANGLES, *_TIMES), _maxplus),
-    "tetrapod": _Kind((*_ANGLES, "cycle"), _tetrapod),
+    "maxplus": _Kind((*_SCHEDULE, *_ANGLES), _maxplus),
+    "tetrapod": _Kind((*_SCHEDULE, *_ANGLES, "cycle"), _tetrapod),
     "buehler": _Kind((*_ANGLES, "cycle", "tau_ground"), _buehler),
 })  # fmt: skip
 """Options and constructor of each gait, by its name on a command line."""
+_GROUPS = _Kind((*_SCHEDULE, *_ANGLES), _groups)
 
 
 def _or(value: float | None, default: float) -> float:

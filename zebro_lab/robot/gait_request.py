@@ -2,13 +2,15 @@
 """Options that describe a gait."""
 
 from dataclasses import asdict, dataclass
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
-from typer import Option
+from typer import BadParameter, Option
 
+from rig.nearest_name import nearest
 from zebro_lab.terminal.limits import Limits
 
-GaitName: TypeAlias = Literal["tripod", "suriana", "maxplus", "tetrapod", "buehler"]
+GAIT_NAMES: Final = ("tripod", "suriana", "maxplus", "tetrapod", "buehler")
+"""Names of gaits; any other is given by its groups of legs."""
 Side: TypeAlias = Literal["left", "right"]
 _PAIR = "INNER[,OUTER]"
 _STEERING = (
@@ -16,7 +18,7 @@ _STEERING = (
     " which is straight."
 )
 _OTHER_SIDE = "the side to turn to is --direction left or right"
-_SIDE = "Side to turn to, for tripod, suriana and maxplus; default: left."
+_SIDE = "Side to turn to, for all gaits but buehler; default: left."
 _TOUCHDOWN = (
     "Leg angle at touchdown, 0 ahead, 90 down [deg]; default: 50 for tripod and buehler, 45 for "
     "tetrapod, else 35. OUTER for tripod only; default: computed."
@@ -25,23 +27,54 @@ _LIFTOFF = (
     "Leg angle at lift-off, 0 ahead, 90 down [deg]; default: computed for tripod, 118 for buehler, "
     "135 for tetrapod, else 130. OUTER for tripod only."
 )
-_CYCLE = "Duration of a cycle [s], for tripod and buehler (default: 2) and tetrapod (default: 3)."
+_GAIT = (
+    "Gait: tripod, suriana, maxplus, tetrapod or buehler, or groups of legs in the order of their "
+    'steps, such as "{1,4} < {2,5} < {3,6}", which max-plus algebra schedules.'
+)
+_CYCLE = (
+    "Duration of a cycle [s], for tripod and buehler (default: 2) and, before turning and waiting, "
+    "tetrapod (default: 3)."
+)
 _GROUND = (
-    "Stance time without --tau-turn, for suriana and buehler; shortest stance time, for maxplus "
-    "[s]; default: 0.8, for buehler half a cycle."
+    "Stance time without --tau-turn, for suriana and buehler; shortest stance time, for scheduled "
+    "gaits (maxplus, tetrapod, groups) [s]; default: 0.8, for buehler half a cycle, for tetrapod "
+    "two thirds."
 )
-_FLIGHT = "Flight time without --tau-turn, for suriana and maxplus [s]; default: 0.8."
+_FLIGHT = (
+    "Flight time without --tau-turn, for suriana and scheduled gaits [s]; default: 0.8, for "
+    "tetrapod a third of the cycle."
+)
 _TURN = (
-    "Time added to stance of the inner and to flight of the outer legs, for suriana and maxplus "
-    "[s]; default: 0, which is straight."
+    "Time added to stance of the inner and to flight of the outer legs, for suriana and scheduled "
+    "gaits [s]; default: 0, which is straight."
 )
+_DOUBLE = "Time that a group and the next stand together, for scheduled gaits [s]; default: 0."
+
+
+def gait_name(text: str) -> str:
+    """Return the name of a gait, or its groups of legs, which are not parsed here.
+
+    Raises:
+        BadParameter: The text is neither a known name nor has a group in braces.
+
+    >>> gait_name("tripod")
+    'tripod'
+    """
+    if text not in GAIT_NAMES and "{" not in text:
+        raise BadParameter(
+            f"'{text}' is not a gait; {nearest(text, GAIT_NAMES)}, or groups of legs such as "
+            '"{1,4} < {2,5} < {3,6}"'
+        )
+    return text
 
 
 @dataclass(frozen=True)
 class GaitRequest:
     """Parameters of a gait; None for the gait's default."""
 
-    name: Annotated[GaitName, Option("--gait", help="Gait: pattern of leg motion.")] = "tripod"
+    name: Annotated[str, Option("--gait", parser=gait_name, metavar="NAME|GROUPS", help=_GAIT)] = (
+        "tripod"
+    )
     steering: Annotated[
         float | None, Option(help=_STEERING), Limits(above=0, advice=_OTHER_SIDE)
     ] = None
@@ -56,6 +89,7 @@ class GaitRequest:
         float | None, Option(metavar="SECONDS", help=_FLIGHT), Limits(above=0)
     ] = None
     tau_turn: Annotated[float | None, Option(min=0.0, metavar="SECONDS", help=_TURN)] = None
+    tau_double: Annotated[float | None, Option(min=0.0, metavar="SECONDS", help=_DOUBLE)] = None
 
     def given(self) -> dict[str, object]:
         """Return the options that are not None by name, except the name of the gait."""

@@ -20,6 +20,8 @@ zebro-lab walk --touchdown-deg 50,37.8 --liftoff-deg 130,138 --arc-deg 200 --sli
 
 zebro-lab walk --gait suriana --tau-turn 0.1 --model thesis --slip thesis --duration 4.8 --animate
 
+zebro-lab walk --gait "{1,4} < {2,5} < {3,6}" --tau-turn 0.1 --slip thesis --duration 20
+
 zebro-lab walk --gait tripod --steering 1.3 --slip calibration --duration 25 --draws 300
 
 zebro-lab walk --write-robot robot.toml

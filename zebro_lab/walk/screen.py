@@ -9,8 +9,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from model.gait import CyclicReference
+from model.counted import counted
+from model.gait import CyclicReference, EventSystem
 from model.progress import Watcher
+from model.slip.law import Array
 from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
@@ -65,7 +67,21 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "largest_roll_rad": summary.largest_roll,
         "largest_pitch_rad": summary.largest_pitch,
         "mean_slip_m_per_s": summary.mean_slip,
+        "schedule": _schedule_document(walked),
         "notes": _notes(walked, summary),
+    }
+
+
+def _schedule_document(walked: Walked) -> dict[str, object] | None:
+    if walked.schedule is None or not isinstance(walked.reference, CyclicReference):
+        return None
+    down, up = _events(walked.reference)
+    return {
+        "gait": str(walked.schedule.gait),
+        "cycle_time_s": walked.schedule.cycle_time,
+        "coupling_time_cycles": walked.schedule.coupling_time,
+        "touchdown_s": down,
+        "liftoff_s": up,
     }
 
 
@@ -80,6 +96,9 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
     console.print(plain(f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"))
     if isinstance(walked.reference, CyclicReference):
         console.print(gait_table(walked.reference))
+        if walked.schedule is not None:
+            console.print(event_table(walked.reference))
+            console.print(plain(schedule_line(walked.schedule)))
     summary = summarise(walked.path)
     for line in _in_order([*summary_lines(summary), *_notes(walked, summary)]):
         console.print(plain(line))
@@ -156,6 +175,15 @@ def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
     return lines
 
 
+def schedule_line(schedule: EventSystem) -> str:
+    """Say what the max-plus system of a gait computed: cycle time and coupling time."""
+    return (
+        f"scheduled by max-plus algebra, {schedule.gait}: cycle time (eigenvalue) "
+        f"{schedule.cycle_time:.4g} s; from any start events repeat after "
+        f"{counted(schedule.coupling_time, 'cycle')} (coupling time)"
+    )
+
+
 def gait_table(reference: CyclicReference) -> Table:
     """Return a table of a gait, a row per leg: angles [deg], times [s] and speeds [deg/s]."""
     title = f"the gait, with a cycle of {reference.period:.4g} s"
@@ -174,3 +202,21 @@ def gait_table(reference: CyclicReference) -> Table:
         side = " inner" if leg in reference.inner else " outer" if reference.inner else ""
         table.add_row(f"{leg + 1}{side}", *(f"{column[leg]:.4f}" for column in columns))
     return table
+
+
+def event_table(reference: CyclicReference) -> Table:
+    """Return a table of a gait's events: legs that touch down and lift off, by time [s]."""
+    down, up = _events(reference)
+    table = plain_table("events of a cycle", ("legs down", "legs up"), ("time\n[s]",))
+    for t in np.unique([down, up]):
+        legs = (", ".join(map(str, np.flatnonzero(each == t) + 1)) for each in (down, up))
+        table.add_row(*legs, f"{t:.4f}")
+    return table
+
+
+def _events(reference: CyclicReference) -> tuple[Array, Array]:
+    """Return each leg's touchdown and lift-off from 0 to below a period, shape (n,) each [s]."""
+    period = round(reference.period, 9)
+    down = -reference.phase * period
+    down, up = (np.round(each, 9) % period for each in (down, down + reference.ground_time))
+    return np.round(down, 9), np.round(up, 9)

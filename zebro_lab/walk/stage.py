@@ -51,6 +51,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
             duration=duration, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
         walked = replace(walked, band=band)
+    walked = replace(walked, schedule=gait.schedule)
     settings = {
         "gait": {"name": request.gait.name, **request.gait.given()},
         "duration": duration,

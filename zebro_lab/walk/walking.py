@@ -9,6 +9,7 @@ import numpy as np
 
 from model.errors import DefinitionMismatch, DomainError
 from model.gait.direction import Direction
+from model.gait.events import EventSystem
 from model.gait.reference import LegReference
 from model.poses import Poses
 from model.predict import FINE
@@ -41,6 +42,7 @@ class Walked:
         notes: Notes, one line each.
         informed: Posterior of legs and floor that was used; None without fitted walks.
         band: Paths with slip law, legs, floor and start drawn; None unless requested.
+        schedule: The max-plus system of the gait's events; None for other gaits and for logs.
     """
 
     path: WalkPath
@@ -53,6 +55,7 @@ class Walked:
     notes: tuple[str, ...]
     informed: InformedLegs | None = None
     band: Poses | None = None
+    schedule: EventSystem | None = None
 
     @property
     def doubts(self) -> tuple[str, ...]:

@@ -7,11 +7,13 @@ from hypothesis import strategies as st
 from model.errors import DomainError
 from model.gait.direction import inner_legs
 from model.gait.events import EventTimes, events_reference, scheduled_reference
-from model.gait.notation import TETRAPOD, TRIPOD
+from model.gait.maxplus import cyclicity
+from model.gait.notation import TETRAPOD, TRIPOD, Gait
 from model.gait.scheduler import straight_system
 from model.gait.stance import stance_intervals
 from model.gait.steering import TripodAngles, tripod_reference
 from model.gait.turning import turning_system
+from model.robot import LEFT
 
 DOWN, UP = 0.8, 2.2
 TIME = st.integers(1, 40).map(lambda n: n / 8)
@@ -103,3 +105,40 @@ def test_events_out_of_order_are_refused():
 def test_liftoff_before_touchdown_is_refused():
     with pytest.raises(DomainError, match="leg 1 touches down"):
         scheduled_reference(turn(), UP, liftoff=DOWN)
+
+
+def powers_by_hand(matrix, n):
+    """Return the first n max-plus powers of a matrix, entry by entry, without our algebra."""
+    size, found = len(matrix), [matrix.tolist()]
+    for _ in range(n - 1):
+        last = found[-1]
+        found.append([
+            [max(matrix[i][k] + last[k][j] for k in range(size)) for j in range(size)]
+            for i in range(size)
+        ])  # fmt: skip
+    return np.array(found)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_cycle_and_coupling_time_of_random_gaits_are_those_of_the_powers(seed):
+    rng = np.random.default_rng(seed)
+    legs, cuts = (
+        rng.permutation(6) + 1,
+        np.sort(rng.choice(np.arange(1, 6), rng.integers(0, 6), False)),
+    )
+    gait = Gait(tuple(tuple(group.tolist()) for group in np.split(legs, cuts)))
+    ground, flight, turn, double = rng.integers(1, 30, 4) / 16
+    system = turning_system(
+        gait, inner=LEFT, ground_time=ground, flight_time=flight, turn_time=turn,
+        double_stance=double,
+    )  # fmt: skip
+    powers = powers_by_hand(system.matrix, 40)
+    with np.errstate(invalid="ignore"):
+        growth = (powers[-1] - powers[-13]) / 12
+    assert system.cycle_time == pytest.approx(growth[np.isfinite(growth)].mean(), abs=1e-9)
+    settled = powers - system.cycle_time * np.arange(1, 41)[:, None, None]
+    pairs = [(k, other) for other in range(1, 40) for k in range(other)
+             if np.allclose(settled[k], settled[other], atol=1e-9)]  # fmt: skip
+    first, again = min(pairs, key=lambda pair: pair[1])
+    assert system.coupling_time == first + 1
+    assert cyclicity(system.matrix) == again - first

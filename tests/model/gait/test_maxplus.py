@@ -9,6 +9,8 @@ from model.errors import DomainError
 from model.gait.maxplus import (
     EPSILON,
     ONE,
+    coupling_time,
+    cyclicity,
     diagonal,
     eigenvalue,
     eigenvector,
@@ -124,3 +126,41 @@ def test_matrix_without_circuits_has_no_eigenvalue():
     assert eigenvalue(falls) == EPSILON
     with pytest.raises(DomainError, match="no circuit"):
         eigenvector(falls)
+
+
+def repeats(A):
+    """Return coupling time and cyclicity by comparing every power with every one before it."""
+    step, powers = A - eigenvalue(A), [A - eigenvalue(A)]
+    while True:
+        powers.append(otimes(step, powers[-1]))
+        for k, power in enumerate(powers[:-1], start=1):
+            if np.allclose(power, powers[-1], atol=1e-9):
+                return k, len(powers) - k
+
+
+@given(arrays(float, (N, N), elements=st.integers(-5, 5).map(float)))
+def test_powers_repeat_after_the_coupling_time_with_the_cyclicity(A):
+    assert (coupling_time(A), cyclicity(A)) == repeats(A)
+
+
+@pytest.mark.parametrize(("lengths", "expected"), [((2, 3), 6), ((2, 2), 2), ((4,), 4), ((1,), 1)])
+def test_circuits_that_are_not_connected_repeat_together(lengths, expected):
+    A = zeros(sum(lengths), sum(lengths))
+    first = 0
+    for n in lengths:
+        for i in range(n):
+            A[first + i, first + (i + 1) % n] = 5.0
+        first += n
+    assert cyclicity(A) == expected
+    assert coupling_time(A) == 1
+
+
+def test_parts_of_different_rates_never_couple():
+    A = np.array([[2.0, EPSILON], [EPSILON, 1.0]])
+    with pytest.raises(DomainError, match="not periodic within 10,000 cycles"):
+        coupling_time(A)
+
+
+def test_a_matrix_without_circuits_has_no_cyclicity():
+    with pytest.raises(DomainError, match="no circuit"):
+        cyclicity(np.array([[EPSILON, EPSILON], [1.0, EPSILON]]))

@@ -49,7 +49,23 @@ def test_every_gait_turns_its_legs_by_a_turn_a_cycle(name):
     np.testing.assert_allclose(turned, 2 * np.pi)
 
 
-@pytest.mark.parametrize("name", ["suriana", "maxplus"])
+def test_a_gait_may_be_given_by_its_groups_of_legs():
+    gait = make(name="{3,6} < {1,4} < {2,5}", tau_flight=0.5, tau_ground=0.9, tau_double=0.1)
+    assert gait.what == "{3,6} ≺ {1,4} ≺ {2,5}, straight"
+    assert gait.reference.period == pytest.approx(3 * (0.5 + 0.1))
+    assert gait.schedule is not None
+
+
+def test_the_tetrapod_turns_by_its_times_in_its_own_cycle():
+    straight, turning = make(name="tetrapod"), make(name="tetrapod", tau_turn=0.2, cycle=1.5)
+    assert straight.schedule is None
+    assert turning.reference.period == pytest.approx(3 * (0.5 + 0.2))
+    np.testing.assert_allclose(np.degrees(turning.reference.touchdown), 45)
+    flights = turning.reference.flight_time
+    np.testing.assert_allclose(flights, [0.5, 0.7] * 3)
+
+
+@pytest.mark.parametrize("name", ["suriana", "maxplus", "tetrapod", "{1,2} < {3,4} < {5,6}"])
 def test_inner_legs_stand_longer_by_the_turn_time(name):
     reference = make(name=name, tau_turn=0.1, direction="left").reference
     stands = reference.ground_time
@@ -75,6 +91,9 @@ FAULTS = {
     "unknown gait": ({"name": "trot"}, r"'trot' is not a gait"),
     "option of another gait": (
         {"name": "tetrapod", "steering": 1.1}, r"--steering: does not apply to gait 'tetrapod'",
+    ),
+    "option of another gait, groups": (
+        {"name": "{1,2,3} < {4,5,6}", "cycle": 2.0}, r"--cycle: does not apply to gait",
     ),
     "no number": ({"touchdown_deg": "50,x"}, r"--touchdown-deg: '50,x' is not an angle"),
     "three angles": ({"liftoff_deg": "1,2,3"}, r"--liftoff-deg: '1,2,3' is not an angle"),
@@ -104,6 +123,9 @@ def test_fault_names_the_option(options, message):
         {"cycle": -1.0},
         {"name": "suriana", "tau_turn": -0.1},
         {"name": "buehler", "cycle": 1.0, "tau_ground": 2.0},
+        {"name": "{1,2,3} < {4,5}"},
+        {"name": "{1,2,3} < {4,5,6,7}"},
+        {"name": "{1,2,3,4,5,6"},
     ],
 )
 def test_impossible_gait_is_refused(options):

@@ -12,10 +12,13 @@ from rich.console import Console
 
 from model.gait import tripod_angles, tripod_reference
 from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.robot.gait_argument import make_gait
+from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.terminal.stopping import STOPPED
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.screen import (
+    event_table,
     gait_table,
     print_walk,
     run_and_report,
@@ -49,6 +52,26 @@ def test_the_gait_has_a_row_a_leg_with_angles_times_and_speeds():
         np.degrees(GAIT.angles(0.0)[0]) % 360,
     ])  # fmt: skip
     np.testing.assert_allclose(numbers, expected, atol=1e-4)
+
+
+def test_a_scheduled_gait_has_its_events_cycle_and_coupling_time(walked, tmp_path):
+    request = GaitRequest("{1,4} < {2,5} < {3,6}", tau_double=0.1)
+    gait = make_gait(request, leg_arc=np.pi)
+    done = replace(finished(walked), reference=gait.reference, schedule=gait.schedule)
+    rows = list(zip(*(column.cells for column in event_table(gait.reference).columns), strict=True))
+    assert rows == [
+        ("1, 4", "", "0.0000"), ("", "2, 5", "0.1000"), ("2, 5", "", "0.9000"),
+        ("", "3, 6", "1.0000"), ("3, 6", "", "1.8000"), ("", "1, 4", "1.9000"),
+    ]  # fmt: skip
+    console = Console(file=io.StringIO(), width=200)
+    print_walk(console, done, tmp_path)
+    assert "cycle time (eigenvalue) 2.7 s; from any start events repeat after 2 cycles" in (
+        console.file.getvalue()
+    )
+    document = walk_document(done)["schedule"]
+    assert (document["cycle_time_s"], document["coupling_time_cycles"]) == (pytest.approx(2.7), 2)
+    assert document["liftoff_s"].tolist() == [1.9, 0.1, 1.0, 1.9, 0.1, 1.0]
+    assert walk_document(finished(walked))["schedule"] is None
 
 
 @pytest.mark.parametrize(("sign", "side"), [(1, "left"), (-1, "right")])

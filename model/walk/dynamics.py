@@ -159,18 +159,18 @@ def integrate(
         theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
         options: Step length and contacts.
         ground: The ground.
-        keep_legs: Whether to return slip and forces of the legs.
+        keep_legs: Whether to return slip and forces of the legs and the body.
         began: Time of the first step, for the message of an error [s].
 
     Returns:
         Position [m] and quaternion (w, x, y, z) at the times of `theta`, shape (n + 1, 7), and slip
-        and forces at each step's end as in `run_steps`, shape (n, 6, 6), or (0, 6, 6) if not kept.
+        and forces at each step's end as in `run_steps`, shape (n, 7, 6), or (0, 7, 6) if not kept.
 
     Raises:
         WalkError: A step diverged; the message says when and where.
     """
     n = len(theta) - 1
-    pose, legs = np.empty((n + 1, 7)), np.empty((n if keep_legs else 0, N_LEGS, 6))
+    pose, legs = np.empty((n + 1, 7)), np.empty((n if keep_legs else 0, N_LEGS + 1, 6))
     pose[0] = np.concatenate([state.p, state.q])
     contacts = Contacts(options.stiffness, options.damping)
     done = run_steps(
@@ -273,12 +273,13 @@ def _settled(
 
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
-    """Convert poses (n + 1, 7) and the legs' rows of `run_steps`, (n, 6, 6), to a path.
+    """Convert poses (n + 1, 7) and the rows of legs and body of `run_steps`, (n, 7, 6), to a path.
 
-    The first sample takes the legs' row of the first step's end, each other one that of its step.
+    The first sample takes the rows of the first step's end, each other one those of its step.
     """
     orientation = roll_pitch_yaw(pose[:, 3:])
     legs = np.concatenate([legs[:1], legs])
+    body, legs = legs[:, N_LEGS, 0], legs[:, :N_LEGS]
     load: NDArray[np.float64] = legs[..., 0]
     return WalkPath(
         t=t,
@@ -290,6 +291,7 @@ def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
         slip_ratio=legs[..., 5],
         normal_force=load,
         traction_force=_to_heading(legs[..., 1:3], orientation[:, 2]),
+        body_force=body,
     )
 
 

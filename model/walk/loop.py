@@ -73,7 +73,8 @@ def run_steps(
         dt: Length of a step [s].
         pose: Filled at each step's end: position and quaternion, shape (n, 7).
         legs: Filled at each step's end: normal force, traction (world x, y), slip velocity (world
-            x, y) and slip ratio of each leg, shape (n, 6, 6), or (0, 6, 6) not to keep them; a leg
+            x, y) and slip ratio of each leg, then a row for the body with the sum of the normal
+            forces on its corners and zeros, shape (n, 7, 6), or (0, 7, 6) not to keep them; a leg
             in the air has 0, and the ratio is NaN unless a leg rolls on the ground.
 
     Returns:
@@ -142,8 +143,11 @@ def _keep_pose(out, state):
 
 @inlined
 def _keep_legs(out, contacts, state, work, speed):
-    """Fill a row, shape (6, 6), of `run_steps`; a leg in the air has 0 and slip ratio NaN."""
+    """Fill rows, shape (7, 6), of `run_steps`; a leg in the air has 0 and slip ratio NaN."""
     R, point = work.R, work.point
+    out[N_LEGS, :] = 0.0
+    for i in range(N_LEGS, N_CONTACTS):
+        out[N_LEGS, 0] += work.load[i]
     bristle = BRISTLE_STIFFNESS * contacts.stiffness
     for i in range(N_LEGS):
         out[i, :] = 0.0

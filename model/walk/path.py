@@ -30,6 +30,8 @@ class WalkPath:
             where a model has none, shape (n, 6) [N].
         traction_force: Traction force of the ground on each leg, forward and to the left of the
             heading; zero and NaN as `normal_force`, shape (n, 6, 2) [N].
+        body_force: Normal force of the ground on the body itself; zero while it clears the ground,
+            NaN where a model has none, shape (n,), or a number for all samples [N].
     """
 
     t: Array
@@ -41,6 +43,22 @@ class WalkPath:
     slip_ratio: Array
     normal_force: Array
     traction_force: Array
+    body_force: Array | float = np.nan
+
+    def __post_init__(self) -> None:
+        """Broadcast a number for `body_force` to all samples."""
+        full = np.broadcast_to(np.asarray(self.body_force, dtype=float), self.t.shape)
+        object.__setattr__(self, "body_force", full)
+
+    @property
+    def on_body(self) -> NDArray[np.bool_]:
+        """Whether the body itself presses on the ground, shape (n,); False where not modelled."""
+        return np.asarray(self.body_force) > 0
+
+    @property
+    def in_flight(self) -> NDArray[np.bool_]:
+        """Whether neither a leg nor the body presses on the ground, shape (n,)."""
+        return ~self.contact.any(axis=1) & ~self.on_body
 
     @property
     def poses(self) -> Poses:

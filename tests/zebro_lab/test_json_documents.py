@@ -48,6 +48,8 @@ def test_predict_gives_the_walked_path_in_numbers(run_command, tmp_path):
         "folder", "title", "time_step_s", "duration_s", "end_x_m", "end_y_m", "end_yaw_rad",
         "length_m", "strides", "speed_m_per_s", "yaw_rate_rad_per_s", "radius_m",
         "largest_roll_rad", "largest_pitch_rad", "mean_slip_m_per_s", "notes",
+        "schedule", "flight_share", "body_contact_share", "loaded_shares", "sliding_shares",
+        "unloaded_shares",
     })  # fmt: skip
     assert found["length_m"] > 0
     assert found["folder"] == str(tmp_path / "out")

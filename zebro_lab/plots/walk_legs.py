@@ -119,10 +119,18 @@ def gantt(path: WalkPath, *, title: str) -> Figure:
         title: Title of the figure, which names the model; "(simulated)" is appended.
 
     Returns:
-        The figure: a row for each leg, leg 1 on top; bars are contact, left legs darker.
+        The figure: a row for each leg, leg 1 on top; bars are contact, left legs darker. Times
+        without any contact are shaded, those with the body on the ground hatched.
     """
     figure = new_figure(title, True, width=7.5, height=3.0)
     axes = figure.add_subplot()
+    for start, end in stances(path.t, path.in_flight):
+        axes.axvspan(start, end, color=RED, alpha=0.2, lw=0, label="flight")
+    for start, end in stances(path.t, path.on_body):
+        axes.axvspan(
+            start, end, facecolor="none", edgecolor="0.6", hatch="////", lw=0,
+            label="body on the ground",
+        )  # fmt: skip
     for leg in range(N_LEGS):
         bars = [(start, end - start) for start, end in stances(path.t, path.contact[:, leg])]
         colour, side = (BLUE, "left") if leg in LEFT else (_PALE_BLUE, "right")

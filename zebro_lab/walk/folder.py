@@ -21,6 +21,7 @@ from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
+from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 
 SCHEMA = 1
@@ -53,12 +54,14 @@ class _Block:
         columns: Names of the columns.
         values: Function that returns the attribute of a path, shape (n, len(columns)), SI.
         may_be_empty: Whether cells may be empty when read: the model did not compute the attribute.
+        may_be_missing: Whether the columns may be missing when read: older folders have none.
         form: printf-style format of a number.
     """
 
     columns: tuple[str, ...]
     values: Callable[[WalkPath], Array]
     may_be_empty: bool = False
+    may_be_missing: bool = False
     form: str = _DIGITS
 
 
@@ -78,6 +81,18 @@ _BLOCKS = (
     _Block(_legs("force_x"), lambda path: path.traction_force[..., 0], may_be_empty=True),
     _Block(_legs("force_y"), lambda path: path.traction_force[..., 1], may_be_empty=True),
     _Block(_legs("slip_ratio"), lambda path: path.slip_ratio, may_be_empty=True),
+    _Block(
+        ("body_force",),
+        lambda path: np.asarray(path.body_force)[:, None],
+        may_be_empty=True,
+        may_be_missing=True,
+    ),
+    _Block(
+        ("flight",),
+        lambda path: path.in_flight[:, None].astype(float),
+        may_be_missing=True,
+        form="%d",
+    ),
 )
 COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
 """The columns of `path.csv`, in order."""
@@ -150,12 +165,16 @@ def read_walk(path: Path) -> WalkPath:
         raise NotFound(f"{file}: no such file; choose a folder that walk or predict wrote")
     table = read_table_file(file)
     numbers = np.column_stack([
-        table.finite(name, may_be_empty=block.may_be_empty)
-        for block in _BLOCKS
-        for name in block.columns
+        _read(table, name, block) for block in _BLOCKS for name in block.columns
     ])  # fmt: skip
     table.require_increasing("t", numbers[:, 0])
     return _path_from(numbers)
+
+
+def _read(table: RawTable, name: str, block: _Block) -> Array:
+    if block.may_be_missing and name not in table.columns:
+        return np.full(len(table), np.nan)
+    return table.finite(name, may_be_empty=block.may_be_empty)
 
 
 def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
@@ -215,4 +234,5 @@ def _path_from(numbers: Array) -> WalkPath:
         slip_ratio=parts["slip_ratio1"],
         normal_force=parts["normal1"],
         traction_force=np.stack([parts["force_x1"], parts["force_y1"]], axis=-1),
+        body_force=parts["body_force"][:, 0],
     )

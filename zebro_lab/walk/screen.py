@@ -13,6 +13,7 @@ from model.counted import counted
 from model.gait import CyclicReference, EventSystem
 from model.progress import Watcher
 from model.slip.law import Array
+from model.walk.support import SLIDES, Support, support_of
 from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
@@ -24,6 +25,8 @@ from zebro_lab.walk.walking import Walked
 
 _WARNING = "WARNING"
 _STEEP = 30.0  # deg; a body that stands on its legs sways by a few degrees
+_MUCH_FLIGHT = 0.01  # share of the time; a few steps between two stances do not matter
+_MUCH_UNLOADED = 0.05  # share of a stance; touchdown and lift-off are never quite at its ends
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
@@ -67,6 +70,7 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "largest_roll_rad": summary.largest_roll,
         "largest_pitch_rad": summary.largest_pitch,
         "mean_slip_m_per_s": summary.mean_slip,
+        **_support_document(_support(walked)),
         "schedule": _schedule_document(walked),
         "notes": _notes(walked, summary),
     }
@@ -109,8 +113,48 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
 
 
 def _notes(walked: Walked, summary: WalkSummary) -> list[str]:
-    lines = [*walked.notes, *tilt_lines(summary), *slip_lines(walked, summary)]
-    return _in_order(lines)
+    support = _support(walked)
+    lines = [*walked.notes, *tilt_lines(summary), *support_lines(support)]
+    return _in_order([*lines, *slip_lines(walked, summary, support)])
+
+
+def _support(walked: Walked) -> Support:
+    path, reference = walked.path, walked.reference
+    stances = None
+    if isinstance(reference, CyclicReference):
+        stances = reference.stance_intervals((float(path.t[0]), float(path.t[-1])))
+    return support_of(path, stances)
+
+
+def _support_document(support: Support) -> dict[str, object]:
+    return {
+        "flight_share": support.flight,
+        "body_contact_share": support.body,
+        "loaded_shares": support.loaded,
+        "sliding_shares": support.sliding,
+        "unloaded_shares": support.unloaded,
+    }
+
+
+def support_lines(support: Support) -> list[str]:
+    """Say how much of the time the robot flew, its body touched, and legs stood without load.
+
+    Flight above 1 % of the time and any contact of the body are warnings; legs that are unloaded in
+    more than 5 % of their stance are named.
+    """
+    lines = []
+    if support.flight > _MUCH_FLIGHT:
+        lines.append(f"{_WARNING}: nothing is on the ground in {support.flight:.1%} of the time: "
+                     "all legs are lifted at once, and the robot falls; check the gait's "
+                     "times")  # fmt: skip
+    if support.body > 0:
+        lines.append(f"{_WARNING}: the body touches the ground in {support.body:.1%} of the time; "
+                     "its friction is that of the legs, which nothing has measured")  # fmt: skip
+    idle = [f"leg {leg} in {share:.0%}" for leg, share in enumerate(support.unloaded, start=1)
+            if share > _MUCH_UNLOADED]  # fmt: skip
+    if idle:
+        lines.append(f"legs without load in their stance: {', '.join(idle)} of it")
+    return lines
 
 
 def _in_order(lines: list[str]) -> list[str]:
@@ -150,18 +194,24 @@ def summary_lines(summary: WalkSummary) -> list[str]:
     ]
 
 
-def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
-    """Format the mean slip speed, if known, and a warning if over 1 % of contacts are untested.
+def slip_lines(walked: Walked, summary: WalkSummary, support: Support) -> list[str]:
+    """Format mean slip speed and sliding, if known, and a warning if 1 % of contacts are untested.
 
     Untested are contacts with a load below the least tested one.
 
     Args:
         walked: The walk with its slip law; a law without tested loads is noted as assumed.
         summary: Summary of the walk.
+        support: How much of its contact each leg slides.
     """
     lines = []
     if np.isfinite(summary.mean_slip):
-        lines.append(f"legs in contact slip at {1000 * summary.mean_slip:.2f} mm/s on average")
+        most = float(np.nanmax(support.sliding))
+        lines.append(
+            f"legs in contact slip at {1000 * summary.mean_slip:.2f} mm/s on average; leg "
+            f"{int(np.nanargmax(support.sliding)) + 1} most, over {1000 * SLIDES:g} mm/s in "
+            f"{most:.0%} of its contact"
+        )
     if walked.slip is None:
         return lines
     untested, tested = walked.slip.loads_below_tested(walked.path), walked.slip.tested_loads

@@ -23,7 +23,7 @@ def run(*, n=200, dt=0.001, height=None, velocity=(0.0, 0.0, 0.0), friction=0.38
     if height is not None:
         state.p[2] = height
     state.v[:] = velocity
-    poses, legs = np.empty((n, 7)), np.empty((n, N_LEGS, 6))
+    poses, legs = np.empty((n, 7)), np.empty((n, N_LEGS + 1, 6))
     table = VelocityCoulomb(friction).table(weight=ROBOT.mass * GRAVITY)
     done = run_steps(body_arrays(ROBOT), table, FLAT, CONTACTS, state, theta, dt, poses, legs)
     assert done == n
@@ -66,6 +66,6 @@ def test_steps_end_where_the_state_is_not_finite():
     theta[4] = np.nan
     state = start_state(ROBOT, STANDING, DEFAULT_OPTIONS)
     table = VelocityCoulomb(0.38).table(weight=ROBOT.mass * GRAVITY)
-    poses, legs = np.empty((10, 7)), np.empty((0, N_LEGS, 6))
+    poses, legs = np.empty((10, 7)), np.empty((0, N_LEGS + 1, 6))
     done = run_steps(body_arrays(ROBOT), table, FLAT, CONTACTS, state, theta, 0.001, poses, legs)
     assert done == 3

@@ -45,7 +45,8 @@ def test_columns_stand_in_their_documented_order(walked, tmp_path):
     header = (tmp_path / "path.csv").read_text().splitlines()[0].split(",")
     legs = "123456"
     names = ["theta", "contact", "slip_x", "slip_y", "normal", "force_x", "force_y", "slip_ratio"]
-    expected = ["t", "x", "y", "z", "roll", "pitch", "yaw", *(n + i for n in names for i in legs)]
+    expected = ["t", "x", "y", "z", "roll", "pitch", "yaw", *(n + i for n in names for i in legs),
+                "body_force", "flight"]  # fmt: skip
     assert header == list(COLUMNS) == expected
 
 
@@ -69,10 +70,19 @@ def test_what_is_written_is_read_back(data, tmp_path_factory):
         slip_ratio=table(6, elements=numbers | st.just(np.nan)),
         normal_force=table(6),
         traction_force=table(6, 2),
+        body_force=table(elements=st.floats(0, 1e6) | st.just(np.nan)),
     )
     folder = tmp_path_factory.mktemp("walk")
     write_path(folder / "path.csv", path)
     assert_same(read_walk(folder), path)
+
+
+def test_a_folder_without_the_columns_of_the_body_is_read(walked, tmp_path):
+    file = tmp_path / "path.csv"
+    write_path(file, walked)
+    old = [line.rsplit(",", 2)[0] for line in file.read_text().splitlines()]
+    file.write_text("\n".join(old) + "\n")
+    assert_same(read_walk(file), walked)
 
 
 def test_folder_and_file_read_the_same(walked, tmp_path):

@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 
 from model.gait import tripod_angles, tripod_reference
+from model.walk.support import Support, support_of
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.robot.gait_argument import make_gait
 from zebro_lab.robot.gait_request import GaitRequest
@@ -24,6 +25,7 @@ from zebro_lab.walk.screen import (
     run_and_report,
     slip_lines,
     summary_lines,
+    support_lines,
     tilt_lines,
     walk_document,
 )
@@ -90,11 +92,12 @@ def test_the_end_of_the_path_and_its_turn_are_told(walked, sign, side):
 
 def test_assumed_slip_and_loads_below_the_tested_are_told(walked):
     done = finished(walked)
-    mean, assumed = slip_lines(done, summarise(walked))
+    mean, assumed = slip_lines(done, summarise(walked), support_of(walked))
     assert mean.startswith("legs in contact slip at ")
+    assert "over 10 mm/s in" in mean
     assert assumed == "slip: coulomb:0.4 is assumed, not measured"
     light = replace(walked, normal_force=0.1 * walked.normal_force)
-    *_, warning = slip_lines(finished(light, slip="thesis"), summarise(light))
+    *_, warning = slip_lines(finished(light, slip="thesis"), summarise(light), support_of(light))
     assert warning == (
         "WARNING: 100% of the contacts carry less than 2.13 N, the lowest load the slip law was "
         "tested at"
@@ -109,6 +112,20 @@ def test_a_body_that_overturns_is_warned_of_before_the_results(walked, axis, deg
     (warning,) = tilt_lines(summarise(replace(walked, orientation=orientation)))
     assert warning.startswith("WARNING: the body overturns")
     assert f"{abs(degrees):.0f}" in warning
+
+
+def test_flight_body_contact_and_idle_legs_are_told():
+    def lines(**changes):
+        quiet = Support(0.0, 0.0, np.full(6, 0.5), np.zeros(6), np.zeros(6))
+        return support_lines(replace(quiet, **changes))
+
+    assert lines() == lines(body=float("nan")) == lines(flight=0.009) == []
+    (flight,) = lines(flight=0.226)
+    assert flight.startswith("WARNING: nothing is on the ground in 22.6% of the time")
+    (body,) = lines(body=0.001)
+    assert body.startswith("WARNING: the body touches the ground in 0.1% of the time")
+    (idle,) = lines(unloaded=np.array([0.0, 0.2, 0.04, np.nan, 0.5, 0.0]))
+    assert idle == "legs without load in their stance: leg 2 in 20%, leg 5 in 50% of it"
 
 
 def test_warnings_come_before_the_numbers_and_other_notes_after(walked, tmp_path):

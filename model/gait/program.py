@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: MIT
+r"""Leg angles of a walking program: cycles of different gaits, handed over by max-plus scheduling.
+
+A program is a sequence of cycles, each by the event system of its own gait,
+
+.. math::
+    x(k) = A_0^{(k)} \otimes x(k) \oplus A_1^{(k)} \otimes x(k-1) .
+
+Where the gait changes, or the robot stood before, the groups of the cycle before and after differ,
+and the order of the new gait does not say whom its first group waits for. There every leg waits
+until all legs are down. Legs turn at a constant speed between their events, forwards or backwards.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from model.errors import DomainError
+from model.gait.direction import Direction, is_inner
+from model.gait.events import EventSystem
+from model.gait.maxplus import oplus, otimes, solve_implicit
+from model.gait.notation import Gait
+from model.gait.reference import SampledReference
+from model.gait.steering import ideal_liftoff, solve_outer_touchdown
+from model.gait.turning import turning_system
+from model.robot import N_LEGS
+from model.slip.law import Array
+
+_TURN = 2 * np.pi
+_SAME = 1e-9  # s or rad: times or angles nearer than this are equal
+
+
+@dataclass(frozen=True, eq=False)
+class CycleGait:
+    """The gait of a program's cycles: when legs touch down and lift off, and at what angles.
+
+    Attributes:
+        system: Max-plus system of the event times.
+        touchdown: Touchdown angles in the sense in which each leg turns, shape (6,) [rad].
+        liftoff: Lift-off angles, shape (6,) [rad].
+        sense: 1 for a leg that turns forwards, -1 backwards, shape (6,).
+        leg_arc: Angle of the legs' arc [rad].
+    """
+
+    system: EventSystem
+    touchdown: Array
+    liftoff: Array
+    sense: Array
+    leg_arc: float = np.pi
+
+    def shortened(self, share: float) -> "CycleGait":
+        """Return the gait with steps of a share of its stance angles, at equal hip heights.
+
+        Args:
+            share: Above 0, at most 1 [-].
+        """
+        down = np.where(self.sense > 0, self.touchdown, self.liftoff)
+        up = np.where(self.sense > 0, self.liftoff, self.touchdown)
+        angles = np.array([
+            _shorter_stance(float(a), float(b), share, self.leg_arc) if b - a > _SAME else (a, b)
+            for a, b in zip(down, up, strict=True)
+        ])  # fmt: skip
+        down, up = angles.T
+        forwards = self.sense > 0
+        return replace(self, touchdown=np.where(forwards, down, up),
+                       liftoff=np.where(forwards, up, down))  # fmt: skip
+
+
+def cycle_gait(
+    gait: Gait,
+    *,
+    ground_time: float,
+    flight_time: float,
+    turn_time: float = 0.0,
+    double_stance: float = 0.0,
+    steering: float = 1.0,
+    direction: Direction = "left",
+    reverse: bool = False,
+    touchdown: float = np.radians(50.0),
+    liftoff: float | None = None,
+    leg_arc: float = np.pi,
+) -> CycleGait:
+    """Construct the gait of a program's cycles from groups, times and steering.
+
+    The outer legs stand from `touchdown` to `liftoff`. The inner legs' stance angle is the steering
+    times theirs, between angles of equal hip height: at 1 the robot goes straight, at 0 the inner
+    legs step on the spot, and at -1 they walk backwards as far as the outer legs walk forwards, so
+    that the robot turns on the spot.
+
+    Args:
+        gait: Groups of legs.
+        ground_time: tau_g [s].
+        flight_time: tau_f [s].
+        turn_time: tau_p, by which inner legs stand and outer legs fly longer [s].
+        double_stance: tau_Delta [s].
+        steering: Stance angle of the inner legs over that of the outer legs, from -1 to 1 [-].
+        direction: Side to turn to.
+        reverse: Whether all legs turn the other way, so that the robot walks backwards.
+        touchdown: Touchdown angle of the outer legs walking forwards [rad].
+        liftoff: Their lift-off angle; that of equal hip height when None [rad].
+        leg_arc: Angle of the legs' arc [rad].
+
+    Raises:
+        DomainError: The steering is not from -1 to 1, a time or an angle is impossible.
+    """
+    if not -1 <= steering <= 1:
+        raise DomainError(
+            f"steering is {steering:g}; expected from -1, a turn on the spot, to 1, straight; "
+            "choose the side with direction"
+        )
+    inner = is_inner(direction)
+    outer_up = float(ideal_liftoff(touchdown, leg_arc)) if liftoff is None else liftoff
+    if not 0 < outer_up - touchdown < _TURN:
+        raise DomainError(
+            f"lift-off at {np.degrees(outer_up):g} degrees; expected beyond touchdown at "
+            f"{np.degrees(touchdown):g}, by less than 360 degrees"
+        )
+    inner_down, inner_up = touchdown, outer_up
+    if abs(steering) < 1:
+        inner_down, inner_up = _shorter_stance(touchdown, outer_up, abs(steering), leg_arc)
+    down, up = np.where(inner, inner_down, touchdown), np.where(inner, inner_up, outer_up)
+    sense = np.where(inner & (steering < 0), -1.0, 1.0) * (-1.0 if reverse else 1.0)
+    system = turning_system(
+        gait, inner=tuple(np.flatnonzero(inner).tolist()), ground_time=ground_time,
+        flight_time=flight_time, turn_time=turn_time, double_stance=double_stance,
+    )  # fmt: skip
+    forwards = sense > 0
+    return CycleGait(
+        system, np.where(forwards, down, up), np.where(forwards, up, down), sense, leg_arc
+    )
+
+
+def _shorter_stance(
+    touchdown: float, liftoff: float, share: float, leg_arc: float
+) -> tuple[float, float]:
+    """Return angles of equal hip height, a share of the stance apart; at 0 the highest hip's."""
+    stance = share * (liftoff - touchdown)
+    own = float(ideal_liftoff(touchdown, leg_arc)) - touchdown
+    if stance < _SAME:
+        down = solve_outer_touchdown(touchdown, _SAME / own, leg_arc=leg_arc)
+        return down, down
+    down = solve_outer_touchdown(touchdown, stance / own, leg_arc=leg_arc)
+    return down, down + stance
+
+
+@dataclass(frozen=True, eq=False)
+class _Cycle:
+    """A cycle of a program: events and unwrapped angles of each leg, shape (6,) each.
+
+    Attributes:
+        gait: Its gait.
+        liftoff: Lift-off times [s].
+        touchdown: Touchdown times, which follow [s].
+        lifted: Angles at lift-off [rad].
+        landed: Angles at touchdown [rad].
+        handed: Time when all legs were down before it, their angles there and how long they are
+            held; None where the gait of the cycle before goes on.
+    """
+
+    gait: CycleGait
+    liftoff: Array
+    touchdown: Array
+    lifted: Array
+    landed: Array
+    handed: tuple[float, Array, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ProgramLegs:
+    """The cycles of a program so far; `with_cycle` and `with_stand` return longer programs.
+
+    Time zero is when all legs are down, in the rhythm of the first gait. What follows never changes
+    the angles up to `end`.
+
+    Attributes:
+        cycles: The cycles, of which the first is the one that ends at time zero.
+        standing: How long the robot stands after the last cycle [s].
+    """
+
+    cycles: tuple[_Cycle, ...]
+    standing: float = 0.0
+
+    @classmethod
+    def beginning_with(cls, gait: CycleGait) -> "ProgramLegs":
+        """Begin a program with all legs on the ground, in the rhythm of a gait."""
+        steady = gait.system.steady_state
+        last = steady.touchdown[0].max()
+        down, up = steady.touchdown[0] - last, steady.liftoff[0] - last
+        return cls((_Cycle(gait, up, down, gait.liftoff, gait.touchdown),))
+
+    @property
+    def end(self) -> float:
+        """When all legs are down after the last cycle, and the standing after it is over [s]."""
+        return self._down + self.standing
+
+    @property
+    def _down(self) -> float:
+        return float(self.cycles[-1].touchdown.max())
+
+    def with_cycle(self, gait: CycleGait) -> "ProgramLegs":
+        """Return the program with one more cycle.
+
+        Where the gait goes on, the scheduler alone says who waits for whom. Else all legs are down
+        before one lifts off, and until it does a leg turns towards its new lift-off angle, no
+        faster than in either gait: a leg that lifts off at once does so from where it is.
+
+        Args:
+            gait: Gait of the cycle.
+        """
+        last = self.cycles[-1]
+        if gait is last.gait and self.standing == 0:
+            up, down = self._events(gait, last.touchdown, last.liftoff)
+            lifted, handed = last.landed + _nearest(gait.liftoff - last.landed), None
+        else:
+            angles = self._angles_at_end()
+            shift = self.standing
+            up, down = self._events(
+                gait, last.touchdown + shift, last.liftoff + shift, all_down=self.end
+            )
+            fastest = np.maximum(_stance_speed(last.gait), _stance_speed(gait)) * (up - self.end)
+            lifted = angles + np.clip(_nearest(gait.liftoff - angles), -fastest, fastest)
+            handed = self._down, angles, self.standing
+        flown = (gait.sense * (gait.touchdown - lifted)) % _TURN
+        flown = np.where(flown < _SAME, _TURN, flown)
+        cycle = _Cycle(gait, up, down, lifted, lifted + gait.sense * flown, handed)
+        return ProgramLegs((*self.cycles, cycle))
+
+    def with_stand(self, duration: float) -> "ProgramLegs":
+        """Return the program with all legs held, on the ground, for a time [s] at its end."""
+        return ProgramLegs(self.cycles, self.standing + duration)
+
+    def reference(self) -> SampledReference:
+        """Compute the leg angles from time zero to `end`.
+
+        Raises:
+            DomainError: The program has no time.
+        """
+        legs = [self._knots(leg) for leg in range(N_LEGS)]
+        times = np.concatenate([[0.0], *(t for t, _ in legs)])
+        times = np.unique(times[(times >= 0) & (times <= self.end)])
+        times = times[np.concatenate([[True], np.diff(times) > _SAME])]
+        return SampledReference(
+            times, np.column_stack([np.interp(times, t, angle) for t, angle in legs])
+        )
+
+    def _knots(self, leg: int) -> tuple[Array, Array]:
+        """Return times [s] and angles [rad] between which a leg turns at constant speed."""
+        times, angles = [], []
+        for cycle in self.cycles:
+            if cycle.handed is not None:
+                at, held, pause = cycle.handed
+                times += [at, at + pause]
+                angles += [held[leg], held[leg]]
+            times += [cycle.liftoff[leg], cycle.touchdown[leg]]
+            angles += [cycle.lifted[leg], cycle.landed[leg]]
+        last = self._angles_at_end()[leg]
+        return np.array([*times, self._down, self.end]), np.array([*angles, last, last])
+
+    def _angles_at_end(self) -> Array:
+        """Return where legs are when all are down, if the last gait goes on until then, (6,)."""
+        last = self.cycles[-1]
+        up, _ = self._events(last.gait, last.touchdown, last.liftoff)
+        share = (self._down - last.touchdown) / (up - last.touchdown)
+        return last.landed + share * _nearest(last.gait.liftoff - last.landed)
+
+    @staticmethod
+    def _events(
+        gait: CycleGait, touchdown: Array, liftoff: Array, *, all_down: float = -np.inf
+    ) -> tuple[Array, Array]:
+        """Return lift-offs and touchdowns of the cycle after one with the given events [s]."""
+        n = N_LEGS
+        before = otimes(gait.system.A1, np.concatenate([touchdown, liftoff]))
+        before[n:] = oplus(before[n:], all_down)
+        x = solve_implicit(gait.system.A0, before)
+        return x[n:], x[:n]
+
+
+def _nearest(angle: Array) -> Array:
+    """Return angles modulo a turn, from -180 to below 180 degrees [rad]."""
+    return (angle + np.pi) % _TURN - np.pi
+
+
+def _stance_speed(gait: CycleGait) -> Array:
+    """Return the speed of each leg on the ground, without its sign, shape (6,) [rad/s]."""
+    system = gait.system
+    stands = system.cycle_time - (system.steady_state.touchdown - system.steady_state.liftoff)[0]
+    return np.abs(_nearest(gait.liftoff - gait.touchdown)) / stands

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""Read a walking program (`program.toml`): segments of gaits and stands, and when each ends."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from model.errors import DomainError
+from model.gait import TETRAPOD, TRIPOD, Direction, Gait, parse_gait
+from model.gait.program import CycleGait, cycle_gait
+from model.robot import N_LEGS
+from model.walk.program import Segment, Until
+from zebro_lab.files.settings_table import SettingsTable, read_settings
+
+_GAITS = {"tripod": TRIPOD, "tetrapod": TETRAPOD}
+_TIMES = ("ground_time", "flight_time")
+_ENDS = ("strides", "time", "heading_deg", "near")
+_SIDES: tuple[Direction, ...] = ("left", "right")
+_MOST = 1000  # strides of a segment
+
+
+@dataclass(frozen=True)
+class Program:
+    """A walking program.
+
+    Attributes:
+        segments: Its parts, in order.
+        names: What each does, for a table: gait and turn, or "stand".
+        file: The file.
+    """
+
+    segments: tuple[Segment, ...]
+    names: tuple[str, ...]
+    file: Path
+
+    @property
+    def needs_walking(self) -> bool:
+        """Whether a segment ends at a heading or a place, which only a walk shows."""
+        return any(each.until is not None and each.until.needs_walking for each in self.segments)
+
+
+def read_program(file: Path, *, leg_arc: float) -> Program:
+    """Read a walking program.
+
+    Args:
+        file: The `program.toml`.
+        leg_arc: Angle of the legs' arc [rad].
+
+    Raises:
+        NotFound: There is no such file.
+        SettingsError: It is no TOML, has no `[[segment]]`, a key or value is invalid, or a gait is
+            impossible; the message names file, segment and key.
+    """
+    table = read_settings(file, advice="expected a program.toml with [[segment]] tables")
+    found = table.value("segment", [])
+    if not isinstance(found, list) or not found:
+        raise table.fault("expected one [[segment]] or more, with gait and until, or with stand",
+                          "segment")  # fmt: skip
+    tables = [table.as_table(f"segment[{i + 1}]", each) for i, each in enumerate(found)]
+    parsed = [_segment(each, leg_arc) for each in tables]
+    table.finish()
+    if all(segment.gait is None for segment, _ in parsed):
+        raise table.fault("only stands; expected at least one segment with a gait", "segment")
+    segments, names = zip(*parsed, strict=True)
+    return Program(segments, names, file)
+
+
+def _segment(table: SettingsTable, leg_arc: float) -> tuple[Segment, str]:
+    if "stand" in table:
+        return Segment(stand=table.quantity("stand", "s", above=0.0)), "stand"
+    text = table.text("gait")
+    try:
+        groups = _GAITS[text] if text in _GAITS else parse_gait(text, N_LEGS)
+    except DomainError as error:
+        known = ", ".join(f"'{name}'" for name in _GAITS)
+        raise table.fault(f"{error}; known names: {known}", "gait") from error
+    try:
+        gait, turn = _gait(table, groups, leg_arc)
+        until = _until(table.table("until"))
+    except DomainError as error:
+        raise table.fault(str(error)) from error
+    return Segment(gait, until), f"{text}, {turn}"
+
+
+def _gait(table: SettingsTable, groups: Gait, leg_arc: float) -> tuple[CycleGait, str]:
+    """Read times, steering and angles; also return what the segment does, for a table."""
+    steering = table.number("steering", 1.0)
+    direction = table.choice("direction", _SIDES, "left")
+    reverse = table.flag("reverse", default=False)
+    turn_time = table.quantity("turn_time", "s", default=0.0, least=0.0)
+    double = table.quantity("double_stance", "s", default=0.0, least=0.0)
+    down = table.number("touchdown_deg", 50.0)
+    up = table.number("liftoff_deg") if "liftoff_deg" in table else None
+    ground, flight = _times(table, groups)
+    gait = cycle_gait(
+        groups, ground_time=ground, flight_time=flight, turn_time=turn_time, double_stance=double,
+        steering=steering, direction=direction, reverse=reverse, touchdown=float(np.radians(down)),
+        liftoff=None if up is None else float(np.radians(up)), leg_arc=leg_arc,
+    )  # fmt: skip
+    turns = steering != 1 or turn_time > 0
+    turn = f"steering {steering:g} {direction}" if turns else "straight"
+    return gait, f"{turn}, backwards" if reverse else turn
+
+
+def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
+    """Return ground and flight time, of a cycle shared evenly by the groups if that is given."""
+    if any(name in table for name in _TIMES):
+        if "cycle" in table:
+            raise table.fault("found beside ground_time or flight_time; give either", "cycle")
+        return (
+            table.quantity("ground_time", "s", above=0.0),
+            table.quantity("flight_time", "s", above=0.0),
+        )
+    cycle = table.quantity("cycle", "s", default=2.0, above=0.0)
+    flight = cycle / max(len(groups.groups), 2)
+    return cycle - flight, flight
+
+
+def _until(table: SettingsTable) -> Until:
+    given = [name for name in _ENDS if name in table]
+    if len(given) != 1:
+        raise table.fault(
+            f"found {' and '.join(given) or 'none'} of {', '.join(_ENDS)}; expected one, such as "
+            "until = { strides = 5 }"
+        )
+    if "strides" in table:
+        return Until(strides=table.whole("strides", least=1, most=_MOST))
+    if "time" in table:
+        return Until(time=table.quantity("time", "s", above=0.0))
+    if "heading_deg" in table:
+        return Until(heading=float(np.radians(table.number("heading_deg"))))
+    x, y, radius = table.quantities("near", 3, "m")
+    return Until(near=(x, y, radius))

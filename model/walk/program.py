@@ -214,7 +214,8 @@ class _Walker:
 
         What was walked up to then is walked only once.
         """
-        reference, dt = legs.reference(), self._options.dt
+        begun = legs if legs.end > 0 else legs.with_cycle(legs.cycles[0].gait)
+        reference, dt = begun.reference(), self._options.dt
         if self.kept is None:
             theta = reference.angles(0.0)[0] + self._robot.leg_offset
             state = start_state(self._robot, theta, self._options, ground=self._ground)

@@ -24,6 +24,8 @@ zebro-lab walk --gait "{1,4} < {2,5} < {3,6}" --tau-turn 0.1 --slip thesis --dur
 
 zebro-lab walk --gait tripod --steering 1.3 --slip calibration --duration 25 --draws 300
 
+zebro-lab walk program.toml --slip thesis --figures
+
 zebro-lab walk --write-robot robot.toml
 """
 
@@ -32,9 +34,9 @@ WriteRobot = Annotated[
 ]
 
 
-@request_command(first=("name", "duration", "slip", "out"))
+@request_command(first=("program", "name", "duration", "slip", "out"))
 def walk(request: WalkRequest, write_robot: WriteRobot = None, output: Output = TEXT) -> None:
-    """Simulate a gait and write FOLDER/path.csv, a band, pictures and an animation."""
+    """Simulate a gait, or a program of several, and write path.csv, a band, pictures and a film."""
     from zebro_lab.walk import stage
     from zebro_lab.walk.screen import run_and_report
 
@@ -43,7 +45,7 @@ def walk(request: WalkRequest, write_robot: WriteRobot = None, output: Output = 
         output.say(f"wrote {file}")
         output.document("walk", {"written": [file]})
         return
-    if request.duration is None:
+    if request.duration is None and request.program is None:
         raise typer.BadParameter("missing: the duration of the walk [s]", param_hint="'--duration'")
     request.model.require_slip()
     run_and_report("walk", lambda watcher: stage.walk(request, watcher), request.out, output)

@@ -16,7 +16,6 @@ from zebro_lab.files.settings_table import SettingsTable, read_settings
 _GAITS = {"tripod": TRIPOD, "tetrapod": TETRAPOD}
 _TIMES = ("ground_time", "flight_time")
 _ENDS = ("strides", "time", "heading_deg", "near")
-_SIDES: tuple[Direction, ...] = ("left", "right")
 _MOST = 1000  # strides of a segment
 
 
@@ -86,7 +85,8 @@ def _segment(table: SettingsTable, leg_arc: float) -> tuple[Segment, str]:
 def _gait(table: SettingsTable, groups: Gait, leg_arc: float) -> tuple[CycleGait, str]:
     """Read times, steering and angles; also return what the segment does, for a table."""
     steering = table.number("steering", 1.0)
-    direction = table.choice("direction", _SIDES, "left")
+    right = table.choice("direction", ("left", "right"), "left") == "right"
+    direction: Direction = "right" if right else "left"
     reverse = table.flag("reverse", default=False)
     turn_time = table.quantity("turn_time", "s", default=0.0, least=0.0)
     double = table.quantity("double_stance", "s", default=0.0, least=0.0)

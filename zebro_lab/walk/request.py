@@ -195,11 +195,28 @@ class WalkRequest:
     gait: GaitRequest = field(default_factory=GaitRequest)
     duration: Annotated[
         float | None,
-        Option(metavar="SECONDS", help="Duration of the walk, required [s]."),
+        Option(metavar="SECONDS", help="Duration of the walk, required without a program [s]."),
         Limits(above=0),
     ] = None
     out: Annotated[Path, Option(metavar="DIR", help="Walk folder to write.")] = Path("walk")
     model: ModelRequest = field(default_factory=ModelRequest)
+    program: Annotated[
+        Path | None,
+        Argument(
+            metavar="PROGRAM", show_default=False,
+            help="Walking program (TOML) of several gaits, instead of the options of one.",
+        ),
+    ] = None  # fmt: skip
+
+    def __post_init__(self) -> None:
+        """Raise `BadParameter` for options of one gait beside a program."""
+        if self.program is None:
+            return
+        given = self.gait.given()
+        if self.duration is not None or given or self.gait.name != GaitRequest().name:
+            options = [*(["duration"] if self.duration is not None else []), *given]
+            name = options[0].replace("_", "-") if options else "gait"
+            raise BadParameter("is for one gait; the program says it", param_hint=f"'--{name}'")
 
 
 @dataclass(frozen=True)

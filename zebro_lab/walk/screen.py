@@ -18,6 +18,7 @@ from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.tables import plain_table
+from zebro_lab.walk.asked import WalkedSegment
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.summary import WalkSummary, summarise
@@ -72,6 +73,17 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "mean_slip_m_per_s": summary.mean_slip,
         **_support_document(_support(walked)),
         "schedule": _schedule_document(walked),
+        "segments": [
+            {
+                "what": segment.what,
+                "cycles": segment.cycles,
+                "end_s": segment.end,
+                "x_m": x,
+                "y_m": y,
+                "yaw_rad": yaw,
+            }
+            for segment, (x, y, yaw) in _segment_poses(walked)
+        ],
         "notes": _notes(walked, summary),
     }
 
@@ -103,6 +115,8 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
         if walked.schedule is not None:
             console.print(event_table(walked.reference))
             console.print(plain(schedule_line(walked.schedule)))
+    if walked.segments:
+        console.print(segment_table(walked))
     summary = summarise(walked.path)
     for line in _in_order([*summary_lines(summary), *_notes(walked, summary)]):
         console.print(plain(line))
@@ -252,6 +266,29 @@ def gait_table(reference: CyclicReference) -> Table:
         side = " inner" if leg in reference.inner else " outer" if reference.inner else ""
         table.add_row(f"{leg + 1}{side}", *(f"{column[leg]:.4f}" for column in columns))
     return table
+
+
+def segment_table(walked: Walked) -> Table:
+    """Return a table of a program's segments: cycles, end and pose there."""
+    numbers = ("cycles", "end\n[s]", "x\n[m]", "y\n[m]", "yaw\n[deg]")
+    table = plain_table("the program, segment by segment", ("segment", "what"), numbers)
+    for number, (segment, pose) in enumerate(_segment_poses(walked), start=1):
+        x, y, yaw = pose
+        cells = (f"{segment.end:.3f}", f"{x:.4f}", f"{y:.4f}", f"{np.degrees(yaw):.2f}")
+        table.add_row(str(number), segment.what, str(segment.cycles or "-"), *cells)
+    return table
+
+
+def _segment_poses(
+    walked: Walked,
+) -> list[tuple[WalkedSegment, tuple[float, float, float]]]:
+    """Return each segment of a program with x, y [m] and yaw [rad] at its end."""
+    path, found = walked.path, []
+    for segment in walked.segments:
+        i = min(int(np.searchsorted(path.t, segment.end - walked.dt / 2)), len(path.t) - 1)
+        x, y = path.position[i, :2].tolist()
+        found.append((segment, (x, y, float(path.yaw[i]))))
+    return found
 
 
 def event_table(reference: CyclicReference) -> Table:

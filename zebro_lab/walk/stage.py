@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Stage of `zebro-lab walk`: construct a gait, compute the path, write the walk folder."""
+"""Stage of `zebro-lab walk`: construct a gait or program, compute and write its path."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,10 +9,12 @@ from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.robot.gait_argument import make_gait
-from zebro_lab.robot.robot_file import render_robot_file
+from zebro_lab.robot.robot_file import RobotFile, render_robot_file
+from zebro_lab.walk.asked import AskedWalk
 from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.path_band import predict_band
+from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, robot_of, walk_with
@@ -22,7 +24,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
     """Simulate a gait and write the walk folder.
 
     Args:
-        request: Gait, model, duration, band and output folder.
+        request: Gait and duration, or program; model, band and output folder.
         watcher: Receives progress, and may request a stop.
 
     Returns:
@@ -33,32 +35,48 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
             requested.
         ModelError: The gait is impossible, or the walk cannot be computed.
     """
-    if request.duration is None:
-        raise SettingsError("missing: the duration of the walk [s]", key="--duration")
-    require_replaceable(request.out, WALKED["walk"], inputs=request.model.inputs)
+    inputs = request.model.inputs if request.program is None else (
+        request.program, *request.model.inputs
+    )  # fmt: skip
+    require_replaceable(request.out, WALKED["walk"], inputs=inputs)
     described = robot_of(request.model)
-    gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
+    asked = _gait(request, described) if request.program is None else laid_out(
+        request.program, request.model, described, watcher
+    )  # fmt: skip
     watcher.step("walking", None)
-    duration, pictures = request.duration, request.model.pictures
+    duration, pictures = asked.duration, request.model.pictures
     require_shown_times(pictures.snapshots, pictures.window, 0.0, duration)
     walked = walk_with(
-        request.model, described, gait.reference,
-        duration=duration, what=gait.what, direction=gait.direction,
+        request.model, described, asked.reference, duration=duration, what=asked.what,
+        direction=asked.direction, notes=asked.notes,
     )  # fmt: skip
     if request.model.band.draws:
         band = predict_band(
-            request.model.band, walked, gait.reference,
+            request.model.band, walked, asked.reference,
             duration=duration, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
         walked = replace(walked, band=band)
-    walked = replace(walked, schedule=gait.schedule)
+    walked = replace(walked, schedule=asked.schedule, segments=asked.segments)
+    write_walk(
+        request.out, request.model, walked, watcher, kind="walk", settings=asked.settings,
+        files=asked.files,
+    )  # fmt: skip
+    return walked
+
+
+def _gait(request: WalkRequest, described: RobotFile) -> AskedWalk:
+    if request.duration is None:
+        raise SettingsError("missing: the duration of the walk [s]", key="--duration")
+    gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
     settings = {
         "gait": {"name": request.gait.name, **request.gait.given()},
-        "duration": duration,
+        "duration": request.duration,
         "direction": gait.direction,
     }
-    write_walk(request.out, request.model, walked, watcher, kind="walk", settings=settings)
-    return walked
+    return AskedWalk(
+        gait.reference, request.duration, gait.what, settings, direction=gait.direction,
+        schedule=gait.schedule,
+    )  # fmt: skip
 
 
 def write_robot(file: Path, request: ModelRequest) -> Path:

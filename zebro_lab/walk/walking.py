@@ -18,6 +18,7 @@ from model.walk_models import MODELS, ModelRun, WalkModel
 from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.walk.asked import WalkedSegment
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.request import ModelRequest
@@ -43,6 +44,7 @@ class Walked:
         informed: Posterior of legs and floor that was used; None without fitted walks.
         band: Paths with slip law, legs, floor and start drawn; None unless requested.
         schedule: The max-plus system of the gait's events; None for other gaits and for logs.
+        segments: Of a program, where each segment ended; empty for others.
     """
 
     path: WalkPath
@@ -56,6 +58,7 @@ class Walked:
     informed: InformedLegs | None = None
     band: Poses | None = None
     schedule: EventSystem | None = None
+    segments: tuple[WalkedSegment, ...] = ()
 
     @property
     def doubts(self) -> tuple[str, ...]:

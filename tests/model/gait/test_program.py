@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""Legs of a program: steady cycles are the scheduler's, and nothing lifts before all is down."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.errors import DomainError
+from model.gait.events import scheduled_reference
+from model.gait.notation import TETRAPOD, TRIPOD, parse_gait
+from model.gait.program import ProgramLegs, cycle_gait
+
+WAVE = parse_gait("{1} < {4} < {5} < {2} < {3} < {6}")
+
+
+def gait(groups=TRIPOD, *, cycle=2.0, **changes):
+    flight = cycle / max(len(groups.groups), 2)
+    return cycle_gait(groups, ground_time=cycle - flight, flight_time=flight, **changes)
+
+
+def program(*parts):
+    """Return the legs of parts: a gait with a number of cycles, or a stand in seconds."""
+    legs = ProgramLegs.beginning_with(next(part[0] for part in parts if isinstance(part, tuple)))
+    for part in parts:
+        if isinstance(part, tuple):
+            for _ in range(part[1]):
+                legs = legs.with_cycle(part[0])
+        else:
+            legs = legs.with_stand(part)
+    return legs
+
+
+GAITS = st.builds(
+    gait, st.sampled_from([TRIPOD, TETRAPOD, WAVE]), cycle=st.sampled_from([1.5, 2.0, 3.0]),
+    steering=st.sampled_from([-1.0, -0.4, 0.0, 0.5, 1.0]),
+    direction=st.sampled_from(["left", "right"]), reverse=st.booleans(),
+    turn_time=st.sampled_from([0.0, 0.1]), double_stance=st.sampled_from([0.0, 0.05]),
+)  # fmt: skip
+PARTS = st.lists(
+    st.tuples(GAITS, st.integers(1, 3)) | st.sampled_from([0.5, 2.0]), min_size=1, max_size=5
+).filter(lambda parts: any(isinstance(part, tuple) for part in parts))
+
+
+@pytest.mark.parametrize("groups", [TRIPOD, TETRAPOD, WAVE])
+def test_cycles_of_one_gait_are_the_schedulers_steady_state(groups):
+    one = gait(groups)
+    legs = program((one, 4))
+    steady = scheduled_reference(one.system, one.touchdown, liftoff=one.liftoff)
+    t = np.linspace(0.0, legs.end, 200)
+    angles = legs.reference().angles(t)
+    last = one.system.steady_state.touchdown[0].max()
+    shift = last - one.system.steady_state.touchdown[0][one.system.gait.group_of == 0].min()
+    expected = steady.angles(t + shift)
+    np.testing.assert_allclose(angles - angles[0], expected - expected[0], atol=1e-6)
+    assert legs.end == pytest.approx(4 * one.system.cycle_time)
+
+
+@given(PARTS)
+def test_no_leg_lifts_off_at_a_handover_before_all_are_down(parts):
+    legs = program(*parts)
+    for before, cycle in zip(legs.cycles, legs.cycles[1:], strict=False):
+        assert np.all(cycle.liftoff > before.touchdown - 1e-9)
+        if cycle.handed is None:
+            continue
+        at, _, pause = cycle.handed
+        assert cycle.liftoff.min() >= at + pause - 1e-9
+
+
+@given(PARTS)
+def test_angles_have_no_steps_and_stances_are_no_faster_than_a_gaits(parts):
+    legs = program(*parts)
+    if legs.end == 0:
+        return
+    reference = legs.reference()
+    assert reference.t[0] == 0.0
+    assert reference.t[-1] == pytest.approx(legs.end)
+    speeds = np.abs(np.diff(reference.theta, axis=0)) / np.diff(reference.t)[:, None]
+    shortest = min(c.touchdown[i] - c.liftoff[i] for c in legs.cycles[1:] for i in range(6))
+    assert speeds.max() <= 2 * np.pi / shortest + 1e-6
+
+
+def test_legs_stand_still_for_as_long_as_they_are_held():
+    one, stand = gait(), 1.5
+    legs = program((one, 2), stand, (one, 1))
+    began = 2 * one.system.cycle_time
+    held = legs.reference().angles(np.linspace(began + 1e-6, began + stand - 1e-6, 20))
+    np.testing.assert_allclose(held, np.broadcast_to(held[0], held.shape), atol=1e-4)
+    assert legs.end == pytest.approx(3 * one.system.cycle_time + stand)
+
+
+@given(PARTS, GAITS)
+def test_what_follows_changes_nothing_before(parts, last):
+    legs = program(*parts)
+    if legs.end == 0:
+        return
+    t = np.linspace(0.0, legs.end, 50)
+    longer = legs.with_cycle(last)
+    np.testing.assert_allclose(longer.reference().angles(t), legs.reference().angles(t), atol=1e-5)
+
+
+def test_a_turn_on_the_spot_turns_the_inner_legs_back_by_as_much():
+    legs = program((gait(steering=-1.0, direction="right"), 3))
+    turned = np.diff(legs.reference().angles([0.0, legs.end]), axis=0)[0]
+    np.testing.assert_allclose(turned, 6 * np.pi * np.array([1, -1] * 3), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"steering": 1.3}, "expected from -1"),
+        ({"steering": np.nan}, "expected from -1"),
+        ({"liftoff": 0.5}, "expected beyond touchdown"),
+        ({"cycle": 0.0}, "ground time"),
+    ],
+)
+def test_an_impossible_gait_is_refused(changes, message):
+    with pytest.raises(DomainError, match=message):
+        gait(**changes)

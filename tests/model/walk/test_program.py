@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""Segments of a program end where a walk of the whole program is at their ends."""
+
+import numpy as np
+import pytest
+
+from model.errors import DomainError
+from model.gait.notation import TETRAPOD, TRIPOD
+from model.gait.program import cycle_gait
+from model.robot import GRAVITY, Robot
+from model.walk.dynamics import DynamicsOptions, walk
+from model.walk.program import Segment, Until, lay_out
+from model.walk.traction import VelocityCoulomb
+
+ROBOT = Robot()
+TABLE = VelocityCoulomb(0.38).table(weight=ROBOT.mass * GRAVITY)
+OPTIONS = DynamicsOptions()
+STRAIGHT = cycle_gait(TRIPOD, ground_time=1.0, flight_time=1.0)
+SPOT = cycle_gait(TRIPOD, ground_time=1.0, flight_time=1.0, steering=-1.0)
+CURVE = cycle_gait(TETRAPOD, ground_time=2.0, flight_time=1.0, steering=0.4, direction="right")
+
+
+def laid_out(*segments):
+    return lay_out(segments, ROBOT, TABLE, options=OPTIONS)
+
+
+def test_headings_and_places_are_met_in_a_walk_of_the_whole_program():
+    near = (0.25, 0.0, 0.12)
+    legs, ends = laid_out(
+        Segment(STRAIGHT, Until(strides=3)),
+        Segment(SPOT, Until(heading=np.radians(180))),
+        Segment(stand=0.5),
+        Segment(STRAIGHT, Until(near=near)),
+        Segment(CURVE, Until(heading=np.radians(75))),
+        Segment(STRAIGHT, Until(time=3.0)),
+    )
+    path = walk(ROBOT, legs.reference(), TABLE, duration=legs.end, options=OPTIONS)
+    x, y, yaw = (
+        np.interp([end.end for end in ends], path.t, column)
+        for column in (path.position[:, 0], path.position[:, 1], path.yaw)
+    )
+    assert [end.cycles for end in ends[:3]] == [3, ends[1].cycles, 0]
+    assert np.degrees(yaw[1] - yaw[0]) == pytest.approx(180, abs=0.5)
+    assert np.hypot(x[3] - near[0], y[3] - near[1]) <= near[2] + 1e-3
+    assert np.degrees(yaw[4] - yaw[3]) == pytest.approx(-75, abs=0.5)
+    assert ends[5].end - ends[4].end == pytest.approx(4.0)  # the first cycles of 2 s after 3 s
+    assert ends[-1].end == pytest.approx(legs.end)
+
+
+def test_a_place_that_the_robot_does_not_come_to_ends_in_a_message(monkeypatch):
+    monkeypatch.setattr("model.walk.program.MOST_CYCLES", 3)
+    with pytest.raises(DomainError, match=r"segment 2: after 3 cycles .* has not come to"):
+        laid_out(Segment(stand=1.0), Segment(STRAIGHT, Until(near=(-2.0, 0.0, 0.1))))
+    with pytest.raises(DomainError, match=r"has not turned by 90 degrees; it has by 0"):
+        laid_out(Segment(STRAIGHT, Until(heading=np.pi / 2)))
+
+
+def test_a_program_needs_a_gait_and_a_slip_law_where_it_must_be_walked():
+    with pytest.raises(DomainError, match="no segment of the program has a gait"):
+        laid_out(Segment(stand=1.0))
+    with pytest.raises(DomainError, match="only a model with slip"):
+        lay_out([Segment(SPOT, Until(heading=1.0))], ROBOT, None, options=OPTIONS)
+    legs, _ = lay_out([Segment(SPOT, Until(strides=2))], ROBOT, None, options=OPTIONS)
+    assert legs.end == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{}, {"strides": 2, "time": 1.0}, {"time": 0.0}, {"heading": -1.0}, {"heading": np.inf},
+     {"near": (0.0, 0.0, 0.0)}, {"near": (np.nan, 0.0, 1.0)}],
+)  # fmt: skip
+def test_a_segment_has_one_end_above_zero(given):
+    with pytest.raises(DomainError):
+        Until(**given)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Compute the leg angles of a walking program, walking it where a segment ends at a place."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+from model.progress import Watcher
+from model.robot import GRAVITY
+from model.walk.dynamics import DynamicsOptions
+from model.walk.program import lay_out
+from model.walk.traction import TractionTable
+from model.walk_models import MODELS
+from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.robot_file import RobotFile
+from zebro_lab.walk.asked import AskedWalk, WalkedSegment
+from zebro_lab.walk.program_file import Program, read_program
+from zebro_lab.walk.request import ModelRequest
+
+_WALKS = "dynamics"  # the model that finds where segments end
+
+
+def laid_out(
+    file: Path, request: ModelRequest, described: RobotFile, watcher: Watcher
+) -> AskedWalk:
+    """Read a program and compute its leg angles.
+
+    Args:
+        file: The `program.toml`.
+        request: Model, slip law, toe law and time step, with which headings and places are found.
+        described: The robot.
+        watcher: Receives progress.
+
+    Raises:
+        NotFound: There is no such file.
+        SettingsError: The program is invalid, or a segment ends at a heading or a place and the
+            model is not "dynamics".
+        ModelError: A gait is impossible, a segment does not end, or the walk diverged.
+    """
+    robot = described.robot
+    program = read_program(file, leg_arc=robot.leg_arc)
+    table, notes = _table(program, request, described)
+    legs, ends = lay_out(
+        program.segments, robot, table,
+        options=DynamicsOptions(dt=request.dt or MODELS[_WALKS].dt),
+        progress=lambda share: watcher.step("laying out the program", share),
+    )  # fmt: skip
+    segments = tuple(
+        WalkedSegment(what, end.cycles, end.end)
+        for what, end in zip(program.names, ends, strict=True)
+    )
+    settings = {"program": str(file), "duration": legs.end,
+                "segments": [asdict(each) for each in segments]}  # fmt: skip
+    return AskedWalk(
+        legs.reference(), legs.end, f"program {file.stem}", settings, segments=segments,
+        files=(file,), notes=notes,
+    )  # fmt: skip
+
+
+def _table(
+    program: Program, request: ModelRequest, described: RobotFile
+) -> tuple[TractionTable | None, tuple[str, ...]]:
+    """Return the slip law that headings and places are found with, if any is needed, and notes."""
+    if not program.needs_walking:
+        return None, ()
+    if request.model != _WALKS or request.slip is None:
+        raise SettingsError(
+            f"'{request.model}' does not find where a segment of {program.file} ends, at a heading "
+            f"or a place; expected '{_WALKS}', or segments that end after strides or a time",
+            key="--model",
+        )
+    slip = parse_slip(request.slip)
+    weight = described.robot.mass * GRAVITY
+    note = (
+        "headings and places at which segments end were found without what the walks of the "
+        "calibration say of legs and floor"
+    )
+    notes = () if slip.walks is None else (note,)
+    return slip.traction_table(weight=weight, toe=request.toe), notes

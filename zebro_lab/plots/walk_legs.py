@@ -111,6 +111,29 @@ def paired_traction(path: WalkPath, *, title: str) -> Figure:
 
 
 @styled
+def leg_angles(path: WalkPath, *, title: str) -> Figure:
+    """Draw the angle of each leg over time, modulo a turn (Fig. 2-2).
+
+    Args:
+        path: Part of a walk to draw.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+
+    Returns:
+        The figure: a panel for each leg, arranged as on the robot; contact is shaded. At 90 degrees
+        a leg points down, at 0 ahead.
+    """
+    angle = np.degrees(path.theta) % 360
+    turned = np.abs(np.diff(angle, axis=0, prepend=angle[:1])) > 180
+    lines = {"angle; 0 ahead, 90 down": np.where(turned, np.nan, angle)}
+    figure = _leg_panels(
+        path.t, path.contact, lines, (0.0, 360.0), label="leg angle", unit="deg", title=title
+    )
+    for axes in figure.axes:
+        axes.set(ylim=(0, 360), yticks=range(0, 361, 90))
+    return figure
+
+
+@styled
 def gantt(path: WalkPath, *, title: str) -> Figure:
     """Draw when each leg was in contact as a bar chart over time (Fig. 2-1).
 

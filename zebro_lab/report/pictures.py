@@ -45,6 +45,7 @@ CAPTIONS: Mapping[str, str] = {
     "normal_force": "Predicted normal force of each leg in the last two cycles",
     "traction_force": "Predicted traction of each leg in the last two cycles",
     "paired_traction": "Predicted traction of each leg, time steps added in pairs: twice the force",
+    "leg_angles": "Angle of each leg in the last two cycles",
     "gantt": "Predicted stance of each leg in the last two cycles",
     ".floor": "Predicted band and tracked path over the floor as seen from above",
     ".photos": "Photographs from above, and the robot drawn at its predicted pose",

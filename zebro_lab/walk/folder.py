@@ -31,7 +31,7 @@ _NOT_MEASURED = ("assumed", "thesis")  # sources of slip laws without data
 INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 PICTURES = (
     "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
-    "paired_traction", "gantt",
+    "paired_traction", "leg_angles", "gantt",
 )  # fmt: skip
 ANIMATIONS = ("animation.mp4", "animation.gif")
 DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band"

@@ -14,10 +14,10 @@ from zebro_lab.walk.shown_time import part_in
 def draw_walk(
     folder: Path, path: WalkPath, robot: Robot, *, title: str, asked: PictureRequest
 ) -> None:
-    """Draw path, motion, orientation, slip ratios, forces and contacts of a walk.
+    """Draw path, motion, orientation, slip ratios, forces, leg angles and contacts of a walk.
 
-    Slip, forces and contacts are drawn for the last two cycles of walking, when the walk is steady;
-    in a window of time, if one is asked for, together with motion and orientation.
+    Slip, forces, angles and contacts are drawn for the last two cycles of walking, when the walk is
+    steady; in a window of time, if one is asked for, together with motion and orientation.
 
     Args:
         folder: Folder to write the pictures into.
@@ -44,6 +44,7 @@ def draw_walk(
             walk_legs.paired_traction,
             end,
         ),
+        "leg_angles": ("Leg angles", walk_legs.leg_angles, end),
         "gantt": ("Contact", walk_legs.gantt, end),
     }
     figures = {

@@ -12,6 +12,7 @@ from support.figure_extents import overhang
 from zebro_lab.plots import save
 from zebro_lab.plots.walk_legs import (
     gantt,
+    leg_angles,
     normal_forces,
     paired_traction,
     slip_ratios,
@@ -27,6 +28,7 @@ FIGURES = {
     "normal_force": normal_forces,
     "traction_force": traction_forces,
     "paired_traction": paired_traction,
+    "leg_angles": leg_angles,
     "gantt": gantt,
 }
 draws_all = pytest.mark.parametrize("draw", FIGURES.values(), ids=FIGURES)

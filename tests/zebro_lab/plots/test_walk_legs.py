@@ -10,6 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from zebro_lab.plots.walk_legs import (
     gantt,
+    leg_angles,
     normal_forces,
     paired_traction,
     slip_ratios,
@@ -42,6 +43,18 @@ def test_paired_traction_leaves_nothing_of_what_alternates(walked):
         *(paired_traction(p, title="").axes for p in (walked, chatter)), strict=True
     ):
         np.testing.assert_allclose(axes.lines[1].get_ydata(), noisy.lines[1].get_ydata(), atol=1e-9)
+
+
+def test_leg_angles_are_drawn_modulo_a_turn_without_a_line_across(walked):
+    for leg, axes in enumerate(leg_angles(walked, title="A walk").axes):
+        (line,) = (each for each in axes.lines if len(each.get_xdata()) == len(walked.t))
+        drawn = np.asarray(line.get_ydata(), dtype=float)
+        seen = ~np.isnan(drawn)
+        assert 0.9 < seen.mean() < 1.0  # a gap where a turn is over
+        np.testing.assert_allclose(drawn[seen], np.degrees(walked.theta[seen, leg]) % 360)
+        steps = np.diff(drawn)
+        assert np.nanmax(np.abs(steps)) < 180
+        assert axes.get_ylim() == (0, 360)
 
 
 def test_bars_of_contact_are_the_stances_of_each_leg(walked):

@@ -2,6 +2,7 @@
 """A program is walked from its file to the last leg angle, and its mistakes are named."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -60,6 +61,13 @@ def test_the_walked_angles_are_predicted_to_the_same_path(run_command, tmp_path)
     assert run_command("predict", out, "--slip", "thesis", "--out", again).code == 0
     first, second = read_walk(out), read_walk(again)
     np.testing.assert_allclose(first.position[-1], second.position[-1], atol=2e-3)
+
+
+def test_the_example_is_walked(run_command, tmp_path):
+    example = Path(__file__).parents[3] / "examples" / "program.toml"
+    assert run_command("walk", example, "--slip", "thesis", "--out", tmp_path / "out").code == 0
+    end = read_walk(tmp_path / "out").position[-1, :2]
+    assert np.hypot(*end) <= 0.2 + 1e-3  # back where it began
 
 
 FAULTS = {

@@ -146,6 +146,11 @@ def _walked(
     if until.time is not None:
         began, cycles = legs.end, 0
         while legs.end < began + until.time - 1e-9:
+            if cycles == MOST_CYCLES:
+                raise DomainError(
+                    f"after {MOST_CYCLES} cycles {legs.end - began:.4g} s of {until.time:.4g} s "
+                    "are over; write it as several segments"
+                )
             legs, cycles = legs.with_cycle(gait), cycles + 1
         return legs, cycles
     if walker is None:

@@ -12,6 +12,7 @@ from model.gait.program import CycleGait, cycle_gait
 from model.robot import N_LEGS
 from model.walk.program import Segment, Until
 from zebro_lab.files.settings_table import SettingsTable, read_settings
+from zebro_lab.robot.gait_argument import LEAST_DEG
 
 _GAITS = {"tripod": TRIPOD, "tetrapod": TETRAPOD}
 _TIMES = ("ground_time", "flight_time")
@@ -90,8 +91,8 @@ def _gait(table: SettingsTable, groups: Gait, leg_arc: float) -> tuple[CycleGait
     reverse = table.flag("reverse", default=False)
     turn_time = table.quantity("turn_time", "s", default=0.0, least=0.0)
     double = table.quantity("double_stance", "s", default=0.0, least=0.0)
-    down = table.number("touchdown_deg", 50.0)
-    up = table.number("liftoff_deg") if "liftoff_deg" in table else None
+    down = _degrees(table, "touchdown_deg") if "touchdown_deg" in table else 50.0
+    up = _degrees(table, "liftoff_deg") if "liftoff_deg" in table else None
     ground, flight = _times(table, groups)
     gait = cycle_gait(
         groups, ground_time=ground, flight_time=flight, turn_time=turn_time, double_stance=double,
@@ -129,6 +130,21 @@ def _until(table: SettingsTable) -> Until:
     if "time" in table:
         return Until(time=table.quantity("time", "s", above=0.0))
     if "heading_deg" in table:
-        return Until(heading=float(np.radians(table.number("heading_deg"))))
+        heading = _degrees(table, "heading_deg")
+        if heading <= 0:
+            raise table.fault(f"is {heading:g}; expected more than 0: the side to turn to is "
+                              "direction", "heading_deg")  # fmt: skip
+        return Until(heading=float(np.radians(heading)))
     x, y, radius = table.quantities("near", 3, "m")
     return Until(near=(x, y, radius))
+
+
+def _degrees(table: SettingsTable, key: str) -> float:
+    """Read an angle in degrees; one that would be usual in radians is refused."""
+    angle = table.number(key)
+    if 0 < abs(angle) < LEAST_DEG:
+        raise table.fault(
+            f"is {angle:g}, which is improbable in degrees; if it is in radians, write "
+            f"{np.degrees(angle):.4g}", key,
+        )  # fmt: skip
+    return angle

@@ -53,6 +53,8 @@ def test_a_place_that_the_robot_does_not_come_to_ends_in_a_message(monkeypatch):
         laid_out(Segment(stand=1.0), Segment(STRAIGHT, Until(near=(-2.0, 0.0, 0.1))))
     with pytest.raises(DomainError, match=r"has not turned by 90 degrees; it has by 0"):
         laid_out(Segment(STRAIGHT, Until(heading=np.pi / 2)))
+    with pytest.raises(DomainError, match="after 3 cycles 6 s of 9 s are over"):
+        laid_out(Segment(STRAIGHT, Until(time=9.0)))
 
 
 def test_a_program_needs_a_gait_and_a_slip_law_where_it_must_be_walked():

@@ -91,6 +91,12 @@ FAULTS = {
         '[[segment]]\ngait = "tripod"\ncycle = 2\nground_time = 1\nuntil = { strides = 1 }',
         r"segment\[1\].cycle.* give either",
     ),
+    "heading to the other side": (
+        '[[segment]]\ngait = "tripod"\nuntil = { heading_deg = -90 }', "the side to turn to is",
+    ),
+    "radians": (
+        '[[segment]]\ngait = "tripod"\nuntil = { heading_deg = 1.57 }', "in radians, write 89.95",
+    ),
     "near without a radius": (
         '[[segment]]\ngait = "tripod"\nuntil = { near = [1, 2] }', r"segment\[1\].until.near",
     ),

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from model.errors import DomainError
 from model.gait import (
     TETRAPOD,
     TRIPOD,
@@ -125,7 +126,10 @@ def _maxplus(request: GaitRequest, _: float) -> NamedGait:
 
 
 def _groups(request: GaitRequest, _: float) -> NamedGait:
-    gait = parse_gait(request.name, N_LEGS)
+    try:
+        gait = parse_gait(request.name, N_LEGS)
+    except DomainError as error:
+        raise SettingsError(str(error), key="--gait") from error
     return _scheduled(request, gait, str(gait), _stance(request, *_THESIS_TURN))
 
 

@@ -9,7 +9,7 @@ import pytest
     [
         ("--duration", "2s", "found '2s'; expected a number"),
         ("--seed", "1.5", "found '1.5'; expected a whole number"),
-        ("--gait", "tripot", "'--gait': 'tripot' is not one of 'tripod'"),
+        ("--gait", "tripot", "'--gait': 'tripot' is not a gait; did you mean 'tripod'?"),
     ],
 )
 def test_the_value_and_what_is_expected_are_named(run_command, option, value, message):

@@ -27,6 +27,7 @@ from model.robot import N_LEGS
 from model.slip.law import Array
 
 _TURN = 2 * np.pi
+LEAST_SWING = np.pi / 2  # a leg that swings less far may not leave the ground: it goes round
 _SAME = 1e-9  # s or rad: times or angles nearer than this are equal
 
 
@@ -110,10 +111,10 @@ def cycle_gait(
         )
     inner = is_inner(direction)
     outer_up = float(ideal_liftoff(touchdown, leg_arc)) if liftoff is None else liftoff
-    if not 0 < outer_up - touchdown < _TURN:
+    if not 0 < outer_up - touchdown < np.pi:
         raise DomainError(
             f"lift-off at {np.degrees(outer_up):g} degrees; expected beyond touchdown at "
-            f"{np.degrees(touchdown):g}, by less than 360 degrees"
+            f"{np.degrees(touchdown):g}, by less than 180 degrees"
         )
     inner_down, inner_up = touchdown, outer_up
     if abs(steering) < 1:
@@ -202,7 +203,8 @@ class ProgramLegs:
 
         Where the gait goes on, the scheduler alone says who waits for whom. Else all legs are down
         before one lifts off, and until it does a leg turns towards its new lift-off angle, no
-        faster than in either gait: a leg that lifts off at once does so from where it is.
+        faster than in either gait: a leg that lifts off at once does so from where it is, and goes
+        once round where it would swing by less than 90 degrees.
 
         Args:
             gait: Gait of the cycle.
@@ -221,7 +223,7 @@ class ProgramLegs:
             lifted = angles + np.clip(_nearest(gait.liftoff - angles), -fastest, fastest)
             handed = self._down, angles, self.standing
         flown = (gait.sense * (gait.touchdown - lifted)) % _TURN
-        flown = np.where(flown < _SAME, _TURN, flown)
+        flown = np.where(flown < LEAST_SWING, flown + _TURN, flown)
         cycle = _Cycle(gait, up, down, lifted, lifted + gait.sense * flown, handed)
         return ProgramLegs((*self.cycles, cycle))
 

@@ -31,7 +31,7 @@ class Until:
         strides: After this number of cycles.
         time: After the first cycle that ends at or after this time in the segment [s].
         heading: After the heading has changed by this, to either side, since the segment began; the
-            steps of the last cycle are shortened to meet it [rad].
+            steps of the last cycle are shortened to come as near to it as they can [rad].
         near: x, y and radius: after the first cycle at whose end the body's centre is in this
             circle [m].
 
@@ -85,10 +85,13 @@ class WalkedSegment:
     Attributes:
         cycles: Number of cycles; 0 of a stand.
         end: Time of its end [s].
+        missed: How much further than asked for the heading changed, negative if less; 0 of a
+            segment that ends otherwise [rad].
     """
 
     cycles: int
     end: float
+    missed: float = 0.0
 
 
 def lay_out(
@@ -123,13 +126,13 @@ def lay_out(
     done: list[WalkedSegment] = []
     for number, segment in enumerate(segments, start=1):
         if segment.gait is None or segment.until is None:
-            legs, cycles = legs.with_stand(segment.stand), 0
+            legs, cycles, missed = legs.with_stand(segment.stand), 0, 0.0
         else:
             try:
-                legs, cycles = _walked(legs, segment.gait, segment.until, walker)
+                legs, cycles, missed = _walked(legs, segment.gait, segment.until, walker)
             except DomainError as error:
                 raise DomainError(f"segment {number}: {error}") from error
-        done.append(WalkedSegment(cycles, legs.end))
+        done.append(WalkedSegment(cycles, legs.end, missed))
         if progress is not None:
             progress(number / len(segments))
     return legs, tuple(done)
@@ -137,22 +140,22 @@ def lay_out(
 
 def _walked(
     legs: ProgramLegs, gait: CycleGait, until: Until, walker: "_Walker | None"
-) -> tuple[ProgramLegs, int]:
-    """Return the program with the cycles of one segment, and their number."""
+) -> tuple[ProgramLegs, int, float]:
+    """Return the program with a segment's cycles, their number, and by how much it misses."""
     if until.strides is not None:
         for _ in range(until.strides):
             legs = legs.with_cycle(gait)
-        return legs, until.strides
+        return legs, until.strides, 0.0
     if until.time is not None:
         began, cycles = legs.end, 0
-        while legs.end < began + until.time - 1e-9:
+        while cycles == 0 or legs.end < began + until.time - 1e-9:
             if cycles == MOST_CYCLES:
                 raise DomainError(
                     f"after {MOST_CYCLES} cycles {legs.end - began:.4g} s of {until.time:.4g} s "
                     "are over; write it as several segments"
                 )
             legs, cycles = legs.with_cycle(gait), cycles + 1
-        return legs, cycles
+        return legs, cycles, 0.0
     if walker is None:
         raise DomainError("ends at a heading or a place, which only a model with slip walks to")
     return _walked_to(legs, gait, until, walker)
@@ -160,7 +163,7 @@ def _walked(
 
 def _walked_to(
     legs: ProgramLegs, gait: CycleGait, until: Until, walker: "_Walker"
-) -> tuple[ProgramLegs, int]:
+) -> tuple[ProgramLegs, int, float]:
     """Add cycles until the robot is at a place, or has turned by a heading."""
     x, y, start = walker.pose(legs)
     turned = 0.0
@@ -170,9 +173,10 @@ def _walked_to(
         turned = abs(yaw - start)
         if until.near is not None:
             if np.hypot(x - until.near[0], y - until.near[1]) <= until.near[2]:
-                return legs, cycles
+                return legs, cycles, 0.0
         elif until.heading is not None and turned >= until.heading:
-            return _last_step(before, gait, until.heading, walker, kept, start), cycles
+            legs, missed = _last_step(before, gait, until.heading, walker, kept, start)
+            return legs, cycles, missed
     wanted = (
         f"turned by {np.degrees(until.heading):g} degrees; it has by {np.degrees(turned):.3g}"
         if until.heading is not None
@@ -184,8 +188,12 @@ def _walked_to(
 def _last_step(
     legs: ProgramLegs, gait: CycleGait, heading: float, walker: "_Walker", kept: "_Kept",
     start: float,
-) -> ProgramLegs:  # fmt: skip
-    """Add a cycle of shorter steps, so that the robot ends nearest to a heading since `start`."""
+) -> tuple[ProgramLegs, float]:  # fmt: skip
+    """Add a cycle of shorter steps, so that the robot ends nearest to a heading since `start`.
+
+    Return the miss, too: legs that stand already at their full touchdown angle turn the robot
+    however short the next steps are.
+    """
 
     def walked(share: float) -> tuple[float, ProgramLegs]:
         walker.kept = kept
@@ -197,7 +205,8 @@ def _last_step(
         middle = 0.5 * (low + high)
         low, high = (middle, high) if walked(middle)[0] < 0 else (low, middle)
     best = min((low, high), key=lambda share: abs(walked(share)[0]))
-    return walked(best)[1]
+    missed, legs = walked(best)
+    return legs, missed
 
 
 class _Walker:

@@ -18,6 +18,7 @@ _GAITS = {"tripod": TRIPOD, "tetrapod": TETRAPOD}
 _TIMES = ("ground_time", "flight_time")
 _ENDS = ("strides", "time", "heading_deg", "near")
 _MOST = 1000  # strides of a segment
+_SHORTEST, _LONGEST = 0.01, 1000.0  # s, of any time
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def read_program(file: Path, *, leg_arc: float) -> Program:
 
 def _segment(table: SettingsTable, leg_arc: float) -> tuple[Segment, str]:
     if "stand" in table:
-        return Segment(stand=table.quantity("stand", "s", above=0.0)), "stand"
+        return Segment(stand=_seconds(table, "stand")), "stand"
     text = table.text("gait")
     try:
         groups = _GAITS[text] if text in _GAITS else parse_gait(text, N_LEGS)
@@ -89,8 +90,8 @@ def _gait(table: SettingsTable, groups: Gait, leg_arc: float) -> tuple[CycleGait
     right = table.choice("direction", ("left", "right"), "left") == "right"
     direction: Direction = "right" if right else "left"
     reverse = table.flag("reverse", default=False)
-    turn_time = table.quantity("turn_time", "s", default=0.0, least=0.0)
-    double = table.quantity("double_stance", "s", default=0.0, least=0.0)
+    turn_time = _seconds(table, "turn_time", least=0.0) if "turn_time" in table else 0.0
+    double = _seconds(table, "double_stance", least=0.0) if "double_stance" in table else 0.0
     down = _degrees(table, "touchdown_deg") if "touchdown_deg" in table else 50.0
     up = _degrees(table, "liftoff_deg") if "liftoff_deg" in table else None
     ground, flight = _times(table, groups)
@@ -110,10 +111,10 @@ def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
         if "cycle" in table:
             raise table.fault("found beside ground_time or flight_time; give either", "cycle")
         return (
-            table.quantity("ground_time", "s", above=0.0),
-            table.quantity("flight_time", "s", above=0.0),
+            _seconds(table, "ground_time"),
+            _seconds(table, "flight_time"),
         )
-    cycle = table.quantity("cycle", "s", default=2.0, above=0.0)
+    cycle = _seconds(table, "cycle") if "cycle" in table else 2.0
     flight = cycle / max(len(groups.groups), 2)
     return cycle - flight, flight
 
@@ -128,15 +129,23 @@ def _until(table: SettingsTable) -> Until:
     if "strides" in table:
         return Until(strides=table.whole("strides", least=1, most=_MOST))
     if "time" in table:
-        return Until(time=table.quantity("time", "s", above=0.0))
+        return Until(time=_seconds(table, "time"))
     if "heading_deg" in table:
-        heading = _degrees(table, "heading_deg")
+        heading = table.number("heading_deg")
         if heading <= 0:
             raise table.fault(f"is {heading:g}; expected more than 0: the side to turn to is "
                               "direction", "heading_deg")  # fmt: skip
         return Until(heading=float(np.radians(heading)))
     x, y, radius = table.quantities("near", 3, "m")
     return Until(near=(x, y, radius))
+
+
+def _seconds(table: SettingsTable, key: str, *, least: float = _SHORTEST) -> float:
+    """Read a time from `least`, by default 10 ms, to 1000 s."""
+    value = table.quantity(key, "s", least=least)
+    if value > _LONGEST:
+        raise table.fault(f"is {value:g} s; expected at most {_LONGEST:g} s", key)
+    return value
 
 
 def _degrees(table: SettingsTable, key: str) -> float:

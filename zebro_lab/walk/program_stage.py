@@ -4,6 +4,8 @@
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
+
 from model.progress import Watcher
 from model.robot import GRAVITY
 from model.walk.dynamics import DynamicsOptions
@@ -17,6 +19,7 @@ from zebro_lab.walk.asked import AskedWalk, WalkedSegment
 from zebro_lab.walk.program_file import Program, read_program
 from zebro_lab.walk.request import ModelRequest
 
+_MISSED = np.radians(1.0)  # a miss that is told of
 _WALKS = "dynamics"  # the model that finds where segments end
 
 
@@ -49,11 +52,18 @@ def laid_out(
         WalkedSegment(what, end.cycles, end.end)
         for what, end in zip(program.names, ends, strict=True)
     )
+    missed = tuple(
+        f"WARNING: segment {number} turns by {np.degrees(end.missed):+.1f} deg more than asked "
+        "for: legs that stand turn the robot however short the last steps are; ask for another "
+        "heading, or steer nearer to 1"
+        for number, end in enumerate(ends, start=1)
+        if abs(end.missed) > _MISSED
+    )
     settings = {"program": str(file), "duration": legs.end,
                 "segments": [asdict(each) for each in segments]}  # fmt: skip
     return AskedWalk(
         legs.reference(), legs.end, f"program {file.stem}", settings, segments=segments,
-        files=(file,), notes=notes,
+        files=(file,), notes=(*notes, *missed),
     )  # fmt: skip
 
 

@@ -70,6 +70,14 @@ def test_the_example_is_walked(run_command, tmp_path):
     assert np.hypot(*end) <= 0.2 + 1e-3  # back where it began
 
 
+def test_a_heading_that_standing_legs_overshoot_is_told_of(run_command, tmp_path):
+    text = '[[segment]]\ngait = "tripod"\nsteering = -1\nuntil = { heading_deg = 75 }'
+    ended = run_command("walk", written(tmp_path, text), "--slip", "thesis", "--out",
+                        tmp_path / "out")  # fmt: skip
+    assert ended.code == 0
+    assert "WARNING: segment 1 turns by +10" in ended.out
+
+
 FAULTS = {
     "no segment": ("", r"expected one \[\[segment\]\] or more"),
     "no table": ("segment = 3", r"expected one \[\[segment\]\] or more"),
@@ -95,7 +103,16 @@ FAULTS = {
         '[[segment]]\ngait = "tripod"\nuntil = { heading_deg = -90 }', "the side to turn to is",
     ),
     "radians": (
-        '[[segment]]\ngait = "tripod"\nuntil = { heading_deg = 1.57 }', "in radians, write 89.95",
+        '[[segment]]\ngait = "tripod"\ntouchdown_deg = 0.87\nuntil = { strides = 1 }',
+        "in radians, write 49.85",
+    ),
+    "endless stand": ("[[segment]]\nstand = 1e13", "stand: is 1e\\+13 s; expected at most 1000 s"),
+    "no time": (
+        '[[segment]]\ngait = "tripod"\ncycle = 1e-9\nuntil = { strides = 1 }', "expected 0.01 or",
+    ),
+    "half a turn on the ground": (
+        '[[segment]]\ngait = "tripod"\ntouchdown_deg = -30\nuntil = { strides = 1 }',
+        "by less than 180 degrees",
     ),
     "near without a radius": (
         '[[segment]]\ngait = "tripod"\nuntil = { near = [1, 2] }', r"segment\[1\].until.near",

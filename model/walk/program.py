@@ -79,7 +79,7 @@ class Segment:
 
 
 @dataclass(frozen=True)
-class WalkedSegment:
+class SegmentEnd:
     """Where and when a segment ended, as it was walked while the program was laid out.
 
     Attributes:
@@ -102,7 +102,7 @@ def lay_out(
     options: DynamicsOptions,
     ground: Ground = FLAT,
     progress: Callable[[float], None] | None = None,
-) -> tuple[ProgramLegs, tuple[WalkedSegment, ...]]:
+) -> tuple[ProgramLegs, tuple[SegmentEnd, ...]]:
     """Compute the cycles of a program; walk it where a segment ends at a heading or a place.
 
     Args:
@@ -123,7 +123,7 @@ def lay_out(
         raise DomainError("no segment of the program has a gait; expected at least one")
     legs = ProgramLegs.beginning_with(first)
     walker = None if table is None else _Walker(robot, table, options, ground)
-    done: list[WalkedSegment] = []
+    done: list[SegmentEnd] = []
     for number, segment in enumerate(segments, start=1):
         if segment.gait is None or segment.until is None:
             legs, cycles, missed = legs.with_stand(segment.stand), 0, 0.0
@@ -132,7 +132,7 @@ def lay_out(
                 legs, cycles, missed = _walked(legs, segment.gait, segment.until, walker)
             except DomainError as error:
                 raise DomainError(f"segment {number}: {error}") from error
-        done.append(WalkedSegment(cycles, legs.end, missed))
+        done.append(SegmentEnd(cycles, legs.end, missed))
         if progress is not None:
             progress(number / len(segments))
     return legs, tuple(done)
@@ -196,6 +196,7 @@ def _last_step(
     """
 
     def walked(share: float) -> tuple[float, ProgramLegs]:
+        """Return by how much steps of a share of the stance miss the heading, and the program."""
         walker.kept = kept
         longer = legs.with_cycle(gait.shortened(share))
         return abs(walker.pose(longer)[2] - start) - heading, longer

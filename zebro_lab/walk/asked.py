@@ -2,7 +2,7 @@
 """The leg angles that a walk was asked for: those of a gait, or of a program."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from model.gait import CyclicReference, EventSystem, SampledReference
@@ -48,4 +48,4 @@ class AskedWalk:
     schedule: EventSystem | None = None
     segments: tuple[WalkedSegment, ...] = ()
     files: tuple[Path, ...] = ()
-    notes: tuple[str, ...] = field(default=())
+    notes: tuple[str, ...] = ()

@@ -30,7 +30,7 @@ def angles_from(log: LegLog, start: float) -> tuple[SampledReference | InexactLo
         start: Time of the log that becomes zero [s].
 
     Returns:
-        The angles, a `InexactLog` if they are encoder counts or have noise; and notes.
+        The angles, an `InexactLog` if they are encoder counts or have noise; and notes.
     """
     t, theta = log.reference.t - start, log.reference.theta
     step = find_step(theta)

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from model.counted import counted
+from model.errors import DomainError
 from model.gait import CyclicReference, EventSystem
 from model.progress import Watcher
 from model.slip.law import Array
@@ -95,7 +96,7 @@ def _schedule_document(walked: Walked) -> dict[str, object] | None:
     return {
         "gait": str(walked.schedule.gait),
         "cycle_time_s": walked.schedule.cycle_time,
-        "coupling_time_cycles": walked.schedule.coupling_time,
+        "coupling_time_cycles": _coupling_time(walked.schedule),
         "touchdown_s": down,
         "liftoff_s": up,
     }
@@ -241,11 +242,20 @@ def slip_lines(walked: Walked, summary: WalkSummary, support: Support) -> list[s
 
 def schedule_line(schedule: EventSystem) -> str:
     """Say what the max-plus system of a gait computed: cycle time and coupling time."""
+    cycles = _coupling_time(schedule)
+    after = "more cycles than were tried" if cycles is None else counted(cycles, "cycle")
     return (
         f"scheduled by max-plus algebra, {schedule.gait}: cycle time (eigenvalue) "
-        f"{schedule.cycle_time:.4g} s; from any start events repeat after "
-        f"{counted(schedule.coupling_time, 'cycle')} (coupling time)"
+        f"{schedule.cycle_time:.4g} s; from any start events repeat after {after} (coupling time)"
     )
+
+
+def _coupling_time(schedule: EventSystem) -> int | None:
+    """Return the coupling time in cycles; None if it is longer than is computed."""
+    try:
+        return schedule.coupling_time
+    except DomainError:
+        return None
 
 
 def gait_table(reference: CyclicReference) -> Table:

@@ -23,6 +23,7 @@ from zebro_lab.walk.screen import (
     gait_table,
     print_walk,
     run_and_report,
+    schedule_line,
     slip_lines,
     summary_lines,
     support_lines,
@@ -74,6 +75,16 @@ def test_a_scheduled_gait_has_its_events_cycle_and_coupling_time(walked, tmp_pat
     assert (document["cycle_time_s"], document["coupling_time_cycles"]) == (pytest.approx(2.7), 2)
     assert document["liftoff_s"].tolist() == [1.9, 0.1, 1.0, 1.9, 0.1, 1.0]
     assert walk_document(finished(walked))["schedule"] is None
+
+
+def test_a_coupling_time_beyond_what_is_computed_ends_no_walk(walked):
+    request = GaitRequest("{1,4} < {2,5} < {3,6}", tau_ground=0.866655, tau_flight=0.33333,
+                          tau_turn=0.1)  # fmt: skip
+    gait = make_gait(request, leg_arc=np.pi)
+    assert gait.schedule is not None
+    assert "repeat after more cycles than were tried" in schedule_line(gait.schedule)
+    done = replace(finished(walked), reference=gait.reference, schedule=gait.schedule)
+    assert walk_document(done)["schedule"]["coupling_time_cycles"] is None
 
 
 @pytest.mark.parametrize(("sign", "side"), [(1, "left"), (-1, "right")])

@@ -11,6 +11,7 @@ from model.robot import Robot
 from model.slip import MagicFormula
 from model.walk.dynamics import DynamicsOptions, Start, walk
 from model.walk.ground import sample_ground
+from model.walk.no_slip import walk_no_slip
 from model.walk.path import turning_radius
 from model.walk.traction import TOE_LAWS, VelocityCoulomb, law_table
 
@@ -119,6 +120,15 @@ def test_the_toe_law_changes_the_radius_by_a_percent_at_most(toe):
 
 
 # --- symmetry
+
+
+@pytest.mark.parametrize(("cycle", "shorter"), [(0.35, (0.02, 0.05)), (2.0, (-1e-3, 1e-3))])
+def test_a_slow_straight_walk_is_kinematics_and_a_fast_one_flies_and_slips(cycle, shorter):
+    legs = tripod(STRAIGHT, STRAIGHT, cycle=cycle, cycles=6)
+    exact = walk_no_slip(ROBOT, legs, duration=6 * cycle, dt=0.0005).position[-1, 0]
+    path = walk(ROBOT, legs, SLIP, duration=6 * cycle, options=DynamicsOptions(dt=0.0005))
+    assert shorter[0] < 1 - path.position[-1, 0] / exact < shorter[1]
+    assert bool(path.in_flight.mean() > 0.01) is (cycle < 1)
 
 
 def test_left_and_right_mirror():

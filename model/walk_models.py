@@ -2,7 +2,7 @@
 """The walking models by name, and the baselines that a prediction is compared with."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from model.robot import GRAVITY, Robot
 from model.slip.thesis import thesis_curve
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
+from model.walk.thesis_switches import AS_LISTED, ThesisSwitches
 from model.walk.traction import ToeLaw
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ class ModelRun:
         direction: Side to which the gait turns; only the thesis's model uses it.
         legs: Corrections to robot, slip law and path, of which draw 0 is used; None for none. Only
             the model "dynamics" uses them.
+        thesis: Switches of the thesis's model; only that model uses them.
     """
 
     robot: Robot
@@ -49,6 +51,7 @@ class ModelRun:
     toe: ToeLaw = "saturated"
     direction: Direction = "left"
     legs: LegState | None = None
+    thesis: ThesisSwitches = AS_LISTED
 
 
 @dataclass(frozen=True)
@@ -123,7 +126,8 @@ def _thesis(run: ModelRun) -> WalkPath:
     # The legs of a log stand still and turn back by fractions of a degree; by the listing's slip
     # ratio such a leg would have full traction.
     logged = not isinstance(run.reference, CyclicReference)
-    options = ThesisOptions(dt=run.dt, direction=run.direction, mend_slip=logged)
+    mended = replace(run.thesis, mend_slip=logged or run.thesis.mend_slip)
+    options = ThesisOptions(**vars(mended), dt=run.dt, direction=run.direction)
     return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
 
 

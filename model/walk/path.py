@@ -2,6 +2,7 @@
 """A walked path: pose of the body and state of each leg at every sample."""
 
 from dataclasses import dataclass, fields
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,9 +71,9 @@ class WalkPath:
         """Heading, unwrapped, shape (n,) [rad]."""
         return self.orientation[:, 2]
 
-    def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "WalkPath":
+    def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Self:
         """Return the path at the samples that a slice, a mask or indices select."""
-        return WalkPath(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
+        return type(self)(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
 
     @property
     def length(self) -> float:

@@ -2,6 +2,7 @@
 """Write a finished walk: the walk folder with path, band and the requested pictures."""
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 
 from model.progress import Watcher
@@ -51,6 +52,7 @@ def write_walk(
         "model": walked.model,
         "dt": walked.dt,
         "toe": request.toe,
+        **({} if request.thesis is None else {"thesis": asdict(request.thesis)}),
         "slip": None if slip is None else {"named": slip.text, "source": slip.source},
         "robot": _robot_settings(described.robot),
         "doubts": list(walked.doubts),

@@ -7,6 +7,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from typer import Argument, BadParameter, Option
 
+from model.walk.thesis_switches import ThesisSwitches
 from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
@@ -19,6 +20,7 @@ from zebro_lab.terminal.picture_options import (
     parse_instants,
     parse_window,
 )
+from zebro_lab.walk.thesis_argument import THESIS_HELP, parse_thesis
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
 ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
@@ -136,6 +138,10 @@ class ModelRequest:
     toe: Annotated[
         ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
     ] = "saturated"
+    thesis: Annotated[
+        ThesisSwitches | None,
+        Option(parser=parse_thesis, metavar="SWITCH,…", help=THESIS_HELP),
+    ] = None
     robot: Annotated[
         Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
     ] = None
@@ -163,7 +169,18 @@ class ModelRequest:
         return (*slip, *((self.robot,) if self.robot is not None else ()))
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for a `coulomb:…` that is no friction law, and a long step."""
+        """Check the values.
+
+        Raises:
+            SettingsError: A `coulomb:…` is no friction law, or the step is too long.
+            BadParameter: Switches of the thesis's model are given for another one.
+        """
+        if self.thesis is not None and self.model != "thesis":
+            raise BadParameter(
+                f"switches the thesis's model; the model '{self.model}' has none of it: give "
+                "--model thesis too",
+                param_hint="'--thesis'",
+            )
         if self.slip is not None:
             coulomb_numbers(self.slip)
         longest = LONGEST_SLIPPING_STEP if self.model in _SLIPPING else LONGEST_STEP

@@ -14,6 +14,7 @@ from model.gait.reference import LegReference
 from model.poses import Poses
 from model.predict import FINE
 from model.walk.path import WalkPath
+from model.walk.thesis_switches import AS_LISTED
 from model.walk_models import MODELS, ModelRun, WalkModel
 from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
@@ -22,6 +23,7 @@ from zebro_lab.walk.asked import WalkedSegment
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.thesis_argument import named_switches
 
 MOST_STEPS: Final = 500_000
 """Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""
@@ -129,13 +131,14 @@ def walk_with(
     dt = _time_step(request, model, duration, informed)
     run = ModelRun(
         described.robot, reference, slip, duration, dt, request.toe, direction,
-        None if informed is None else informed.middle,
+        None if informed is None else informed.middle, request.thesis or AS_LISTED,
     )  # fmt: skip
     path = _run(run, model, slip)
     if model.slips and dt > model.dt:
         notes = (*notes, f"in steps of {dt:g} s, longer than {model.dt:g} s, legs slip too much")
     grip = "" if slip is None else f", slip {slip.title}"
-    title = f"{what}, model '{model.name}'{grip}"
+    switched = "" if request.thesis is None else f" ({', '.join(named_switches(request.thesis))})"
+    title = f"{what}, model '{model.name}'{switched}{grip}"
     found = (part.notes for part in (informed, slip) if part is not None)
     notes = (*notes, *unused, *(note for part in found for note in part))
     return Walked(path, reference, described, slip, model.name, dt, title, notes, informed)

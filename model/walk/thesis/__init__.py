@@ -2,6 +2,7 @@
 """The thesis's hybrid dynamic model of tripod walking, as printed, with its faults."""
 
 from model.walk.thesis.legs import SwitchedLegs
+from model.walk.thesis.path import ThesisPath
 from model.walk.thesis.traction import (
     THESIS_TRACTION,
     Traction,
@@ -15,6 +16,7 @@ __all__ = [
     "THESIS_TRACTION",
     "SwitchedLegs",
     "ThesisOptions",
+    "ThesisPath",
     "Traction",
     "law_traction",
     "paired_sum",

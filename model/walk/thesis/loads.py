@@ -33,6 +33,8 @@ class Balance(NamedTuple):
         slip: Longitudinal and lateral slip of each leg, shape (3, 2) [-].
         inertia: Moments of inertia about roll and pitch axes, shape (2,) [kg m2].
         wanted: Roll and pitch acceleration that contact moments have to produce, (2,) [rad/s2].
+        speeds: Of each leg, v_R of its surface (v_T on the toe), v_C of the body's point at the
+            contact and v_H of the hip, forward, shape (3, 3) [m/s].
     """
 
     arms: Array
@@ -40,6 +42,7 @@ class Balance(NamedTuple):
     slip: Array
     inertia: Array
     wanted: Array
+    speeds: Array
 
 
 @compiled

@@ -54,19 +54,17 @@ def walk_slip(leg_speed, ground_speed, signed):
 
 
 @compiled
-def lateral_walk_slip(axes, v, signed):
-    """Compute lateral slip, the slip angle over pi/2, of the body's velocity, Listing A.21 [-].
+def lateral_walk_slip(forward, left, signed):
+    """Compute lateral slip, the slip angle over pi/2, of a velocity, Listing A.21 [-].
 
-    Eq. (4-41), (4-42): from -1 to 1, positive when the body moves to the right and forward, zero
+    Eq. (4-41), (4-42): from -1 to 1, positive when the point moves to the right and forward, zero
     without leftward velocity. The listing has the wrong sign for a body that goes backward.
 
     Args:
-        axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].
-        v: Rates of the six coordinates, shape (6,) [m/s, rad/s].
+        forward: Forward component of the velocity [m/s].
+        left: Its leftward component [m/s].
         signed: Whether to correct the sign for a body that goes backward.
     """
-    forward = axes[0, 0] * v[0] + axes[0, 1] * v[1] + axes[0, 2] * v[2]
-    left = axes[1, 0] * v[0] + axes[1, 1] * v[1] + axes[1, 2] * v[2]
     if left == 0.0:
         return 0.0
     if signed:
@@ -80,9 +78,10 @@ def find_slip(machine, manner, traction, legs, three, q, v, balance):
 
     v_R of Eq. (4-32) and v_T of Eq. (4-37) are the same, minus the rate of phi times the hip's
     height. The ground speed is that at the hip for a leg on its toe, else at the contact; lateral
-    slip is the body's, the same for all legs. Slip has the sign of the equations on the toe and
-    with `manner.mend_slip`, else the listing's. For a law by slip velocity, slip is velocity over
-    the table's `speed_scale`.
+    slip is the body's, the same for all legs, or with `manner.contact_slip_angle` that of the
+    body's point at each contact, as Eq. (4-41) prints. Slip has the sign of the equations on the
+    toe and with `manner.mend_slip`, else the listing's. For a law by slip velocity, slip is
+    velocity over the table's `speed_scale`.
 
     Args:
         machine: The robot.
@@ -92,22 +91,27 @@ def find_slip(machine, manner, traction, legs, three, q, v, balance):
         three: Indices of the legs that carry load, shape (3,).
         q: Coordinates, shape (6,) [m, rad].
         v: Rates of the coordinates, shape (6,) [m/s, rad/s].
-        balance: Contacts, of which `axes` are used, `arms` and `slip` filled.
+        balance: Contacts, of which `axes` are used, `arms`, `slip` and `speeds` filled.
     """
-    arm = np.empty(3)
+    arm, body = np.empty(3), np.zeros(3)
     for k in range(3):
         i = three[k]
         toe = leg_state(legs.phi[i], machine.toe_beyond) == TOE
         for a in range(3):
             balance.arms[k, a] = legs.point[i, a] - q[a]
-            arm[a] = legs.hip[i, a] - q[a] if toe else balance.arms[k, a]
+            arm[a] = legs.hip[i, a] - q[a]
         leg_speed = -legs.phi_rate[i] * legs.height[i]
-        ground_speed = along(balance.axes[0], v, arm)
+        contact_speed = along(balance.axes[0], v, balance.arms[k])
+        hip_speed = along(balance.axes[0], v, arm)
+        balance.speeds[k, 0], balance.speeds[k, 1] = leg_speed, contact_speed
+        balance.speeds[k, 2] = hip_speed
+        ground_speed = hip_speed if toe else contact_speed
+        where = balance.arms[k] if manner.contact_slip_angle else body
+        forward, left = along(balance.axes[0], v, where), along(balance.axes[1], v, where)
         if traction.table.by_velocity:
             scale = traction.table.speed_scale
             balance.slip[k, 0] = (leg_speed - ground_speed) / scale
-            body = balance.axes[1]
-            balance.slip[k, 1] = -(body[0] * v[0] + body[1] * v[1] + body[2] * v[2]) / scale
+            balance.slip[k, 1] = -left / scale
         else:
             balance.slip[k, 0] = walk_slip(leg_speed, ground_speed, toe or manner.mend_slip)
-            balance.slip[k, 1] = lateral_walk_slip(balance.axes, v, manner.mend_slip)
+            balance.slip[k, 1] = lateral_walk_slip(forward, left, manner.mend_slip)

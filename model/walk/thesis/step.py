@@ -9,14 +9,15 @@ inertia with the body; both are kept.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from model.compiled import compiled
 from model.contact.tripod import switch_by_listing, switch_by_table
 from model.robot import GRAVITY
 from model.slip.law import Array
+from model.walk.thesis.heading import from_heading, to_heading
 from model.walk.thesis.kinematics import Legs, place_legs, reset, roll_rate, side_mean
 from model.walk.thesis.loads import Balance, leg_force, normal_forces, static_loads
+from model.walk.thesis.record import keep_contacts, keep_legs
 from model.walk.thesis.slip_ratio import find_slip
 from model.walk.thesis.traction import traction_force
 
@@ -53,6 +54,9 @@ class Manner(NamedTuple):
         reset_height: Whether a change of contacts sets the body's height.
         roll_sign: 1, or -1 to roll a right turn to its own side [-].
         mend_slip: Whether slip has the sign of the equations instead of the listing's.
+        mend_heading: Whether roll, pitch and inertia turn with the heading.
+        static_loads: Whether legs carry the loads of static equilibrium.
+        contact_slip_angle: Whether the slip angle is that of each contact instead of the body's.
         every: Number of steps between two samples that are kept.
     """
 
@@ -62,28 +66,10 @@ class Manner(NamedTuple):
     reset_height: bool
     roll_sign: float
     mend_slip: bool
+    mend_heading: bool
+    static_loads: bool
+    contact_slip_angle: bool
     every: int
-
-
-class Record(NamedTuple):
-    """Arrays of the n samples that are kept: the state before a step, and the step's contacts.
-
-    Attributes:
-        state: x, y, z [m], roll, pitch and yaw of Eq. (3-7) [rad], shape (n, 6).
-        contact: Whether a leg carries load, shape (n, 6).
-        kappa: Longitudinal slip of a leg that carries load, as `find_slip` computes it, else NaN,
-            shape (n, 6) [-].
-        normal: Normal force, zero without contact, shape (n, 6) [N].
-        forward: Traction force forward, zero without contact, shape (n, 6) [N].
-        left: Traction force to the left, zero without contact, shape (n, 6) [N].
-    """
-
-    state: Array
-    contact: NDArray[np.bool_]
-    kappa: Array
-    normal: Array
-    forward: Array
-    left: Array
 
 
 @compiled
@@ -209,8 +195,56 @@ def demands(machine, manner, legs, sides, q, v, spin, balance):
 
 
 @compiled
+def find_loads(machine, manner, traction, balance, total, static, loads):
+    """Compute the normal forces of the three legs, optimised as in section 4-4-2 or static.
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        traction: The slip law.
+        balance: Contacts and wanted accelerations; see `Balance`.
+        total: Sum that the optimised forces have [N].
+        static: Filled: forces in static equilibrium, Eq. (4-18), whose sum is the weight while the
+            body's centre is over the triangle of the contacts, shape (3,) [N].
+        loads: Filled: the forces, with `manner.static_loads` those, shape (3,) [N].
+    """
+    weight = machine.mass * GRAVITY
+    static_loads(balance.arms, weight, static)
+    if manner.static_loads:
+        loads[:] = static
+        return
+    static_loads(balance.arms, total, loads)
+    normal_forces(balance, traction, total, weight, loads)
+
+
+@compiled
+def prescribe(machine, manner, legs, sides, q, total, fall, v):
+    """Set the rates of height, roll and pitch to those that optimised forces would bring about.
+
+    Static loads do not balance the moments of traction: free to pitch, the body would turn over
+    within a second.
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        legs: Kinematics of the legs.
+        sides: Whether a leg is on the ground, shape (6,).
+        q: Coordinates, shape (6,) [m, rad].
+        total: Sum of optimised normal forces [N].
+        fall: Rate of height before the step [m/s].
+        v: Rates of the coordinates, of which those three are overwritten, (6,) [m/s, rad/s].
+    """
+    v[2] = fall + manner.dt * (total / machine.mass - GRAVITY)
+    v[3] = roll_rate(machine, manner, legs, sides, q[3])
+    v[4] = 0.0
+
+
+@compiled
 def run(machine, manner, traction, motion, q, v, sides, record):
     """Integrate the thesis's model over all steps.
+
+    With `manner.mend_heading` each step is computed in the frame of the body's heading, as that of
+    a robot that heads along x.
 
     Args:
         machine: The robot.
@@ -231,10 +265,12 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         np.empty((6, 3)), np.empty((6, 3)),
     )  # fmt: skip
     balance = Balance(
-        np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 2)), machine.inertia[:2], np.empty(2)
-    )
+        np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 2)), machine.inertia[:2], np.empty(2),
+        np.empty((3, 3)),
+    )  # fmt: skip
     three, loads, spin, forces = np.zeros(3, np.intp), np.empty(3), np.empty(3), np.empty((3, 2))
-    centre_before = q[:3].copy()
+    static, here, rates, turning = np.empty(3), np.empty(6), np.empty(6), np.empty(6)
+    before, centre_before = np.empty(3), q[:3].copy()
     steps = len(motion.theta)
     for step in range(steps):
         keep, row = step % manner.every == 0, step // manner.every
@@ -243,31 +279,34 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         theta, speed, stance_speed = (
             motion.theta[step], motion.speed[step], motion.stance_speed[step]
         )  # fmt: skip
-        tilt = place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs)
+        to_heading(manner.mend_heading, q, v, centre_before, here, rates, turning, before)
+        tilt = place_legs(machine, here, turning, theta, speed, stance_speed, before, legs)
         centre_before[:] = q[:3]
         if manner.by_table:
             changed = switch_by_table(legs.height, sides)
         else:
             changed = switch_by_listing(legs.height, sides, manner.inner)
-        three_legs(sides, legs, q, three)
+        three_legs(sides, legs, here, three)
         if changed or step == 0:
-            reset(machine, manner, legs, sides, q, v)
-        contact_axes(q[5], tilt, balance.axes)
-        find_slip(machine, manner, traction, legs, three, q, v, balance)
-        gyroscopic(machine.inertia, v, spin)
-        total = demands(machine, manner, legs, sides, q, v, spin, balance)
-        static_loads(balance.arms, total, loads)
-        normal_forces(balance, traction, total, machine.mass * GRAVITY, loads)
-        accelerate(machine, manner, traction, balance, loads, spin, v, forces)
+            reset(machine, manner, legs, sides, here, rates)
+        contact_axes(here[5], tilt, balance.axes)
+        find_slip(machine, manner, traction, legs, three, here, rates, balance)
+        gyroscopic(machine.inertia, rates, spin)
+        total = demands(machine, manner, legs, sides, here, rates, spin, balance)
+        find_loads(machine, manner, traction, balance, total, static, loads)
+        if keep:
+            from_heading(manner.mend_heading, q[5], here, rates, q, record.rates[row])
+            keep_legs(record, row, legs)
+        fall = rates[2]
+        accelerate(machine, manner, traction, balance, loads, spin, rates, forces)
+        if manner.static_loads:
+            prescribe(machine, manner, legs, sides, here, total, fall, rates)
+        from_heading(manner.mend_heading, q[5], here, rates, q, v)
         if not np.abs(v).max() < RUNAWAY:
             return step
         if keep:
-            for k in range(3):
-                i = three[k]
-                record.contact[row, i] = True
-                record.kappa[row, i] = balance.slip[k, 0]
-                record.normal[row, i] = loads[k]
-                record.forward[row, i], record.left[row, i] = forces[k, 0], forces[k, 1]
+            record.acceleration[row] = (v - record.rates[row]) / manner.dt
+            keep_contacts(record, row, three, balance, static, loads, forces)
         for a in range(6):
             q[a] += manner.dt * v[a]
     return steps

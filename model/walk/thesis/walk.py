@@ -15,10 +15,12 @@ from model.leg import hip_height, wrap_angle
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import step_times
-from model.walk.path import WalkPath
 from model.walk.thesis.legs import LegMotion, SwitchedLegs, leg_motion
-from model.walk.thesis.step import Machine, Manner, Record, run
+from model.walk.thesis.path import ThesisPath
+from model.walk.thesis.record import Record, empty_record
+from model.walk.thesis.step import Machine, Manner, run
 from model.walk.thesis.traction import THESIS_TRACTION, Traction
+from model.walk.thesis_switches import ThesisSwitches
 
 TRIPODS = ((0, 3, 4), (1, 2, 5))
 SAME_SIDE = ((0, 4), (1, 5))  # legs of one tripod on one side, which turn alike
@@ -26,20 +28,13 @@ APART = np.radians(45.0)  # where these legs are further apart, the gait is not 
 
 
 @dataclass(frozen=True)
-class ThesisOptions:
-    """Options of the thesis's walking model.
+class ThesisOptions(ThesisSwitches):
+    """Options of the thesis's walking model: its switches, `ThesisSwitches`, and these.
 
     Attributes:
         dt: Length of a step [s].
         direction: Side to which the gait turns; the legs of that side are the inner ones.
         automaton: Rule by which contacts change: "listing" (A.32) or "table" (Table 3-1).
-        reset_height: Set the body's height at every change of contacts, as the listing does; the
-            text's figures were made without, and sink.
-        mend_roll: Reverse the roll in right turns; the thesis's height difference is inner less
-            outer for both directions, which leans a right turn the wrong way.
-        mend_slip: Give slip the sign of the equations where legs turn back or the body goes
-            backward, instead of the listing's; see `walk_slip` and `lateral_walk_slip`.
-        heading: Yaw at the start; this model's walk depends on it [rad].
         every: Number of steps between two samples of the path.
 
     Raises:
@@ -50,10 +45,6 @@ class ThesisOptions:
     dt: float = 0.001
     direction: Direction = "left"
     automaton: Automaton = "listing"
-    reset_height: bool = True
-    mend_roll: bool = False
-    mend_slip: bool = False
-    heading: float = 0.0
     every: int = 1
 
     def __post_init__(self) -> None:
@@ -73,8 +64,9 @@ class ThesisOptions:
         sign = -1.0 if right and self.mend_roll else 1.0
         by_table = self.automaton == "table"
         return Manner(
-            self.dt, int(right), by_table, self.reset_height, sign, self.mend_slip, self.every
-        )
+            self.dt, int(right), by_table, self.reset_height, sign, self.mend_slip,
+            self.mend_heading, self.static_loads, self.contact_slip_angle, self.every,
+        )  # fmt: skip
 
 
 AS_PRINTED = ThesisOptions()
@@ -87,7 +79,7 @@ def walk_thesis(
     duration: float,
     traction: Traction = THESIS_TRACTION,
     options: ThesisOptions = AS_PRINTED,
-) -> WalkPath:
+) -> ThesisPath:
     """Compute a tripod walk by the thesis's hybrid dynamic model, Listing A.4.
 
     Args:
@@ -103,7 +95,7 @@ def walk_thesis(
         begins there. Roll, pitch and yaw are converted to those of `attitude`.
         `slip_ratio` is the thesis's, Eq. (4-31), or slip velocity over its scale for a law by
         velocity; `slip_velocity` is NaN on the ground, as the model has no velocity of the
-        material contact point.
+        material contact point. The model's own quantities are the path's further attributes.
 
     Raises:
         DomainError: The duration is not finite or rounds to no step, or the gait is not a tripod:
@@ -116,7 +108,7 @@ def walk_thesis(
     motion = turned._replace(theta=turned.theta + robot.leg_offset)
     _require_tripod(motion, options.dt)
     sides, q = _start(robot, motion.theta, options)
-    record = _empty_record(1 + (steps - 1) // options.every)
+    record = empty_record(1 + (steps - 1) // options.every)
     state, rates = q.copy(), np.zeros(6)
     done = run(_machine(robot), options.manner, traction, motion, state, rates, sides, record)
     if done < steps:
@@ -177,32 +169,45 @@ def _side_heights(robot: Robot, theta: Array) -> Array:
     )
 
 
-def _empty_record(rows: int) -> Record:
-    """Allocate a record of as many samples as rows, all legs without contact."""
-    shape = (rows, N_LEGS)
-    return Record(
-        np.empty((rows, 6)), np.zeros(shape, dtype=bool), np.full(shape, np.nan),
-        np.zeros(shape), np.zeros(shape), np.zeros(shape),
-    )  # fmt: skip
-
-
-def _path(record: Record, motion: LegMotion, t: Array, options: ThesisOptions) -> WalkPath:
+def _path(record: Record, motion: LegMotion, t: Array, options: ThesisOptions) -> ThesisPath:
     """Convert the record to a path, angles of Eq. (3-7) to roll, pitch and yaw of `attitude`."""
     angles = record.state[:, 3:]
-    ours = roll_pitch_yaw(thesis_attitude(*angles.T))
-    ours[:, 2] = angles[:, 2] + wrap_angle(ours[:, 2] - angles[:, 2])  # keeps count of full turns
     on_ground = np.where(record.contact, np.nan, 0.0)
-    return WalkPath(
+    return ThesisPath(
         t=t[:: options.every],
         position=record.state[:, :3],
-        orientation=ours,
+        orientation=_orientation(angles, with_heading=options.mend_heading),
         theta=motion.theta[:: options.every],
         contact=record.contact,
         slip_velocity=np.stack([on_ground, on_ground], axis=-1),
         slip_ratio=record.kappa,
         normal_force=record.normal,
         traction_force=np.stack([record.forward, record.left], axis=-1),
+        angles=angles,
+        rates=record.rates,
+        acceleration=record.acceleration,
+        phi=record.phi,
+        phi_rate=record.phi_rate,
+        hip_height=record.height,
+        static_load=record.static,
+        leg_speed=record.speeds[..., 0],
+        contact_speed=record.speeds[..., 1],
+        hip_speed=record.speeds[..., 2],
     )
+
+
+def _orientation(angles: Array, *, with_heading: bool) -> Array:
+    """Convert the model's angles to roll, pitch and yaw of `attitude`, yaw unwrapped, (n, 3) [rad].
+
+    Args:
+        angles: Roll, pitch and yaw of Eq. (3-7), shape (n, 3) [rad].
+        with_heading: Whether roll and pitch turn with the heading, R = Rz Rx Ry.
+    """
+    roll, pitch, yaw = angles.T
+    ours = roll_pitch_yaw(thesis_attitude(roll, pitch, 0.0 * yaw if with_heading else yaw))
+    turned = ours[:, 2] + (yaw if with_heading else 0.0)
+    ours[:, 2] = yaw + wrap_angle(turned - yaw)  # keeps count of full turns
+    return ours
 
 
 def _diverged(t: float, q: Array, rates: Array) -> WalkError:

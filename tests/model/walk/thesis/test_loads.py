@@ -24,8 +24,9 @@ def tripod(jitter=(0.0,) * 6):
 
 def balance(arms, slip=(0.0,) * 6, wanted=(0.0, 0.0)):
     return Balance(
-        np.array(arms), np.eye(3), np.reshape(slip, (3, 2)).astype(float), INERTIA, np.array(wanted)
-    )
+        np.array(arms), np.eye(3), np.reshape(slip, (3, 2)).astype(float), INERTIA,
+        np.array(wanted), np.empty((3, 3)),
+    )  # fmt: skip
 
 
 def solve(task, total, most=WEIGHT):

@@ -47,7 +47,8 @@ def slip_of(v, phi, law, options):
     hip, point = ROBOT.hips + np.array([0.0, 0.0, HEIGHT]), ROBOT.hips.copy()
     height = np.full(6, HEIGHT)
     legs = Legs(np.full(6, phi), np.full(6, -2.0), height, height, height, point, hip)
-    balance = Balance(np.empty((3, 3)), np.eye(3), np.empty((3, 2)), np.ones(2), np.zeros(2))
+    balance = Balance(np.empty((3, 3)), np.eye(3), np.empty((3, 2)), np.ones(2), np.zeros(2),
+                      np.empty((3, 3)))  # fmt: skip
     q = np.array([0.0, 0.0, HEIGHT, 0.0, 0.0, 0.0])
     find_slip(MACHINE, options.manner, law, legs, THREE, q, v, balance)
     np.testing.assert_allclose(balance.arms, point[THREE] - q[:3])
@@ -65,7 +66,7 @@ def test_slip_of_legs_that_carry_load_compares_arc_and_ground(phi):
     slip = slip_of(v, phi, MAGIC, MENDED)
     ground = v[0] - v[5] * ROBOT.hips[THREE, 1]  # yaw adds to the right, takes from the left
     np.testing.assert_allclose(slip[:, 0], [walk_slip(2.0 * HEIGHT, g, True) for g in ground])
-    np.testing.assert_allclose(slip[:, 1], lateral_walk_slip(np.eye(3), v, True))
+    np.testing.assert_allclose(slip[:, 1], lateral_walk_slip(v[0], v[1], True))
 
 
 def test_pitching_moves_the_ground_at_the_contact_but_not_at_the_hip():

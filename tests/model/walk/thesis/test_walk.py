@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from model.errors import DomainError, WalkError
+from model.gait.direction import Direction
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
@@ -27,7 +28,7 @@ ROBOT = Robot()
 WEIGHT = ROBOT.mass * GRAVITY
 
 
-def gait(steering, *, cycle=1.0, inner_deg=45.0, direction="left"):
+def gait(steering, *, cycle=1.0, inner_deg=45.0, direction: Direction = "left"):
     angles = tripod_angles(np.radians(inner_deg), steering)
     return tripod_reference(angles, cycle, direction=direction)
 
@@ -247,3 +248,69 @@ def test_a_walk_that_diverges_is_an_error_with_time_and_state():
     featherweight = replace(ROBOT, inertia=(1e-9, 1e-9, 1e-9))
     with pytest.raises(WalkError, match=r"diverged at t = .* s.*roll.*degrees.*m/s"):
         walk_thesis(featherweight, gait(1.2), duration=2.0)
+
+
+# --- its switches
+
+
+def test_with_the_heading_mended_it_walks_alike_whatever_the_compass():
+    ends = []
+    for heading in np.radians([0.0, 90.0, 200.0]):
+        path = walk(1.25, duration=2.0, heading=heading, mend_heading=True)
+        c, s = np.cos(heading), np.sin(heading)
+        along = path.position[-1, :2] @ np.array([[c, -s], [s, c]])
+        ends.append([*along, path.position[-1, 2], path.yaw[-1] - heading])
+    np.testing.assert_allclose(ends, [ends[0]] * 3, atol=1e-8)
+
+
+def test_the_mended_heading_changes_nothing_of_a_straight_walk_along_x():
+    printed, mended = (walk(1.0, duration=2.0, mend_heading=mend) for mend in (False, True))
+    np.testing.assert_allclose(mended.position, printed.position, atol=1e-9)
+
+
+def test_static_loads_carry_the_weight_and_keep_the_body_level():
+    path = walk(duration=3.0, static_loads=True)
+    np.testing.assert_array_equal(path.normal_force, path.static_load)
+    # The centre leaves the triangle of the feet for a moment only, Eq. (4-18) then carries more.
+    assert np.median(path.normal_force.sum(axis=1)) == pytest.approx(WEIGHT, rel=1e-9)
+    assert np.degrees(np.abs(path.angles[:, 1]).max()) < 0.01
+    optimised = walk(duration=3.0)
+    assert path.yaw[-1] == pytest.approx(optimised.yaw[-1], rel=0.02)
+
+
+def test_the_slip_angle_of_each_contact_widens_the_turn():
+    """Eq. (4-41) lets legs ahead of and behind the centre resist the turn; the listing does not."""
+    listed, printed = (walk(1.25, contact_slip_angle=each) for each in (False, True))
+    assert printed.yaw[-1] < 0.96 * listed.yaw[-1]
+
+
+# --- its quantities
+
+
+def test_slip_ratios_are_those_of_the_speeds_that_are_kept():
+    path = walk(duration=1.0, mend_slip=True)
+    path = path.part(path.t > 0.1)
+    toe = path.phi < 0
+    ground = np.where(toe, path.hip_speed, path.contact_speed)
+    ratio = np.clip((path.leg_speed - ground) / np.abs(ground), -100, 100)
+    down = path.contact
+    np.testing.assert_allclose(ratio[down], path.slip_ratio[down], rtol=1e-9, atol=1e-12)
+    assert np.isnan(path.leg_speed[~path.contact]).all()
+
+
+def test_rates_of_phi_and_of_the_state_are_derivatives():
+    path = walk(duration=0.4, dt=0.0001)
+    steady = slice(1000, 3000)  # without a change of contacts
+    assert not np.diff(path.contact[steady], axis=0).any()
+    rate = np.diff(path.phi[steady], axis=0) / 0.0001
+    turned = np.abs(rate) > 100  # wrapped
+    np.testing.assert_allclose(rate[~turned], path.phi_rate[steady][:-1][~turned], atol=0.05)
+    state = np.column_stack([path.position, path.angles])[steady]
+    moved = path.rates[steady][:-1] + 0.0001 * path.acceleration[steady][:-1]
+    np.testing.assert_allclose(np.diff(state, axis=0) / 0.0001, moved, atol=1e-9)
+
+
+def test_a_part_of_a_path_keeps_the_model_s_quantities():
+    path = walk(duration=0.2)
+    part = path.part(path.t > 0.1)
+    np.testing.assert_array_equal(part.phi, path.phi[path.t > 0.1])

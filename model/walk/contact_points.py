@@ -7,7 +7,8 @@ from model.compiled import inlined
 from model.leg import HIP, ROLLING, TOE
 from model.robot import N_LEGS
 from model.walk.arrays import N_CONTACTS
-from model.walk.ground import ground_at, plane_under
+from model.walk.deepest_point import deepest_point
+from model.walk.ground import ground_at, is_even
 
 NEAR = 0.01  # height over the ground below which the body's corners are computed [m]
 
@@ -50,9 +51,10 @@ def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
 
 @inlined
 def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap, state, flow):
-    """Compute the lowest point of each leg, the body's corners, and their gaps to the ground.
+    """Compute the contact of each leg, the body's corners, and their gaps to the ground.
 
-    A leg's lowest point is that towards the mean plane of the ground under its hip (`plane_under`).
+    On a plane a leg's contact is its lowest point towards the plane, on other ground the point of
+    its arc that is deepest below the ground or nearest to it (`deepest_point`).
 
     Args:
         body: Robot as arrays; see `Body`.
@@ -73,22 +75,33 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
         Number of contacts computed: 14, or 6 if every corner is more than `NEAR` above the highest
         ground; the rows of the corners are then left as they are.
     """
+    # normal of the ground's plane, and "down" along the body's axes
+    up = 1 / np.sqrt(1 + ground.slope_x**2 + ground.slope_y**2)
+    m_x, m_y = -ground.slope_x * up, -ground.slope_y * up
+    down_x = -(R[0, 0] * m_x + R[1, 0] * m_y + R[2, 0] * up)
+    down_y = -(R[0, 1] * m_x + R[1, 1] * m_y + R[2, 1] * up)
+    down_z = -(R[0, 2] * m_x + R[1, 2] * m_y + R[2, 2] * up)
+    even = is_even(ground)
+    over_plane = p[2] * up + p[0] * m_x + p[1] * m_y
     for i in range(N_LEGS):
         hip = body.hips[i]
-        _to_world(R, hip[0], hip[1], hip[2], place[i])
-        n_x, n_y, n_z = plane_under(ground, p[0] + place[i, 0], p[1] + place[i, 1], body.leg_radius)
-        down_x = -(R[0, 0] * n_x + R[1, 0] * n_y + R[2, 0] * n_z)
-        down_z = -(R[0, 2] * n_x + R[1, 2] * n_y + R[2, 2] * n_z)
-        x, z, state[i] = lowest_point(
-            theta[i], down_x, down_z, body.leg_radius, body.toe_cos, body.toe_sin
-        )
+        if even:
+            x, z, state[i] = lowest_point(
+                theta[i], down_x, down_z, body.leg_radius, body.toe_cos, body.toe_sin
+            )
+            gap[i] = over_plane - ground.height[0, 0] * up
+            gap[i] -= (hip[0] + x) * down_x + hip[1] * down_y + (hip[2] + z) * down_z
+            normal[i, 0], normal[i, 1], normal[i, 2] = m_x, m_y, up
+        else:
+            x, z, state[i], gap[i] = deepest_point(
+                body, ground, p, R, hip, theta[i], down_x, down_z, normal[i]
+            )
         _to_world(R, hip[0] + x, hip[1], hip[2] + z, place[i])
         _to_world(R, speed[i] * z, 0.0, -speed[i] * x, velocity[i])  # speed about y, times (x, z)
         flow[i] = body.leg_radius if state[i] == ROLLING else 0.0
-        gap[i] = _gap(ground, p, place[i], normal[i])
     half = body.half_size
-    reach = abs(R[2, 0]) * half[0] + abs(R[2, 1]) * half[1] + abs(R[2, 2]) * half[2]
-    if p[2] - reach > ground.highest + NEAR:
+    reach = abs(down_x) * half[0] + abs(down_y) * half[1] + abs(down_z) * half[2]
+    if over_plane - reach > ground.highest * up + NEAR:
         return N_LEGS
     for i in range(8):
         k = N_LEGS + i

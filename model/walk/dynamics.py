@@ -16,8 +16,9 @@ from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
+from model.walk.areas import AreaTractions
 from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
-from model.walk.ground import FLAT, Ground, ground_at
+from model.walk.ground import FACE, FLAT, Ground, ground_at
 from model.walk.loop import run_steps
 from model.walk.path import WalkPath
 from model.walk.quaternion import roll_pitch_yaw, turned_about_vertical
@@ -84,7 +85,7 @@ ORIGIN = Start()
 def walk(
     robot: Robot,
     reference: LegReference,
-    table: TractionTable,
+    table: TractionTable | AreaTractions,
     *,
     duration: float,
     ground: Ground = FLAT,
@@ -96,7 +97,7 @@ def walk(
     Args:
         robot: The robot; its leg offsets are added to the angles.
         reference: Leg angles over time.
-        table: The slip law; see `model.walk.traction`.
+        table: The slip law; see `model.walk.traction`, and `with_areas` for several.
         duration: Time walked, from the reference's time zero on [s].
         ground: The ground.
         start: Initial pose and velocity.
@@ -141,7 +142,7 @@ def step_times(duration: float, dt: float) -> Array:
 
 def integrate(
     robot: Robot,
-    table: TractionTable,
+    table: TractionTable | AreaTractions,
     state: State,
     theta: Array,
     options: DynamicsOptions,
@@ -154,7 +155,7 @@ def integrate(
 
     Args:
         robot: The robot.
-        table: The slip law.
+        table: The slip law, or those of several areas.
         state: Initial state, overwritten with the final one.
         theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
         options: Step length and contacts.
@@ -223,10 +224,10 @@ def start_state(
 
 
 def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
-    """Return the largest of the grid's heights within the robot's reach of the start [m].
+    """Return a height that no ground within the robot's reach of the start is above [m].
 
     Reach, along x and y each: distance of the furthest hip plus twice the leg's radius. Where it
-    goes beyond the grid, the grid's edge counts.
+    goes beyond the grid, the grid's edge counts; of a grid that repeats itself all of it counts.
     """
     far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
     m, n = ground.height.shape
@@ -234,7 +235,11 @@ def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
     j = (np.array([start.y - far, start.y + far]) - ground.y) / ground.step
     i0, i1 = np.clip([np.floor(i[0]), np.ceil(i[1])], 0, m - 1).astype(int)
     j0, j1 = np.clip([np.floor(j[0]), np.ceil(j[1])], 0, n - 1).astype(int)
-    return float(ground.height[i0 : i1 + 1, j0 : j1 + 1].max())
+    near = ground.height if ground.repeats else ground.height[i0 : i1 + 1, j0 : j1 + 1]
+    over = np.cumsum(np.where(ground.edge - FACE < start.x + far, ground.rise, 0.0))
+    plane = ground.slope_x * start.x + ground.slope_y * start.y
+    plane += far * (abs(ground.slope_x) + abs(ground.slope_y))
+    return float(near.max()) + float(over.max(initial=0.0)) + plane
 
 
 def _settled(

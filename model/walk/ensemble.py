@@ -12,13 +12,17 @@ from model.gait.reference import LegReference
 from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
+from model.walk.areas import Area, with_areas
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
+    ORIGIN,
     DynamicsOptions,
+    Start,
     integrate,
     start_state,
     step_times,
 )
+from model.walk.ground import FLAT, Ground, is_level
 from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
 from model.walk.stride import walk_by_strides
 from model.walk.traction import TractionTable
@@ -34,6 +38,9 @@ class WalkDraw:
         table: The slip law.
         stiffness: Factor on the contact stiffness of an ensemble's options [-].
         damping: Factor on the contact damping of an ensemble's options [-].
+        ground: The ground.
+        areas: Areas of the ground with other slip laws.
+        start: Initial pose.
     """
 
     robot: Robot
@@ -41,6 +48,14 @@ class WalkDraw:
     table: TractionTable
     stiffness: float = 1.0
     damping: float = 1.0
+    ground: Ground = FLAT
+    areas: tuple[Area, ...] = ()
+    start: Start = ORIGIN
+
+    @property
+    def is_alike_everywhere(self) -> bool:
+        """Whether the walk depends on no place or heading: level ground of one law, from zero."""
+        return is_level(self.ground) and not self.areas and self.start == ORIGIN
 
     def options(self, common: DynamicsOptions) -> DynamicsOptions:
         """Return the common options, contact stiffness and damping times this draw's factors."""
@@ -74,18 +89,18 @@ def walk_ensemble(
     tilt: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PlanarWalk:
-    """Compute the path of every draw on flat ground; periodic gaits by `walk_by_strides`.
+    """Compute the path of every draw; periodic gaits on level ground by `walk_by_strides`.
 
     Args:
         draws: The draws to walk.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
         options: Step length and contacts, the same for all draws but for the draws' factors.
         threads: Number of draws computed at once.
-        tilt: Return roll and pitch too; not available for periodic gaits.
+        tilt: Return roll and pitch too; not available where strides are repeated.
         progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
     Returns:
-        The paths of all draws, from x, y and yaw zero, interpolated linearly at `t`, constant after
+        The paths of all draws, from their starts, interpolated linearly at `t`, constant after
         a walk's last step.
 
     Raises:
@@ -143,20 +158,21 @@ def planar_walk(
     options: DynamicsOptions = DEFAULT_OPTIONS,
     tilt: bool = False,
 ) -> PlanarWalk:
-    """Compute the planar path of one draw on flat ground from x, y and yaw zero, at every step.
+    """Compute the planar path of one draw from its start, at every step.
 
     Args:
         draw: The draw to walk.
         duration: Time walked [s].
         options: Step length and contacts, before the draw's factors.
-        tilt: Return roll and pitch too; ignored for periodic gaits, which are walked by strides.
+        tilt: Return roll and pitch too; ignored for periodic gaits on level ground, which are
+            walked by strides.
 
     Raises:
         DomainError: The duration is not finite or rounds to no step.
         WalkError: The robot cannot stand at the start, or a step diverged.
     """
     options = draw.options(options)
-    if draw.reference.period is not None:
+    if draw.reference.period is not None and draw.is_alike_everywhere:
         return PlanarWalk(
             walk_by_strides(
                 draw.robot, draw.reference, draw.table, duration=duration, options=options
@@ -164,8 +180,9 @@ def planar_walk(
         )
     t = step_times(duration, options.dt)
     theta = draw.reference.angles(t) + draw.robot.leg_offset
-    state = start_state(draw.robot, theta[0], options)
-    pose, _ = integrate(draw.robot, draw.table, state, theta, options)
+    state = start_state(draw.robot, theta[0], options, ground=draw.ground, start=draw.start)
+    law = with_areas(draw.table, draw.areas)
+    pose, _ = integrate(draw.robot, law, state, theta, options, ground=draw.ground)
     q = pose[:, 3:]
     poses = Poses(t, pose[:, :2], unwrapped_yaw(q))
     return PlanarWalk(poses, roll_pitch_yaw(q)[:, :2] if tilt else None)

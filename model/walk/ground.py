@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ground under a walk: flat, or a height function sampled on a grid."""
+"""The ground under a walk: a plane, steps across the way, and heights on a grid, which add up."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -10,19 +10,29 @@ from model.compiled import inlined
 from model.errors import DomainError
 from model.slip.law import Array
 
+FACE = 0.002  # m; length of a step's face along x: nearly upright, and still with a slope
+_NO_EDGES = np.zeros(0)
+
 
 class Ground(NamedTuple):
-    """Heights on a square grid, with bilinear interpolation; constant if the grid has one height.
+    """Height of the ground: a plane, steps across x, and a square grid with bilinear interpolation.
 
-    Beyond the grid the height of its edge continues. It is a named tuple because numba accepts one
-    directly.
+    The three heights add up. Beyond the grid the height of its edge continues, unless it repeats
+    itself. It is a named tuple because numba accepts one directly.
 
     Attributes:
         x: Position of the grid's first row [m].
         y: Position of the grid's first column [m].
         step: Distance between neighbours [m].
-        height: Heights, rows along x, columns along y, shape (m, n) [m].
-        highest: The largest of the heights [m].
+        height: Heights, rows along x, columns along y, shape (m, n); (1, 1) for a constant [m].
+        highest: The largest height over the plane that grid and steps can have together [m].
+        slope_x: Rise of the plane, which is zero at the origin, for each metre of x [-].
+        slope_y: Rise of the plane for each metre of y [-].
+        repeats: Whether the grid repeats itself along x and y; its last row and column are then
+            equal to its first ones.
+        edge: x of each step's upper edge, along y, shape (k,) [m].
+        rise: How much higher the ground is beyond each edge than before it, negative for a step
+            down, shape (k,). The face of a step is `FACE` long, on its lower side [m].
     """
 
     x: float
@@ -30,9 +40,24 @@ class Ground(NamedTuple):
     step: float
     height: Array
     highest: float
+    slope_x: float = 0.0
+    slope_y: float = 0.0
+    repeats: bool = False
+    edge: Array = _NO_EDGES
+    rise: Array = _NO_EDGES
 
 
 FLAT = Ground(0.0, 0.0, 1.0, np.zeros((1, 1)), 0.0)
+
+
+def is_level(ground: Ground) -> bool:
+    """Return whether the ground is a level plane, on which a walk depends on no place or heading.
+
+    Args:
+        ground: The ground.
+    """
+    even = ground.height.size == 1 and not len(ground.edge)
+    return even and ground.slope_x == 0 and ground.slope_y == 0
 
 
 def sample_ground(
@@ -78,11 +103,70 @@ def _samples(ends: tuple[float, float], step: float) -> Array:
     return first + step * np.arange(np.ceil((last - first) / step - 1e-9) + 1)
 
 
+def with_slope(ground: Ground, angle_x: float, angle_y: float) -> Ground:
+    """Return the ground on a plane through the origin, tilted so that it rises along x and y.
+
+    Args:
+        ground: The ground.
+        angle_x: Angle of the plane's section along x, positive where it rises [rad].
+        angle_y: The same along y [rad].
+
+    Raises:
+        DomainError: An angle is not between -45 and 45 degrees: contacts are found from above.
+    """
+    for name, angle in (("x", angle_x), ("y", angle_y)):
+        if not abs(angle) <= np.pi / 4:
+            raise DomainError(
+                f"the slope along {name} is {np.degrees(angle):g} degrees; expected -45 to 45"
+            )
+    return ground._replace(slope_x=float(np.tan(angle_x)), slope_y=float(np.tan(angle_y)))
+
+
+def with_steps(ground: Ground, edge: Array, rise: Array) -> Ground:
+    """Return the ground with steps across x added to its grid and plane.
+
+    Args:
+        ground: The ground, without steps.
+        edge: x from which on the ground is higher by `rise`, shape (k,) [m].
+        rise: Height of each step, negative for one down, shape (k,) [m].
+    """
+    order = np.argsort(edge, kind="stable")
+    edge, rise = (np.ascontiguousarray(each, dtype=float)[order] for each in (edge, rise))
+    top = max(0.0, float(np.cumsum(rise).max(initial=0.0)))
+    return ground._replace(edge=edge, rise=rise, highest=float(ground.height.max()) + top)
+
+
+def beyond_grid(ground: Ground, x: Array, y: Array) -> Array:
+    """Return whether places lie beyond a grid that does not repeat itself, shape as x.
+
+    Args:
+        ground: The ground; on one without a grid no place lies beyond.
+        x: x of the places [m].
+        y: y of the places [m].
+    """
+    m, n = ground.height.shape
+    if ground.repeats or ground.height.size == 1:
+        return np.zeros(np.shape(x), dtype=bool)
+    at_x, at_y = (x - ground.x) / ground.step, (y - ground.y) / ground.step
+    return (at_x < 0) | (at_x > m - 1) | (at_y < 0) | (at_y > n - 1)
+
+
+@inlined
+def is_even(ground):
+    """Return whether the ground is a plane, level or not.
+
+    Args:
+        ground: The ground.
+    """
+    return ground.height.size == 1 and ground.edge.size == 0
+
+
 @inlined
 def ground_at(ground, x, y):
-    """Interpolate height and unit normal of the ground at a place, bilinearly.
+    """Compute height and unit normal of the ground at a place.
 
-    Beyond the grid height is that of the edge, and slope across the edge zero.
+    Beyond a grid that does not repeat itself height is that of the edge, and slope across the edge
+    that of the plane alone.
 
     Args:
         ground: The ground.
@@ -92,11 +176,45 @@ def ground_at(ground, x, y):
     Returns:
         Height [m] and the normal's components nx, ny, nz [-].
     """
+    h, sx, sy = height_and_slopes(ground, x, y)
+    size = np.sqrt(1 + sx * sx + sy * sy)
+    return h, -sx / size, -sy / size, 1 / size
+
+
+@inlined
+def height_and_slopes(ground, x, y):
+    """Compute height of the ground at a place and its derivatives along x and y.
+
+    Args:
+        ground: The ground.
+        x: x of the place [m].
+        y: y of the place [m].
+
+    Returns:
+        Height [m], slope along x and slope along y [-].
+    """
+    h, sx, sy = _on_grid(ground, x, y)
+    for k in range(ground.edge.size):
+        rise = ground.rise[k]
+        before = ground.edge[k] - x if rise >= 0 else x - ground.edge[k]  # from the upper edge
+        part = min(max(1.0 - before / FACE, 0.0), 1.0)
+        h += rise * part if rise >= 0 else rise * (1.0 - part)
+        if 0.0 < part < 1.0:
+            sx += rise / FACE
+    return h + ground.slope_x * x + ground.slope_y * y, sx + ground.slope_x, sy + ground.slope_y
+
+
+@inlined
+def _on_grid(ground, x, y):
+    """Interpolate height [m] and slopes along x and y [-] on the grid, bilinearly."""
     height = ground.height
     if height.size == 1:
-        return height[0, 0], 0.0, 0.0, 1.0
+        return height[0, 0], 0.0, 0.0
     m, n = height.shape
     at_x, at_y = (x - ground.x) / ground.step, (y - ground.y) / ground.step
+    if ground.repeats:
+        at_x -= np.floor(at_x / (m - 1)) * (m - 1)
+        at_y -= np.floor(at_y / (n - 1)) * (n - 1)
     fx = min(max(at_x, 0.0), m - 1.000001)  # within the last cell, for its far neighbours
     fy = min(max(at_y, 0.0), n - 1.000001)
     i, j = int(fx), int(fy)
@@ -109,30 +227,4 @@ def ground_at(ground, x, y):
         sx = 0.0
     if at_y < 0 or at_y > n - 1:
         sy = 0.0
-    size = np.sqrt(1 + sx * sx + sy * sy)
-    return h, -sx / size, -sy / size, 1 / size
-
-
-@inlined
-def plane_under(ground, x, y, reach):
-    """Compute the unit normal of the mean plane of the ground within reach of a place.
-
-    A leg stands on what its arc spans. The normal at a single point would tilt the leg at every
-    edge of the ground.
-
-    Args:
-        ground: The ground.
-        x: x of the place [m].
-        y: y of the place [m].
-        reach: Distance to either side over which slopes are taken [m].
-
-    Returns:
-        Components nx, ny, nz of the normal [-].
-    """
-    if ground.height.size == 1:
-        return 0.0, 0.0, 1.0
-    sx = ground_at(ground, x + reach, y)[0] - ground_at(ground, x - reach, y)[0]
-    sy = ground_at(ground, x, y + reach)[0] - ground_at(ground, x, y - reach)[0]
-    sx, sy = sx / (2 * reach), sy / (2 * reach)
-    size = np.sqrt(1 + sx * sx + sy * sy)
-    return -sx / size, -sy / size, 1 / size
+    return h, sx, sy

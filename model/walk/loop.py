@@ -9,6 +9,7 @@ from model.compiled import borrowing, compiled, inlined
 from model.leg import ROLLING
 from model.robot import N_LEGS
 from model.slip.law import Array
+from model.walk.areas import AreaTractions
 from model.walk.arrays import (
     N_CONTACTS,
     Body,
@@ -49,7 +50,7 @@ class Spare(NamedTuple):
 @compiled
 def run_steps(
     body: Body,
-    table: TractionTable,
+    table: TractionTable | AreaTractions,
     ground: Ground,
     contacts: Contacts,
     state: State,
@@ -65,7 +66,7 @@ def run_steps(
 
     Args:
         body: The robot.
-        table: The slip law.
+        table: The slip law, or those of several areas.
         ground: The ground.
         contacts: Stiffness and damping of contacts.
         state: Initial state, overwritten with the final one.

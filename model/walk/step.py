@@ -21,6 +21,7 @@ import numpy as np
 from model.compiled import inlined
 from model.leg import ROLLING
 from model.robot import N_LEGS
+from model.walk.areas import law_at
 from model.walk.arrays import N_CONTACTS
 from model.walk.contact_points import find_contacts, point_velocity
 from model.walk.linear_system import add_contact, solve_positive, start_system
@@ -40,7 +41,7 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
 
     Args:
         body: The robot.
-        table: The slip law.
+        table: The slip law, or the laws of several areas.
         ground: The ground.
         contacts: Stiffness and damping of contacts.
         state: State at the start, overwritten with the state at the end.
@@ -86,7 +87,7 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
     """Add the contact forces, linearised in the final velocities about a guess, to a step's system.
 
     Args:
-        table: The slip law.
+        table: The slip law, or the laws of several areas.
         contacts: Stiffness and damping of contacts.
         state: State at the step's start.
         work: The contacts and the guess of velocities; `A` and `b` are updated, `load` and
@@ -108,14 +109,15 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         work.secant[i] = 0.0
         if load <= 0.0:
             continue
+        law = law_at(table, state.p, work.place[i])
         x, y, z = point[0] - rise * m0, point[1] - rise * m1, point[2] - rise * m2
         if table.bristle and work.kind[i] != ROLLING:
-            pull = bristle_pull(table, contacts, state.stretch[i], load, dt * x, dt * y, dt * z)
+            pull = bristle_pull(law, contacts, state.stretch[i], load, dt * x, dt * y, dt * z)
             G = pull * dt
         else:
             slip = np.sqrt(x * x + y * y + z * z)
             flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
-            G, pull = traction_secant(table, work.kind[i], load, slip, flow), 0.0
+            G, pull = traction_secant(law, work.kind[i], load, slip, flow), 0.0
             work.secant[i] = G
         push = -k * work.gap[i] - c * u_n
         for a in range(3):
@@ -211,7 +213,8 @@ def _stretch_bristle(table, contacts, state, work, i, dt):
     for a in range(3):
         state.stretch[i, a] += dt * (point[a] - rise * m[a])
         stretched += state.stretch[i, a] ** 2
-    longest = work.load[i] * toe_traction(table, work.load[i])
+    law = law_at(table, state.p, work.place[i])
+    longest = work.load[i] * toe_traction(law, work.load[i])
     longest /= BRISTLE_STIFFNESS * contacts.stiffness
     if np.sqrt(stretched) > longest:
         for a in range(3):

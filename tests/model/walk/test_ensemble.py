@@ -9,8 +9,10 @@ from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import MagicFormula
-from model.walk.dynamics import DynamicsOptions
+from model.walk.areas import Area
+from model.walk.dynamics import DynamicsOptions, Start, walk
 from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
+from model.walk.ground import FLAT, with_slope
 from model.walk.traction import law_table
 
 ROBOT = Robot()
@@ -81,3 +83,27 @@ def test_an_ensemble_of_nothing_is_refused():
 def test_times_that_do_not_increase_are_refused(t):
     with pytest.raises(DomainError, match="expected one or more that increase"):
         walk_ensemble(draws(1), np.array(t))
+
+
+# --- other ground
+
+
+def test_on_a_slope_a_draw_walks_step_by_step_from_its_start():
+    uphill = with_slope(FLAT, np.radians(5.0), 0.0)
+    start = Start(x=0.3, y=-0.2, yaw=1.0)
+    draw = WalkDraw(ROBOT, TURN, SLIP, ground=uphill, start=start)
+    found = planar_walk(draw, duration=2.0, options=OPTIONS).poses
+    path = walk(
+        ROBOT, TURN, SLIP, duration=2.0, ground=uphill, start=start, options=OPTIONS
+    )  # fmt: skip
+    np.testing.assert_allclose(found.position, path.position[:, :2], atol=1e-12)
+    np.testing.assert_allclose(found.yaw, path.yaw, atol=1e-12)
+
+
+def test_an_area_with_the_same_law_changes_no_draw():
+    everywhere = Area(np.array([[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]]), SLIP)
+    one, other = (
+        planar_walk(WalkDraw(ROBOT, TURN, SLIP, areas=areas), duration=4.0, options=OPTIONS).poses
+        for areas in ((), (everywhere,))
+    )
+    np.testing.assert_allclose(one.position, other.position, atol=1e-9)

@@ -1,4 +1,7 @@
 # SPDX-License-Identifier: MIT
+from collections.abc import Callable
+from typing import cast
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -6,9 +9,22 @@ from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.gait.reference import SampledReference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
-from model.walk.dynamics import DynamicsOptions, walk
-from model.walk.ground import FLAT, ground_at, plane_under, sample_ground
+from model.slip.law import Array
+from model.walk.dynamics import DynamicsOptions, Start, walk
+from model.walk.ground import (
+    FACE,
+    FLAT,
+    Ground,
+    beyond_grid,
+    ground_at,
+    height_and_slopes,
+    is_level,
+    sample_ground,
+    with_slope,
+    with_steps,
+)
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()
@@ -57,14 +73,47 @@ def test_beyond_the_area_the_edge_goes_on_level(x, y):
     np.testing.assert_allclose(normal, [0, 0, 1])
 
 
-def test_the_mean_plane_of_a_slope_is_the_slope_and_an_edge_is_no_wall():
-    np.testing.assert_allclose(plane_under(FLAT, 3.0, -2.0, 0.035), [0, 0, 1])
-    angle = 0.3
-    expected = [-np.sin(angle), 0, np.cos(angle)]
-    np.testing.assert_allclose(plane_under(slope(angle), 0.1, 0.2, 0.035), expected, atol=1e-9)
-    step = sample_ground(lambda x, y: 0.01 * (x > 0), x=(-1, 1), y=(-1, 1), step=0.002)
-    steepest = min(plane_under(step, x, 0.0, 0.035)[2] for x in np.linspace(-0.1, 0.1, 400))
-    assert steepest == pytest.approx(np.cos(np.arctan(0.01 / 0.07)), abs=1e-6)
+@given(st.floats(-3, 3), st.floats(-3, 3))
+def test_plane_steps_and_grid_add_up(x, y):
+    edge, rise = np.array([1.0, -0.4]), np.array([-0.02, 0.01])
+    alone = (HILLS, with_steps(FLAT, edge, rise), with_slope(FLAT, 0.1, -0.2))
+    together = with_slope(with_steps(HILLS, edge, rise), 0.1, -0.2)
+    parts = np.sum([height_and_slopes(each, x, y) for each in alone], axis=0)
+    np.testing.assert_allclose(height_and_slopes(together, x, y), parts, atol=1e-12)
+
+
+@pytest.mark.parametrize("rise", [0.01, -0.01])
+def test_a_step_is_whole_on_both_sides_of_its_face(rise):
+    ground = with_steps(FLAT, np.array([0.5]), np.array([rise]))
+    upper, lower = (0.5, 0.5 - FACE) if rise > 0 else (0.5, 0.5 + FACE)
+    assert ground_at(ground, upper, 3.0)[0] == pytest.approx(max(rise, 0.0))
+    assert ground_at(ground, lower, 3.0)[0] == pytest.approx(min(rise, 0.0))
+    assert ground_at(ground, 9.0, -3.0)[0] == pytest.approx(rise)
+    assert ground_at(ground, -9.0, -3.0) == (0.0, 0.0, 0.0, 1.0)
+    assert ground.highest == max(rise, 0.0)
+
+
+def test_a_grid_that_repeats_itself_has_no_end():
+    height = np.zeros((5, 5))
+    height[:4, :4] = np.random.default_rng(1).normal(size=(4, 4))
+    height[4], height[:, 4] = height[0], height[:, 0]
+    ground = Ground(0.0, 0.0, 0.5, height, float(height.max()), repeats=True)
+    here = ground_at(ground, 0.3, 1.7)
+    for x, y in ((2.3, 1.7), (0.3, -0.3), (-9.7, 21.7)):
+        np.testing.assert_allclose(ground_at(ground, x, y), here, atol=1e-9)
+    assert not beyond_grid(ground, np.array([99.0]), np.array([0.0])).any()
+
+
+def test_places_beyond_a_grid_are_told():
+    x, y = np.array([0.0, 1.01, -0.5, 0.0]), np.array([0.0, 0.0, -1.01, 0.99])
+    assert beyond_grid(HILLS, x, y).tolist() == [False, True, True, False]
+    assert not beyond_grid(FLAT, x, y).any()
+
+
+def test_only_a_level_plane_is_level():
+    assert is_level(FLAT)
+    step = with_steps(FLAT, np.array([0.5]), np.array([0.01]))
+    assert not any(map(is_level, (HILLS, step, with_slope(FLAT, 0.0, 0.01))))
 
 
 # --- walking on it
@@ -143,7 +192,50 @@ def test_toes_on_bristles_slide_at_friction_where_it_is_used_up():
     np.testing.assert_allclose(size, allowed * np.cos(0.5), rtol=1e-3)
 
 
+SLIPPERY = VelocityCoulomb(0.38).table(weight=WEIGHT)
+TRIPOD = tripod_reference(tripod_angles(np.radians(50.0)), 1.0)
+
+
+@pytest.mark.parametrize(("along_x", "along_y"), [(5.0, 0.0), (-3.0, 4.0)])
+def test_a_walk_on_a_plane_of_heights_is_that_on_the_plane(along_x, along_y):
+    sx, sy = np.tan(np.radians([along_x, along_y]))
+    heights = sample_ground(lambda x, y: sx * x + sy * y, x=(-1.0, 2.0), y=(-1.0, 1.0))
+    plane = with_slope(FLAT, *np.radians([along_x, along_y]))
+    on_heights, on_plane = (
+        walk(ROBOT, TRIPOD, SLIPPERY, duration=4.0, ground=each) for each in (heights, plane)
+    )
+    away = np.linalg.norm(on_heights.position - on_plane.position, axis=1)
+    assert away.max() < 0.002 * on_plane.length
+    assert np.mean(on_heights.contact == on_plane.contact) > 0.99
+
+
+def test_a_walk_up_a_slope_is_that_of_a_robot_turned_about_with_the_slope():
+    up = walk(ROBOT, TRIPOD, SLIPPERY, duration=2.0, ground=with_slope(FLAT, np.radians(5.0), 0.0))
+    turned = walk(
+        ROBOT, TRIPOD, SLIPPERY, duration=2.0, ground=with_slope(FLAT, np.radians(-5.0), 0.0),
+        start=Start(yaw=np.pi),
+    )  # fmt: skip
+    there, back = up.position[-1], turned.position[-1]
+    np.testing.assert_allclose(back, there * [-1.0, -1.0, 1.0], atol=1e-6)
+
+
+def test_a_robot_climbs_a_step_and_stands_higher_by_it():
+    step = with_steps(FLAT, np.array([0.25]), np.array([0.01]))
+    flat, stepped = (
+        walk(ROBOT, TRIPOD, SLIPPERY, duration=5.0, ground=each) for each in (FLAT, step)
+    )
+    assert flat.position[-1, 0] > 0.5
+    assert stepped.position[-1, 0] == pytest.approx(flat.position[-1, 0], rel=0.05)
+    raised = np.mean(stepped.position[-500:, 2]) - np.mean(flat.position[-500:, 2])
+    assert raised == pytest.approx(0.01, abs=0.0005)
+
+
 # --- refused
+
+
+def test_a_slope_too_steep_to_find_contacts_from_above_is_refused():
+    with pytest.raises(DomainError, match="slope along y is 46 degrees; expected -45 to 45"):
+        with_slope(FLAT, 0.0, np.radians(46.0))
 
 
 @pytest.mark.parametrize(
@@ -162,4 +254,5 @@ def test_a_height_that_is_no_number_is_refused_with_its_place():
 
 def test_a_function_that_gives_one_height_for_all_is_refused():
     with pytest.raises(DomainError, match=r"gave shape \(\) for positions of shape \(11, 11\)"):
-        sample_ground(lambda x, y: 0.0, x=(0, 1), y=(0, 1), step=0.1)
+        one_for_all = cast("Callable[[Array, Array], Array]", lambda x, y: 0.0)
+        sample_ground(one_for_all, x=(0, 1), y=(0, 1), step=0.1)

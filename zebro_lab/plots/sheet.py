@@ -25,8 +25,8 @@ from zebro_lab.files.own_file import picture_metadata
 from zebro_lab.files.picture_format import PictureFormat, format_of
 from zebro_lab.files.units import unit_symbol
 
-BLUE, RED = "#0072B2", "#D55E00"
-CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
+BLUE, RED, GREEN = "#0072B2", "#D55E00", "#009E73"
+CYCLE = (BLUE, "#E69F00", GREEN, RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
 _SHOWN_DRAWS = 60
 _TIME_MARGIN = 0.01  # of the time shown
 _TITLE = 10.0  # letters of a title in each inch of a figure's width

@@ -15,6 +15,7 @@ from model.walk.thesis.traction import paired_sum
 from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
 from zebro_lab.plots.sheet import (
     BLUE,
+    GREEN,
     RED,
     few_ticks,
     legend_below,
@@ -46,9 +47,9 @@ def slip_ratios(path: WalkPath, *, title: str) -> Figure:
         leg dragged while it hardly turns has very large ones.
     """
     ratio = np.where(_turning(path.t, path.theta), path.slip_ratio, np.nan)
-    limits = _limits(ratio[path.contact], least=0.02, cut=0.03)
+    limits = leg_limits(ratio[path.contact], least=0.02, cut=0.03)
     lines = {"slip ratio; none on the toe and at rest": ratio}
-    return _leg_panels(
+    return leg_panels(
         path.t, path.contact, lines, limits, label="slip ratio of the model", unit="-", title=title
     )
 
@@ -65,9 +66,9 @@ def normal_forces(path: WalkPath, *, title: str) -> Figure:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded. The largest
         1 % may lie beyond the limits, which is marked.
     """
-    limits = 0.0, _limits(path.normal_force[path.contact], least=1.0)[1]
+    limits = 0.0, leg_limits(path.normal_force[path.contact], least=1.0)[1]
     lines = {"normal force": path.normal_force}
-    return _leg_panels(
+    return leg_panels(
         path.t, path.contact, lines, limits, label="normal force", unit="N", title=title
     )
 
@@ -125,7 +126,7 @@ def leg_angles(path: WalkPath, *, title: str) -> Figure:
     angle = np.degrees(path.theta) % 360
     turned = np.abs(np.diff(angle, axis=0, prepend=angle[:1])) > 180
     lines = {"angle; 0 ahead, 90 down": np.where(turned, np.nan, angle)}
-    figure = _leg_panels(
+    figure = leg_panels(
         path.t, path.contact, lines, (0.0, 360.0), label="leg angle", unit="deg", title=title
     )
     for axes in figure.axes:
@@ -215,17 +216,24 @@ def _draw_traction(
     t: Array, force: Array, contact: NDArray[np.bool_], title: str, *, label: str
 ) -> Figure:
     lines = {"forward": force[..., 0], "to the left": force[..., 1]}
-    limits = _limits(force[contact], least=0.5)
-    return _leg_panels(t, contact, lines, limits, label=label, unit="N", title=title)
+    limits = leg_limits(force[contact], least=0.5)
+    return leg_panels(t, contact, lines, limits, label=label, unit="N", title=title)
 
 
-def _leg_panels(
+def leg_panels(
     t: Array, contact: NDArray[np.bool_], lines: Mapping[str, Array],
     limits: tuple[float, float], *, label: str, unit: str, title: str,
 ) -> Figure:  # fmt: skip
-    """Draw one or two `lines`, arrays (n, 6) by label, over time, in a panel per leg from above.
+    """Draw one to three lines over time in a panel per leg, arranged as on the robot from above.
 
-    Contact is shaded; `limits` are those of the vertical axes, `label` and `unit` are theirs.
+    Args:
+        t: Times, shape (n,) [s].
+        contact: Whether each leg is on the ground, which is shaded, shape (n, 6).
+        lines: Values by label, shape (n, 6) each.
+        limits: Limits of the vertical axes.
+        label: What the vertical axes show.
+        unit: Its unit.
+        title: Title of the figure; "(simulated)" is appended.
     """
     figure = new_figure(title, True, width=8.0, height=6.4)
     lines = {name: _drawn(values) for name, values in lines.items()}
@@ -234,7 +242,7 @@ def _leg_panels(
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
         axes.yaxis.set_major_locator(few_ticks(5))
         _shade(axes, t, contact[:, leg])
-        for (name, values), colour in zip(lines.items(), (BLUE, RED), strict=False):
+        for (name, values), colour in zip(lines.items(), (BLUE, RED, GREEN), strict=False):
             axes.plot(t, values[:, leg], color=colour, lw=0.9, label=name)
             mark_beyond(axes, t, values[:, leg], limits, label=beyond)
     computed = any(np.isfinite(each).any() for each in lines.values())
@@ -265,7 +273,7 @@ def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
     axes.axhline(0, color="0.6", lw=0.5, zorder=1)
 
 
-def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
+def leg_limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
     """Compute axis limits that hold zero and all finite values but a share `cut` at either end."""
     low, high = limits_without_tips(values, cut=cut, margin=0.0, least=0.0)
     return limits_without_tips(

@@ -48,7 +48,7 @@ def path_with_snapshots(
         seconds, in walks of 2 s to a minute.
     """
     t = path.t
-    wanted = np.asarray(at, dtype=float) if len(at) else np.linspace(t[0], t[-1], _SNAPSHOTS)
+    wanted = snapshot_times(t, at)
     shots = np.abs(t[:, None] - wanted).argmin(axis=0)
     bodies = [_body(path, robot, int(shot)) for shot in shots]
     low, high = _extent(path, bodies, robot)
@@ -73,6 +73,16 @@ def path_with_snapshots(
     axes.set_axisbelow(True)
     legend_below(figure, columns=8)
     return figure
+
+
+def snapshot_times(t: Array, at: Sequence[float]) -> Array:
+    """Return the times to draw the robot at: those asked for, else six from start to end [s].
+
+    Args:
+        t: Times of the walk, shape (n,) [s].
+        at: Times asked for; empty for none [s].
+    """
+    return np.asarray(at, dtype=float) if len(at) else np.linspace(t[0], t[-1], _SNAPSHOTS)
 
 
 @styled

@@ -4,7 +4,7 @@
 Only this module depends on the format of these files.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,16 +27,29 @@ from zebro_lab.tables.table_files import read_table_file
 SCHEMA = 1
 PREDICTION = "prediction"  # of a run
 KINDS = ("walk", "predict")
+THESIS_CSV = "thesis.csv"
+THESIS_PICTURES = (
+    "coordinates", "lowest_angle", "hip_height", "contact_velocity", "static_load",
+)  # fmt: skip
+"""Pictures of walks by the thesis's model alone."""
 _NOT_MEASURED = ("assumed", "thesis")  # sources of slip laws without data
 INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 PICTURES = (
     "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
-    "paired_traction", "leg_angles", "gantt",
+    "paired_traction", "leg_angles", "gantt", "snapshots",
 )  # fmt: skip
+SOME_PICTURES = ("stances", "slip_law")
+"""Pictures of walks by a gait, and with a slip curve."""
 ANIMATIONS = ("animation.mp4", "animation.gif")
 DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band"
 BAND = (DRAWS, BAND_CSV, *in_every_format(BAND_PICTURE))
-FILES = (PATH_CSV, *in_every_format(*PICTURES), *ANIMATIONS, *BAND)
+FILES = (
+    PATH_CSV,
+    THESIS_CSV,
+    *in_every_format(*PICTURES, *SOME_PICTURES, *THESIS_PICTURES),
+    *ANIMATIONS,
+    *BAND,
+)
 WALKED = {kind: ResultKind(kind, kind, FILES, SCHEMA) for kind in KINDS}
 """Kinds of folders that `walk` and `predict` write."""
 
@@ -106,9 +119,21 @@ def write_path(file: Path, path: WalkPath) -> None:
         path: The path; NaN, for what its model does not compute, becomes an empty cell.
     """
     values = np.column_stack([block.values(path) for block in _BLOCKS])
-    line = ",".join(block.form for block in _BLOCKS for _ in block.columns) + "\n"
+    write_rows(file, COLUMNS, values, [block.form for block in _BLOCKS for _ in block.columns])
+
+
+def write_rows(file: Path, columns: Sequence[str], values: Array, forms: Sequence[str]) -> None:
+    """Write a CSV of numbers; NaN becomes an empty cell.
+
+    Args:
+        file: File to write; an existing one is overwritten.
+        columns: Names of the columns.
+        values: The numbers, a row a line, shape (n, len(columns)).
+        forms: printf-style format of each column's numbers.
+    """
+    line = ",".join(forms) + "\n"
     with file.open("w", encoding="utf-8", newline="\n") as text:
-        text.write(",".join(COLUMNS) + "\n")
+        text.write(",".join(columns) + "\n")
         for first in range(0, len(values), _BATCH):
             rows = values[first : first + _BATCH].tolist()
             text.write("".join([line % tuple(row) for row in rows]).replace("nan", ""))

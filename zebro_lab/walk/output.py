@@ -5,11 +5,12 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+from model.gait.cyclic import CyclicReference
 from model.progress import Watcher
 from model.robot import Robot
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes
-from zebro_lab.walk.folder import walk_folder
+from zebro_lab.walk.folder import THESIS_CSV, walk_folder
 from zebro_lab.walk.path_band import band_settings, write_band
 from zebro_lab.walk.pictures import draw_walk
 from zebro_lab.walk.request import ModelRequest
@@ -64,9 +65,20 @@ def write_walk(
     with walk_folder(
         out, walked.path, kind=kind, source=source, settings=everything, inputs=inputs
     ) as folder:
+        _write_thesis(folder, walked)
         _draw(request, walked, folder, watcher)
         if walked.band is not None:
             write_band(folder, walked.band, title=walked.title, form=request.pictures.form)
+
+
+def _write_thesis(folder: Path, walked: Walked) -> None:
+    """Write the quantities of the thesis's model, if it walked."""
+    from model.walk.thesis.path import ThesisPath  # its package takes most of a second
+
+    if isinstance(walked.path, ThesisPath):
+        from zebro_lab.walk.thesis_file import write_thesis
+
+        write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot)
 
 
 def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
@@ -74,7 +86,11 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
     _raise_if_stopped(watcher)
     if request.pictures.figures:
         watcher.step("drawing", None)
-        draw_walk(folder, walked.path, robot, title=title, asked=request.pictures)
+        gait = walked.reference if isinstance(walked.reference, CyclicReference) else None
+        draw_walk(
+            folder, walked.path, robot, title=title, asked=request.pictures, gait=gait,
+            slip=walked.slip,
+        )  # fmt: skip
     if request.pictures.animate:
         from zebro_lab.plots.animation import animate  # matplotlib takes most of a second
 

@@ -5,14 +5,25 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from model.gait.cyclic import CyclicReference
 from model.robot import Robot
+from model.slip.curve import SlipCurve
 from model.walk.path import WalkPath
+from model.walk.slip import Slip
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.walk.request import PictureRequest
 from zebro_lab.walk.shown_time import part_in
 
 
 def draw_walk(
-    folder: Path, path: WalkPath, robot: Robot, *, title: str, asked: PictureRequest
+    folder: Path,
+    path: WalkPath,
+    robot: Robot,
+    *,
+    title: str,
+    asked: PictureRequest,
+    gait: CyclicReference | None = None,
+    slip: Slip | None = None,
 ) -> None:
     """Draw path, motion, orientation, slip ratios, forces, leg angles and contacts of a walk.
 
@@ -25,11 +36,21 @@ def draw_walk(
         robot: The robot, whose outline is drawn on the path.
         title: Gait and model; appended to the name of each picture.
         asked: Format, times of snapshots and window of time.
+        gait: The gait, whose touchdown and lift-off are drawn; None for a log or a program.
+        slip: The slip law, which is drawn if it is a curve; None for a model without.
 
     Raises:
         SettingsError: The window is not in the walk.
     """
-    from zebro_lab.plots import save, walk_legs, walk_path  # matplotlib takes most of a second
+    from model.walk.thesis.path import ThesisPath
+    from zebro_lab.plots import (  # matplotlib takes most of a second
+        save,
+        slip_law,
+        walk_legs,
+        walk_path,
+        walk_snapshots,
+        walk_stance,
+    )
 
     end = part_in(path, asked.window)
     whole = path if asked.window is None else end
@@ -47,11 +68,35 @@ def draw_walk(
         "leg_angles": ("Leg angles", walk_legs.leg_angles, end),
         "gantt": ("Contact", walk_legs.gantt, end),
     }
+    if isinstance(path, ThesisPath):
+        drawers |= _of_the_thesis(end)
     figures = {
         name: draw(part, title=f"{what}: {title}") for name, (what, draw, part) in drawers.items()
     }
     figures["path"] = walk_path.path_with_snapshots(
         path, robot, title=f"Path: {title}", at=asked.snapshots
     )
+    figures["snapshots"] = walk_snapshots.snapshots(
+        path, robot, title=f"Snapshots: {title}", at=asked.snapshots
+    )
+    if gait is not None:
+        figures["stances"] = walk_stance.stances(gait, robot, title=f"Stances: {title}")
+    if slip is not None and isinstance(slip.law, SlipCurve):
+        figures["slip_law"] = slip_law.slip_law(
+            slip.law, title=f"Slip law: {title}", simulated=is_simulated(slip.source)
+        )
     for name, figure in figures.items():
         save(figure, folder / f"{name}.{asked.form}")
+
+
+def _of_the_thesis(part: WalkPath) -> dict[str, tuple[str, Callable[..., Any], WalkPath]]:
+    """Return the pictures of `THESIS_PICTURES`, of a part of a walk by the thesis's model."""
+    from zebro_lab.plots import walk_thesis
+
+    return {
+        "coordinates": ("Coordinates of the model", walk_thesis.coordinates, part),
+        "lowest_angle": ("Lowest points of the legs", walk_thesis.lowest_angles, part),
+        "hip_height": ("Hip heights", walk_thesis.hip_heights, part),
+        "contact_velocity": ("Speeds of legs and ground", walk_thesis.contact_velocities, part),
+        "static_load": ("Normal forces and static loads", walk_thesis.static_loads, part),
+    }

@@ -19,6 +19,8 @@ Examples:
 
 zebro-lab compare calibration-tiles calibration-carpet
 
+zebro-lab compare calibration thesis --out against-thesis
+
 zebro-lab compare data/RUN1 data/RUN2 --out tiles-carpet
 
 Of calibrations the curve is compared at loads that both were tested at, and legs and floor if both

@@ -14,7 +14,12 @@ from zebro_lab.terminal.picture_options import FormatOption
 class CompareRequest:
     """Options of `zebro-lab compare`."""
 
-    first: Annotated[Path, Argument(metavar="A", help="Calibration folder or run folder.")]
+    first: Annotated[
+        Path,
+        Argument(
+            metavar="A", help="Calibration folder, thesis for the thesis's curve, or run folder."
+        ),
+    ]
     second: Annotated[Path, Argument(metavar="B", help="Second folder, of the same kind as A.")]
     out: Annotated[Path, Option(metavar="DIR", help="Folder to write.")] = Path("comparison")
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1

@@ -8,6 +8,7 @@ import numpy as np
 
 from model.metrics.difference import Difference
 from zebro_lab.calibration.folder import SLIP_TOML
+from zebro_lab.calibration.slip_argument import THESIS
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.names import shortest_distinct
 from zebro_lab.files.picture_format import in_every_format
@@ -63,6 +64,8 @@ def compare(request: CompareRequest) -> Compared:
 
 
 def _kind(path: Path) -> str:
+    if str(path) == THESIS:
+        return "calibration"
     settle(path)
     if path.is_file() and path.suffix.lower() != ".toml":
         raise SettingsError(
@@ -75,7 +78,7 @@ def _kind(path: Path) -> str:
         return "run"
     raise NotFound(
         f"{path} is no folder with {SLIP_TOML}, track/track.csv or prediction/draws.npz; choose "
-        "two folders that calibrate-slip wrote, or two runs"
+        f"two folders that calibrate-slip wrote, or one and {THESIS}, or two runs"
     )
 
 
@@ -89,6 +92,8 @@ def _names(first: Path, second: Path) -> tuple[str, str]:
 
 def _require_different(request: CompareRequest, comparison: Comparison) -> None:
     """Raise `SettingsError` where the files that were read of both have the same content."""
+    if THESIS in (str(request.first), str(request.second)):
+        return
     read = []
     for path in (request.first, request.second):
         folder = path if path.is_dir() else path.parent

@@ -3,6 +3,7 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -24,6 +25,14 @@ def test_the_folder_holds_a_table_a_picture_and_where_it_comes_from(tmp_path):
     assert set(manifest["outputs"]) == {"comparison.csv", "comparison.png"}
     table = pd.read_csv(tmp_path / "out/comparison.csv")
     assert len(table) == len(manifest["quantities"])
+
+
+def test_a_calibration_is_compared_with_the_thesis_s_curve_by_its_name(tmp_path):
+    fitted = calibration(tmp_path / "fitted", friction=0.5)
+    done = compare(CompareRequest(fitted, Path("thesis"), tmp_path / "out"))
+    peak = done.comparison.quantities[0]
+    assert peak.quantiles(1) == pytest.approx((0.3798, 0.3798, 0.3798), rel=1e-3)
+    assert done.differences[0].clear
 
 
 def test_what_cannot_be_compared_is_named(tmp_path):

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""Quantities of the thesis's model in `thesis.csv`."""
+
+import numpy as np
+import pandas as pd
+
+from model.frames import attitude, rotation_y
+from model.gait.steering import tripod_angles, tripod_reference
+from model.robot import Robot
+from model.walk.thesis import SwitchedLegs, walk_thesis
+from zebro_lab.walk.thesis_file import COLUMNS, write_thesis
+
+ROBOT = Robot()
+GAIT = tripod_reference(tripod_angles(np.radians(45.0), 1.2), 1.0)
+
+
+def test_what_is_written_is_what_the_model_computed(tmp_path):
+    path = walk_thesis(ROBOT, SwitchedLegs.of(GAIT), duration=0.6)
+    write_thesis(tmp_path / "thesis.csv", path, ROBOT)
+    table = pd.read_csv(tmp_path / "thesis.csv")
+    assert tuple(table.columns) == COLUMNS
+    np.testing.assert_allclose(table.theta_y, path.angles[:, 2], atol=1e-7)
+    np.testing.assert_allclose(table.z_acceleration, path.acceleration[:, 2], rtol=1e-6, atol=1e-7)
+    for leg in (1, 4):
+        down = path.contact[:, leg - 1]
+        assert table[f"v_R{leg}"].isna().equals(pd.Series(~down))
+        np.testing.assert_allclose(
+            table[f"v_C{leg}"][down], path.contact_speed[down, leg - 1], atol=1e-7
+        )
+        np.testing.assert_allclose(table[f"f_g{leg}"], path.static_load[:, leg - 1], atol=1e-6)
+
+
+def test_the_written_angles_link_hip_and_contact(tmp_path):
+    """Eq. (3-12): the contact lies at r + r cos(phi), -r sin(phi) of the hip frame."""
+    path = walk_thesis(ROBOT, SwitchedLegs.of(GAIT), duration=0.3).part(slice(100, 101))
+    write_thesis(tmp_path / "thesis.csv", path, ROBOT)
+    (row,) = pd.read_csv(tmp_path / "thesis.csv").to_dict("records")
+    r = ROBOT.leg_radius
+    for leg in (1, 4, 5):
+        phi = row[f"phi{leg}"]
+        assert phi > 0  # it rolls
+        in_hip = np.array([r + r * np.cos(phi), 0.0, -r * np.sin(phi)])
+        rotation = attitude(*path.orientation[0]) @ rotation_y(path.theta[0, leg - 1])
+        hip = np.array([row[f"hip_{axis}{leg}"] for axis in "xyz"])
+        contact = [row[f"contact_{axis}{leg}"] for axis in "xyz"]
+        np.testing.assert_allclose(hip + rotation @ in_hip, contact, atol=1e-7)

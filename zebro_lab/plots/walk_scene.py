@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""The walking robot in 3-D, over a grid on the ground."""
+
+from typing import Any, cast
+
+import numpy as np
+from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d.art3d import Line3D, Line3DCollection, Poly3DCollection
+from numpy.typing import NDArray
+
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+from model.walk.path import WalkPath
+from zebro_lab.plots.sheet import BLUE, RED
+from zebro_lab.plots.walk_robot import FACES, body_corners, leg_arcs, to_world
+
+_VIEW = 0.55  # side of the ground that is seen [m]
+_GRID = 0.05  # distance of the lines on the ground [m]
+_ABOVE = 0.25  # of the view: height of the box that is drawn
+_IN_AIR = "0.35"
+
+
+class Scene:
+    """Artists of the robot over a grid on the ground, created once and updated for every sample.
+
+    In contact a leg is orange, in the air grey.
+    """
+
+    def __init__(self, axes: Axes3D, path: WalkPath, robot: Robot) -> None:
+        """Create the artists in 3-D axes, which must not compute the order of drawing themselves.
+
+        Args:
+            axes: Axes to draw in.
+            path: The walk.
+            robot: The robot, for the size of body and legs.
+        """
+        self._path, self._robot = path, robot
+        self._axes = axes
+        self._axes.set_axis_off()
+        self._axes.view_init(elev=22, azim=-60)
+        # matplotlib's default makes checkers think zoom an int
+        self._axes.set_box_aspect((1, 1, _ABOVE), zoom=1.45)  # pyright: ignore[reportArgumentType]
+        no_lines = np.zeros((1, 2, 3))
+        self._grid = Line3DCollection(no_lines, colors="0.85", lw=0.7, zorder=0)
+        self._trace = self._line(color=BLUE, lw=1.2, zorder=1)
+        self._body = Poly3DCollection(
+            np.zeros((len(FACES), 4, 3)), facecolors=(0.75, 0.8, 0.85, 0.55), edgecolors="0.2",
+            lw=0.8, zorder=3,
+        )  # fmt: skip
+        # Legs on the far side of the body are drawn before it.
+        self._far, self._near = (
+            Line3DCollection(no_lines, lw=3.2, capstyle="round", zorder=z) for z in (2, 4)
+        )
+        for collection in (self._grid, self._far, self._body, self._near):
+            collection.set_clip_on(False)
+            self._axes.add_collection3d(collection, autolim=False)
+        self._head = self._line(color=RED, lw=2.5, zorder=5)
+
+    def show(self, sample: int) -> None:
+        """Update body, head, legs, trace and ground to the path's sample of this index.
+
+        The trace is the path up to this sample, as far as it lies within the view.
+        """
+        path = self._path
+        position, orientation = path.position[sample], path.orientation[sample]
+        corners = to_world(body_corners(self._robot), position, orientation)
+        self._body.set_verts([corners[list(face)] for face in FACES])
+        self._head.set_data_3d(*corners[[5, 7]].T)
+        arcs = to_world(leg_arcs(self._robot, path.theta[sample]), position, orientation)
+        self._show_legs(arcs, path.contact[sample], float(orientation[2]))
+        walked = path.position[: sample + 1] * [1.0, 1.0, 0.0]
+        near = np.abs(walked[:, :2] - position[:2]).max(axis=1) < _VIEW / 2
+        self._trace.set_data_3d(*np.where(near[:, None], walked, np.nan).T)
+        self._show_ground(position)
+
+    def _line(self, **style: Any) -> Line3D:
+        return cast("Line3D", self._axes.plot([], [], [], **style)[0])
+
+    def _show_legs(self, arcs: Array, contact: NDArray[np.bool_], yaw: float) -> None:
+        colours = np.where(contact, RED, _IN_AIR)
+        towards = np.radians(self._axes.azim) - yaw  # the camera, seen from the body
+        sides = np.where(self._robot.hips[:, 1] > 0, 1.0, -1.0)
+        in_front = sides * np.sin(towards) > 0
+        for collection, chosen in ((self._far, ~in_front), (self._near, in_front)):
+            legs = [leg for leg in range(N_LEGS) if chosen[leg]]
+            collection.set_segments([arcs[leg] for leg in legs])
+            collection.set_color([str(colours[leg]) for leg in legs])
+
+    def _show_ground(self, position: Array) -> None:
+        low, high = position[:2] - _VIEW / 2, position[:2] + _VIEW / 2
+        lines = []
+        for axis in (0, 1):
+            for at in np.arange(np.ceil(low[axis] / _GRID), high[axis] / _GRID) * _GRID:
+                line = np.zeros((2, 3))
+                line[:, axis] = at
+                line[:, 1 - axis] = low[1 - axis], high[1 - axis]
+                lines.append(line)
+        self._grid.set_segments(lines)
+        self._axes.set(
+            xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(0, _ABOVE * _VIEW)
+        )  # fmt: skip

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""Plot the walking robot in 3-D at some times."""
+
+from collections.abc import Sequence
+from typing import cast
+
+import numpy as np
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
+
+from model.robot import Robot
+from model.walk.path import WalkPath
+from zebro_lab.plots.sheet import new_figure, styled, time_texts
+from zebro_lab.plots.walk_path import snapshot_times
+from zebro_lab.plots.walk_scene import Scene
+
+_COLUMNS = 3
+_WIDTH, _HEIGHT = 3.6, 2.3  # inches of a panel
+_WIDER = (-0.16, -0.32, 1.32, 1.75)  # of a panel: 3-D axes leave much of their square empty
+
+
+@styled
+def snapshots(path: WalkPath, robot: Robot, *, title: str, at: Sequence[float] = ()) -> Figure:
+    """Draw the robot in 3-D at some times (Fig. 2-1 above, 5-20 to 5-22, 5-24 and 5-25).
+
+    Args:
+        path: The walk.
+        robot: The robot, for the size of body and legs.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+        at: Times [s]; empty for six, evenly spaced from start to end.
+
+    Returns:
+        The figure: a panel for each time, with the legs in contact named in its title and drawn in
+        orange, those in the air grey; the head's edge is orange, too, and the path blue.
+    """
+    wanted = snapshot_times(path.t, at)
+    rows = -(-len(wanted) // _COLUMNS)
+    columns = min(len(wanted), _COLUMNS)
+    figure = new_figure(title, True, width=max(_WIDTH * columns, 5.0), height=0.6 + _HEIGHT * rows)
+    figure.set_layout_engine("none")
+    top = 1.0 - 0.6 / figure.get_figheight()
+    for number, (t, when) in enumerate(zip(wanted, time_texts(wanted), strict=True)):
+        row, column = divmod(number, columns)
+        width, height = 1.0 / columns, top / rows
+        left, bottom = column * width, top - (row + 1) * height
+        box = (left + _WIDER[0] * width, bottom + _WIDER[1] * height,
+               _WIDER[2] * width, _WIDER[3] * height)  # fmt: skip
+        axes = cast("Axes3D", figure.add_axes(box, projection="3d", computed_zorder=False))
+        axes.patch.set_visible(False)
+        sample = int(np.abs(path.t - t).argmin())
+        Scene(axes, path, robot).show(sample)
+        legs = ", ".join(str(leg + 1) for leg in np.flatnonzero(path.contact[sample]))
+        figure.text(
+            left + 0.03 * width, bottom + 0.9 * height, f"t = {when} s   {{{legs}}}", va="center"
+        )
+    return figure

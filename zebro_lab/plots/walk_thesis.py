@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""Plot quantities of the thesis's model: coordinates, legs, speeds and loads over time."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from model.robot import LEFT, RIGHT
+from model.slip.law import Array
+from model.walk.thesis.path import ThesisPath
+from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
+from zebro_lab.plots.sheet import (
+    BLUE,
+    RED,
+    few_ticks,
+    legend_below,
+    new_figure,
+    styled,
+    time_axis,
+)
+from zebro_lab.plots.walk_legs import leg_limits, leg_panels
+
+_COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
+_LEAST = np.array([[0.002, 0.01, 0.1], [0.1, 1.0, 10.0]])  # range of an axis: m, deg; rates of it
+
+
+@styled
+def coordinates(path: ThesisPath, *, title: str) -> Figure:
+    """Draw the model's coordinates with rates and accelerations over time (Fig. 5-2, 5-5, 5-7).
+
+    Args:
+        path: Part of a walk to draw.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+
+    Returns:
+        The figure: a column for each of x, y, z and the angles of Eq. (3-7), a row each for values,
+        rates and accelerations of single steps, in which traction alternates; 1 % at either end
+        may lie beyond the limits, which is marked.
+    """
+    values = np.column_stack([path.position, path.angles])
+    rows = np.stack([values, path.rates, path.acceleration])
+    rows[:, :, 3:] = np.degrees(rows[:, :, 3:])
+    figure = new_figure(title, True, width=13.0, height=6.4)
+    panels = figure.subplots(3, 6, sharex=True)
+    for (row, column), axes in np.ndenumerate(panels):
+        least = float(_LEAST[column // 3, row])
+        _draw_line(axes, path.t, rows[row, :, column], least=least, cut=0.0 if row == 0 else 0.01)
+    units = ("[{}]", "rate [{}/s]", "acceleration [{}/s²]")
+    for row, text in enumerate(units):
+        panels[row, 0].set_ylabel(text.format("m"))
+        panels[row, 3].set_ylabel(text.format("deg"))
+    for top, bottom, name in zip(panels[0], panels[-1], _COORDINATES, strict=True):
+        top.set_title(name, loc="left")
+        time_axis(bottom, path.t)
+    legend_below(figure, columns=2)
+    return figure
+
+
+@styled
+def lowest_angles(path: ThesisPath, *, title: str) -> Figure:
+    """Draw the angle phi of the lowest point of each leg's circle over time (section 3-4).
+
+    Args:
+        path: Part of a walk to draw.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+
+    Returns:
+        The figure: a panel for each leg, arranged as on the robot; contact is shaded. Above 0 a
+        half-circle leg rolls, from 0 to -90 degrees it stands on its toe.
+    """
+    phi = np.degrees(path.phi)
+    turned = np.abs(np.diff(phi, axis=0, prepend=phi[:1])) > 180
+    lines = {"angle of the lowest point; 0 at the toe": np.where(turned, np.nan, phi)}
+    figure = leg_panels(
+        path.t, path.contact, lines, (-180.0, 180.0), label="angle phi", unit="deg", title=title
+    )
+    for axes in figure.axes:
+        axes.set(ylim=(-180, 180), yticks=range(-180, 181, 90))
+    return figure
+
+
+@styled
+def hip_heights(path: ThesisPath, *, title: str) -> Figure:
+    """Draw the hip heights by which contacts change, of each side over time (Table 3-1).
+
+    Args:
+        path: Part of a walk to draw.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+
+    Returns:
+        The figure: a panel for each side with the mean height of its front and rear hips, which
+        step together, and that of its middle hip; thick while these legs are on the ground. The
+        legs on the ground change where the lines cross.
+    """
+    figure = new_figure(title, True, width=8.0, height=5.0)
+    panels = figure.subplots(2, 1, sharex=True, sharey=True)
+    for axes, legs, side in zip(panels, (LEFT, RIGHT), ("left", "right"), strict=True):
+        front, middle, rear = legs
+        height = 1000 * path.hip_height
+        pair = height[:, [front, rear]].mean(axis=1)
+        axes.set_title(f"{side} side", loc="left")
+        for values, leg, colour, name in (
+            (pair, front, BLUE, "front and rear legs, mean"),
+            (height[:, middle], middle, RED, "middle leg"),
+        ):
+            axes.plot(path.t, values, color=colour, lw=0.8, label=name)
+            down = np.where(path.contact[:, leg], values, np.nan)
+            axes.plot(path.t, down, color=colour, lw=2.8, label=f"{name}, on the ground")
+        axes.grid(color="0.92", lw=0.6)
+        axes.set_ylabel("hip height [mm]")
+    time_axis(panels[-1], path.t)
+    legend_below(figure, columns=2)
+    return figure
+
+
+@styled
+def contact_velocities(path: ThesisPath, *, title: str) -> Figure:
+    """Draw the speeds that a leg's slip ratio compares over time, Eq. (4-31) and (4-36).
+
+    Args:
+        path: Part of a walk to draw.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+
+    Returns:
+        The figure: a panel for each leg on the ground, arranged as on the robot; contact is shaded.
+    """
+    lines = {
+        "of the body over the contact, v_C": path.contact_speed,
+        "of the hip, v_H": path.hip_speed,
+        "of the leg by its turning, v_R, v_T": path.leg_speed,
+    }
+    limits = leg_limits(np.stack(list(lines.values()))[:, path.contact], least=0.02)
+    return leg_panels(
+        path.t, path.contact, lines, limits, label="forward speed", unit="m/s", title=title
+    )
+
+
+@styled
+def static_loads(path: ThesisPath, *, title: str) -> Figure:
+    """Draw each leg's normal force and its load in static equilibrium over time, section 4-4.
+
+    Args:
+        path: Part of a walk to draw.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+
+    Returns:
+        The figure: a panel for each leg, arranged as on the robot; contact is shaded.
+    """
+    lines = {
+        "normal force, Eq. (4-22)": path.normal_force,
+        "in static equilibrium, Eq. (4-18)": path.static_load,
+    }
+    limits = 0.0, leg_limits(path.normal_force[path.contact], least=1.0)[1]
+    return leg_panels(
+        path.t, path.contact, lines, limits, label="normal force", unit="N", title=title
+    )
+
+
+def _draw_line(axes: Axes, t: Array, values: Array, *, least: float, cut: float) -> None:
+    limits = limits_without_tips(values, cut=cut, margin=0.05, least=least)
+    axes.plot(t, values, color=BLUE, lw=0.7)
+    mark_beyond(axes, t, values, limits, label="beyond the axes")
+    axes.set_ylim(limits)
+    axes.yaxis.set_major_locator(few_ticks(5))
+    axes.grid(color="0.92", lw=0.6)

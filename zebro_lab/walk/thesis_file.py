@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""Write `thesis.csv`: the quantities of the thesis's model, beside the `path.csv` of its walk."""
+
+from pathlib import Path
+
+import numpy as np
+
+from model.leg import wrap_angle
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+from model.walk.thesis.frames import contact_forces, contact_frames, hip_frames
+from model.walk.thesis.path import ThesisPath
+from zebro_lab.walk.folder import write_rows
+
+_DIGITS = "%.8g"  # to 1e-7 m in a walk of 10 m
+_COORDINATES = ("x", "y", "z", "theta_r", "theta_p", "theta_y")
+
+
+def _of_legs(*names: str) -> tuple[str, ...]:
+    """Return column names, for each quantity those of the legs."""
+    return tuple(f"{name}{leg}" for name in names for leg in range(1, N_LEGS + 1))
+
+
+COLUMNS = (
+    "t", "theta_r", "theta_p", "theta_y",
+    *(f"{name}_rate" for name in _COORDINATES), *(f"{name}_acceleration" for name in _COORDINATES),
+    *_of_legs("phi", "phi_rate", "z_h", "f_g", "v_R", "v_C", "v_H"),
+    *_of_legs("hip_x", "hip_y", "hip_z", "contact_x", "contact_y", "contact_z"),
+    *_of_legs("contact_lean", "ground_x", "ground_y", "ground_z"),
+)  # fmt: skip
+"""The columns of `thesis.csv`, in order."""
+
+
+def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
+    """Write the quantities of the thesis's model as CSV in SI with the columns `COLUMNS`.
+
+    Args:
+        file: File to write; an existing one is overwritten.
+        path: The walk; NaN, for what a leg in the air does not have, becomes an empty cell.
+        robot: The robot that walked.
+    """
+    origins = (hip_frames(robot, path)[..., :3, 3], contact_frames(robot, path)[..., :3, 3])
+    values = [
+        path.t[:, None], path.angles, path.rates, path.acceleration,
+        path.phi, path.phi_rate, path.hip_height, path.static_load,
+        path.leg_speed, path.contact_speed, path.hip_speed,
+        *(_by_axis(each) for each in origins),
+        wrap_angle(path.theta + path.phi - np.pi / 2),
+        _by_axis(contact_forces(path)),
+    ]  # fmt: skip
+    write_rows(file, COLUMNS, np.column_stack(values), [_DIGITS] * len(COLUMNS))
+
+
+def _by_axis(vectors: Array) -> Array:
+    """Return vectors of the legs, (n, 6, 3), as columns, all legs' x first, shape (n, 18)."""
+    return np.swapaxes(vectors, 1, 2).reshape(len(vectors), -1)

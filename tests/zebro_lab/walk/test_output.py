@@ -87,7 +87,7 @@ def test_pictures_and_film_come_only_when_asked_for(finished, tmp_path, monkeypa
     assert not filmed
     watcher = Nobody()
     write(tmp_path / "all", finished, watcher, pictures=PictureRequest(figures=True, animate=True))
-    assert set(saved) == {f"{name}.png" for name in PICTURES}
+    assert set(saved) == {f"{name}.png" for name in (*PICTURES, "stances")}
     assert filmed == ["tripod"]
     assert watcher.seen == [("drawing", None), ("filming", 0.5)]
 

@@ -21,7 +21,9 @@ from model.walk.thesis_switches import AS_LISTED, ThesisSwitches
 from model.walk.traction import ToeLaw
 
 if TYPE_CHECKING:
-    from model.walk.thesis import SwitchedLegs
+    from model.contact.detection import Detection
+    from model.contact.tripod import Automaton
+    from model.walk.thesis import Switch, SwitchedLegs
 
 BASELINES = ("no-slip-simple", "no-slip", "thesis")
 
@@ -38,6 +40,10 @@ class ModelRun:
         dt: Length of a step [s].
         toe: Traction of a leg on its toe, see `law_table`; only the model "dynamics" uses it.
         direction: Side to which the gait turns; only the thesis's model uses it.
+        automaton: What decides contact in the thesis's model: "listing" or "table" in its dynamics
+            of tripods, "events" or "balanced" in its kinematics of any gait; None for "listing",
+            or for "events" if a cyclic gait is no tripod.
+        switch: Where the legs of a gait change speed; only the thesis's model uses it.
         legs: Corrections to robot, slip law and path, of which draw 0 is used; None for none. Only
             the model "dynamics" uses them.
         thesis: Switches of the thesis's model; only that model uses them.
@@ -50,6 +56,8 @@ class ModelRun:
     dt: float
     toe: ToeLaw = "saturated"
     direction: Direction = "left"
+    automaton: "Automaton | Detection | None" = None
+    switch: "Switch" = "angle"
     legs: LegState | None = None
     thesis: ThesisSwitches = AS_LISTED
 
@@ -93,7 +101,7 @@ def baseline_paths(
     for name in BASELINES:
         model = MODELS[name]
         slip = Slip(thesis_curve(), source="thesis") if model.slips else None
-        run = ModelRun(robot, reference, slip, duration, model.dt, "saturated", direction)
+        run = ModelRun(robot, reference, slip, duration, model.dt, direction=direction)
         try:
             path = model.run(run)
         except (WalkError, DomainError) as error:
@@ -118,17 +126,68 @@ def _dynamics(run: ModelRun) -> WalkPath:
 
 
 def _thesis(run: ModelRun) -> WalkPath:
-    """Walk by the thesis's model, with `ThesisOptions.mend_slip` unless a cyclic gait is walked."""
+    """Walk by the thesis's model: dynamics of tripods, or kinematics of any gait.
+
+    The dynamics have `ThesisOptions.mend_slip` unless a cyclic gait is walked.
+    """
+    from model.walk.detected import walk_detected
     from model.walk.thesis import ThesisOptions, walk_thesis
 
+    automaton = thesis_automaton(run.automaton, run.reference)
+    if automaton == "events" or automaton == "balanced":
+        if run.switch == "contact":
+            raise DomainError(
+                f"legs that change speed at contact need the dynamics of tripods; by '{automaton}' "
+                "the legs follow the gait: use the automaton 'listing' or 'table' and a tripod"
+            )
+        if run.thesis != AS_LISTED:
+            raise DomainError(
+                "switches of the thesis's model are of its dynamics of tripods; by the automaton "
+                f"'{automaton}' it walks kinematics: leave them out, or walk a tripod"
+            )
+        return walk_detected(
+            run.robot, run.reference, duration=run.duration, dt=run.dt, detection=automaton
+        )
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
     legs = _legs_of_the_thesis(run.reference)
     # The legs of a log stand still and turn back by fractions of a degree; by the listing's slip
     # ratio such a leg would have full traction.
     logged = not isinstance(run.reference, CyclicReference)
     mended = replace(run.thesis, mend_slip=logged or run.thesis.mend_slip)
-    options = ThesisOptions(**vars(mended), dt=run.dt, direction=run.direction)
+    options = ThesisOptions(
+        **vars(mended), dt=run.dt, direction=run.direction, automaton=automaton, switch=run.switch
+    )
     return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
+
+
+def thesis_automaton(
+    asked: "Automaton | Detection | None", reference: LegReference
+) -> "Automaton | Detection":
+    """Return what decides contact in the thesis's model: what was asked for, or its default.
+
+    Args:
+        asked: The rule that was asked for; None for the default: "events" for a cyclic gait that is
+            no tripod, "listing" for all other leg angles.
+        reference: Leg angles over time.
+    """
+    from model.walk.thesis import is_tripod
+
+    if asked is not None:
+        return asked
+    cyclic = isinstance(reference, CyclicReference)
+    return "events" if cyclic and not is_tripod(reference) else "listing"
+
+
+def decides_contact(run: ModelRun, model: str) -> str:
+    """Name what decides contact in a model: "force", "rest" or the rule of the thesis's model.
+
+    Args:
+        run: Inputs of the model.
+        model: Name of the model. "rest": legs on which the robot rests, as in models without slip.
+    """
+    if model == "thesis":
+        return thesis_automaton(run.automaton, run.reference)
+    return "force" if MODELS[model].slips else "rest"
 
 
 def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs":

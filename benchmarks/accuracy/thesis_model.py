@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.accuracy.chatter import sign_changes_per_second
-from benchmarks.accuracy.wobble import wobble
+from model.contact.detection import DETECTIONS, detect_contacts
+from model.contact.sequence import contact_cycle, contact_states
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import SampledReference
@@ -142,15 +143,14 @@ def curvature() -> None:
 
 
 def tetrapod() -> None:
-    """Item 11: contact states over a cycle, with and without the test at every step."""
+    """Item 11: contact states of a cycle, Eq. (3-33), and with the test at every step."""
     reference = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
-    for always in (False, True):
-        path = wobble(ROBOT, reference, duration=6.0, contact=(1, 4, 5), always_balanced=always)
-        late = path.t >= 3.0
-        states = [f"{t:.3f} s {{{','.join(map(str, sorted(legs)))}}}"
-                  for t, legs in path.transitions() if t < 3.0]  # fmt: skip
-        roll, pitch = np.degrees(path.roll[late]), np.degrees(path.pitch[late])
-        print(f"tested at every step {always}:", " ".join(states))
+    t = np.arange(9001) * 0.001
+    for detection in DETECTIONS:
+        found = detect_contacts(ROBOT, reference.angles(t), detection=detection)
+        sequence = contact_states(t, found.contact)
+        print(f"{detection}:", contact_cycle(sequence, reference.period, tolerance=0.01))
+        roll, pitch = (np.degrees(each[t >= 3.0]) for each in (found.roll, found.pitch))
         print(f"  roll {roll.min():.1f} to {roll.max():.1f}, "
               f"pitch {pitch.min():.1f} to {pitch.max():.1f} degrees")  # fmt: skip
 

@@ -116,7 +116,7 @@ def _walk(
     seen = _motion(robot, reference, t, wheels=wheels)
     # Steps take the velocity at their middle: second order, and never on a kink of the gait.
     between = _motion(robot, reference, t[:-1] + dt / 2, wheels=wheels)
-    xy, yaw = _integrate(between.twist, dt)
+    xy, yaw = integrate_twists(between.twist, dt)
     on_ground = np.where(seen.contact > 0, np.nan, 0.0)
     return WalkPath(
         t=t,
@@ -149,7 +149,7 @@ def _motion(robot: Robot, reference: LegReference, t: Array, *, wheels: bool) ->
     return motion
 
 
-def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
+def integrate_twists(twist: Array, dt: float) -> tuple[Array, Array]:
     """Integrate rows of `Motion.twist` over steps dt to positions (n + 1, 2) [m] and yaw [rad].
 
     Both start at zero; each step is a chord along the mean of its two headings.

@@ -20,6 +20,8 @@ zebro-lab walk --touchdown-deg 50,37.8 --liftoff-deg 130,138 --arc-deg 200 --sli
 
 zebro-lab walk --gait suriana --tau-turn 0.1 --model thesis --slip thesis --duration 4.8 --animate
 
+zebro-lab walk --gait tetrapod --model thesis --duration 9
+
 zebro-lab walk --gait "{1,4} < {2,5} < {3,6}" --tau-turn 0.1 --slip thesis --duration 20
 
 zebro-lab walk --gait tripod --steering 1.3 --slip calibration --duration 25 --draws 300
@@ -47,5 +49,5 @@ def walk(request: WalkRequest, write_robot: WriteRobot = None, output: Output = 
         return
     if request.duration is None and request.program is None:
         raise typer.BadParameter("missing: the duration of the walk [s]", param_hint="'--duration'")
-    request.model.require_slip()
+    request.require_slip()
     run_and_report("walk", lambda watcher: stage.walk(request, watcher), request.out, output)

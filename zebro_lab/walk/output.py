@@ -54,6 +54,7 @@ def write_walk(
         "dt": walked.dt,
         "toe": request.toe,
         **({} if request.thesis is None else {"thesis": asdict(request.thesis)}),
+        "contact_by": walked.contact_by,
         "slip": None if slip is None else {"named": slip.text, "source": slip.source},
         "robot": _robot_settings(described.robot),
         "doubts": list(walked.doubts),

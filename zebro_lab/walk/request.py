@@ -23,6 +23,8 @@ from zebro_lab.terminal.picture_options import (
 from zebro_lab.walk.thesis_argument import THESIS_HELP, parse_thesis
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
+AutomatonName: TypeAlias = Literal["listing", "table", "events", "balanced"]
+SwitchName: TypeAlias = Literal["angle", "contact"]
 ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
 
 
@@ -30,6 +32,8 @@ LONGEST_STEP: Final = 0.02
 """Longest time step [s], for models without slip: with it, paths of cycles of 0.5 s hold to 1 %."""
 LONGEST_SLIPPING_STEP: Final = 0.005
 """The same for models with slip; longer steps leave the path, and give false slip."""
+DETECTED: Final = ("events", "balanced")
+"""Automata of the model thesis that are kinematics, and so without slip."""
 _SLIPPING: Final = ("dynamics", "thesis")
 """Models whose legs slip; `model.walk_models`, which says so, too, takes long to import."""
 
@@ -135,6 +139,15 @@ class ModelRequest:
             "with its errors; no-slip: exact kinematics; no-slip-simple: wheels."
         ),
     ] = "dynamics"
+    automaton: Annotated[
+        AutomatonName | None,
+        Option(
+            help="What decides contact in the model thesis. listing (A.32) or table (3-1): its "
+            "dynamics of tripods; events or balanced: contact detection of 3-5-2 for any gait, "
+            "kinematics without slip, the centre of mass tested at touchdowns or at every step. "
+            "Default: listing for tripods, events for other gaits."
+        ),
+    ] = None
     toe: Annotated[
         ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
     ] = "saturated"
@@ -183,6 +196,12 @@ class ModelRequest:
             )
         if self.slip is not None:
             coulomb_numbers(self.slip)
+        if self.automaton is not None and self.model != "thesis":
+            raise SettingsError(
+                f"found '{self.automaton}' with the model '{self.model}', which has a contact "
+                "rule of its own; give --model thesis with it",
+                key="--automaton",
+            )
         longest = LONGEST_SLIPPING_STEP if self.model in _SLIPPING else LONGEST_STEP
         if self.dt is not None and self.dt > longest:
             raise SettingsError(
@@ -197,7 +216,7 @@ class ModelRequest:
         Raises:
             BadParameter: The model has slipping legs and `--slip` is missing.
         """
-        if self.slip is None and self.model in _SLIPPING:
+        if self.slip is None and self.model in _SLIPPING and self.automaton not in DETECTED:
             raise BadParameter(
                 f"missing: legs slip in the model '{self.model}'; name a slip.toml, the folder "
                 "that holds it, coulomb:MU[:V] or thesis",
@@ -217,6 +236,14 @@ class WalkRequest:
     ] = None
     out: Annotated[Path, Option(metavar="DIR", help="Walk folder to write.")] = Path("walk")
     model: ModelRequest = field(default_factory=ModelRequest)
+    switch_at: Annotated[
+        SwitchName | None,
+        Option(
+            help="Where the legs of a tripod change between ground and flight speed, for the model "
+            "thesis: at touchdown and lift-off angle (A.33) or at contact (text of 5-2-1); "
+            "default: angle."
+        ),
+    ] = None
     program: Annotated[
         Path | None,
         Argument(
@@ -226,14 +253,35 @@ class WalkRequest:
     ] = None  # fmt: skip
 
     def __post_init__(self) -> None:
-        """Raise `BadParameter` for options of one gait beside a program."""
+        """Raise `BadParameter` for options of a gait beside a program, or of another model."""
+        if self.switch_at is not None and self.model.model != "thesis":
+            raise BadParameter(
+                f"the legs of the model '{self.model.model}' follow the gait's angles over time; "
+                "give --model thesis with it",
+                param_hint="'--switch-at'",
+            )
         if self.program is None:
             return
         given = self.gait.given()
-        if self.duration is not None or given or self.gait.name != GaitRequest().name:
-            options = [*(["duration"] if self.duration is not None else []), *given]
+        own = [name for name in ("duration", "switch_at") if getattr(self, name) is not None]
+        if own or given or self.gait.name != GaitRequest().name:
+            options = [*own, *given]
             name = options[0].replace("_", "-") if options else "gait"
             raise BadParameter("is for one gait; the program says it", param_hint=f"'--{name}'")
+
+    def require_slip(self) -> None:
+        """Check that `--slip` is given if the model needs it, as far as the gait's name tells.
+
+        The thesis's model walks gaits that are no tripods without; whether groups of legs are one
+        is seen when they are walked.
+
+        Raises:
+            BadParameter: The walk has slipping legs and `--slip` is missing.
+        """
+        model, name = self.model, self.gait.name
+        may_be_kinematic = name == "tetrapod" or "{" in name
+        if model.model != "thesis" or model.automaton is not None or not may_be_kinematic:
+            model.require_slip()
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
     require_shown_times(pictures.snapshots, pictures.window, 0.0, duration)
     walked = walk_with(
         request.model, described, asked.reference, duration=duration, what=asked.what,
-        direction=asked.direction, notes=asked.notes,
+        direction=asked.direction, switch=request.switch_at or "angle", notes=asked.notes,
     )  # fmt: skip
     if request.model.band.draws:
         band = predict_band(
@@ -72,6 +72,7 @@ def _gait(request: WalkRequest, described: RobotFile) -> AskedWalk:
         "gait": {"name": request.gait.name, **request.gait.given()},
         "duration": request.duration,
         "direction": gait.direction,
+        "switch_at": request.switch_at,
     }
     return AskedWalk(
         gait.reference, request.duration, gait.what, settings, direction=gait.direction,

@@ -14,19 +14,26 @@ from model.gait.reference import LegReference
 from model.poses import Poses
 from model.predict import FINE
 from model.walk.path import WalkPath
+from model.walk.thesis.legs import Switch
 from model.walk.thesis_switches import AS_LISTED
-from model.walk_models import MODELS, ModelRun, WalkModel
+from model.walk_models import MODELS, ModelRun, WalkModel, decides_contact, thesis_automaton
 from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.asked import WalkedSegment
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
-from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.request import DETECTED, ModelRequest
 from zebro_lab.walk.thesis_argument import named_switches
 
 MOST_STEPS: Final = 500_000
 """Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""
+
+
+_KINEMATIC: Final = (
+    "this walk is kinematics: contact detection keeps a rigid body on the legs, and the motion "
+    "over the ground, which the thesis does not compute, is that without slip"
+)
 
 
 @dataclass(frozen=True)
@@ -44,6 +51,8 @@ class Walked:
         title: Gait or log, model and slip law, for titles.
         notes: Notes, one line each.
         informed: Posterior of legs and floor that was used; None without fitted walks.
+        contact_by: What decides contact in the model: "force", "rest" (legs on which the robot
+            rests), or the rule of the thesis's model.
         band: Paths with slip law, legs, floor and start drawn; None unless requested.
         schedule: The max-plus system of the gait's events; None for other gaits and for logs.
         segments: Of a program, where each segment ended; empty for others.
@@ -58,6 +67,7 @@ class Walked:
     title: str
     notes: tuple[str, ...]
     informed: InformedLegs | None = None
+    contact_by: str = "force"
     band: Poses | None = None
     schedule: EventSystem | None = None
     segments: tuple[WalkedSegment, ...] = ()
@@ -98,6 +108,7 @@ def walk_with(
     duration: float,
     what: str,
     direction: Direction = "left",
+    switch: Switch = "angle",
     logs: tuple[Path, ...] = (),
     angles_are_true: bool = False,
     notes: tuple[str, ...] = (),
@@ -111,6 +122,7 @@ def walk_with(
         duration: Duration of the walk [s].
         what: Name of the gait or log, for titles.
         direction: Side the gait turns to.
+        switch: Where the legs of a gait change speed, for the thesis's model.
         logs: Files of the leg log, by whose hash a walk that was fitted is recognised.
         angles_are_true: Whether the angles are exact, as in a walk folder: then only the floor of
             fitted walks applies, not their leg offsets.
@@ -123,35 +135,64 @@ def walk_with(
         ModelError: The walk cannot be computed.
     """
     model = MODELS[request.model]
-    slip, unused = _slip_for(model, request.slip)
+    rule = _thesis_rule(request, reference)
+    slip, unused = _slip_for(model, request.slip, kinematic=rule in DETECTED)
     informed = None
     if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
         same_legs = False if angles_are_true else None
         informed = informed_legs(slip.walks, described, logs=logs, same_legs=same_legs)
     dt = _time_step(request, model, duration, informed)
     run = ModelRun(
-        described.robot, reference, slip, duration, dt, request.toe, direction,
-        None if informed is None else informed.middle, request.thesis or AS_LISTED,
+        described.robot, reference, slip, duration, dt, request.toe, direction, request.automaton,
+        switch, None if informed is None else informed.middle, request.thesis or AS_LISTED,
     )  # fmt: skip
     path = _run(run, model, slip)
-    if model.slips and dt > model.dt:
+    if slip is not None and dt > model.dt:
         notes = (*notes, f"in steps of {dt:g} s, longer than {model.dt:g} s, legs slip too much")
     grip = "" if slip is None else f", slip {slip.title}"
-    switched = "" if request.thesis is None else f" ({', '.join(named_switches(request.thesis))})"
-    title = f"{what}, model '{model.name}'{switched}{grip}"
+    own = _named_rule(rule, request, switch)
+    title = f"{what}, model '{model.name}'{own}{grip}"
     found = (part.notes for part in (informed, slip) if part is not None)
     notes = (*notes, *unused, *(note for part in found for note in part))
-    return Walked(path, reference, described, slip, model.name, dt, title, notes, informed)
+    return Walked(
+        path, reference, described, slip, model.name, dt, title, notes, informed,
+        decides_contact(run, model.name),
+    )  # fmt: skip
 
 
-def _slip_for(model: WalkModel, text: str | None) -> tuple[NamedSlip | None, tuple[str, ...]]:
+def _thesis_rule(request: ModelRequest, reference: LegReference) -> str | None:
+    """Return what decides contact in the thesis's model; None for other models."""
+    if request.model != "thesis":
+        return None
+    return thesis_automaton(request.automaton, reference)
+
+
+def _named_rule(rule: str | None, request: ModelRequest, switch: Switch) -> str:
+    """Return a title's words on how the thesis's model was walked, if not as it walks by itself."""
+    if rule in DETECTED:
+        return f" (kinematics by contact detection, '{rule}')"
+    said = [f"automaton '{rule}'"] if request.automaton is not None else []
+    if switch == "contact":
+        said.append("legs switched at contact")
+    if request.thesis is not None:
+        said.extend(named_switches(request.thesis))
+    return f" ({', '.join(said)})" if said else ""
+
+
+def _slip_for(
+    model: WalkModel, text: str | None, *, kinematic: bool
+) -> tuple[NamedSlip | None, tuple[str, ...]]:
     """Parse `--slip` for a model; also return a note if the model does not use it."""
     slip = None if text is None else parse_slip(text)
-    if slip is None and model.slips:
-        raise SettingsError(f"missing: give {EXPECTED_SLIP}", key="--slip")
-    if slip is not None and not model.slips:
-        return None, (f"the model '{model.name}' has no slip: --slip {slip.text} is not used",)
-    return slip, ()
+    if model.slips and not kinematic:
+        if slip is None:
+            raise SettingsError(f"missing: give {EXPECTED_SLIP}", key="--slip")
+        return slip, ()
+    notes = (_KINEMATIC,) if kinematic else ()
+    if slip is not None:
+        without = "its kinematics have" if kinematic else "has"
+        notes += (f"the model '{model.name}': {without} no slip, --slip {slip.text} is not used",)
+    return None, notes
 
 
 def _time_step(

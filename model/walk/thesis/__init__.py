@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The thesis's hybrid dynamic model of tripod walking, as printed, with its faults."""
 
-from model.walk.thesis.legs import SwitchedLegs
+from model.walk.thesis.legs import SWITCHES, Switch, SwitchedLegs
 from model.walk.thesis.path import ThesisPath
 from model.walk.thesis.traction import (
     THESIS_TRACTION,
@@ -10,14 +10,17 @@ from model.walk.thesis.traction import (
     paired_sum,
     table_traction,
 )
-from model.walk.thesis.walk import ThesisOptions, walk_thesis
+from model.walk.thesis.walk import ThesisOptions, is_tripod, walk_thesis
 
 __all__ = [
+    "SWITCHES",
     "THESIS_TRACTION",
+    "Switch",
     "SwitchedLegs",
     "ThesisOptions",
     "ThesisPath",
     "Traction",
+    "is_tripod",
     "law_traction",
     "paired_sum",
     "table_traction",

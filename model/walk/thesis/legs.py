@@ -2,7 +2,7 @@
 """Leg angles step by step, switching speed by angle as the thesis's legs do."""
 
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from model.gait.reference import LegReference
 from model.robot import N_LEGS
 from model.slip.law import Array
 
+Switch = Literal["angle", "contact"]
+SWITCHES: tuple[Switch, ...] = ("angle", "contact")
+
 
 class LegMotion(NamedTuple):
     """Leg angles and speeds at every step.
@@ -21,11 +24,13 @@ class LegMotion(NamedTuple):
         theta: Angles at the beginning of each step, shape (n, 6) [rad].
         speed: Speeds during each step, shape (n, 6) [rad/s].
         stance_speed: Speed of each leg when on the ground, shape (n, 6) [rad/s].
+        flight_speed: Speed of each leg in the air, shape (n, 6) [rad/s].
     """
 
     theta: Array
     speed: Array
     stance_speed: Array
+    flight_speed: Array
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,10 @@ class SwitchedLegs:
             self.start, self.touchdown, self.liftoff, self.ground_speed, self.flight_speed,
             dt, theta, speed,
         )  # fmt: skip
-        return LegMotion(theta, speed, np.broadcast_to(self.ground_speed, theta.shape))
+        return LegMotion(
+            theta, speed, *(np.broadcast_to(v, theta.shape) for v in
+                            (self.ground_speed, self.flight_speed)),
+        )  # fmt: skip
 
 
 def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> LegMotion:
@@ -113,7 +121,7 @@ def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int)
 
     Args:
         reference: Legs that switch speed by angle, or leg angles over time, which are sampled; of
-            these the speed is the stance speed too.
+            these the speed is that of stance and flight too.
         dt: Length of a step [s].
         steps: Number of steps.
     """
@@ -121,7 +129,7 @@ def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int)
         return reference.motion(dt, steps)
     t = dt * np.arange(steps)
     speed = reference.speeds(t)
-    return LegMotion(reference.angles(t), speed, speed)
+    return LegMotion(reference.angles(t), speed, speed, speed)
 
 
 @compiled

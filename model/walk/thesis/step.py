@@ -57,6 +57,7 @@ class Manner(NamedTuple):
         mend_heading: Whether roll, pitch and inertia turn with the heading.
         static_loads: Whether legs carry the loads of static equilibrium.
         contact_slip_angle: Whether the slip angle is that of each contact instead of the body's.
+        by_contact: Whether legs change speed at contact instead of at touchdown and lift-off angle.
         every: Number of steps between two samples that are kept.
     """
 
@@ -69,6 +70,7 @@ class Manner(NamedTuple):
     mend_heading: bool
     static_loads: bool
     contact_slip_angle: bool
+    by_contact: bool
     every: int
 
 
@@ -240,6 +242,24 @@ def prescribe(machine, manner, legs, sides, q, total, fall, v):
 
 
 @compiled
+def turn_on(motion, step, dt, sides):
+    """Turn the legs by one step, and choose their next speeds by contact, section 5-2-1.
+
+    Args:
+        motion: Leg angles and speeds, of which those of the step after are overwritten.
+        step: Number of the step whose contacts are known.
+        dt: Length of a step [s].
+        sides: Whether a leg is on the ground in this step, shape (6,).
+    """
+    if step + 1 == len(motion.theta):
+        return
+    for i in range(6):
+        motion.theta[step + 1, i] = motion.theta[step, i] + dt * motion.speed[step, i]
+        speeds = motion.stance_speed if sides[i] else motion.flight_speed
+        motion.speed[step + 1, i] = speeds[step + 1, i]
+
+
+@compiled
 def run(machine, manner, traction, motion, q, v, sides, record):
     """Integrate the thesis's model over all steps.
 
@@ -250,7 +270,8 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         machine: The robot.
         manner: Settings of the steps.
         traction: The slip law.
-        motion: Leg angles and speeds at every step.
+        motion: Leg angles and speeds at every step; with `manner.by_contact` those after the first
+            step are overwritten.
         q: Coordinates at the start, overwritten, shape (6,) [m, rad].
         v: Rates of the coordinates, overwritten, shape (6,) [m/s, rad/s].
         sides: Whether a leg is on the ground at the start, overwritten, shape (6,).
@@ -286,6 +307,8 @@ def run(machine, manner, traction, motion, q, v, sides, record):
             changed = switch_by_table(legs.height, sides)
         else:
             changed = switch_by_listing(legs.height, sides, manner.inner)
+        if manner.by_contact:
+            turn_on(motion, step, manner.dt, sides)
         three_legs(sides, legs, here, three)
         if changed or step == 0:
             reset(machine, manner, legs, sides, here, rates)

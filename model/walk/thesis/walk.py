@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 from model.contact.tripod import AUTOMATA, Automaton
 from model.errors import DomainError, WalkError
 from model.frames import roll_pitch_yaw, thesis_attitude
+from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction, inner_legs
 from model.gait.reference import LegReference
 from model.leg import hip_height, wrap_angle
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import step_times
-from model.walk.thesis.legs import LegMotion, SwitchedLegs, leg_motion
+from model.walk.thesis.legs import SWITCHES, LegMotion, Switch, SwitchedLegs, leg_motion
 from model.walk.thesis.path import ThesisPath
 from model.walk.thesis.record import Record, empty_record
 from model.walk.thesis.step import Machine, Manner, run
@@ -25,6 +26,7 @@ from model.walk.thesis_switches import ThesisSwitches
 TRIPODS = ((0, 3, 4), (1, 2, 5))
 SAME_SIDE = ((0, 4), (1, 5))  # legs of one tripod on one side, which turn alike
 APART = np.radians(45.0)  # where these legs are further apart, the gait is not a tripod [rad]
+_LOOKS = 721  # instants of a cycle at which a gait is looked at
 
 
 @dataclass(frozen=True)
@@ -35,25 +37,30 @@ class ThesisOptions(ThesisSwitches):
         dt: Length of a step [s].
         direction: Side to which the gait turns; the legs of that side are the inner ones.
         automaton: Rule by which contacts change: "listing" (A.32) or "table" (Table 3-1).
+        switch: Where legs change between ground and flight speed: at touchdown and lift-off
+            "angle", Listing A.33, or at "contact" by the automaton, as the text of 5-2-1 says.
         every: Number of steps between two samples of the path.
 
     Raises:
-        DomainError: The step is not positive and finite, the direction or the automaton is
-            unknown, or `every` is less than 1.
+        DomainError: The step is not positive and finite, the direction, the automaton or the switch
+            is unknown, or `every` is less than 1.
     """
 
     dt: float = 0.001
     direction: Direction = "left"
     automaton: Automaton = "listing"
+    switch: Switch = "angle"
     every: int = 1
 
     def __post_init__(self) -> None:
-        """Check that the step, the automaton, the direction and `every` are valid."""
+        """Check that step, automaton, switch, direction and `every` are valid."""
         if not (self.dt > 0 and np.isfinite(self.dt)):
             raise DomainError(f"dt is {self.dt:g} s; expected more than zero, and finite")
         inner_legs(self.direction)
         if self.automaton not in AUTOMATA:
             raise DomainError(f"automaton is '{self.automaton}'; expected {' or '.join(AUTOMATA)}")
+        if self.switch not in SWITCHES:
+            raise DomainError(f"switch is '{self.switch}'; expected {' or '.join(SWITCHES)}")
         if self.every < 1:
             raise DomainError(f"every is {self.every}; expected 1 or more steps")
 
@@ -65,7 +72,8 @@ class ThesisOptions(ThesisSwitches):
         by_table = self.automaton == "table"
         return Manner(
             self.dt, int(right), by_table, self.reset_height, sign, self.mend_slip,
-            self.mend_heading, self.static_loads, self.contact_slip_angle, self.every,
+            self.mend_heading, self.static_loads, self.contact_slip_angle,
+            self.switch == "contact", self.every,
         )  # fmt: skip
 
 
@@ -98,12 +106,18 @@ def walk_thesis(
         material contact point. The model's own quantities are the path's further attributes.
 
     Raises:
-        DomainError: The duration is not finite or rounds to no step, or the gait is not a tripod:
-            two legs of a tripod's side are more than 45 degrees apart.
+        DomainError: The duration is not finite or rounds to no step, legs that do not switch speed
+            by angle are to switch it at contact, or the gait is not a tripod: two legs of a
+            tripod's side are more than 45 degrees apart.
         WalkError: The walk diverged; the message says when and in what state.
     """
     t = step_times(duration, options.dt)
     steps = len(t)
+    if options.switch == "contact" and not isinstance(reference, SwitchedLegs):
+        raise DomainError(
+            "these leg angles are followed by the clock; legs that change speed at contact need a "
+            "gait with ground and flight speeds, without pauses and offsets"
+        )
     turned = leg_motion(reference, dt=options.dt, steps=steps)
     motion = turned._replace(theta=turned.theta + robot.leg_offset)
     _require_tripod(motion, options.dt)
@@ -124,16 +138,32 @@ def _machine(robot: Robot) -> Machine:
     )  # fmt: skip
 
 
+def is_tripod(gait: CyclicReference) -> bool:
+    """Return whether a gait is one that the thesis's dynamics walks: a tripod, {1,4,5} and {2,3,6}.
+
+    Args:
+        gait: Gait of six legs.
+    """
+    theta = gait.angles(np.linspace(0.0, gait.period, _LOOKS))
+    return all(np.all(_apart(theta, pair) <= APART) for pair in SAME_SIDE)
+
+
+def _apart(theta: Array, pair: tuple[int, int]) -> Array:
+    """Compute by what angle two legs are apart, modulo a turn, shape (n,) [rad]."""
+    return np.abs(wrap_angle(theta[:, pair[0]] - theta[:, pair[1]]))
+
+
 def _require_tripod(motion: LegMotion, dt: float) -> None:
     """Raise `DomainError` where two legs of one tripod and side are more than `APART` apart."""
     for first, other in SAME_SIDE:
-        apart = np.abs(wrap_angle(motion.theta[:, first] - motion.theta[:, other]))
+        apart = _apart(motion.theta, (first, other))
         worst = int(np.argmax(apart))
         if apart[worst] > APART:
             raise DomainError(
                 f"legs {first + 1} and {other + 1} are {np.degrees(apart[worst]):.3g} degrees "
                 f"apart at t = {worst * dt:.4g} s, expected at most {np.degrees(APART):g}; the "
-                "thesis's model walks tripods only, {1,4,5} and {2,3,6}: use the dynamics model"
+                "thesis's dynamics walks tripods only, {1,4,5} and {2,3,6}: use the automaton "
+                "'events', which is kinematics, or the dynamics model"
             )
 
 

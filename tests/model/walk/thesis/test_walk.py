@@ -33,8 +33,8 @@ def gait(steering, *, cycle=1.0, inner_deg=45.0, direction: Direction = "left"):
     return tripod_reference(angles, cycle, direction=direction)
 
 
-def walk(steering=1.2, *, duration=4.0, traction=THESIS_TRACTION, cycle=1.0, **options):
-    legs = SwitchedLegs.of(gait(steering, cycle=cycle))
+def walk(steering=1.2, *, duration=4.0, traction=THESIS_TRACTION, cycle=1.0, legs=None, **options):
+    legs = legs or SwitchedLegs.of(gait(steering, cycle=cycle))
     settings = ThesisOptions(**options)
     return walk_thesis(ROBOT, legs, duration=duration, traction=traction, options=settings)
 
@@ -181,6 +181,52 @@ def test_the_automata_agree_where_hip_heights_match():
     np.testing.assert_allclose(table.position[-1, :2], listing.position[-1, :2], atol=0.001)
 
 
+# --- speeds switched at contact, section 5-2-1
+
+
+def suriana(turn_time):
+    return SwitchedLegs.of(
+        suriana_reference(
+            np.radians(35.0), np.radians(130.0), ground_time=0.8, flight_time=0.8,
+            turn_time=turn_time,
+        )
+    )  # fmt: skip
+
+
+def touchdowns(path, leg):
+    """Return the angles at which a leg comes down, modulo a turn [rad]."""
+    down = np.flatnonzero(~path.contact[:-1, leg] & path.contact[1:, leg]) + 1
+    return path.theta[down, leg] % (2 * np.pi)
+
+
+def test_switched_at_contact_a_leg_has_the_speed_of_its_contact_from_the_next_step_on():
+    legs = suriana(0.1)
+    path = walk(legs=legs, duration=1.5, switch="contact")
+    speed = np.diff(path.theta, axis=0)[1:] / 0.001
+    expected = np.where(path.contact, legs.ground_speed, legs.flight_speed)[:-2]
+    np.testing.assert_allclose(speed, expected, rtol=1e-9)
+
+
+def test_switched_at_contact_touchdowns_run_away_and_by_angle_they_stay():
+    by_angle, at_contact = (
+        np.degrees(touchdowns(walk(legs=suriana(0.0), duration=10.0, switch=switch), 0))
+        for switch in ("angle", "contact")
+    )
+    assert np.ptp(by_angle) < 0.2
+    late = np.diff(at_contact)[2:]  # each cycle's error is that of the one before, enlarged
+    assert np.all(late[1:] > 1.2 * late[:-1])
+
+
+def test_switched_at_contact_the_turn_comes_apart():
+    path = walk(legs=suriana(0.1), duration=4.8, switch="contact", automaton="table")
+    assert path.yaw[-1] < 0.5 * walk(legs=suriana(0.1), duration=4.8, automaton="table").yaw[-1]
+
+
+def test_angles_followed_by_the_clock_are_not_switched_at_contact():
+    with pytest.raises(DomainError, match="followed by the clock"):
+        walk(legs=gait(1.2), switch="contact")
+
+
 # --- other legs, laws and arcs
 
 
@@ -232,8 +278,15 @@ def test_a_tetrapod_is_refused_with_the_time_at_which_it_shows():
 
 @pytest.mark.parametrize(
     "options",
-    [{"dt": 0.0}, {"dt": np.nan}, {"direction": "up"}, {"automaton": "none"}, {"every": 0}],
-)
+    [
+        {"dt": 0.0},
+        {"dt": np.nan},
+        {"direction": "up"},
+        {"automaton": "none"},
+        {"switch": "up"},
+        {"every": 0},
+    ],
+)  # fmt: skip
 def test_options_that_make_no_sense_are_refused(options):
     with pytest.raises(DomainError, match="expected"):
         ThesisOptions(**options)

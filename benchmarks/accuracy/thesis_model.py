@@ -145,7 +145,7 @@ def curvature() -> None:
 def tetrapod() -> None:
     """Item 11: contact states of a cycle, Eq. (3-33), and with the test at every step."""
     reference = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
-    t = np.arange(9001) * 0.001
+    t = np.arange(9001, dtype=float) * 0.001
     for detection in DETECTIONS:
         found = detect_contacts(ROBOT, reference.angles(t), detection=detection)
         sequence = contact_states(t, found.contact)

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from model.errors import DomainError
-from model.gait.reference import SampledReference
+from model.gait.reference import LegReference, SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import Robot
@@ -17,7 +17,7 @@ THESIS = Slip(thesis_curve(), "thesis")
 T = np.arange(0.0, 4.005, 0.01)
 
 
-def run(name, *, slip=THESIS, reference=GAIT):
+def run(name, *, slip: Slip | None = THESIS, reference: LegReference = GAIT):
     model = MODELS[name]
     return model.run(ModelRun(Robot(), reference, slip if model.slips else None, 4.0, model.dt))
 
@@ -69,7 +69,7 @@ def test_the_thesis_model_walks_a_tetrapod_by_contact_detection_and_without_a_sl
 
 
 def test_what_decides_contact_is_named_for_each_model():
-    def named(model, reference=GAIT, **options):
+    def named(model, reference: LegReference = GAIT, **options):
         return decides_contact(ModelRun(Robot(), reference, THESIS, 1.0, 0.001, **options), model)
 
     assert [named(model) for model in MODELS] == ["force", "listing", "rest", "rest"]

@@ -19,7 +19,7 @@ DT = 0.01
 def contacts(*parts):
     """Return contacts of states that last numbers of samples, with their times."""
     rows = [[leg in legs for leg in range(6)] for legs, count in parts for _ in range(count)]
-    return DT * np.arange(len(rows)), np.array(rows)
+    return DT * np.arange(len(rows), dtype=float), np.array(rows)
 
 
 def legs_of(sequence):
@@ -27,9 +27,10 @@ def legs_of(sequence):
 
 
 def test_eq_3_33_with_its_times_is_the_cycle_of_the_tetrapod():
-    t = np.arange(9001) * 0.001
+    t = np.arange(9001, dtype=float) * 0.001
     sequence = contact_states(t, detect_contacts(Robot(), GAIT.angles(t)).contact)
     cycle = contact_cycle(sequence, GAIT.period, tolerance=0.01)
+    assert cycle is not None
     assert str(cycle) == (
         "{2,5,6} → {2,3,6} (0.41 s) → {1,3,4,6} (0.95 s) → {1,4,5} (1.93 s) → {2,4,5} (2.41 s)"
         " → {2,5,6} (2.93 s)"
@@ -73,6 +74,7 @@ def test_the_transient_is_apart_and_a_cycle_that_changes_is_none():
     cycle = [({0, 3, 4}, 30), ({1, 2, 5}, 20)]
     t, contact = contacts(({0, 1, 2}, 7), ({3, 4, 5}, 3), *cycle * 4)
     found = contact_cycle(contact_states(t, contact), 0.5, tolerance=0.005)
+    assert found is not None
     assert found.settled == pytest.approx(0.1)
     assert found.cycles == 4
     assert str(found) == "{2,3,6} → {1,4,5} (0.10 s) → {2,3,6} (0.40 s)"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Options of walk and predict: names that exist, and a band that can be drawn."""
 
-from typing import get_args
+from typing import Any, get_args
 
 import pytest
 import typer
@@ -86,6 +86,10 @@ def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
     assert BandRequest().draws == 0
     with pytest.raises(SettingsError, match="expected 2 or more, or 0"):
         BandRequest(1)
-    for options in ({"offset_sd_deg": -1.0}, {"start_sd": (0.0, -1.0, 0.0)}):
+    negative: tuple[dict[str, Any], ...] = (
+        {"offset_sd_deg": -1.0},
+        {"start_sd": (0.0, -1.0, 0.0)},
+    )
+    for options in negative:
         with pytest.raises(SettingsError, match="deviations of 0 or more"):
             BandRequest(2, **options)

@@ -16,6 +16,7 @@ from zebro_lab.plots.walk_scene import Scene
 
 _COLUMNS = 3
 _WIDTH, _HEIGHT = 3.6, 2.3  # inches of a panel
+_MARGINS, _BELOW = 0.8, 0.3  # inches above and below the panels, for title and sinking legs
 _WIDER = (-0.16, -0.32, 1.32, 1.75)  # of a panel: 3-D axes leave much of their square empty
 
 
@@ -36,13 +37,16 @@ def snapshots(path: WalkPath, robot: Robot, *, title: str, at: Sequence[float] =
     wanted = snapshot_times(path.t, at)
     rows = -(-len(wanted) // _COLUMNS)
     columns = min(len(wanted), _COLUMNS)
-    figure = new_figure(title, True, width=max(_WIDTH * columns, 5.0), height=0.6 + _HEIGHT * rows)
+    figure = new_figure(
+        title, True, width=max(_WIDTH * columns, 5.0), height=_MARGINS + _HEIGHT * rows
+    )
     figure.set_layout_engine("none")
-    top = 1.0 - 0.6 / figure.get_figheight()
+    free = _HEIGHT * rows / figure.get_figheight()
+    below = _BELOW / figure.get_figheight()
     for number, (t, when) in enumerate(zip(wanted, time_texts(wanted), strict=True)):
         row, column = divmod(number, columns)
-        width, height = 1.0 / columns, top / rows
-        left, bottom = column * width, top - (row + 1) * height
+        width, height = 1.0 / columns, free / rows
+        left, bottom = column * width, below + free - (row + 1) * height
         box = (left + _WIDER[0] * width, bottom + _WIDER[1] * height,
                _WIDER[2] * width, _WIDER[3] * height)  # fmt: skip
         axes = cast("Axes3D", figure.add_axes(box, projection="3d", computed_zorder=False))

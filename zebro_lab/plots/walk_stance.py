@@ -30,7 +30,7 @@ def stances(gait: CyclicReference, robot: Robot, *, title: str) -> Figure:
         The figure: a panel for each side, walking to the right, on level ground under a level body;
         hips, whose heights are written, are dots.
     """
-    figure = new_figure(title, True, width=7.5, height=3.2)
+    figure = new_figure(title, True, width=7.5, height=3.7)
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
     for leg, (axes, side) in enumerate(zip(panels, ("left", "right"), strict=True)):
         inner = ", inner" if leg in gait.inner else ", outer" if gait.inner else ""

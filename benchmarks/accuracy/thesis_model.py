@@ -16,7 +16,7 @@ from model.gait.direction import Direction
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.robot import Robot
+from model.robot import GRAVITY, Robot
 from model.slip.magic_formula import curvature_from_peak
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import WalkPath, turning_radius
@@ -29,6 +29,7 @@ from model.walk.thesis import (
 from model.walk.thesis.traction import Traction
 
 ROBOT = Robot()
+WEIGHT = ROBOT.mass * GRAVITY
 SLIPPERY = THESIS_TRACTION._replace(friction=THESIS_TRACTION.friction / 5)
 
 
@@ -111,6 +112,18 @@ def mean_roll(direction: Direction, *, mend: bool) -> float:
     return float(np.degrees(path.orientation[500:, 0].mean()))
 
 
+def switches() -> None:
+    """Ten seconds of Table 5-2's gait as listed, and with one switch each."""
+    mended = [walk(gait(1.25, 45.0, 1.0), 4.0, heading=np.radians(h), mend_heading=True).length
+              for h in (0, 90, 180, 270)]  # fmt: skip
+    print("metres in 4 s with the heading mended:", " ".join(f"{x:.3f}" for x in mended))
+    for switch in ("as listed", "static_loads", "contact_slip_angle"):
+        options: dict[str, Any] = {} if switch == "as listed" else {switch: True}
+        path = walk(gait(1.25, 45.0, 1.0), 10.0, **options)
+        print(f"yaw after 10 s, {switch}: {np.degrees(path.yaw[-1]):.1f} degrees, largest share of "
+              f"the weight carried {path.normal_force.sum(axis=1).max() / WEIGHT:.2f}")  # fmt: skip
+
+
 def standing() -> None:
     """Item 7: how far a robot goes that stands on legs turning back by a hair."""
     t = np.arange(0.0, 1.001, 0.02)
@@ -156,5 +169,15 @@ def tetrapod() -> None:
 
 
 if __name__ == "__main__":
-    for show in (chatter, radii, compass, right_turns, standing, automata, curvature, tetrapod):
+    for show in (
+        chatter,
+        radii,
+        compass,
+        right_turns,
+        switches,
+        standing,
+        automata,
+        curvature,
+        tetrapod,
+    ):
         show()

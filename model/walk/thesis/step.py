@@ -223,8 +223,7 @@ def find_loads(machine, manner, traction, balance, total, static, loads):
 def prescribe(machine, manner, legs, sides, q, total, fall, v):
     """Set the rates of height, roll and pitch to those that optimised forces would bring about.
 
-    Static loads do not balance the moments of traction: free to pitch, the body would turn over
-    within a second.
+    Static loads do not balance the moments of traction, by which the body would turn over.
 
     Args:
         machine: The robot.

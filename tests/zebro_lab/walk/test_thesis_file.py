@@ -1,13 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Quantities of the thesis's model in `thesis.csv`."""
 
+import json
+
 import numpy as np
 import pandas as pd
+import pytest
 
 from model.frames import attitude, rotation_y
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.walk.thesis import SwitchedLegs, walk_thesis
+from support.watchers import Nobody
+from zebro_lab.robot.gait_request import GaitRequest
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import ModelRequest, PredictRequest, WalkRequest
+from zebro_lab.walk.stage import walk
+from zebro_lab.walk.thesis_argument import parse_thesis
 from zebro_lab.walk.thesis_file import COLUMNS, write_thesis
 
 ROBOT = Robot()
@@ -44,3 +53,24 @@ def test_the_written_angles_link_hip_and_contact(tmp_path):
         hip = np.array([row[f"hip_{axis}{leg}"] for axis in "xyz"])
         contact = [row[f"contact_{axis}{leg}"] for axis in "xyz"]
         np.testing.assert_allclose(hip + rotation @ in_hip, contact, atol=1e-7)
+
+
+def test_a_walk_by_the_thesis_s_model_has_them_in_its_folder_with_its_switches(tmp_path):
+    request = ModelRequest("thesis", "thesis", thesis=parse_thesis("mend-heading,heading=90"))
+    asked = WalkRequest(GaitRequest(steering=1.2), 0.5, tmp_path / "out", request)
+    walked = walk(asked, Nobody())
+    assert "model 'thesis' (mend-heading, heading=90)" in walked.title
+    manifest = json.loads((tmp_path / "out" / "manifest.json").read_text())
+    assert manifest["settings"]["thesis"]["mend_heading"] is True
+    assert "thesis.csv" in manifest["outputs"]
+    table = pd.read_csv(tmp_path / "out" / "thesis.csv")
+    assert table.theta_y[0] == pytest.approx(np.pi / 2)
+    path = pd.read_csv(tmp_path / "out" / "path.csv")
+    np.testing.assert_array_equal(path.t, table.t)
+    logged = PredictRequest(tmp_path / "out", tmp_path / "predicted", model=request)
+    again = predict(logged, Nobody())
+    assert again.path.yaw[0] == pytest.approx(np.pi / 2)
+    assert (tmp_path / "predicted" / "thesis.csv").exists()
+    ours = WalkRequest(GaitRequest(steering=1.2), 0.5, tmp_path / "out", ModelRequest("thesis"))
+    walk(ours, Nobody())
+    assert not (tmp_path / "out" / "thesis.csv").exists()

@@ -70,6 +70,7 @@ def test_pictures_that_the_page_names_are_files_of_its_walks():
 
 
 @pytest.mark.long
+@pytest.mark.timeout(3600)
 def test_every_command_of_the_page_makes_the_pictures_it_names(tmp_path):
     lines = [line for line in find_lines(CHECKOUT) if line.page == "docs/thesis-figures.md"]
     programs = CHECKOUT / ".venv" / "bin"

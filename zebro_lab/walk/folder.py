@@ -4,7 +4,7 @@
 Only this module depends on the format of these files.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -119,24 +119,27 @@ def write_path(file: Path, path: WalkPath) -> None:
         path: The path; NaN, for what its model does not compute, becomes an empty cell.
     """
     values = np.column_stack([block.values(path) for block in _BLOCKS])
-    write_rows(file, COLUMNS, values, [block.form for block in _BLOCKS for _ in block.columns])
+    write_rows(file, COLUMNS, (values,), [block.form for block in _BLOCKS for _ in block.columns])
 
 
-def write_rows(file: Path, columns: Sequence[str], values: Array, forms: Sequence[str]) -> None:
+def write_rows(
+    file: Path, columns: Sequence[str], parts: Iterable[Array], forms: Sequence[str]
+) -> None:
     """Write a CSV of numbers; NaN becomes an empty cell.
 
     Args:
         file: File to write; an existing one is overwritten.
         columns: Names of the columns.
-        values: The numbers, a row a line, shape (n, len(columns)).
+        parts: The numbers, a row a line, in arrays of shape (n, len(columns)) one after the other.
         forms: printf-style format of each column's numbers.
     """
     line = ",".join(forms) + "\n"
     with file.open("w", encoding="utf-8", newline="\n") as text:
         text.write(",".join(columns) + "\n")
-        for first in range(0, len(values), _BATCH):
-            rows = values[first : first + _BATCH].tolist()
-            text.write("".join([line % tuple(row) for row in rows]).replace("nan", ""))
+        for values in parts:
+            for first in range(0, len(values), _BATCH):
+                rows = values[first : first + _BATCH].tolist()
+                text.write("".join([line % tuple(row) for row in rows]).replace("nan", ""))
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from model.walk.thesis.path import ThesisPath
 from zebro_lab.walk.folder import write_rows
 
 _DIGITS = "%.8g"  # to 1e-7 m in a walk of 10 m
+_PART = 10_000  # samples
 _COORDINATES = ("x", "y", "z", "theta_r", "theta_p", "theta_y")
 
 
@@ -34,21 +35,30 @@ COLUMNS = (
 def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
     """Write the quantities of the thesis's model as CSV in SI with the columns `COLUMNS`.
 
+    Frames and forces are computed and written part by part, since all at once of a long walk they
+    take more memory than the walk.
+
     Args:
         file: File to write; an existing one is overwritten.
         path: The walk; NaN, for what a leg in the air does not have, becomes an empty cell.
         robot: The robot that walked.
     """
+    parts = (path.part(slice(first, first + _PART)) for first in range(0, len(path.t), _PART))
+    values = (_values(part, robot) for part in parts)
+    write_rows(file, COLUMNS, values, [_DIGITS] * len(COLUMNS))
+
+
+def _values(path: ThesisPath, robot: Robot) -> Array:
+    """Return the numbers of `COLUMNS` at the samples of a path, shape (n, len(COLUMNS))."""
     origins = (hip_frames(robot, path)[..., :3, 3], contact_frames(robot, path)[..., :3, 3])
-    values = [
-        path.t[:, None], path.angles, path.rates, path.acceleration,
+    return np.column_stack([
+        path.t, path.angles, path.rates, path.acceleration,
         path.phi, path.phi_rate, path.hip_height, path.static_load,
         path.leg_speed, path.contact_speed, path.hip_speed,
         *(_by_axis(each) for each in origins),
         wrap_angle(path.theta + path.phi - np.pi / 2),
         _by_axis(contact_forces(path)),
-    ]  # fmt: skip
-    write_rows(file, COLUMNS, np.column_stack(values), [_DIGITS] * len(COLUMNS))
+    ])  # fmt: skip
 
 
 def _by_axis(vectors: Array) -> Array:

@@ -19,8 +19,10 @@ from model.path_draws import bent
 from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
-from model.walk.dynamics import DynamicsOptions
+from model.walk.areas import Area
+from model.walk.dynamics import DynamicsOptions, Start
 from model.walk.ensemble import WalkDraw, walk_ensemble
+from model.walk.terrain import Terrain
 from model.walk.traction import TractionTable
 
 STEPS = (0.005, 0.0025, 0.00125)  # s; an ensemble uses the largest one that has converged
@@ -91,6 +93,34 @@ def walk_draws(
         )
         for i in range(len(state))
     ]
+
+
+def on_terrain(
+    draws: Sequence[WalkDraw],
+    terrain: Terrain,
+    tables: Sequence[Sequence[TractionTable]],
+    starts: Array,
+) -> list[WalkDraw]:
+    """Put draws on a terrain, each with laws of its areas and from a pose of its own.
+
+    The legs' corrections to the slip law, which walks on one floor were fitted to, are those of the
+    ground outside of the areas; laws of the areas are not scaled.
+
+    Args:
+        draws: Inputs of m walks.
+        terrain: The terrain.
+        tables: Draws of the slip law of each area, repeated in turn when fewer than m.
+        starts: x, y [m] and yaw [rad] of each start, shape (m, 3).
+    """
+    placed = []
+    for i, (draw, (x, y, yaw)) in enumerate(zip(draws, starts.tolist(), strict=True)):
+        areas = tuple(
+            Area(area.polygon, laws[i % len(laws)])
+            for area, laws in zip(terrain.areas, tables, strict=True)
+        )
+        start = Start(x=x, y=y, yaw=yaw)
+        placed.append(replace(draw, ground=terrain.ground, areas=areas, start=start))
+    return placed
 
 
 def motions(

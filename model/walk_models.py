@@ -17,6 +17,7 @@ from model.robot import GRAVITY, Robot
 from model.slip.thesis import thesis_curve
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
+from model.walk.terrain import LEVEL, Terrain
 from model.walk.thesis_switches import AS_LISTED, ThesisSwitches
 from model.walk.traction import ToeLaw
 
@@ -47,6 +48,7 @@ class ModelRun:
         legs: Corrections to robot, slip law and path, of which draw 0 is used; None for none. Only
             the model "dynamics" uses them.
         thesis: Switches of the thesis's model; only that model uses them.
+        terrain: The ground; only the model "dynamics" walks on other than level ground of one law.
     """
 
     robot: Robot
@@ -60,6 +62,7 @@ class ModelRun:
     switch: "Switch" = "angle"
     legs: LegState | None = None
     thesis: ThesisSwitches = AS_LISTED
+    terrain: Terrain = LEVEL
 
 
 @dataclass(frozen=True)
@@ -113,14 +116,20 @@ def baseline_paths(
 
 def _dynamics(run: ModelRun) -> WalkPath:
     """Walk by the project's model; with `legs`, correct robot, law and path by their draw 0."""
+    from model.walk.areas import with_areas
     from model.walk.dynamics import DynamicsOptions, walk
 
-    table = _slip_of(run).traction_table(weight=run.robot.mass * GRAVITY, toe=run.toe)
-    options = DynamicsOptions(dt=run.dt)
+    weight, options = run.robot.mass * GRAVITY, DynamicsOptions(dt=run.dt)
+    robot, law = run.robot, _slip_of(run).traction_table(weight=weight, toe=run.toe)
+    if run.legs is not None:
+        robot, law = robot_in(robot, run.legs, 0), law_in(law, run.legs, 0)
+    laws = with_areas(law, run.terrain.tabulated(weight=weight, toe=run.toe))
+    path = walk(
+        robot, run.reference, laws, duration=run.duration, options=options,
+        ground=run.terrain.ground,
+    )  # fmt: skip
     if run.legs is None:
-        return walk(run.robot, run.reference, table, duration=run.duration, options=options)
-    robot, law = robot_in(run.robot, run.legs, 0), law_in(table, run.legs, 0)
-    path = walk(robot, run.reference, law, duration=run.duration, options=options)
+        return path
     steering, stride = float(run.legs.steering[0]), float(run.legs.stride[0])
     return bent_walk(path, distance=stride, curvature=steering)
 

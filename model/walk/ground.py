@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.compiled import inlined
+from model.compiled import compiled, inlined
 from model.errors import DomainError
 from model.slip.law import Array
 
@@ -149,6 +149,22 @@ def beyond_grid(ground: Ground, x: Array, y: Array) -> Array:
         return np.zeros(np.shape(x), dtype=bool)
     at_x, at_y = (x - ground.x) / ground.step, (y - ground.y) / ground.step
     return (at_x < 0) | (at_x > m - 1) | (at_y < 0) | (at_y > n - 1)
+
+
+@compiled
+def heights_on(ground: Ground, x: Array, y: Array) -> Array:
+    """Compute the heights of the ground on a grid of places, shape (m, n) [m].
+
+    Args:
+        ground: The ground.
+        x: x of the rows, shape (m,) [m].
+        y: y of the columns, shape (n,) [m].
+    """
+    height = np.empty((len(x), len(y)))
+    for i in range(len(x)):
+        for j in range(len(y)):
+            height[i, j] = height_and_slopes(ground, x[i], y[j])[0]
+    return height
 
 
 @inlined

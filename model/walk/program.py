@@ -10,6 +10,7 @@ from model.errors import DomainError
 from model.gait.program import CycleGait, ProgramLegs
 from model.gait.reference import SampledReference
 from model.robot import Robot
+from model.walk.areas import AreaTractions
 from model.walk.arrays import State
 from model.walk.dynamics import DynamicsOptions, integrate, start_state
 from model.walk.ground import FLAT, Ground
@@ -97,7 +98,7 @@ class SegmentEnd:
 def lay_out(
     segments: Sequence[Segment],
     robot: Robot,
-    table: TractionTable | None,
+    table: TractionTable | AreaTractions | None,
     *,
     options: DynamicsOptions,
     ground: Ground = FLAT,
@@ -219,7 +220,11 @@ class _Walker:
     """
 
     def __init__(
-        self, robot: Robot, table: TractionTable, options: DynamicsOptions, ground: Ground
+        self,
+        robot: Robot,
+        table: TractionTable | AreaTractions,
+        options: DynamicsOptions,
+        ground: Ground,
     ) -> None:
         self._robot, self._table, self._options, self._ground = robot, table, options, ground
         self.kept: _Kept = None  # step, state and unwrapped yaw there

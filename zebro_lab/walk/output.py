@@ -48,7 +48,12 @@ def write_walk(
             nothing was written.
     """
     described, slip = walked.described, walked.slip
-    read = [*files, *((described.file,) if described.file else ()), *(slip.files if slip else ())]
+    read = [
+        *files,
+        *((described.file,) if described.file else ()),
+        *(slip.files if slip else ()),
+        *(walked.ground.files if walked.ground else ()),
+    ]
     everything = {
         "model": walked.model,
         "dt": walked.dt,
@@ -59,6 +64,7 @@ def write_walk(
         "robot": _robot_settings(described.robot),
         "doubts": list(walked.doubts),
         "walks": None if walked.informed is None else walked.informed.settings(),
+        **({} if walked.ground is None else {"ground": walked.ground.settings}),
         **settings,
         **({} if walked.band is None else {"band": band_settings(request.band)}),
     }

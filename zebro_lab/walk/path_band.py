@@ -12,7 +12,7 @@ from model.gait.reference import LegReference
 from model.leg_state import LegState
 from model.path_draws import LEVELS, STATES, anchored, quantiles
 from model.poses import Poses
-from model.predict import ModelSpread, predict_paths, walk_draws
+from model.predict import ModelSpread, on_terrain, predict_paths, walk_draws
 from model.progress import Watcher
 from model.robot import GRAVITY
 from model.walk.traction import ToeLaw
@@ -77,13 +77,23 @@ def predict_band(
     tables = slip_tables(walked.slip, request.draws, weight=weight, toe=toe, rng=rng)
     watcher.step("predicting the band", 0.0)
     draws = walk_draws(robot, legs, tables, state, rng=rng)
+    x, y, yaw_deg = request.start_sd
+    covariance = np.diag([x, y, np.radians(yaw_deg)]) ** 2
+    terrain = walked.terrain
+    if not terrain.is_alike_everywhere:  # there each draw is walked from where it begins
+        starts = rng.multivariate_normal(np.zeros(3), covariance, size=len(draws), method="eigh")
+        laws = [
+            slip_tables(slip, request.draws, weight=weight, toe=toe, rng=rng)
+            for slip in (() if walked.ground is None else walked.ground.slips)
+        ]
+        draws = on_terrain(draws, terrain, laws, starts)
     t = np.linspace(0.0, duration, max(round(duration / SAMPLING), 1) + 1)
     paths = predict_paths(
         draws, t, state=state, error=ModelSpread(), rng=rng, threads=request.threads,
         progress=_every(_STEPS_SHOWN, watcher),
     )  # fmt: skip
-    x, y, yaw_deg = request.start_sd
-    covariance = np.diag([x, y, np.radians(yaw_deg)]) ** 2
+    if not terrain.is_alike_everywhere:
+        return paths
     return anchored(paths, np.zeros(3), at=0.0, covariance=covariance, rng=rng)
 
 

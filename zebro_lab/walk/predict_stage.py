@@ -25,7 +25,7 @@ from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.request import PredictRequest
 from zebro_lab.walk.shown_time import require_shown_times
-from zebro_lab.walk.walking import Walked, robot_of, walk_with
+from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with
 
 
 def prediction_folder(request: PredictRequest) -> Path:
@@ -59,6 +59,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     out = prediction_folder(request)
     require_replaceable(out, WALKED["predict"], inputs=request.inputs)
     described, is_walk = robot_of(request.model), _is_walk(request.log)
+    ground = ground_of(request.model)
     if is_walk:
         described = _without_offsets(described)
     log = read_leg_log(
@@ -82,6 +83,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         direction=request.direction,
         logs=log.files,
         angles_are_true=is_walk,
+        ground=ground,
         notes=(*log.notes, *notes, *suspected),
     )
     if request.model.band.draws:

@@ -8,12 +8,15 @@ import numpy as np
 
 from model.progress import Watcher
 from model.robot import GRAVITY
+from model.walk.areas import AreaTractions, with_areas
 from model.walk.dynamics import DynamicsOptions
 from model.walk.program import lay_out
+from model.walk.terrain import LEVEL, Terrain
 from model.walk.traction import TractionTable
 from model.walk_models import MODELS
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.ground.ground_file import GroundFile
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.asked import AskedWalk, WalkedSegment
 from zebro_lab.walk.program_file import Program, read_program
@@ -24,7 +27,12 @@ _WALKS = "dynamics"  # the model that finds where segments end
 
 
 def laid_out(
-    file: Path, request: ModelRequest, described: RobotFile, watcher: Watcher
+    file: Path,
+    request: ModelRequest,
+    described: RobotFile,
+    watcher: Watcher,
+    *,
+    ground: GroundFile | None = None,
 ) -> AskedWalk:
     """Read a program and compute its leg angles.
 
@@ -33,6 +41,7 @@ def laid_out(
         request: Model, slip law, toe law and time step, with which headings and places are found.
         described: The robot.
         watcher: Receives progress.
+        ground: The ground and its areas; None for level ground of one slip law.
 
     Raises:
         NotFound: There is no such file.
@@ -42,10 +51,11 @@ def laid_out(
     """
     robot = described.robot
     program = read_program(file, leg_arc=robot.leg_arc)
-    table, notes = _table(program, request, described)
+    terrain = LEVEL if ground is None else ground.terrain
+    table, notes = _table(program, request, described, terrain)
     legs, ends = lay_out(
         program.segments, robot, table,
-        options=DynamicsOptions(dt=request.dt or MODELS[_WALKS].dt),
+        options=DynamicsOptions(dt=request.dt or MODELS[_WALKS].dt), ground=terrain.ground,
         progress=lambda share: watcher.step("laying out the program", share),
     )  # fmt: skip
     segments = tuple(
@@ -68,8 +78,8 @@ def laid_out(
 
 
 def _table(
-    program: Program, request: ModelRequest, described: RobotFile
-) -> tuple[TractionTable | None, tuple[str, ...]]:
+    program: Program, request: ModelRequest, described: RobotFile, terrain: Terrain
+) -> tuple[TractionTable | AreaTractions | None, tuple[str, ...]]:
     """Return the slip law that headings and places are found with, if any is needed, and notes."""
     if not program.needs_walking:
         return None, ()
@@ -86,4 +96,5 @@ def _table(
         "calibration say of legs and floor"
     )
     notes = () if slip.walks is None else (note,)
-    return slip.traction_table(weight=weight, toe=request.toe), notes
+    law = slip.traction_table(weight=weight, toe=request.toe)
+    return with_areas(law, terrain.tabulated(weight=weight, toe=request.toe)), notes

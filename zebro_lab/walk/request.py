@@ -172,20 +172,29 @@ class ModelRequest:
         ),
         Limits(above=0),
     ] = None
+    ground: Annotated[
+        Path | None,
+        Option(
+            metavar="FILE",
+            help="ground.toml: slope, steps, roughness, heights and areas of other slip, for "
+            "dynamics; default: flat.",
+        ),
+    ] = None
     band: BandRequest = field(default_factory=BandRequest)
     pictures: PictureRequest = field(default_factory=PictureRequest)
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Given `--slip` (not `thesis`, but also `coulomb:…`) and `--robot` as paths."""
+        """Given `--slip` (not `thesis`, also `coulomb:…`), `--robot` and `--ground` as paths."""
         slip = () if self.slip in (None, "thesis") else (Path(self.slip),)
-        return (*slip, *((self.robot,) if self.robot is not None else ()))
+        return (*slip, *(file for file in (self.robot, self.ground) if file is not None))
 
     def __post_init__(self) -> None:
         """Check the values.
 
         Raises:
-            SettingsError: A `coulomb:…` is no friction law, or the step is too long.
+            SettingsError: A `coulomb:…` is no friction law, the step is too long, or a ground is
+                given for a model that walks on level ground only.
             BadParameter: Switches of the thesis's model are given for another one.
         """
         if self.thesis is not None and self.model != "thesis":
@@ -201,6 +210,12 @@ class ModelRequest:
                 f"found '{self.automaton}' with the model '{self.model}', which has a contact "
                 "rule of its own; give --model thesis with it",
                 key="--automaton",
+            )
+        if self.ground is not None and self.model != "dynamics":
+            raise SettingsError(
+                f"the model '{self.model}' walks on level ground of one slip law only; expected "
+                "--model dynamics with it",
+                key="--ground",
             )
         longest = LONGEST_SLIPPING_STEP if self.model in _SLIPPING else LONGEST_STEP
         if self.dt is not None and self.dt > longest:

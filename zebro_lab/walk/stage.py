@@ -17,7 +17,7 @@ from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
-from zebro_lab.walk.walking import Walked, robot_of, walk_with
+from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
@@ -39,16 +39,17 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         request.program, *request.model.inputs
     )  # fmt: skip
     require_replaceable(request.out, WALKED["walk"], inputs=inputs)
-    described = robot_of(request.model)
+    described, ground = robot_of(request.model), ground_of(request.model)
     asked = _gait(request, described) if request.program is None else laid_out(
-        request.program, request.model, described, watcher
+        request.program, request.model, described, watcher, ground=ground
     )  # fmt: skip
     watcher.step("walking", None)
     duration, pictures = asked.duration, request.model.pictures
     require_shown_times(pictures.snapshots, pictures.window, 0.0, duration)
     walked = walk_with(
         request.model, described, asked.reference, duration=duration, what=asked.what,
-        direction=asked.direction, switch=request.switch_at or "angle", notes=asked.notes,
+        direction=asked.direction, switch=request.switch_at or "angle", ground=ground,
+        notes=asked.notes,
     )  # fmt: skip
     if request.model.band.draws:
         band = predict_band(

@@ -14,14 +14,17 @@ from model.gait.reference import LegReference
 from model.poses import Poses
 from model.predict import FINE
 from model.walk.path import WalkPath
+from model.walk.terrain import LEVEL, Terrain
 from model.walk.thesis.legs import Switch
 from model.walk.thesis_switches import AS_LISTED
 from model.walk_models import MODELS, ModelRun, WalkModel, decides_contact, thesis_automaton
 from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.ground.ground_file import GroundFile, read_ground
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.asked import WalkedSegment
 from zebro_lab.walk.folder import INFORMED_MODEL
+from zebro_lab.walk.ground_notes import ground_notes
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.request import DETECTED, ModelRequest
 from zebro_lab.walk.thesis_argument import named_switches
@@ -51,6 +54,7 @@ class Walked:
         title: Gait or log, model and slip law, for titles.
         notes: Notes, one line each.
         informed: Posterior of legs and floor that was used; None without fitted walks.
+        ground: The ground and its areas, as read; None for level ground of one slip law.
         contact_by: What decides contact in the model: "force", "rest" (legs on which the robot
             rests), or the rule of the thesis's model.
         band: Paths with slip law, legs, floor and start drawn; None unless requested.
@@ -68,14 +72,22 @@ class Walked:
     notes: tuple[str, ...]
     informed: InformedLegs | None = None
     contact_by: str = "force"
+    ground: GroundFile | None = None
     band: Poses | None = None
     schedule: EventSystem | None = None
     segments: tuple[WalkedSegment, ...] = ()
 
     @property
+    def terrain(self) -> Terrain:
+        """The ground, level without a file of it."""
+        return LEVEL if self.ground is None else self.ground.terrain
+
+    @property
     def doubts(self) -> tuple[str, ...]:
         """Why the slip law or the fitted walks cannot be trusted, a warning for each."""
-        return tuple(line for part in (self.slip, self.informed) if part for line in part.doubts)
+        areas = () if self.ground is None else self.ground.slips
+        parts = (self.slip, self.informed, *areas)
+        return tuple(dict.fromkeys(line for part in parts if part for line in part.doubts))
 
     def delayed(self, delay: float) -> "Walked":
         """Return a copy with `delay` [s] added to times of path and band, not of `reference`."""
@@ -100,6 +112,15 @@ def robot_of(request: ModelRequest) -> RobotFile:
     return replace(described, robot=robot)
 
 
+def ground_of(request: ModelRequest) -> GroundFile | None:
+    """Return the ground of `--ground`; None for level ground of one slip law.
+
+    Raises:
+        ZebroLabError: As `read_ground`.
+    """
+    return None if request.ground is None else read_ground(request.ground)
+
+
 def walk_with(
     request: ModelRequest,
     described: RobotFile,
@@ -111,6 +132,7 @@ def walk_with(
     switch: Switch = "angle",
     logs: tuple[Path, ...] = (),
     angles_are_true: bool = False,
+    ground: GroundFile | None = None,
     notes: tuple[str, ...] = (),
 ) -> Walked:
     """Compute the path of a robot from its leg angles, from time zero on.
@@ -126,6 +148,7 @@ def walk_with(
         logs: Files of the leg log, by whose hash a walk that was fitted is recognised.
         angles_are_true: Whether the angles are exact, as in a walk folder: then only the floor of
             fitted walks applies, not their leg offsets.
+        ground: The ground and its areas; None for level ground of one slip law.
         notes: Notes to begin with, one line each.
 
     Raises:
@@ -145,18 +168,22 @@ def walk_with(
     run = ModelRun(
         described.robot, reference, slip, duration, dt, request.toe, direction, request.automaton,
         switch, None if informed is None else informed.middle, request.thesis or AS_LISTED,
+        LEVEL if ground is None else ground.terrain,
     )  # fmt: skip
     path = _run(run, model, slip)
     if slip is not None and dt > model.dt:
         notes = (*notes, f"in steps of {dt:g} s, longer than {model.dt:g} s, legs slip too much")
+    if ground is not None:
+        notes = (*notes, *ground_notes(ground, path, described.robot))
     grip = "" if slip is None else f", slip {slip.title}"
     own = _named_rule(rule, request, switch)
-    title = f"{what}, model '{model.name}'{own}{grip}"
+    on = "" if request.ground is None else f", ground {request.ground.stem}"
+    title = f"{what}, model '{model.name}'{own}{grip}{on}"
     found = (part.notes for part in (informed, slip) if part is not None)
     notes = (*notes, *unused, *(note for part in found for note in part))
     return Walked(
         path, reference, described, slip, model.name, dt, title, notes, informed,
-        decides_contact(run, model.name),
+        decides_contact(run, model.name), ground,
     )  # fmt: skip
 
 

@@ -253,6 +253,6 @@ def test_a_height_that_is_no_number_is_refused_with_its_place():
 
 
 def test_a_function_that_gives_one_height_for_all_is_refused():
+    one_for_all = cast("Callable[[Array, Array], Array]", lambda x, y: 0.0)
     with pytest.raises(DomainError, match=r"gave shape \(\) for positions of shape \(11, 11\)"):
-        one_for_all = cast("Callable[[Array, Array], Array]", lambda x, y: 0.0)
         sample_ground(one_for_all, x=(0, 1), y=(0, 1), step=0.1)

@@ -18,7 +18,7 @@ from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
-from model.walk.ground import FACE, FLAT, Ground, ground_at
+from model.walk.ground import FACE, FLAT, Ground, ground_at, is_even
 from model.walk.loop import run_steps
 from model.walk.path import WalkPath
 from model.walk.quaternion import roll_pitch_yaw, turned_about_vertical
@@ -27,6 +27,7 @@ from model.walk.traction import TractionTable, VelocityCoulomb
 SETTLE_STEP = 0.005  # s
 SETTLE_TIME = 1.0  # s; ten times the duration of the drop
 STICKY = VelocityCoulomb(3.0, 1e-4).table(weight=1.0)  # to settle on a slope without sliding down
+SLIPPERY = VelocityCoulomb(0.01).table(weight=1.0)  # to settle in a place where the body is held
 
 
 @dataclass(frozen=True)
@@ -251,7 +252,8 @@ def _settled(
 ) -> State:
     """Simulate 1 s on motionless legs and sticky ground; move the body back to its x, y and yaw.
 
-    The state is overwritten and returned: its height as settled over the ground at x and y, roll
+    On uneven ground it is held there all the time, and the ground is slippery: moved back, its legs
+    could be deep in the ground. The state is overwritten and returned: its height as settled over the ground at x and y, roll
     and pitch as settled, its velocity the initial one, angular velocity and bristles zero. Raise
     `WalkError` if it diverges.
     """
@@ -260,21 +262,33 @@ def _settled(
     velocity = state.v.copy()
     state.v[:] = 0.0
     still = np.tile(theta, (round(SETTLE_TIME / SETTLE_STEP) + 1, 1))
+    options, even = replace(options, dt=SETTLE_STEP), is_even(ground)
     try:
-        integrate(robot, STICKY, state, still, replace(options, dt=SETTLE_STEP), ground=ground)
+        if even:
+            integrate(robot, STICKY, state, still, options, ground=ground)
+        else:
+            for _ in range(len(still) - 1):
+                integrate(robot, SLIPPERY, state, still[:2], options, ground=ground)
+                _hold(state, x, y, yaw)
     except WalkError as error:
         raise WalkError(
             f"the robot cannot stand at x {x:g}, y {y:g} m on legs at {np.degrees(theta).round(1)} "
             "degrees: settling diverged; check that all are finite, and stiffness and damping"
         ) from error
-    turned = yaw - roll_pitch_yaw(state.q[None])[0, 2]
     state.p[2] += ground_at(ground, x, y)[0] - ground_at(ground, state.p[0], state.p[1])[0]
-    state.p[:2] = x, y
-    state.q[:] = turned_about_vertical(state.q, turned)
+    _hold(state, x, y, yaw)
     state.v[:] = velocity
     state.w[:] = 0.0
     state.stretch[:] = 0.0
     return state
+
+
+def _hold(state: State, x: float, y: float, yaw: float) -> None:
+    """Move a state to x, y [m] and yaw [rad], and stop its motion along the ground and its yaw."""
+    state.p[:2] = x, y
+    state.q[:] = turned_about_vertical(state.q, yaw - roll_pitch_yaw(state.q[None])[0, 2])
+    state.v[:2] = 0.0
+    state.w[2] = 0.0
 
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:

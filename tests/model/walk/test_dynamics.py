@@ -13,6 +13,7 @@ from model.walk.dynamics import DynamicsOptions, Start, walk
 from model.walk.ground import sample_ground
 from model.walk.no_slip import walk_no_slip
 from model.walk.path import turning_radius
+from model.walk.roughness import rough_ground
 from model.walk.traction import TOE_LAWS, VelocityCoulomb, law_table
 
 ROBOT = Robot()
@@ -346,3 +347,13 @@ def test_a_walk_that_diverges_says_when_and_where():
 def test_legs_at_no_angle_cannot_be_stood_on():
     with pytest.raises(WalkError, match=r"cannot stand at x 0, y 0 m on legs at \[.*nan"):
         walk(ROBOT, standing(np.nan), SLIP, duration=1.0)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_robot_starts_settled_on_rough_ground(seed):
+    ground = rough_ground(0.005, 0.05, rng=np.random.default_rng(seed))
+    path = walk(ROBOT, standing(), COULOMB, duration=0.2, ground=ground, start=Start(yaw=0.5))
+    np.testing.assert_allclose(path.position[0, :2], 0.0, atol=1e-12)
+    assert path.yaw[0] == pytest.approx(0.5)
+    assert path.normal_force[:5].sum(axis=1).max() < 2 * WEIGHT  # and not thrown up
+    assert path.position[:, 2].max() < path.position[0, 2] + 0.001

@@ -55,6 +55,7 @@ def snapshots(path: WalkPath, robot: Robot, *, title: str, at: Sequence[float] =
         Scene(axes, path, robot).show(sample)
         legs = ", ".join(str(leg + 1) for leg in np.flatnonzero(path.contact[sample]))
         figure.text(
-            left + 0.03 * width, bottom + 0.9 * height, f"t = {when} s   {{{legs}}}", va="center"
-        )
+            left + 0.03 * width, bottom + 0.9 * height, f"t = {when} s   {{{legs}}}", va="center",
+            bbox={"facecolor": "white", "alpha": 0.7, "lw": 0, "pad": 1.0},
+        )  # fmt: skip
     return figure

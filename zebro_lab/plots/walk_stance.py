@@ -61,6 +61,7 @@ def _draw_leg(
     axes.annotate(
         f"{np.degrees(theta):.1f}°\n{1000 * height:.1f} mm", (start, height), xytext=(0, 6),
         textcoords="offset points", ha="center", va="bottom", color=colour,
+        bbox={"facecolor": "white", "alpha": 0.7, "lw": 0, "pad": 1.0},
     )  # fmt: skip
 
 

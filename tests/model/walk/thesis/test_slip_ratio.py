@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: MIT
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -82,3 +84,14 @@ def test_a_law_by_slip_velocity_gets_velocities_over_its_scale():
     law = Slip(VelocityCoulomb(0.4, 0.002), "coulomb").thesis_traction(weight=20.0)
     slip = slip_of(np.array([0.1, 0.02, 0.0, 0.0, 0.0, 0.0]), ROLLING_PHI, law, MENDED)
     np.testing.assert_allclose(slip, np.tile([(0.12 - 0.1) / 0.002, -0.02 / 0.002], (3, 1)))
+
+
+def test_the_slip_angle_of_each_contact_is_that_of_its_own_velocity():
+    v = np.array([0.1, 0.02, 0.0, 0.0, 0.0, 0.3])
+    slip = slip_of(v, ROLLING_PHI, MAGIC, replace(MENDED, contact_slip_angle=True))
+    x, y = ROBOT.hips[THREE, 0], ROBOT.hips[THREE, 1]
+    expected = [
+        lateral_walk_slip(v[0] - v[5] * b, v[1] + v[5] * a, True) for a, b in zip(x, y, strict=True)
+    ]
+    np.testing.assert_allclose(slip[:, 1], expected)
+    assert np.ptp(slip[:, 1]) > 0.1

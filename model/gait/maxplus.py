@@ -20,7 +20,7 @@ from model.slip.law import Array
 
 EPSILON = -np.inf
 ONE = 0.0
-_ROUNDING = 1e-9  # s: circuits whose means differ by less are equal
+_ROUNDING = 1e-9  # of the longest time: circuits whose means differ by less are equal
 _LONGEST = 10_000  # powers in which a matrix is given time to couple
 
 
@@ -88,7 +88,12 @@ def zeros(rows: int, columns: int) -> Array:
     return np.full((rows, columns), EPSILON)
 
 
-def plus(A: Array) -> Array:
+def _rounding(A: Array) -> float:
+    """Return the difference up to which sums of a matrix's entries count as equal [s]."""
+    return _ROUNDING * float(np.abs(A[np.isfinite(A)]).max(initial=0.0))
+
+
+def plus(A: Array, *, rounding: float | None = None) -> Array:
     r"""Compute the weights of the heaviest paths of at least one step in a matrix's graph.
 
     .. math::
@@ -99,15 +104,17 @@ def plus(A: Array) -> Array:
 
     Args:
         A: Square matrix, shape (n, n).
+        rounding: Sum of a circuit that counts as zero; 1e-9 of the largest entry when None [s].
 
     Raises:
         DomainError: A circuit has a positive sum.
     """
+    rounding = _rounding(A) if rounding is None else rounding
     paths = np.array(A, dtype=float)
     for via in range(len(paths)):
         paths = np.maximum(paths, paths[:, via, None] + paths[None, via, :])
         heaviest = np.diagonal(paths).max()
-        if heaviest > _ROUNDING:
+        if heaviest > rounding:
             raise DomainError(
                 f"a circuit of the max-plus matrix has the sum {heaviest:g}; expected at most 0: "
                 "an event would wait for itself within one cycle; check the order of leg groups"
@@ -195,8 +202,9 @@ def eigenvector(A: Array) -> Array:
     mean = eigenvalue(A)
     if mean == EPSILON:
         raise DomainError("the max-plus matrix has no circuit, so events do not repeat")
-    paths = plus(A - mean)
-    critical = np.diagonal(paths) > -_ROUNDING
+    rounding = _rounding(A)
+    paths = plus(A - mean, rounding=rounding)
+    critical = np.diagonal(paths) >= -rounding
     paths = oplus(identity(len(A)), paths)
     return (paths[:, critical] + paths[critical].max(axis=1)).max(axis=1)
 
@@ -220,7 +228,9 @@ def cyclicity(A: Array) -> int:
     mean = eigenvalue(A)
     if mean == EPSILON:
         raise DomainError("the max-plus matrix has no circuit, so events do not repeat")
-    critical = (A - mean) + plus(A - mean).T > -_ROUNDING  # from column to row, and back
+    rounding = _rounding(A)
+    back = plus(A - mean, rounding=rounding).T
+    critical = (A - mean) + back >= -rounding  # from column to row, and back
     graph = np.ascontiguousarray(critical.T, dtype=float)
     _, part = connected_components(graph, connection="strong")
     steps = shortest_path(graph, unweighted=True)
@@ -251,10 +261,10 @@ def coupling_time(A: Array) -> int:
     >>> coupling_time(np.array([[EPSILON, 3.0], [1.0, EPSILON]]))
     1
     """
-    step, cycle = A - eigenvalue(A), cyclicity(A)
+    step, cycle, rounding = A - eigenvalue(A), cyclicity(A), _rounding(A)
     powers = deque([step], maxlen=cycle + 1)  # A^k - k lambda, the last c + 1
     for k in range(1, _LONGEST + cycle):
-        if len(powers) > cycle and _same(powers[0], powers[-1]):
+        if len(powers) > cycle and _same(powers[0], powers[-1], rounding):
             return k - cycle
         powers.append(otimes(step, powers[-1]))
     raise DomainError(
@@ -263,9 +273,9 @@ def coupling_time(A: Array) -> int:
     )
 
 
-def _same(a: Array, b: Array) -> bool:
-    """Return whether two matrices are equal but for rounding, epsilon in the same places."""
+def _same(a: Array, b: Array, rounding: float) -> bool:
+    """Return whether two matrices are equal but for rounding [s], epsilon in the same places."""
     finite = np.isfinite(a)
     if not np.array_equal(finite, np.isfinite(b)):
         return False
-    return bool(np.all(np.abs(a[finite] - b[finite]) < _ROUNDING))
+    return bool(np.all(np.abs(a[finite] - b[finite]) <= rounding))

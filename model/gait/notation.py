@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from model.errors import DomainError
 
 _GROUP = re.compile(r"\{([^{}]*)\}")
+_MOST_DIGITS = 6  # of a leg number; int() itself fails beyond 4300
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,10 +88,11 @@ def _require_each_leg_once(legs: list[int]) -> None:
         raise DomainError(f"leg {twice[0]} is in the gait more than once; expected every leg once")
     if min(legs) < 1:
         raise DomainError(f"the gait contains leg {min(legs)}; expected leg numbers from 1")
-    missing = sorted(set(range(1, max(legs) + 1)) - set(legs))
-    if missing:
+    given = set(legs)
+    missing = next((leg for leg in range(1, len(legs) + 1) if leg not in given), None)
+    if missing is not None:
         raise DomainError(
-            f"leg {missing[0]} is missing from the gait, which names {len(legs)} legs up to "
+            f"leg {missing} is missing from the gait, which names {len(legs)} legs up to "
             f"{max(legs)}; every leg steps once a cycle"
         )
 
@@ -135,6 +137,11 @@ def _parse_group(part: str, text: str) -> tuple[int, ...]:
         if not leg.isdecimal():
             raise DomainError(
                 f"{leg!r} in group {part} of the gait is not a leg number; expected 1, 2, 3 ..."
+            )
+        if len(leg) > _MOST_DIGITS:
+            raise DomainError(
+                f"a leg number in the gait has {len(leg)} digits; expected 1, 2, 3 ..., at most "
+                f"{_MOST_DIGITS} digits"
             )
     return tuple(int(leg) for leg in legs)
 

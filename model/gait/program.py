@@ -21,13 +21,13 @@ from model.gait.events import EventSystem
 from model.gait.maxplus import oplus, otimes, solve_implicit
 from model.gait.notation import Gait
 from model.gait.reference import SampledReference
-from model.gait.steering import ideal_liftoff, solve_outer_touchdown
+from model.gait.stance import Intervals, event_intervals
+from model.gait.steering import ideal_liftoff, touchdown_of_stance
+from model.gait.swing import TURN, landing_angles, swing
 from model.gait.turning import turning_system
 from model.robot import N_LEGS
 from model.slip.law import Array
 
-_TURN = 2 * np.pi
-LEAST_SWING = np.pi / 2  # a leg that swings less far may not leave the ground: it goes round
 _SAME = 1e-9  # s or rad: times or angles nearer than this are equal
 
 
@@ -49,23 +49,6 @@ class CycleGait:
     sense: Array
     leg_arc: float = np.pi
 
-    def shortened(self, share: float) -> "CycleGait":
-        """Return the gait with steps of a share of its stance angles, at equal hip heights.
-
-        Args:
-            share: Above 0, at most 1 [-].
-        """
-        down = np.where(self.sense > 0, self.touchdown, self.liftoff)
-        up = np.where(self.sense > 0, self.liftoff, self.touchdown)
-        angles = np.array([
-            _shorter_stance(float(a), float(b), share, self.leg_arc) if b - a > _SAME else (a, b)
-            for a, b in zip(down, up, strict=True)
-        ])  # fmt: skip
-        down, up = angles.T
-        forwards = self.sense > 0
-        return replace(self, touchdown=np.where(forwards, down, up),
-                       liftoff=np.where(forwards, up, down))  # fmt: skip
-
 
 def cycle_gait(
     gait: Gait,
@@ -84,9 +67,9 @@ def cycle_gait(
     """Construct the gait of a program's cycles from groups, times and steering.
 
     The outer legs stand from `touchdown` to `liftoff`. The inner legs' stance angle is the steering
-    times theirs, between angles of equal hip height: at 1 the robot goes straight, at 0 the inner
-    legs step on the spot, and at -1 they walk backwards as far as the outer legs walk forwards, so
-    that the robot turns on the spot.
+    times theirs, between angles of equal hip height if the outer legs' are: at 1 the robot goes
+    straight, at 0 the inner legs step on the spot, and at -1 they walk backwards as far as the
+    outer legs walk forwards, so that the robot turns on the spot.
 
     Args:
         gait: Groups of legs.
@@ -95,14 +78,16 @@ def cycle_gait(
         turn_time: tau_p, by which inner legs stand and outer legs fly longer [s].
         double_stance: tau_Delta [s].
         steering: Stance angle of the inner legs over that of the outer legs, from -1 to 1 [-].
-        direction: Side to turn to.
-        reverse: Whether all legs turn the other way, so that the robot walks backwards.
+        direction: Side of the inner legs, on which the centre of the circle is.
+        reverse: Whether all legs turn the other way, so that the robot walks the same circle
+            backwards; its heading then turns to the other side.
         touchdown: Touchdown angle of the outer legs walking forwards [rad].
         liftoff: Their lift-off angle; that of equal hip height when None [rad].
         leg_arc: Angle of the legs' arc [rad].
 
     Raises:
-        DomainError: The steering is not from -1 to 1, a time or an angle is impossible.
+        DomainError: The steering is not from -1 to 1, the touchdown angle is not before that of the
+            highest hip, or a time or another angle is impossible.
     """
     if not -1 <= steering <= 1:
         raise DomainError(
@@ -110,15 +95,14 @@ def cycle_gait(
             "choose the side with direction"
         )
     inner = is_inner(direction)
-    outer_up = float(ideal_liftoff(touchdown, leg_arc)) if liftoff is None else liftoff
+    equally_high = float(ideal_liftoff(touchdown, leg_arc))
+    outer_up = equally_high if liftoff is None else liftoff
     if not 0 < outer_up - touchdown < np.pi:
         raise DomainError(
             f"lift-off at {np.degrees(outer_up):g} degrees; expected beyond touchdown at "
             f"{np.degrees(touchdown):g}, by less than 180 degrees"
         )
-    inner_down, inner_up = touchdown, outer_up
-    if abs(steering) < 1:
-        inner_down, inner_up = _shorter_stance(touchdown, outer_up, abs(steering), leg_arc)
+    inner_down, inner_up = _scaled_stance(touchdown, outer_up, abs(steering), leg_arc)
     down, up = np.where(inner, inner_down, touchdown), np.where(inner, inner_up, outer_up)
     sense = np.where(inner & (steering < 0), -1.0, 1.0) * (-1.0 if reverse else 1.0)
     system = turning_system(
@@ -131,17 +115,20 @@ def cycle_gait(
     )
 
 
-def _shorter_stance(
+def _scaled_stance(
     touchdown: float, liftoff: float, share: float, leg_arc: float
 ) -> tuple[float, float]:
-    """Return angles of equal hip height, a share of the stance apart; at 0 the highest hip's."""
-    stance = share * (liftoff - touchdown)
-    own = float(ideal_liftoff(touchdown, leg_arc)) - touchdown
-    if stance < _SAME:
-        down = solve_outer_touchdown(touchdown, _SAME / own, leg_arc=leg_arc)
-        return down, down
-    down = solve_outer_touchdown(touchdown, stance / own, leg_arc=leg_arc)
-    return down, down + stance
+    """Return touchdown and lift-off angles of a share of a stance [rad].
+
+    They differ from those of equal hip height by the share of the whole stance's difference: at 1
+    they are the given ones, at 0 both are that of the highest hip.
+    """
+    if share == 1:
+        return touchdown, liftoff
+    stance = liftoff - touchdown
+    later = touchdown - touchdown_of_stance(stance, leg_arc=leg_arc)
+    down = touchdown_of_stance(share * stance, leg_arc=leg_arc) + share * later
+    return down, down + share * stance
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,10 +139,14 @@ class _Cycle:
         gait: Its gait.
         liftoff: Lift-off times [s].
         touchdown: Touchdown times, which follow [s].
-        lifted: Angles at lift-off [rad].
+        lifted: Angles at lift-off; NaN of a leg that is stopped before, whose times are those of
+            the cycle before [rad].
         landed: Angles at touchdown [rad].
+        turned: Angles at which legs that swing to and fro turn round; NaN for others [rad].
         handed: Time when all legs were down before it, their angles there and how long they are
             held; None where the gait of the cycle before goes on.
+        stopped: Time when legs on the ground were stopped, and the angles at which all legs stand
+            then, those in flight once they are down; None for a whole cycle.
     """
 
     gait: CycleGait
@@ -163,7 +154,32 @@ class _Cycle:
     touchdown: Array
     lifted: Array
     landed: Array
+    turned: Array
     handed: tuple[float, Array, float] | None = None
+    stopped: tuple[float, Array] | None = None
+
+    @property
+    def down(self) -> float:
+        """When all legs are down [s]."""
+        last = float(self.touchdown.max())
+        return last if self.stopped is None else max(last, self.stopped[0])
+
+    def knots(self, leg: int) -> list[tuple[float, float]]:
+        """Return times [s] and angles [rad] between which a leg turns at constant speed."""
+        found = []
+        if self.handed is not None:
+            at, held, pause = self.handed
+            found += [(at, held[leg]), (at + pause, held[leg])]
+        up, down, lifted = self.liftoff[leg], self.touchdown[leg], self.lifted[leg]
+        out, back = abs(self.turned[leg] - lifted), abs(self.landed[leg] - self.turned[leg])
+        if np.isfinite(lifted):
+            found.append((up, lifted))
+            if np.isfinite(out):
+                found.append((up + (down - up) * out / (out + back), self.turned[leg]))
+            found.append((down, self.landed[leg]))
+        if self.stopped is not None and (np.isnan(lifted) or down < self.stopped[0]):
+            found.append((self.stopped[0], self.stopped[1][leg]))
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +203,8 @@ class ProgramLegs:
         steady = gait.system.steady_state
         last = steady.touchdown[0].max()
         down, up = steady.touchdown[0] - last, steady.liftoff[0] - last
-        return cls((_Cycle(gait, up, down, gait.liftoff, gait.touchdown),))
+        none = np.full(N_LEGS, np.nan)
+        return cls((_Cycle(gait, up, down, gait.liftoff, gait.touchdown, none),))
 
     @property
     def end(self) -> float:
@@ -196,21 +213,21 @@ class ProgramLegs:
 
     @property
     def _down(self) -> float:
-        return float(self.cycles[-1].touchdown.max())
+        return self.cycles[-1].down
 
     def with_cycle(self, gait: CycleGait) -> "ProgramLegs":
         """Return the program with one more cycle.
 
         Where the gait goes on, the scheduler alone says who waits for whom. Else all legs are down
         before one lifts off, and until it does a leg turns towards its new lift-off angle, no
-        faster than in either gait: a leg that lifts off at once does so from where it is, and goes
-        once round where it would swing by less than 90 degrees.
+        faster than in either gait: a leg that lifts off at once does so from where it is, to the
+        side on which it leaves the ground.
 
         Args:
             gait: Gait of the cycle.
         """
         last = self.cycles[-1]
-        if gait is last.gait and self.standing == 0:
+        if gait is last.gait and self.standing == 0 and last.stopped is None:
             up, down = self._events(gait, last.touchdown, last.liftoff)
             lifted, handed = last.landed + _nearest(gait.liftoff - last.landed), None
         else:
@@ -220,47 +237,92 @@ class ProgramLegs:
                 gait, last.touchdown + shift, last.liftoff + shift, all_down=self.end
             )
             fastest = np.maximum(_stance_speed(last.gait), _stance_speed(gait)) * (up - self.end)
-            lifted = angles + np.clip(_nearest(gait.liftoff - angles), -fastest, fastest)
+            way = np.clip(_nearest(gait.liftoff - angles), -fastest, fastest)
+            lifted = angles + way
             handed = self._down, angles, self.standing
-        flown = (gait.sense * (gait.touchdown - lifted)) % _TURN
-        flown = np.where(flown < LEAST_SWING, flown + _TURN, flown)
-        cycle = _Cycle(gait, up, down, lifted, lifted + gait.sense * flown, handed)
+        landed, turned = swing(
+            lifted, gait.touchdown, gait.sense, leg_arc=gait.leg_arc, clear=handed is not None
+        )
+        cycle = _Cycle(gait, up, down, lifted, landed, turned, handed)
         return ProgramLegs((*self.cycles, cycle))
+
+    def stopped_at(self, time: float) -> "ProgramLegs":
+        """Return the program with its last cycle stopped: legs on the ground are held from a time.
+
+        Legs in flight then still come down, at the angle at which they touch the ground beside the
+        legs that stand, so that they do not move the robot. Others do not lift off any more.
+
+        Args:
+            time: From when all legs were down before the cycle to when they are after it [s].
+        """
+        last, before, gait = self.cycles[-1], self.cycles[-2], self.cycles[-1].gait
+        angles = self.reference(before.down).angles(time)[0]
+        flown = last.liftoff < time - _SAME
+        flies = flown & (last.touchdown > time + _SAME)
+        landed, down = last.landed, np.where(flown, last.touchdown, before.touchdown)
+        if flies.any() and not flies.all():
+            found = landing_angles(angles, flies, gait.sense, leg_arc=gait.leg_arc)
+            touching = landed + _nearest(found - landed)
+            past = gait.sense * (angles - touching) > 0  # pushes on the ground already
+            landed = np.where(flies, np.where(past, angles, touching), landed)
+            down = np.where(flies & past, time, down)
+        cycle = replace(
+            last,
+            liftoff=np.where(flown, last.liftoff, before.liftoff),
+            touchdown=down,
+            lifted=np.where(flown, last.lifted, np.nan),
+            landed=landed,
+            stopped=(time, np.where(flies, landed, angles)),
+        )
+        return ProgramLegs((*self.cycles[:-1], cycle))
 
     def with_stand(self, duration: float) -> "ProgramLegs":
         """Return the program with all legs held, on the ground, for a time [s] at its end."""
         return ProgramLegs(self.cycles, self.standing + duration)
 
-    def reference(self) -> SampledReference:
-        """Compute the leg angles from time zero to `end`.
+    def reference(self, begin: float = 0.0) -> SampledReference:
+        """Compute the leg angles to `end`.
+
+        Args:
+            begin: Time from which they are needed, from zero to `end` [s].
 
         Raises:
-            DomainError: The program has no time.
+            DomainError: The program has no time after `begin`.
         """
-        legs = [self._knots(leg) for leg in range(N_LEGS)]
-        times = np.concatenate([[0.0], *(t for t, _ in legs)])
-        times = np.unique(times[(times >= 0) & (times <= self.end)])
+        cycles = self._cycles_from(begin)
+        legs = [self._knots(cycles, leg) for leg in range(N_LEGS)]
+        times = np.concatenate([[begin], *(t for t, _ in legs)])
+        times = np.unique(times[(times >= begin) & (times <= self.end)])
         times = times[np.concatenate([[True], np.diff(times) > _SAME])]
         return SampledReference(
             times, np.column_stack([np.interp(times, t, angle) for t, angle in legs])
         )
 
-    def _knots(self, leg: int) -> tuple[Array, Array]:
+    def stance_intervals(self) -> Intervals:
+        """Compute when each leg stands, rows (touchdown, lift-off), from time zero to `end` [s]."""
+        down = np.array([cycle.touchdown for cycle in self.cycles])
+        up = np.array([cycle.liftoff for cycle in self.cycles[1:]] + [np.full(N_LEGS, self.end)])
+        return event_intervals(down, up, (0.0, self.end))
+
+    def _cycles_from(self, begin: float) -> tuple[_Cycle, ...]:
+        """Return the last cycles, of which the first is over at or before a time [s]."""
+        first = len(self.cycles) - 1
+        while first > 0 and self.cycles[first].down > begin:
+            first -= 1
+        return self.cycles[first:]
+
+    def _knots(self, cycles: tuple[_Cycle, ...], leg: int) -> tuple[Array, Array]:
         """Return times [s] and angles [rad] between which a leg turns at constant speed."""
-        times, angles = [], []
-        for cycle in self.cycles:
-            if cycle.handed is not None:
-                at, held, pause = cycle.handed
-                times += [at, at + pause]
-                angles += [held[leg], held[leg]]
-            times += [cycle.liftoff[leg], cycle.touchdown[leg]]
-            angles += [cycle.lifted[leg], cycle.landed[leg]]
         last = self._angles_at_end()[leg]
-        return np.array([*times, self._down, self.end]), np.array([*angles, last, last])
+        found = [knot for cycle in cycles for knot in cycle.knots(leg)]
+        times, angles = zip(*found, (self._down, last), (self.end, last), strict=True)
+        return np.array(times), np.array(angles)
 
     def _angles_at_end(self) -> Array:
         """Return where legs are when all are down, if the last gait goes on until then, (6,)."""
         last = self.cycles[-1]
+        if last.stopped is not None:
+            return last.stopped[1]
         up, _ = self._events(last.gait, last.touchdown, last.liftoff)
         share = (self._down - last.touchdown) / (up - last.touchdown)
         return last.landed + share * _nearest(last.gait.liftoff - last.landed)
@@ -279,7 +341,7 @@ class ProgramLegs:
 
 def _nearest(angle: Array) -> Array:
     """Return angles modulo a turn, from -180 to below 180 degrees [rad]."""
-    return (angle + np.pi) % _TURN - np.pi
+    return (angle + np.pi) % TURN - np.pi
 
 
 def _stance_speed(gait: CycleGait) -> Array:

@@ -92,7 +92,7 @@ def ideal_liftoff(touchdown: ArrayLike, leg_arc: float = np.pi) -> Array:
     126.2796
     """
     theta = np.asarray(touchdown, dtype=float)
-    highest = _highest_hip(leg_arc)
+    highest = highest_hip(leg_arc)
     if not np.all((theta > -np.pi / 2) & (theta < highest)):
         raise DomainError(
             f"touchdown angle is {np.degrees(theta)} degrees; expected above -90 and below "
@@ -102,7 +102,7 @@ def ideal_liftoff(touchdown: ArrayLike, leg_arc: float = np.pi) -> Array:
     return _ideal_liftoff(theta, leg_arc)
 
 
-def _highest_hip(leg_arc: float) -> float:
+def highest_hip(leg_arc: float) -> float:
     """Return the leg angle at which the hip is highest [rad]."""
     # On the arc of a long leg, on the toe of a short one.
     return min(np.pi / 2, leg_arc / 2)
@@ -171,12 +171,30 @@ def solve_outer_touchdown(
             "smaller, or let the inner legs touch down later"
         )
     inner_stance = float(ideal_liftoff(inner_touchdown, leg_arc)) - inner_touchdown
-    low, high = -np.pi / 2, _highest_hip(leg_arc)
+    return touchdown_of_stance(steering_factor * inner_stance, leg_arc=leg_arc)
+
+
+def touchdown_of_stance(stance: float, *, leg_arc: float = np.pi) -> float:
+    r"""Compute the touchdown angle of a stance that ends with the hip as high as it began [rad].
+
+    It is the root of :math:`\theta_{LO}(\theta_{TD}) - \theta_{TD} = \Delta\theta` with the ideal
+    lift-off angle of `ideal_liftoff`, found by bisection; at a stance of zero the angle of the
+    highest hip.
+
+    Args:
+        stance: Stance angle, from 0 to below pi + A/2 [rad].
+        leg_arc: A, angle of the leg's arc [rad].
+
+    >>> angle = touchdown_of_stance(np.radians(117.9909 - 50.0))
+    >>> round(float(np.degrees(angle)), 3)
+    50.0
+    """
+    low, high = -np.pi / 2, highest_hip(leg_arc)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        stance = float(_ideal_liftoff(np.array(middle), leg_arc)) - middle
-        low, high = (middle, high) if stance > steering_factor * inner_stance else (low, middle)
-    return float(low + high) / 2
+        found = float(_ideal_liftoff(np.array(middle), leg_arc)) - middle
+        low, high = (middle, high) if found > stance else (low, middle)
+    return (low + high) / 2
 
 
 def tripod_angles(

@@ -8,20 +8,21 @@ import numpy as np
 
 from model.errors import DomainError
 from model.gait.program import CycleGait, ProgramLegs
-from model.gait.reference import SampledReference
+from model.leg_state import LegState
 from model.robot import Robot
 from model.walk.areas import AreaTractions
-from model.walk.arrays import State
-from model.walk.dynamics import DynamicsOptions, integrate, start_state
+from model.walk.dynamics import DynamicsOptions
 from model.walk.ground import FLAT, Ground
-from model.walk.quaternion import roll_pitch_yaw
+from model.walk.growing_walk import GrowingWalk, Reached
 from model.walk.traction import TractionTable
 
 MOST_CYCLES = 1000  # of one segment
-SHORTEST_STEP = 0.02  # of a gait's stance angles, of the last cycle that ends at a heading
-HALVINGS = 10  # of the share of a step: to a thousandth of what a cycle turns
+CLOSE = np.radians(0.05)  # as near as a segment's heading is found
+TRIALS = 20  # most walks of a cycle to find its heading
+TRIES = 3  # most cycles that are stopped to end at a heading
 
-_Kept = tuple[int, State, float] | None
+_Added = Callable[[ProgramLegs, float], None]
+"""Called with the program and the share of a segment that is laid out, after every cycle."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,8 @@ class Until:
     Attributes:
         strides: After this number of cycles.
         time: After the first cycle that ends at or after this time in the segment [s].
-        heading: After the heading has changed by this, to either side, since the segment began; the
-            steps of the last cycle are shortened to come as near to it as they can [rad].
+        heading: After the heading has changed by this, to either side, since the segment began: in
+            the cycle in which it does, the legs are stopped when it has [rad].
         near: x, y and radius: after the first cycle at whose end the body's centre is in this
             circle [m].
 
@@ -102,6 +103,8 @@ def lay_out(
     *,
     options: DynamicsOptions,
     ground: Ground = FLAT,
+    corrections: LegState | None = None,
+    longest: float = np.inf,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[ProgramLegs, tuple[SegmentEnd, ...]]:
     """Compute the cycles of a program; walk it where a segment ends at a heading or a place.
@@ -109,155 +112,181 @@ def lay_out(
     Args:
         segments: The parts of the program, in order; one of them has a gait.
         robot: The robot.
-        table: The slip law; None if no segment needs walking.
+        table: The slip law, as fitted walks correct it; None if no segment needs walking.
         options: Step length and contacts of the walk.
         ground: The ground.
-        progress: Called with the share of segments that are laid out.
+        corrections: What fitted walks say of legs and floor, of which draw 0 is used; None for
+            nothing.
+        longest: Longest duration of the program [s].
+        progress: Called after every cycle with the share of the program that is laid out; it may
+            raise an exception to stop.
 
     Raises:
         DomainError: No segment has a gait, a segment does not end within 1000 cycles, or needs
-            walking without a slip law.
+            walking without a slip law, or the program is too long.
         WalkError: The walk diverged.
     """
     first = next((each.gait for each in segments if each.gait is not None), None)
     if first is None:
         raise DomainError("no segment of the program has a gait; expected at least one")
-    legs = ProgramLegs.beginning_with(first)
-    walker = None if table is None else _Walker(robot, table, options, ground)
-    done: list[SegmentEnd] = []
-    for number, segment in enumerate(segments, start=1):
-        if segment.gait is None or segment.until is None:
-            legs, cycles, missed = legs.with_stand(segment.stand), 0, 0.0
-        else:
-            try:
-                legs, cycles, missed = _walked(legs, segment.gait, segment.until, walker)
-            except DomainError as error:
-                raise DomainError(f"segment {number}: {error}") from error
-        done.append(SegmentEnd(cycles, legs.end, missed))
+    walk = None if table is None else GrowingWalk(
+        robot, table, options, ground=ground, legs=corrections
+    )  # fmt: skip
+    legs, done = ProgramLegs.beginning_with(first), list[SegmentEnd]()
+
+    def added(longer: ProgramLegs, share: float) -> None:
+        """Check the program's duration, and report progress."""
+        if longer.end > longest:
+            raise DomainError(
+                f"the program would last {longer.end:.4g} s or more; at most {longest:g} s are "
+                "walked: write fewer segments, strides or shorter stands, or lengthen the time step"
+            )
         if progress is not None:
-            progress(number / len(segments))
+            progress((len(done) + min(share, 1.0)) / len(segments))
+
+    for number, segment in enumerate(segments, start=1):
+        try:
+            legs, end = _laid_out(legs, segment, walk, added)
+        except DomainError as error:
+            raise DomainError(f"segment {number}: {error}") from error
+        done.append(end)
     return legs, tuple(done)
 
 
-def _walked(
-    legs: ProgramLegs, gait: CycleGait, until: Until, walker: "_Walker | None"
-) -> tuple[ProgramLegs, int, float]:
-    """Return the program with a segment's cycles, their number, and by how much it misses."""
-    if until.strides is not None:
-        for _ in range(until.strides):
-            legs = legs.with_cycle(gait)
-        return legs, until.strides, 0.0
-    if until.time is not None:
-        began, cycles = legs.end, 0
-        while cycles == 0 or legs.end < began + until.time - 1e-9:
-            if cycles == MOST_CYCLES:
-                raise DomainError(
-                    f"after {MOST_CYCLES} cycles {legs.end - began:.4g} s of {until.time:.4g} s "
-                    "are over; write it as several segments"
-                )
-            legs, cycles = legs.with_cycle(gait), cycles + 1
-        return legs, cycles, 0.0
-    if walker is None:
+def _laid_out(
+    legs: ProgramLegs, segment: Segment, walk: GrowingWalk | None, added: _Added
+) -> tuple[ProgramLegs, SegmentEnd]:
+    """Return the program with one more segment, and where that ended."""
+    gait, until = segment.gait, segment.until
+    if gait is None or until is None:
+        legs, cycles, missed = legs.with_stand(segment.stand), 0, 0.0
+        added(legs, 1.0)
+    elif until.strides is not None:
+        legs, cycles, missed = _repeated(legs, gait, until.strides, added), until.strides, 0.0
+    elif until.time is not None:
+        (legs, cycles), missed = _lasting(legs, gait, until.time, added), 0.0
+    elif walk is None:
         raise DomainError("ends at a heading or a place, which only a model with slip walks to")
-    return _walked_to(legs, gait, until, walker)
+    elif until.heading is not None:
+        legs, cycles, missed = _turned(legs, gait, until.heading, walk, added)
+    else:
+        (legs, cycles), missed = _walked_near(legs, segment, walk, added), 0.0
+    return legs, SegmentEnd(cycles, legs.end, missed)
 
 
-def _walked_to(
-    legs: ProgramLegs, gait: CycleGait, until: Until, walker: "_Walker"
-) -> tuple[ProgramLegs, int, float]:
-    """Add cycles until the robot is at a place, or has turned by a heading."""
-    x, y, start = walker.pose(legs)
-    turned = 0.0
-    for cycles in range(1, MOST_CYCLES + 1):
-        before, legs, kept = legs, legs.with_cycle(gait), walker.kept
-        x, y, yaw = walker.pose(legs)
-        turned = abs(yaw - start)
-        if until.near is not None:
-            if np.hypot(x - until.near[0], y - until.near[1]) <= until.near[2]:
-                return legs, cycles, 0.0
-        elif until.heading is not None and turned >= until.heading:
-            legs, missed = _last_step(before, gait, until.heading, walker, kept, start)
-            return legs, cycles, missed
-    wanted = (
-        f"turned by {np.degrees(until.heading):g} degrees; it has by {np.degrees(turned):.3g}"
-        if until.heading is not None
-        else f"come to {until.near}; it is at x {x:.3g}, y {y:.3g} m"
+def _repeated(legs: ProgramLegs, gait: CycleGait, cycles: int, added: _Added) -> ProgramLegs:
+    """Return the program with a number of cycles of a gait."""
+    for cycle in range(1, cycles + 1):
+        legs = legs.with_cycle(gait)
+        added(legs, cycle / cycles)
+    return legs
+
+
+def _lasting(
+    legs: ProgramLegs, gait: CycleGait, time: float, added: _Added
+) -> tuple[ProgramLegs, int]:
+    """Return the program with cycles that last a time or longer [s], and their number."""
+    began = legs.end
+    for cycle in range(1, MOST_CYCLES + 1):
+        legs = legs.with_cycle(gait)
+        past = legs.end - began
+        added(legs, past / time)
+        if past >= time - 1e-9:
+            return legs, cycle
+    raise DomainError(
+        f"after {MOST_CYCLES} cycles {legs.end - began:.4g} s of {time:.4g} s are over; write it "
+        "as several segments"
     )
-    raise DomainError(f"after {MOST_CYCLES} cycles the robot has not {wanted}")
 
 
-def _last_step(
-    legs: ProgramLegs, gait: CycleGait, heading: float, walker: "_Walker", kept: "_Kept",
-    start: float,
-) -> tuple[ProgramLegs, float]:  # fmt: skip
-    """Add a cycle of shorter steps, so that the robot ends nearest to a heading since `start`.
+def _walked_near(
+    legs: ProgramLegs, segment: Segment, walk: GrowingWalk, added: _Added
+) -> tuple[ProgramLegs, int]:
+    """Return the program with cycles until the robot is in a circle, and their number."""
+    if segment.gait is None or segment.until is None or segment.until.near is None:
+        raise DomainError("expected a segment that ends near a place")
+    goal_x, goal_y, radius = segment.until.near
+    x, y, _ = walk.pose(legs)
+    far = np.hypot(x - goal_x, y - goal_y)
+    for cycle in range(1, MOST_CYCLES + 1):
+        legs = legs.with_cycle(segment.gait)
+        x, y, _ = walk.pose(legs)
+        left = np.hypot(x - goal_x, y - goal_y)
+        added(legs, max(0.0, 1 - float(left / far)) if far > 0 else 1.0)
+        if left <= radius:
+            return legs, cycle
+    raise DomainError(
+        f"after {MOST_CYCLES} cycles the robot has not come to {segment.until.near}; it is at "
+        f"x {x:.3g}, y {y:.3g} m"
+    )
 
-    Return the miss, too: legs that stand already at their full touchdown angle turn the robot
-    however short the next steps are.
+
+def _turned(
+    legs: ProgramLegs, gait: CycleGait, heading: float, walk: GrowingWalk, added: _Added
+) -> tuple[ProgramLegs, int, float]:
+    """Return the program with cycles until the robot has turned by a heading, their number, miss.
+
+    In the last cycle the legs are stopped when it has. Where the heading jumps over the one asked
+    for as a leg lifts off, they are stopped before that, and a further cycle does the rest.
     """
+    start, turned, tries = walk.pose(legs)[2], 0.0, 0
+    for cycles in range(1, MOST_CYCLES + 1):
+        before, short, reached = legs, turned, walk.reached
+        legs = legs.with_cycle(gait)
+        turned = abs(walk.pose(legs)[2] - start)
+        added(legs, turned / heading)
+        if turned < heading:
+            continue
+        whole = legs
 
-    def walked(share: float) -> tuple[float, ProgramLegs]:
-        """Return by how much steps of a share of the stance miss the heading, and the program."""
-        walker.kept = kept
-        longer = legs.with_cycle(gait.shortened(share))
-        return abs(walker.pose(longer)[2] - start) - heading, longer
+        def missed(
+            time: float, whole: ProgramLegs = whole, reached: Reached | None = reached
+        ) -> float:
+            """Return by how much the robot turns too far if its legs are stopped at a time."""
+            walk.reached = reached
+            return abs(walk.pose(whole.stopped_at(time))[2] - start) - heading
 
-    low, high = SHORTEST_STEP, 1.0
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if walked(middle)[0] < 0 else (low, middle)
-    best = min((low, high), key=lambda share: abs(walked(share)[0]))
-    missed, legs = walked(best)
-    return legs, missed
+        time, value, early = _root(
+            missed, (before.end, short - heading), (whole.end, turned - heading)
+        )
+        tries += 1
+        if abs(value) <= CLOSE or tries == TRIES:
+            missed(time)
+            return whole.stopped_at(time), cycles, value
+        turned = missed(early) + heading
+        legs = whole.stopped_at(early)
+    raise DomainError(
+        f"after {MOST_CYCLES} cycles the robot has not turned by {np.degrees(heading):g} "
+        f"degrees; it has by {np.degrees(turned):.3g}"
+    )
 
 
-class _Walker:
-    """Walks a growing program and keeps the state at its end.
+def _root(
+    function: Callable[[float], float], low: tuple[float, float], high: tuple[float, float]
+) -> tuple[float, float, float]:
+    """Find the root of a function to `CLOSE` by the Illinois method.
 
-    Attributes:
-        kept: Step, state and unwrapped yaw [rad] at the end; None before the first walk. To take
-            back a program's last cycle, restore what was kept before that cycle was walked.
+    Args:
+        function: The function.
+        low: Argument and value of the function, negative.
+        high: A larger argument and its value, not negative.
+
+    Returns:
+        Argument and value nearest to the root, which is not near if the function jumps over zero,
+        and an argument with a negative value just below.
     """
-
-    def __init__(
-        self,
-        robot: Robot,
-        table: TractionTable | AreaTractions,
-        options: DynamicsOptions,
-        ground: Ground,
-    ) -> None:
-        self._robot, self._table, self._options, self._ground = robot, table, options, ground
-        self.kept: _Kept = None  # step, state and unwrapped yaw there
-
-    def pose(self, legs: ProgramLegs) -> tuple[float, float, float]:
-        """Return x, y [m] and unwrapped yaw [rad] at a program's end, to the nearest step.
-
-        What was walked up to then is walked only once.
-        """
-        begun = legs if legs.end > 0 else legs.with_cycle(legs.cycles[0].gait)
-        reference, dt = begun.reference(), self._options.dt
-        if self.kept is None:
-            theta = reference.angles(0.0)[0] + self._robot.leg_offset
-            state = start_state(self._robot, theta, self._options, ground=self._ground)
-            self.kept = (0, state, float(roll_pitch_yaw(state.q[None])[0, 2]))
-        at, kept, yaw = self.kept
-        state = State(*(each.copy() for each in kept))
-        end = round(legs.end / dt)
-        yaw = self._advance(reference, state, at, end, yaw)
-        self.kept = (max(at, end), state, yaw)
-        return float(state.p[0]), float(state.p[1]), yaw
-
-    def _advance(
-        self, reference: SampledReference, state: State, at: int, end: int, yaw: float
-    ) -> float:
-        """Integrate the state from step `at` to `end`; return the unwrapped yaw there."""
-        if end <= at:
-            return yaw
-        dt = self._options.dt
-        theta = reference.angles(dt * np.arange(at, end + 1)) + self._robot.leg_offset
-        pose, _ = integrate(
-            self._robot, self._table, state, theta, self._options, ground=self._ground,
-            began=at * dt,
-        )  # fmt: skip
-        headings = np.unwrap(np.concatenate([[yaw], roll_pitch_yaw(pose[1:, 3:])[:, 2]]))
-        return float(headings[-1])
+    (a, below), (b, above) = low, high
+    best, last = min(low, high, key=lambda end: abs(end[1])), 0
+    for _ in range(TRIALS):
+        if abs(best[1]) <= CLOSE:
+            break
+        root = b - above * (b - a) / (above - below)
+        value = function(root)
+        best = min(best, (root, value), key=lambda end: abs(end[1]))
+        side = 1 if value > 0 else -1
+        if side > 0:
+            b, above, below = root, value, below * (0.5 if side == last else 1.0)
+        else:
+            a, below, above = root, value, above * (0.5 if side == last else 1.0)
+        last = side
+    return best[0], best[1], a

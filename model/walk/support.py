@@ -48,8 +48,10 @@ def support_of(path: WalkPath, stances: Intervals | None = None) -> Support:
     slides = np.where(path.contact, speed, np.nan)
     stands = np.zeros(path.contact.shape, dtype=bool)
     for leg, rows in enumerate(() if stances is None else stances):
-        for start, end in rows:
-            stands[:, leg] |= (path.t > start) & (path.t < end)
+        first = np.searchsorted(path.t, rows[:, 0], side="right")
+        after = np.searchsorted(path.t, rows[:, 1], side="left")
+        for i, j in zip(first.tolist(), after.tolist(), strict=True):
+            stands[i:j, leg] = True
     body = np.asarray(path.body_force)
     return Support(
         flight=float(path.in_flight.mean()),

@@ -17,6 +17,7 @@ ROBOT_FILE = "robot.toml"
 _MOST_NUMBER = 999_999  # of a marker; its dictionary has far fewer
 LARGEST, HEAVIEST = 3.0, 100.0
 """Largest length [m] and mass [kg] that a number without a unit can give a walking robot."""
+_SLOWEST_DEG = 6.0  # a second
 _FORWARD = (1,) * N_LEGS
 
 
@@ -48,12 +49,14 @@ class RobotFile:
             shape (6,).
         marker: The robot marker; None if the file has no section for it.
         file: The `robot.toml`; None for the thesis's robot.
+        leg_speed_limit: Largest speed of a leg [rad/s]; None if it is not known.
     """
 
     robot: Robot = field(default_factory=Robot)
     leg_sign: tuple[int, ...] = _FORWARD
     marker: Marker | None = None
     file: Path | None = None
+    leg_speed_limit: float | None = None
 
 
 def read_robot_file(file: Path) -> RobotFile:
@@ -75,6 +78,7 @@ def read_robot_file(file: Path) -> RobotFile:
         leg_sign=legs.signs("sign", N_LEGS) if "sign" in legs else _FORWARD,
         marker=_marker(top.table("marker")) if "marker" in top else None,
         file=file,
+        leg_speed_limit=_speed_limit(legs),
     )
     top.finish()
     return described
@@ -83,7 +87,8 @@ def read_robot_file(file: Path) -> RobotFile:
 def render_robot_file(described: RobotFile) -> str:
     """Serialise a robot as commented TOML that `read_robot_file` reads.
 
-    Default inertia, a missing marker and an unmeasured marker height are commented out.
+    Default inertia, an unknown limit of leg speed, a missing marker and an unmeasured marker height
+    are commented out.
 
     >>> print(render_robot_file(RobotFile()).splitlines()[3])
     mass = 2.17  # [kg]
@@ -99,11 +104,14 @@ def render_robot_file(described: RobotFile) -> str:
             "arc_deg": np.degrees(robot.leg_arc),
             "offset_deg": np.degrees(robot.leg_offset),
             "sign": described.leg_sign,
+            "speed_limit_deg_per_s": np.degrees(described.leg_speed_limit or 360.0),
         },
         "hips": {str(leg): hip for leg, hip in enumerate(robot.hips, start=1)},
     })  # fmt: skip
     if robot.inertia is None:
         text = text.replace("\ninertia", "\n# inertia", 1)
+    if described.leg_speed_limit is None:
+        text = text.replace("\nspeed_limit", "\n# speed_limit", 1)
     return f"{text}\n{_marker_section(described.marker)}"
 
 
@@ -120,6 +128,7 @@ radius = 0  # radius of the leg's arc [m]
 arc_deg = 0  # angle of the leg's arc: 180 is a half circle; real legs have about 200
 offset_deg = []  # of legs 1 to 6: true angle minus reported angle
 sign = []  # of legs 1 to 6: -1 if the reported angle falls while the robot walks forward
+speed_limit_deg_per_s = 0  # largest speed of a leg; walk warns of gaits with faster legs
 
 [hips]  # position of each hip from the body's centre: x forward, y left, z up [m]
 """
@@ -175,6 +184,20 @@ def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
         return Robot(**given)
     except DomainError as error:
         raise top.fault(str(error)) from error
+
+
+def _speed_limit(legs: SettingsTable) -> float | None:
+    """Return the largest speed of a leg [rad/s]; None if none is given."""
+    key = "speed_limit_deg_per_s"
+    if key not in legs:
+        return None
+    limit = legs.number(key)
+    if limit < _SLOWEST_DEG:
+        raise legs.fault(
+            f"is {limit:g} deg/s; expected {_SLOWEST_DEG:g} or more: a leg that turns slower than "
+            "once a minute walks nowhere; is it in turns or radians a second?", key,
+        )  # fmt: skip
+    return float(np.radians(limit))
 
 
 def _hips(hips: SettingsTable) -> np.ndarray:

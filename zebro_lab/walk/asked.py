@@ -7,6 +7,7 @@ from pathlib import Path
 
 from model.gait import CyclicReference, EventSystem, SampledReference
 from model.gait.direction import Direction
+from model.gait.stance import Intervals
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class AskedWalk:
         direction: Side that the gait turns to.
         schedule: The max-plus system of a gait's events; None for others.
         segments: Of a program, where each segment ended.
+        stances: Of a program, when each leg stands; None for others.
         files: Files that were read.
         notes: Notes, one line each.
     """
@@ -47,5 +49,6 @@ class AskedWalk:
     direction: Direction = "left"
     schedule: EventSystem | None = None
     segments: tuple[WalkedSegment, ...] = ()
+    stances: Intervals | None = None
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()

@@ -2,7 +2,7 @@
 """Write a finished walk: the walk folder with path, band and the requested pictures."""
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from model.gait.cyclic import CyclicReference
@@ -10,10 +10,11 @@ from model.progress import Watcher
 from model.robot import Robot
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes
+from zebro_lab.terminal.picture_options import Window
 from zebro_lab.walk.folder import THESIS_CSV, walk_folder
 from zebro_lab.walk.path_band import band_settings, write_band
 from zebro_lab.walk.pictures import draw_walk
-from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.request import ModelRequest, PictureRequest
 from zebro_lab.walk.walking import Walked
 
 
@@ -95,7 +96,7 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
         watcher.step("drawing", None)
         gait = walked.reference if isinstance(walked.reference, CyclicReference) else None
         draw_walk(
-            folder, walked.path, robot, title=title, asked=request.pictures, gait=gait,
+            folder, walked.path, robot, title=title, asked=_asked(request, walked), gait=gait,
             slip=walked.slip,
         )  # fmt: skip
     if request.pictures.animate:
@@ -106,6 +107,14 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
             _raise_if_stopped(watcher)
 
         animate(walked.path, robot, folder, title=title, progress=follow)
+
+
+def _asked(request: ModelRequest, walked: Walked) -> PictureRequest:
+    """Return the pictures to draw; of a program the whole walk is shown if no window is asked."""
+    asked, t = request.pictures, walked.path.t
+    if asked.window is not None or not walked.segments:
+        return asked
+    return replace(asked, window=Window(float(t[0]), float(t[-1])))
 
 
 def _raise_if_stopped(watcher: Watcher) -> None:

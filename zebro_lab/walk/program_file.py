@@ -100,8 +100,11 @@ def _gait(table: SettingsTable, groups: Gait, leg_arc: float) -> tuple[CycleGait
         steering=steering, direction=direction, reverse=reverse, touchdown=float(np.radians(down)),
         liftoff=None if up is None else float(np.radians(up)), leg_arc=leg_arc,
     )  # fmt: skip
-    turns = steering != 1 or turn_time > 0
-    turn = f"steering {steering:g} {direction}" if turns else "straight"
+    turns = (
+        *((f"steering {steering:g}",) if steering != 1 else ()),
+        *((f"turn time {turn_time:g} s",) if turn_time > 0 else ()),
+    )
+    turn = f"{', '.join(turns)} {direction}" if turns else "straight"
     return gait, f"{turn}, backwards" if reverse else turn
 
 

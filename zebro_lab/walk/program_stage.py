@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.leg_state import LegState, law_in
 from model.progress import Watcher
 from model.robot import GRAVITY
 from model.walk.areas import AreaTractions, with_areas
@@ -14,13 +15,16 @@ from model.walk.program import lay_out
 from model.walk.terrain import LEVEL, Terrain
 from model.walk.traction import TractionTable
 from model.walk_models import MODELS
-from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.ground.ground_file import GroundFile
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.asked import AskedWalk, WalkedSegment
+from zebro_lab.walk.informed_legs import informed_legs
+from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.program_file import Program, read_program
 from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.walking import MOST_STEPS, time_step
 
 _MISSED = np.radians(1.0)  # a miss that is told of
 _WALKS = "dynamics"  # the model that finds where segments end
@@ -38,7 +42,8 @@ def laid_out(
 
     Args:
         file: The `program.toml`.
-        request: Model, slip law, toe law and time step, with which headings and places are found.
+        request: Model, slip law with what fitted walks say of legs and floor, toe law and time
+            step, with which headings and places are found.
         described: The robot.
         watcher: Receives progress.
         ground: The ground and its areas; None for level ground of one slip law.
@@ -47,16 +52,27 @@ def laid_out(
         NotFound: There is no such file.
         SettingsError: The program is invalid, or a segment ends at a heading or a place and the
             model is not "dynamics".
-        ModelError: A gait is impossible, a segment does not end, or the walk diverged.
+        WalkStopped: A stop was requested.
+        ModelError: A gait is impossible, a segment does not end, the program is too long, or the
+            walk diverged.
     """
-    robot = described.robot
-    program = read_program(file, leg_arc=robot.leg_arc)
+    program = read_program(file, leg_arc=described.robot.leg_arc)
     terrain = LEVEL if ground is None else ground.terrain
-    table, notes = _table(program, request, described, terrain)
+    slip = _slip(program, request)
+    informed = None if slip is None or slip.walks is None else informed_legs(slip.walks, described)
+    corrections = None if informed is None else informed.middle
+    dt = time_step(request, MODELS[request.model], informed)
+
+    def progress(share: float) -> None:
+        """Show progress; stop if that is requested."""
+        watcher.step("laying out the program", share)
+        if watcher.stop_requested():
+            raise WalkStopped("stopped; nothing was written")
+
     legs, ends = lay_out(
-        program.segments, robot, table,
-        options=DynamicsOptions(dt=request.dt or MODELS[_WALKS].dt), ground=terrain.ground,
-        progress=lambda share: watcher.step("laying out the program", share),
+        program.segments, described.robot, _table(slip, request, described, terrain, corrections),
+        options=DynamicsOptions(dt=dt), ground=terrain.ground, corrections=corrections,
+        longest=MOST_STEPS * dt, progress=progress,
     )  # fmt: skip
     segments = tuple(
         WalkedSegment(what, end.cycles, end.end)
@@ -64,8 +80,7 @@ def laid_out(
     )
     missed = tuple(
         f"WARNING: segment {number} turns by {np.degrees(end.missed):+.1f} deg more than asked "
-        "for: legs that stand turn the robot however short the last steps are; ask for another "
-        "heading, or steer nearer to 1"
+        "for: the heading jumps as legs lift off; ask for another heading, or steer nearer to 1"
         for number, end in enumerate(ends, start=1)
         if abs(end.missed) > _MISSED
     )
@@ -73,28 +88,34 @@ def laid_out(
                 "segments": [asdict(each) for each in segments]}  # fmt: skip
     return AskedWalk(
         legs.reference(), legs.end, f"program {file.stem}", settings, segments=segments,
-        files=(file,), notes=(*notes, *missed),
+        stances=legs.stance_intervals(), files=(file,), notes=missed,
     )  # fmt: skip
 
 
-def _table(
-    program: Program, request: ModelRequest, described: RobotFile, terrain: Terrain
-) -> tuple[TractionTable | AreaTractions | None, tuple[str, ...]]:
-    """Return the slip law that headings and places are found with, if any is needed, and notes."""
+def _slip(program: Program, request: ModelRequest) -> NamedSlip | None:
+    """Return the slip law with which headings and places are found; None if none is."""
     if not program.needs_walking:
-        return None, ()
+        return None
     if request.model != _WALKS or request.slip is None:
         raise SettingsError(
             f"'{request.model}' does not find where a segment of {program.file} ends, at a heading "
             f"or a place; expected '{_WALKS}', or segments that end after strides or a time",
             key="--model",
         )
-    slip = parse_slip(request.slip)
+    return parse_slip(request.slip)
+
+
+def _table(
+    slip: NamedSlip | None,
+    request: ModelRequest,
+    described: RobotFile,
+    terrain: Terrain,
+    corrections: LegState | None,
+) -> TractionTable | AreaTractions | None:
+    """Return the slip law, as fitted walks correct it, and those of areas; None without."""
     weight = described.robot.mass * GRAVITY
-    note = (
-        "headings and places at which segments end were found without what the walks of the "
-        "calibration say of legs and floor"
-    )
-    notes = () if slip.walks is None else (note,)
+    if slip is None:
+        return None
     law = slip.traction_table(weight=weight, toe=request.toe)
-    return with_areas(law, terrain.tabulated(weight=weight, toe=request.toe)), notes
+    law = law if corrections is None else law_in(law, corrections, 0)
+    return with_areas(law, terrain.tabulated(weight=weight, toe=request.toe))

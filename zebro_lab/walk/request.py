@@ -98,7 +98,7 @@ class PictureRequest:
         Option(
             parser=parse_window, metavar="BEGIN:END",
             help="With --figures: time that motion, forces and contacts are drawn of [s]; default: "
-            "the last two cycles of walking, motion whole.",
+            "the last two cycles of walking, motion whole; of a program all.",
         ),
     ] = None  # fmt: skip
     form: FormatOption = "png"

@@ -19,9 +19,9 @@ from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.tables import plain_table
-from zebro_lab.walk.asked import WalkedSegment
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.output import WalkStopped
+from zebro_lab.walk.program_summary import segment_summaries, segment_table
 from zebro_lab.walk.summary import WalkSummary, summarise
 from zebro_lab.walk.walking import Walked
 
@@ -54,7 +54,7 @@ def run_and_report(
 
 def walk_document(walked: Walked) -> dict[str, object]:
     """Return the results of a walk for `--json`; keys end in the unit."""
-    summary = summarise(walked.path)
+    summary = _summary(walked)
     x, y, yaw = summary.end
     return {
         "title": walked.title,
@@ -74,17 +74,7 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "mean_slip_m_per_s": summary.mean_slip,
         **_support_document(_support(walked)),
         "schedule": _schedule_document(walked),
-        "segments": [
-            {
-                "what": segment.what,
-                "cycles": segment.cycles,
-                "end_s": segment.end,
-                "x_m": x,
-                "y_m": y,
-                "yaw_rad": yaw,
-            }
-            for segment, (x, y, yaw) in _segment_poses(walked)
-        ],
+        "segments": [each.document() for each in segment_summaries(walked.path, walked.segments)],
         "notes": _notes(walked, summary),
     }
 
@@ -117,8 +107,8 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
             console.print(event_table(walked.reference))
             console.print(plain(schedule_line(walked.schedule)))
     if walked.segments:
-        console.print(segment_table(walked))
-    summary = summarise(walked.path)
+        console.print(segment_table(segment_summaries(walked.path, walked.segments)))
+    summary = _summary(walked)
     for line in _in_order([*summary_lines(summary), *_notes(walked, summary)]):
         console.print(plain(line))
     console.print(Text(f"\nwritten to {out}:"))
@@ -133,9 +123,12 @@ def _notes(walked: Walked, summary: WalkSummary) -> list[str]:
     return _in_order([*lines, *slip_lines(walked, summary, support)])
 
 
+def _summary(walked: Walked) -> WalkSummary:
+    return summarise(walked.path, one_gait=not walked.segments)
+
+
 def _support(walked: Walked) -> Support:
-    path, reference = walked.path, walked.reference
-    stances = None
+    path, reference, stances = walked.path, walked.reference, walked.stances
     if isinstance(reference, CyclicReference):
         stances = reference.stance_intervals((float(path.t[0]), float(path.t[-1])))
     return support_of(path, stances)
@@ -190,7 +183,10 @@ def tilt_lines(summary: WalkSummary) -> list[str]:
 
 
 def summary_lines(summary: WalkSummary) -> list[str]:
-    """Format three lines: end pose; length, speed and radius; largest roll and pitch."""
+    """Format three lines: end pose; length, speed and radius; largest roll and pitch.
+
+    Of a walk of several gaits, speed and radius are left out.
+    """
     x, y, yaw = summary.end
     over = f"over {summary.strides} strides" if summary.strides else "over the whole walk"
     rate = f"yaw rate {np.degrees(summary.yaw_rate):.3f} deg/s"
@@ -203,7 +199,12 @@ def summary_lines(summary: WalkSummary) -> list[str]:
         curve = f"turning {side}, radius {abs(summary.radius):.4f} m, {rate}"
     return [
         f"after {summary.duration:g} s at x {x:.4f} m, y {y:.4f} m, yaw {np.degrees(yaw):.2f} deg",
-        f"walked {summary.length:.4f} m at {1000 * summary.speed:.2f} mm/s; {curve} ({over})",
+        f"walked {summary.length:.4f} m"
+        + (
+            ""
+            if np.isnan(summary.speed)
+            else f" at {1000 * summary.speed:.2f} mm/s; {curve} ({over})"
+        ),
         f"largest roll {np.degrees(summary.largest_roll):.2f} deg, "
         f"pitch {np.degrees(summary.largest_pitch):.2f} deg",
     ]
@@ -276,29 +277,6 @@ def gait_table(reference: CyclicReference) -> Table:
         side = " inner" if leg in reference.inner else " outer" if reference.inner else ""
         table.add_row(f"{leg + 1}{side}", *(f"{column[leg]:.4f}" for column in columns))
     return table
-
-
-def segment_table(walked: Walked) -> Table:
-    """Return a table of a program's segments: cycles, end and pose there."""
-    numbers = ("cycles", "end\n[s]", "x\n[m]", "y\n[m]", "yaw\n[deg]")
-    table = plain_table("the program, segment by segment", ("segment", "what"), numbers)
-    for number, (segment, pose) in enumerate(_segment_poses(walked), start=1):
-        x, y, yaw = pose
-        cells = (f"{segment.end:.3f}", f"{x:.4f}", f"{y:.4f}", f"{np.degrees(yaw):.2f}")
-        table.add_row(str(number), segment.what, str(segment.cycles or "-"), *cells)
-    return table
-
-
-def _segment_poses(
-    walked: Walked,
-) -> list[tuple[WalkedSegment, tuple[float, float, float]]]:
-    """Return each segment of a program with x, y [m] and yaw [rad] at its end."""
-    path, found = walked.path, []
-    for segment in walked.segments:
-        i = min(int(np.searchsorted(path.t, segment.end - walked.dt / 2)), len(path.t) - 1)
-        x, y = path.position[i, :2].tolist()
-        found.append((segment, (x, y, float(path.yaw[i]))))
-    return found
 
 
 def event_table(reference: CyclicReference) -> Table:

@@ -12,6 +12,7 @@ from zebro_lab.robot.gait_argument import make_gait
 from zebro_lab.robot.robot_file import RobotFile, render_robot_file
 from zebro_lab.walk.asked import AskedWalk
 from zebro_lab.walk.folder import WALKED
+from zebro_lab.walk.leg_speeds import speed_warnings
 from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.program_stage import laid_out
@@ -49,7 +50,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
     walked = walk_with(
         request.model, described, asked.reference, duration=duration, what=asked.what,
         direction=asked.direction, switch=request.switch_at or "angle", ground=ground,
-        notes=asked.notes,
+        notes=(*asked.notes, *speed_warnings(asked.reference, described.leg_speed_limit)),
     )  # fmt: skip
     if request.model.band.draws:
         band = predict_band(
@@ -57,7 +58,9 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
             duration=duration, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
         walked = replace(walked, band=band)
-    walked = replace(walked, schedule=asked.schedule, segments=asked.segments)
+    walked = replace(
+        walked, schedule=asked.schedule, segments=asked.segments, stances=asked.stances
+    )
     write_walk(
         request.out, request.model, walked, watcher, kind="walk", settings=asked.settings,
         files=asked.files,

@@ -11,7 +11,7 @@ from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.walk.shown_time import leg_turns
 
-_STRAIGHT = 0.05  # rad/m: a radius above 20 m is not visible as a curve on a lab floor
+STRAIGHT = 0.05  # rad/m: a radius above 20 m is not visible as a curve on a lab floor
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,8 @@ class WalkSummary:
         end: x, y and yaw of the last pose in the inertial frame [m, m, rad].
         length: Length of the path over the ground [m].
         strides: Number of whole strides that speed, yaw rate and radius are means over; 0 if there
-            is none, and they are means over the whole walk.
+            is none, and they are means over the whole walk; 0, and the three NaN, of a walk of
+            several gaits.
         speed: Mean speed along the circle through the poses between strides [m/s].
         yaw_rate: Mean yaw rate, positive to the left [rad/s].
         radius: Mean radius of the circle [m], positive to the left; infinite without any turn, NaN
@@ -47,29 +48,25 @@ class WalkSummary:
     @property
     def straight(self) -> bool:
         """Whether the absolute radius is at least 20 m."""
-        return abs(self.radius) >= 1 / _STRAIGHT
+        return abs(self.radius) >= 1 / STRAIGHT
 
 
-def summarise(path: WalkPath) -> WalkSummary:
+def summarise(path: WalkPath, *, one_gait: bool = True) -> WalkSummary:
     r"""Compute the summary of a walk.
 
     Speed and radius are computed from the poses between strides, not from the oscillating path
-    within them. For a constant gait these poses lie on a circle,
-
-    .. math::
-        R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}, \qquad v = R\, \Delta\psi / T ,
-
-    with chord, change of yaw and duration of a stride, each the mean over the strides.
+    within them.
 
     Args:
         path: The walk.
+        one_gait: Whether the legs follow one gait, else there is no mean speed or radius.
     """
     x, y = path.position[-1, :2]
-    poses, strides = stride_poses(path)
-    time, turn = np.diff(poses[:, 0]).mean(), np.diff(poses[:, 3]).mean()
-    chord = np.linalg.norm(np.diff(poses[:, 1:3], axis=0), axis=1).mean()
-    sine = 2 * np.sin(turn / 2)
-    arc = chord if sine == 0 else chord * turn / sine
+    nan = float("nan")
+    strides, circle = 0, (nan, nan, nan)
+    if one_gait:
+        poses, strides = stride_poses(path)
+        circle = circle_of(poses)
     sliding = np.linalg.norm(path.slip_velocity[path.contact], axis=-1)
     largest = np.abs(path.orientation[:, :2]).max(axis=0)
     return WalkSummary(
@@ -77,13 +74,37 @@ def summarise(path: WalkPath) -> WalkSummary:
         end=(float(x), float(y), float(path.yaw[-1])),
         length=path.length,
         strides=strides,
-        speed=float(arc / time),
-        yaw_rate=float(turn / time),
-        radius=_radius(poses, float(chord), float(sine)),
+        speed=circle[0],
+        yaw_rate=circle[1],
+        radius=circle[2],
         largest_roll=float(largest[0]),
         largest_pitch=float(largest[1]),
-        mean_slip=float(sliding.mean()) if len(sliding) else float("nan"),
+        mean_slip=float(sliding.mean()) if len(sliding) else nan,
     )
+
+
+def circle_of(poses: Array) -> tuple[float, float, float]:
+    r"""Compute speed [m/s], yaw rate [rad/s] and radius [m] from poses between strides.
+
+    For a constant gait these poses lie on a circle,
+
+    .. math::
+        R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}, \qquad v = R\, \Delta\psi / T ,
+
+    with chord, change of yaw and duration of a stride, each the mean over the strides.
+
+    Args:
+        poses: Columns t, x, y, yaw [s, m, m, rad], shape (m, 4), m >= 2.
+
+    Returns:
+        The three; yaw rate and radius are positive to the left, the radius is infinite without any
+        turn and NaN if the poses, four or more, lie on no circle.
+    """
+    time, turn = np.diff(poses[:, 0]).mean(), np.diff(poses[:, 3]).mean()
+    chord = np.linalg.norm(np.diff(poses[:, 1:3], axis=0), axis=1).mean()
+    sine = 2 * np.sin(turn / 2)
+    arc = chord if sine == 0 else chord * turn / sine
+    return float(arc / time), float(turn / time), _radius(poses, float(chord), float(sine))
 
 
 def _radius(poses: Array, chord: float, sine: float) -> float:

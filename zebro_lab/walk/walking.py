@@ -11,6 +11,7 @@ from model.errors import DefinitionMismatch, DomainError
 from model.gait.direction import Direction
 from model.gait.events import EventSystem
 from model.gait.reference import LegReference
+from model.gait.stance import Intervals
 from model.poses import Poses
 from model.predict import FINE
 from model.walk.path import WalkPath
@@ -60,6 +61,7 @@ class Walked:
         band: Paths with slip law, legs, floor and start drawn; None unless requested.
         schedule: The max-plus system of the gait's events; None for other gaits and for logs.
         segments: Of a program, where each segment ended; empty for others.
+        stances: When each leg stands by a program's schedule [s]; None for others.
     """
 
     path: WalkPath
@@ -76,6 +78,7 @@ class Walked:
     band: Poses | None = None
     schedule: EventSystem | None = None
     segments: tuple[WalkedSegment, ...] = ()
+    stances: Intervals | None = None
 
     @property
     def terrain(self) -> Terrain:
@@ -164,7 +167,8 @@ def walk_with(
     if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
         same_legs = False if angles_are_true else None
         informed = informed_legs(slip.walks, described, logs=logs, same_legs=same_legs)
-    dt = _time_step(request, model, duration, informed)
+    dt = time_step(request, model, informed)
+    _require_steps(duration, dt)
     run = ModelRun(
         described.robot, reference, slip, duration, dt, request.toe, direction, request.automaton,
         switch, None if informed is None else informed.middle, request.thesis or AS_LISTED,
@@ -222,18 +226,16 @@ def _slip_for(
     return None, notes
 
 
-def _time_step(
-    request: ModelRequest, model: WalkModel, duration: float, informed: InformedLegs | None
-) -> float:
+def time_step(request: ModelRequest, model: WalkModel, informed: InformedLegs | None) -> float:
     """Return `--dt` if given, else the model's time step, for fitted legs at most `FINE.dt` [s].
 
-    Raises `SettingsError` as `_require_steps` does.
+    Args:
+        request: The options.
+        model: The walking model.
+        informed: What fitted walks say of legs and floor; None without.
     """
     dt = model.dt if request.dt is None else request.dt
-    if informed is not None and request.dt is None:
-        dt = min(dt, FINE.dt)
-    _require_steps(duration, dt)
-    return dt
+    return min(dt, FINE.dt) if informed is not None and request.dt is None else dt
 
 
 def _run(run: ModelRun, model: WalkModel, slip: NamedSlip | None) -> WalkPath:

@@ -121,6 +121,15 @@ def test_eigenvalue_shifts_with_its_matrix(A, by):
     assert eigenvalue(A + by) == pytest.approx(eigenvalue(A) + by)
 
 
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9, 1e13])
+def test_eigenvector_cyclicity_and_coupling_time_do_not_depend_on_the_unit_of_time(scale):
+    A = np.array([[0.1, 0.7, EPSILON], [0.3, EPSILON, 0.9], [0.7, 0.3, 0.5]])
+    v = eigenvector(scale * A)
+    np.testing.assert_allclose(v / scale, eigenvector(A), atol=1e-9)
+    assert cyclicity(scale * A) == cyclicity(A)
+    assert coupling_time(scale * A) == coupling_time(A)
+
+
 def test_matrix_without_circuits_has_no_eigenvalue():
     falls = np.array([[EPSILON, EPSILON], [1.0, EPSILON]])
     assert eigenvalue(falls) == EPSILON

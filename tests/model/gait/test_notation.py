@@ -63,6 +63,8 @@ def test_each_leg_knows_its_group():
         ("{1,-2}", "'-2' in group"),
         ("{1,,2}", "'' in group"),
         ("{1} < {2}", "has 2 legs; the robot has 6"),
+        ("{" + "9" * 5000 + "}", "a leg number in the gait has 5000 digits"),
+        ("{1} < {999999}", "leg 2 is missing"),
     ],
 )
 def test_errors_name_the_fault(text, fault):

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from model.errors import DomainError
@@ -103,7 +103,9 @@ def test_what_follows_changes_nothing_before(parts, last):
 def test_every_leg_swings_clear_of_the_ground_after_a_change_of_steering(first, then):
     legs = program((gait(steering=first), 2), (gait(steering=then), 2))
     for cycle in legs.cycles[1:]:
-        assert np.abs(cycle.landed - cycle.lifted).min() >= np.pi / 2
+        to_and_fro = np.abs(cycle.turned - cycle.lifted) + np.abs(cycle.landed - cycle.turned)
+        straight = np.abs(cycle.landed - cycle.lifted)
+        assert np.where(np.isnan(to_and_fro), straight, to_and_fro).min() >= np.pi / 2
 
 
 def test_a_turn_on_the_spot_turns_the_inner_legs_back_by_as_much():
@@ -112,9 +114,61 @@ def test_a_turn_on_the_spot_turns_the_inner_legs_back_by_as_much():
     np.testing.assert_allclose(turned, 6 * np.pi * np.array([1, -1] * 3), atol=1e-6)
 
 
+@settings(max_examples=15)
+@given(PARTS, GAITS, st.floats(0, 1))
+def test_a_stopped_cycle_holds_its_legs_once_they_are_down(parts, last, share):
+    legs = program(*parts)
+    whole = legs.with_cycle(last)
+    time = legs.end + share * (whole.end - legs.end)
+    stopped = whole.stopped_at(time)
+    assert time <= stopped.end <= whole.end
+    reference, before = stopped.reference(), np.linspace(0.0, time, 40)
+    cycle = whole.cycles[-1]
+    flies = (cycle.liftoff < time - 1e-9) & (cycle.touchdown > time + 1e-9)
+    np.testing.assert_allclose(
+        reference.angles(before)[:, ~flies], whole.reference().angles(before)[:, ~flies], atol=1e-5
+    )
+    after = reference.angles([time, stopped.end])
+    np.testing.assert_allclose(after[0][~flies], after[1][~flies], atol=1e-6)
+    longer = stopped.with_stand(0.5).with_cycle(last)
+    assert longer.cycles[-1].liftoff.min() >= stopped.end + 0.5 - 1e-9
+
+
+@settings(max_examples=15)
+@given(PARTS, st.floats(0, 1))
+def test_angles_from_a_time_on_are_those_of_the_whole_program(parts, share):
+    legs = program(*parts)
+    begin = share * legs.end
+    if legs.end - begin < 1e-6:
+        return
+    t = np.linspace(begin, legs.end, 30)
+    np.testing.assert_allclose(
+        legs.reference(begin).angles(t), legs.reference().angles(t), atol=1e-5
+    )
+
+
+def test_legs_stand_between_touchdown_and_liftoff_also_where_they_are_held_or_stopped():
+    legs = program((gait(), 2), 1.5, (gait(steering=-1.0), 1))
+    legs = legs.stopped_at(legs.end - 0.5)
+    stands = legs.stance_intervals()
+    np.testing.assert_allclose(stands[0], [[1.0, 2.0], [3.0, 5.5], [6.5, 7.5]], atol=1e-9)
+    t = np.linspace(0.003, legs.end - 0.003, 700)
+    down = [((t[:, None] > rows[:, 0]) & (t[:, None] < rows[:, 1])).any(axis=1) for rows in stands]
+    assert np.sum(down, axis=0).min() == 3
+
+
+def test_with_a_given_liftoff_steering_near_one_is_near_one():
+    one, less = (gait(steering=s, liftoff=np.radians(130.0)) for s in (1.0, 0.999))
+    back, most = (gait(steering=s, liftoff=np.radians(130.0)) for s in (-1.0, -0.999))
+    for a, b in ((one, less), (back, most)):
+        np.testing.assert_allclose(a.touchdown, b.touchdown, atol=np.radians(0.2))
+        np.testing.assert_allclose(a.liftoff, b.liftoff, atol=np.radians(0.2))
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
+        ({"touchdown": np.radians(91.0), "liftoff": 2.0}, "touchdown angle is 91.0 degrees"),
         ({"steering": 1.3}, "expected from -1"),
         ({"steering": np.nan}, "expected from -1"),
         ({"liftoff": 0.5}, "expected beyond touchdown"),

@@ -3,6 +3,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.gait.notation import TETRAPOD, TRIPOD
@@ -43,8 +45,63 @@ def test_headings_and_places_are_met_in_a_walk_of_the_whole_program():
     assert np.degrees(yaw[1] - yaw[0]) == pytest.approx(180, abs=0.5)
     assert np.hypot(x[3] - near[0], y[3] - near[1]) <= near[2] + 1e-3
     assert np.degrees(yaw[4] - yaw[3]) == pytest.approx(-75, abs=0.5)
-    assert ends[5].end - ends[4].end == pytest.approx(4.0)  # the first cycles of 2 s after 3 s
+    assert ends[5].end - ends[4].end == pytest.approx(3.0)  # legs that came down stand for 1 s
     assert ends[-1].end == pytest.approx(legs.end)
+
+
+@settings(max_examples=10)
+@given(
+    heading=st.floats(5, 200), groups=st.sampled_from([TRIPOD, TETRAPOD]),
+    steering=st.sampled_from([-1.0, -0.6, 0.0, 0.5]), side=st.sampled_from(["left", "right"]),
+    straight_before=st.booleans(),
+)  # fmt: skip
+def test_every_heading_is_met(heading, groups, steering, side, straight_before):
+    flight = 2.0 / len(groups.groups)
+    turn = cycle_gait(
+        groups, ground_time=2.0 - flight, flight_time=flight, steering=steering, direction=side
+    )
+    before = [Segment(STRAIGHT, Until(strides=2))] if straight_before else []
+    segments = [*before, Segment(turn, Until(heading=np.radians(heading)))]
+    legs, ends = lay_out(segments, ROBOT, TABLE, options=DynamicsOptions(dt=0.004))
+    assert abs(np.degrees(ends[-1].missed)) < 1.0
+    path = walk(ROBOT, legs.reference(), TABLE, duration=legs.end, options=DynamicsOptions(0.004))
+    began = ends[0].end if straight_before else 0.0
+    turned = np.degrees(path.yaw[-1] - np.interp(began, path.t, path.yaw))
+    assert turned == pytest.approx(heading if side == "left" else -heading, abs=1.2)
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_walked_backwards_a_circle_is_the_same_and_the_heading_turns_to_the_other_side(reverse):
+    gait = cycle_gait(TRIPOD, ground_time=1.0, flight_time=1.0, steering=0.5, reverse=reverse)
+    legs, _ = laid_out(Segment(gait, Until(strides=3)))
+    path = walk(ROBOT, legs.reference(), TABLE, duration=legs.end, options=OPTIONS)
+    assert path.position[-1, 1] > 0  # the centre is on the left
+    assert np.sign(path.yaw[-1]) == (-1 if reverse else 1)
+
+
+def test_a_program_that_is_too_long_ends_as_soon_as_it_is():
+    seen = []
+    with pytest.raises(
+        DomainError, match=r"segment 2: the program would last 8 s or more; at most"
+    ):
+        lay_out(
+            [Segment(STRAIGHT, Until(strides=3)), Segment(STRAIGHT, Until(strides=900))], ROBOT,
+            None, options=OPTIONS, longest=7.0, progress=seen.append,
+        )  # fmt: skip
+    np.testing.assert_allclose(seen, np.arange(1, 4) / 6)
+
+
+def test_progress_is_told_after_every_cycle_and_may_stop_a_segment():
+    seen = []
+
+    def stop(share):
+        seen.append(share)
+        if share > 0.3:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        lay_out([Segment(STRAIGHT, Until(strides=20))], ROBOT, None, options=OPTIONS, progress=stop)
+    assert len(seen) == 7
 
 
 def test_a_place_that_the_robot_does_not_come_to_ends_in_a_message(monkeypatch):

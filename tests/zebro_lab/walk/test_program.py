@@ -7,9 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from model.bayes.walks.prior import WrongLeg
+from support.walk_posteriors import posterior_of, stored
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.folder import read_walk
+from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.program_file import read_program
+from zebro_lab.walk.program_stage import laid_out
+from zebro_lab.walk.request import ModelRequest
 
 PROGRAM = """
 [[segment]]
@@ -70,12 +76,65 @@ def test_the_example_is_walked(run_command, tmp_path):
     assert np.hypot(*end) <= 0.2 + 1e-3  # back where it began
 
 
-def test_a_heading_that_standing_legs_overshoot_is_told_of(run_command, tmp_path):
+def test_a_missed_heading_is_told_of(run_command, tmp_path, monkeypatch):
+    monkeypatch.setattr("zebro_lab.walk.program_stage._MISSED", -1.0)
     text = '[[segment]]\ngait = "tripod"\nsteering = -1\nuntil = { heading_deg = 75 }'
     ended = run_command("walk", written(tmp_path, text), "--slip", "thesis", "--out",
                         tmp_path / "out")  # fmt: skip
     assert ended.code == 0
-    assert "WARNING: segment 1 turns by +10" in ended.out
+    assert "WARNING: segment 1 turns by " in ended.out
+
+
+def test_a_program_is_told_of_by_segment_and_figures_show_all_of_it(
+    run_command, tmp_path, monkeypatch
+):
+    windows = []
+    monkeypatch.setattr(
+        "zebro_lab.walk.output.draw_walk", lambda *_, asked, **__: windows.append(asked.window)
+    )
+    file, out = written(tmp_path, PROGRAM), tmp_path / "out"
+    ended = run_command(
+        "walk", file, "--slip", "thesis", "--out", out, "--figures", "--json", "--quiet"
+    )
+    document = json.loads(ended.out)
+    assert document["speed_m_per_s"] is document["radius_m"] is None
+    straight, stand, spot = document["segments"]
+    assert straight["speed_m_per_s"] == pytest.approx(0.08, rel=0.1)
+    assert stand["speed_m_per_s"] is None
+    assert np.degrees(spot["turn_rad"]) == pytest.approx(-45, abs=0.5)
+    assert max(document["unloaded_shares"]) < 0.5
+    assert windows[0] == pytest.approx((0.0, document["duration_s"]))
+
+
+def test_a_stop_request_ends_the_layout(tmp_path):
+    class Stopping:
+        def step(self, what, fraction):
+            pass
+
+        def stop_requested(self):
+            return True
+
+    with pytest.raises(WalkStopped):
+        laid_out(written(tmp_path, PROGRAM), ModelRequest(slip="thesis"), RobotFile(), Stopping())
+
+
+def test_a_program_of_too_many_steps_is_refused_before_it_is_laid_out(run_command, tmp_path):
+    text = '[[segment]]\ngait = "tripod"\nuntil = { strides = 1000 }\n'
+    ended = run_command("walk", written(tmp_path, text), "--slip", "thesis")
+    assert ended.code == 1
+    assert "the program would last 1002 s or more" in ended.err
+    assert "--duration" not in ended.err
+
+
+def test_a_heading_is_found_with_what_fitted_walks_say(run_command, tmp_path, calibration, legs):
+    stored(calibration, legs, posterior_of(WrongLeg(2), steering=0.3))
+    file, out = written(tmp_path, PROGRAM), tmp_path / "out"
+    ended = run_command("walk", file, "--slip", calibration, "--out", out)
+    assert ended.code == 0, ended.err
+    path, manifest = read_walk(out), json.loads((out / "manifest.json").read_text())
+    ends = [each["end"] for each in manifest["settings"]["segments"]]
+    yaw = np.interp(ends, path.t, path.yaw)
+    assert np.degrees(yaw[2] - yaw[1]) == pytest.approx(-45, abs=0.6)
 
 
 FAULTS = {
@@ -114,6 +173,10 @@ FAULTS = {
         '[[segment]]\ngait = "tripod"\ntouchdown_deg = -30\nuntil = { strides = 1 }',
         "by less than 180 degrees",
     ),
+    "touchdown beyond the highest hip": (
+        '[[segment]]\ngait = "tripod"\ntouchdown_deg = 91\nuntil = { strides = 1 }',
+        "touchdown angle is 91.0 degrees",
+    ),
     "near without a radius": (
         '[[segment]]\ngait = "tripod"\nuntil = { near = [1, 2] }', r"segment\[1\].until.near",
     ),
@@ -124,6 +187,13 @@ FAULTS = {
 def test_a_mistake_in_a_program_is_named(text, message, tmp_path):
     with pytest.raises(SettingsError, match=message):
         read_program(written(tmp_path, text), leg_arc=np.pi)
+
+
+def test_a_turn_by_time_alone_is_named_by_its_time(tmp_path):
+    text = '[[segment]]\ngait = "tripod"\nturn_time = 0.1\nuntil = { strides = 1 }'
+    assert read_program(written(tmp_path, text), leg_arc=np.pi).names == (
+        "tripod, turn time 0.1 s left",
+    )
 
 
 def test_options_of_one_gait_do_not_go_with_a_program(run_command, tmp_path):

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Walk a program that grows, cycle by cycle, and tell the pose at its end."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.gait.program import ProgramLegs
+from model.gait.reference import SampledReference
+from model.leg_state import LegState, robot_in
+from model.path_draws import bent
+from model.poses import Poses, moved_onto
+from model.robot import Robot
+from model.slip.law import Array
+from model.walk.areas import AreaTractions
+from model.walk.arrays import State
+from model.walk.dynamics import DynamicsOptions, integrate, start_state
+from model.walk.ground import FLAT, Ground
+from model.walk.quaternion import roll_pitch_yaw
+from model.walk.traction import TractionTable
+
+
+@dataclass(frozen=True)
+class Reached:
+    """What is kept at a program's end to walk on from there.
+
+    Attributes:
+        step: Number of time steps walked.
+        state: State of the body.
+        pose: x, y and unwrapped yaw of the path, bent as the legs' state says, shape (3,)
+            [m, m, rad].
+    """
+
+    step: int
+    state: State
+    pose: Array
+
+
+class GrowingWalk:
+    """Walks a growing program with the model "dynamics".
+
+    Args:
+        robot: The robot.
+        table: The slip law, as fitted walks correct it.
+        options: Step length and contacts.
+        ground: The ground.
+        legs: What fitted walks say of legs and path, of which draw 0 is used; None for nothing.
+
+    Attributes:
+        reached: What was walked last; None before the first walk. To take back the last cycles of a
+            program, set it to what it was before they were walked.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        table: TractionTable | AreaTractions,
+        options: DynamicsOptions,
+        *,
+        ground: Ground = FLAT,
+        legs: LegState | None = None,
+    ) -> None:
+        self._robot = robot if legs is None else robot_in(robot, legs, 0)
+        self._table = table
+        self._options, self._ground, self._legs = options, ground, legs
+        self.reached: Reached | None = None
+
+    def pose(self, legs: ProgramLegs) -> tuple[float, float, float]:
+        """Return x, y [m] and unwrapped yaw [rad] at a program's end, to the nearest step.
+
+        What was walked up to then is walked only once.
+
+        Raises:
+            WalkError: The robot cannot stand at the start, or the walk diverged.
+        """
+        begun = legs if legs.end > 0 else legs.with_cycle(legs.cycles[0].gait)
+        dt = self._options.dt
+        last = self._start(begun.reference()) if self.reached is None else self.reached
+        end = round(legs.end / dt)
+        if end > last.step:
+            reference = begun.reference(min(last.step * dt, legs.end))
+            last = self._advanced(reference, last, end)
+        self.reached = last
+        x, y, yaw = last.pose.tolist()
+        return x, y, yaw
+
+    def _start(self, reference: SampledReference) -> Reached:
+        theta = reference.angles(0.0)[0] + self._robot.leg_offset
+        state = start_state(self._robot, theta, self._options, ground=self._ground)
+        yaw = float(roll_pitch_yaw(state.q[None])[0, 2])
+        return Reached(0, state, np.array([state.p[0], state.p[1], yaw]))
+
+    def _advanced(self, reference: SampledReference, last: Reached, end: int) -> Reached:
+        """Integrate a copy of the last state to the step `end`, and bend the new part's path."""
+        dt = self._options.dt
+        theta = reference.angles(dt * np.arange(last.step, end + 1)) + self._robot.leg_offset
+        state = State(*(each.copy() for each in last.state))
+        pose, _ = integrate(
+            self._robot, self._table, state, theta, self._options, ground=self._ground,
+            began=last.step * dt,
+        )  # fmt: skip
+        states = np.column_stack([pose[:, :2], np.unwrap(roll_pitch_yaw(pose[:, 3:])[:, 2])])[None]
+        moved = moved_onto(self._bent(states), states[:, 0], last.pose)
+        return Reached(end, state, moved[0, -1])
+
+    def _bent(self, states: Array) -> Array:
+        """Return states of a path, shape (1, n, 3), as `bent` with the legs' stride and steering.
+
+        The first state stays where it is.
+        """
+        if self._legs is None:
+            return states
+        path = Poses.of_states(np.arange(states.shape[1], dtype=float), states)
+        stride, steering = self._legs.stride[:1], self._legs.steering[:1]
+        return bent(path, distance=stride, curvature=steering).states

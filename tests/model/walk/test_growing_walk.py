@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""A program that is walked cycle by cycle comes to where it does walked at once."""
+
+import numpy as np
+import pytest
+
+from model.gait.notation import TRIPOD
+from model.gait.program import ProgramLegs, cycle_gait
+from model.leg_state import LegState, law_in, robot_in
+from model.path_draws import bent_walk
+from model.robot import GRAVITY, Robot
+from model.walk.dynamics import DynamicsOptions, walk
+from model.walk.growing_walk import GrowingWalk
+from model.walk.traction import VelocityCoulomb
+
+ROBOT = Robot()
+TABLE = VelocityCoulomb(0.38).table(weight=ROBOT.mass * GRAVITY)
+OPTIONS = DynamicsOptions()
+CURVE = cycle_gait(TRIPOD, ground_time=0.5, flight_time=0.5, steering=0.5)
+ONE = np.ones(1)
+FITTED = LegState(np.full((1, 6), 0.03), 0.8 * ONE, ONE, ONE, 0.1 * ONE, 0.3 * ONE, 0.05 * ONE)
+
+
+@pytest.mark.parametrize("corrections", [None, FITTED])
+def test_poses_of_a_growing_program_are_those_of_its_walk(corrections):
+    law = TABLE if corrections is None else law_in(TABLE, corrections, 0)
+    growing = GrowingWalk(ROBOT, law, OPTIONS, legs=corrections)
+    legs, found = ProgramLegs.beginning_with(CURVE), []
+    for _ in range(4):
+        legs = legs.with_cycle(CURVE)
+        found.append(growing.pose(legs))
+    robot = ROBOT if corrections is None else robot_in(ROBOT, corrections, 0)
+    path = walk(robot, legs.reference(), law, duration=legs.end, options=OPTIONS)
+    if corrections is not None:
+        path = bent_walk(path, distance=0.05, curvature=0.3)
+    at = [round(t / OPTIONS.dt) for t in (1.0, 2.0, 3.0, 4.0)]
+    expected = np.column_stack([path.position[at, :2], path.yaw[at]])
+    np.testing.assert_allclose(found, expected, atol=2e-3)
+
+
+def test_a_step_back_is_walked_again_from_where_it_was():
+    growing = GrowingWalk(ROBOT, TABLE, OPTIONS)
+    legs = ProgramLegs.beginning_with(CURVE).with_cycle(CURVE)
+    growing.pose(legs)
+    kept = growing.reached
+    first = growing.pose(legs.with_cycle(CURVE))
+    growing.reached = kept
+    assert growing.pose(legs.with_cycle(CURVE)) == first

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from model.errors import DomainError
+from model.leg_state import LegState
 from model.poses import Poses, moved_onto
 from model.slip.law import Array
 from model.told_apart import told_apart
@@ -53,6 +54,17 @@ def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
         position=np.column_stack([moved.position[0], path.position[:, 2]]),
         orientation=np.column_stack([path.orientation[:, :2], moved.yaw[0]]),
     )
+
+
+def bent_as(legs: LegState, states: Array) -> Array:
+    """Stretch and bend states of one path as draw 0 of the legs' state says.
+
+    Args:
+        legs: The legs' state.
+        states: x, y and yaw, shape (1, n, 3), of which the first stays [m, m, rad].
+    """
+    path = Poses.of_states(np.arange(states.shape[1], dtype=float), states)
+    return bent(path, distance=legs.stride[:1], curvature=legs.steering[:1]).states
 
 
 def anchored(

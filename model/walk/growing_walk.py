@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Walk a program that grows, cycle by cycle, and tell the pose at its end."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from model.gait.program import ProgramLegs
 from model.gait.reference import SampledReference
-from model.leg_state import LegState, robot_in
-from model.path_draws import bent
-from model.poses import Poses, moved_onto
+from model.poses import moved_onto
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.areas import AreaTractions
@@ -19,6 +18,8 @@ from model.walk.ground import FLAT, Ground
 from model.walk.quaternion import roll_pitch_yaw
 from model.walk.traction import TractionTable
 
+Bend = Callable[[Array], Array]
+
 
 @dataclass(frozen=True)
 class Reached:
@@ -27,7 +28,7 @@ class Reached:
     Attributes:
         step: Number of time steps walked.
         state: State of the body.
-        pose: x, y and unwrapped yaw of the path, bent as the legs' state says, shape (3,)
+        pose: x, y and unwrapped yaw of the path, bent if that is asked for, shape (3,)
             [m, m, rad].
     """
 
@@ -44,7 +45,7 @@ class GrowingWalk:
         table: The slip law, as fitted walks correct it.
         options: Step length and contacts.
         ground: The ground.
-        legs: What fitted walks say of legs and path, of which draw 0 is used; None for nothing.
+        bend: Bends states x, y, yaw of a path, shape (1, n, 3), about their first; None not to.
 
     Attributes:
         reached: What was walked last; None before the first walk. To take back the last cycles of a
@@ -58,11 +59,10 @@ class GrowingWalk:
         options: DynamicsOptions,
         *,
         ground: Ground = FLAT,
-        legs: LegState | None = None,
+        bend: Bend | None = None,
     ) -> None:
-        self._robot = robot if legs is None else robot_in(robot, legs, 0)
-        self._table = table
-        self._options, self._ground, self._legs = options, ground, legs
+        self._robot, self._table, self._options = robot, table, options
+        self._ground, self._bend = ground, bend
         self.reached: Reached | None = None
 
     def pose(self, legs: ProgramLegs) -> tuple[float, float, float]:
@@ -100,16 +100,6 @@ class GrowingWalk:
             began=last.step * dt,
         )  # fmt: skip
         states = np.column_stack([pose[:, :2], np.unwrap(roll_pitch_yaw(pose[:, 3:])[:, 2])])[None]
-        moved = moved_onto(self._bent(states), states[:, 0], last.pose)
+        course = states if self._bend is None else self._bend(states)
+        moved = moved_onto(course, states[:, 0], last.pose)
         return Reached(end, state, moved[0, -1])
-
-    def _bent(self, states: Array) -> Array:
-        """Return states of a path, shape (1, n, 3), as `bent` with the legs' stride and steering.
-
-        The first state stays where it is.
-        """
-        if self._legs is None:
-            return states
-        path = Poses.of_states(np.arange(states.shape[1], dtype=float), states)
-        stride, steering = self._legs.stride[:1], self._legs.steering[:1]
-        return bent(path, distance=stride, curvature=steering).states

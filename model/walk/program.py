@@ -8,12 +8,11 @@ import numpy as np
 
 from model.errors import DomainError
 from model.gait.program import CycleGait, ProgramLegs
-from model.leg_state import LegState
 from model.robot import Robot
 from model.walk.areas import AreaTractions
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ground import FLAT, Ground
-from model.walk.growing_walk import GrowingWalk, Reached
+from model.walk.growing_walk import Bend, GrowingWalk, Reached
 from model.walk.traction import TractionTable
 
 MOST_CYCLES = 1000  # of one segment
@@ -103,7 +102,7 @@ def lay_out(
     *,
     options: DynamicsOptions,
     ground: Ground = FLAT,
-    corrections: LegState | None = None,
+    bend: Bend | None = None,
     longest: float = np.inf,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[ProgramLegs, tuple[SegmentEnd, ...]]:
@@ -115,8 +114,7 @@ def lay_out(
         table: The slip law, as fitted walks correct it; None if no segment needs walking.
         options: Step length and contacts of the walk.
         ground: The ground.
-        corrections: What fitted walks say of legs and floor, of which draw 0 is used; None for
-            nothing.
+        bend: Bends the path as fitted walks say, see `GrowingWalk`; None not to.
         longest: Longest duration of the program [s].
         progress: Called after every cycle with the share of the program that is laid out; it may
             raise an exception to stop.
@@ -130,7 +128,7 @@ def lay_out(
     if first is None:
         raise DomainError("no segment of the program has a gait; expected at least one")
     walk = None if table is None else GrowingWalk(
-        robot, table, options, ground=ground, legs=corrections
+        robot, table, options, ground=ground, bend=bend
     )  # fmt: skip
     legs, done = ProgramLegs.beginning_with(first), list[SegmentEnd]()
 

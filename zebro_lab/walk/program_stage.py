@@ -2,11 +2,13 @@
 """Compute the leg angles of a walking program, walking it where a segment ends at a place."""
 
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from model.leg_state import LegState, law_in
+from model.leg_state import LegState, law_in, robot_in
+from model.path_draws import bent_as
 from model.progress import Watcher
 from model.robot import GRAVITY
 from model.walk.areas import AreaTractions, with_areas
@@ -70,8 +72,11 @@ def laid_out(
             raise WalkStopped("stopped; nothing was written")
 
     legs, ends = lay_out(
-        program.segments, described.robot, _table(slip, request, described, terrain, corrections),
-        options=DynamicsOptions(dt=dt), ground=terrain.ground, corrections=corrections,
+        program.segments,
+        described.robot if corrections is None else robot_in(described.robot, corrections, 0),
+        _table(slip, request, described, terrain, corrections),
+        options=DynamicsOptions(dt=dt), ground=terrain.ground,
+        bend=None if corrections is None else partial(bent_as, corrections),
         longest=MOST_STEPS * dt, progress=progress,
     )  # fmt: skip
     segments = tuple(

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 """A program that is walked cycle by cycle comes to where it does walked at once."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from model.gait.notation import TRIPOD
 from model.gait.program import ProgramLegs, cycle_gait
 from model.leg_state import LegState, law_in, robot_in
-from model.path_draws import bent_walk
+from model.path_draws import bent_as, bent_walk
 from model.robot import GRAVITY, Robot
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.growing_walk import GrowingWalk
@@ -24,12 +26,13 @@ FITTED = LegState(np.full((1, 6), 0.03), 0.8 * ONE, ONE, ONE, 0.1 * ONE, 0.3 * O
 @pytest.mark.parametrize("corrections", [None, FITTED])
 def test_poses_of_a_growing_program_are_those_of_its_walk(corrections):
     law = TABLE if corrections is None else law_in(TABLE, corrections, 0)
-    growing = GrowingWalk(ROBOT, law, OPTIONS, legs=corrections)
+    robot = ROBOT if corrections is None else robot_in(ROBOT, corrections, 0)
+    bend = None if corrections is None else partial(bent_as, corrections)
+    growing = GrowingWalk(robot, law, OPTIONS, bend=bend)
     legs, found = ProgramLegs.beginning_with(CURVE), []
     for _ in range(4):
         legs = legs.with_cycle(CURVE)
         found.append(growing.pose(legs))
-    robot = ROBOT if corrections is None else robot_in(ROBOT, corrections, 0)
     path = walk(robot, legs.reference(), law, duration=legs.end, options=OPTIONS)
     if corrections is not None:
         path = bent_walk(path, distance=0.05, curvature=0.3)

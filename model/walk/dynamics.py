@@ -253,9 +253,9 @@ def _settled(
     """Simulate 1 s on motionless legs and sticky ground; move the body back to its x, y and yaw.
 
     On uneven ground it is held there all the time, and the ground is slippery: moved back, its legs
-    could be deep in the ground. The state is overwritten and returned: its height as settled over the ground at x and y, roll
-    and pitch as settled, its velocity the initial one, angular velocity and bristles zero. Raise
-    `WalkError` if it diverges.
+    could be deep in the ground. The state is overwritten and returned: its height as settled over
+    the ground at x and y, roll and pitch as settled, its velocity the initial one, angular velocity
+    and bristles zero. Raise `WalkError` if it diverges.
     """
     x, y = state.p[:2]
     yaw = 2 * np.arctan2(state.q[3], state.q[0])

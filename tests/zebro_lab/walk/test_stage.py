@@ -61,7 +61,7 @@ def test_arc_is_that_asked_for(tmp_path):
 def test_pictures_come_when_asked_for_and_say_simulated(tmp_path):
     watcher = Nobody()
     walk(request(tmp_path / "out", pictures=PictureRequest(figures=True)), watcher)
-    names = {f"{name}.png" for name in PICTURES}
+    names = {f"{name}.png" for name in (*PICTURES, "stances")}
     assert {p.name for p in (tmp_path / "out").iterdir()} == names | {"path.csv", "manifest.json"}
     assert [what for what, _ in watcher.seen] == ["walking", "drawing"]
 

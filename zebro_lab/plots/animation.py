@@ -12,6 +12,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.path import WalkPath
+from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.sheet import new_figure, styled
 from zebro_lab.plots.walk_scene import Scene
 
@@ -27,6 +28,7 @@ def animate(
     *,
     title: str,
     progress: Callable[[float], None] = lambda _: None,
+    terrain: Terrain = LEVEL,
 ) -> Path:
     """Write an animation of the walking robot; the camera follows the body over a fixed grid.
 
@@ -37,6 +39,7 @@ def animate(
             `animation.gif` into.
         title: Title of the animation, which names the model; "(simulated)" is appended.
         progress: Called with the fraction drawn, 0 to 1 [-].
+        terrain: The ground, on which the grid lies; its areas are hatched.
 
     Returns:
         The file written. In contact a leg is orange, in the air grey. A walk longer than 20 s, 400
@@ -51,7 +54,7 @@ def animate(
     figure.texts[0].set_y(0.96)
     beyond = (0.0, -0.2, 1.0, 1.35)  # 3-D axes leave much of their square empty
     axes = cast("Axes3D", figure.add_axes(beyond, projection="3d", computed_zorder=False))
-    scene = Scene(axes, path, robot)
+    scene = Scene(axes, path, robot, terrain=terrain)
     pace = "" if speed_up == 1 else f"   {speed_up:.2g}× real time"
     clock = figure.text(0.03, 0.04, "")
     with writer.saving(figure, str(folder / name), dpi=100):

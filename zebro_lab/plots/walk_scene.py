@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.path import WalkPath
+from model.walk.terrain import LEVEL, Terrain
+from zebro_lab.plots.scene_ground import AREA, area_lines, ground_lines, heights_along
 from zebro_lab.plots.sheet import BLUE, RED
 from zebro_lab.plots.walk_robot import FACES, body_corners, leg_arcs, to_world
 
 _VIEW = 0.55  # side of the ground that is seen [m]
-_GRID = 0.05  # distance of the lines on the ground [m]
 _ABOVE = 0.25  # of the view: height of the box that is drawn
 _IN_AIR = "0.35"
 
@@ -26,15 +27,19 @@ class Scene:
     In contact a leg is orange, in the air grey.
     """
 
-    def __init__(self, axes: Axes3D, path: WalkPath, robot: Robot) -> None:
+    def __init__(
+        self, axes: Axes3D, path: WalkPath, robot: Robot, *, terrain: Terrain = LEVEL
+    ) -> None:
         """Create the artists in 3-D axes, which must not compute the order of drawing themselves.
 
         Args:
             axes: Axes to draw in.
             path: The walk.
             robot: The robot, for the size of body and legs.
+            terrain: The ground, on which the grid lies; its areas are hatched.
         """
-        self._path, self._robot = path, robot
+        self._path, self._robot, self._terrain = path, robot, terrain
+        self._walked = heights_along(terrain.ground, path.position[:, :2])
         self._axes = axes
         self._axes.set_axis_off()
         self._axes.view_init(elev=22, azim=-60)
@@ -42,6 +47,7 @@ class Scene:
         self._axes.set_box_aspect((1, 1, _ABOVE), zoom=1.45)  # pyright: ignore[reportArgumentType]
         no_lines = np.zeros((1, 2, 3))
         self._grid = Line3DCollection(no_lines, colors="0.85", lw=0.7, zorder=0)
+        self._areas = Line3DCollection(no_lines, colors=AREA, lw=0.9, zorder=0.5)
         self._trace = self._line(color=BLUE, lw=1.2, zorder=1)
         self._body = Poly3DCollection(
             np.zeros((len(FACES), 4, 3)), facecolors=(0.75, 0.8, 0.85, 0.55), edgecolors="0.2",
@@ -51,7 +57,7 @@ class Scene:
         self._far, self._near = (
             Line3DCollection(no_lines, lw=3.2, capstyle="round", zorder=z) for z in (2, 4)
         )
-        for collection in (self._grid, self._far, self._body, self._near):
+        for collection in (self._grid, self._areas, self._far, self._body, self._near):
             collection.set_clip_on(False)
             self._axes.add_collection3d(collection, autolim=False)
         self._head = self._line(color=RED, lw=2.5, zorder=5)
@@ -68,7 +74,7 @@ class Scene:
         self._head.set_data_3d(*corners[[5, 7]].T)
         arcs = to_world(leg_arcs(self._robot, path.theta[sample]), position, orientation)
         self._show_legs(arcs, path.contact[sample], float(orientation[2]))
-        walked = path.position[: sample + 1] * [1.0, 1.0, 0.0]
+        walked = self._walked[: sample + 1]
         near = np.abs(walked[:, :2] - position[:2]).max(axis=1) < _VIEW / 2
         self._trace.set_data_3d(*np.where(near[:, None], walked, np.nan).T)
         self._show_ground(position)
@@ -88,14 +94,10 @@ class Scene:
 
     def _show_ground(self, position: Array) -> None:
         low, high = position[:2] - _VIEW / 2, position[:2] + _VIEW / 2
-        lines = []
-        for axis in (0, 1):
-            for at in np.arange(np.ceil(low[axis] / _GRID), high[axis] / _GRID) * _GRID:
-                line = np.zeros((2, 3))
-                line[:, axis] = at
-                line[:, 1 - axis] = low[1 - axis], high[1 - axis]
-                lines.append(line)
-        self._grid.set_segments(lines)
+        ground = self._terrain.ground
+        self._grid.set_segments(ground_lines(ground, low, high))
+        self._areas.set_segments(area_lines(self._terrain, low, high))
+        base = float(heights_along(ground, position[None, :2])[0, 2])
         self._axes.set(
-            xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(0, _ABOVE * _VIEW)
+            xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(base, base + _ABOVE * _VIEW)
         )  # fmt: skip

@@ -10,6 +10,7 @@ from mpl_toolkits.mplot3d import Axes3D
 
 from model.robot import Robot
 from model.walk.path import WalkPath
+from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.sheet import new_figure, styled, time_texts
 from zebro_lab.plots.walk_path import snapshot_times
 from zebro_lab.plots.walk_scene import Scene
@@ -21,7 +22,14 @@ _WIDER = (-0.16, -0.32, 1.32, 1.75)  # of a panel: 3-D axes leave much of their 
 
 
 @styled
-def snapshots(path: WalkPath, robot: Robot, *, title: str, at: Sequence[float] = ()) -> Figure:
+def snapshots(
+    path: WalkPath,
+    robot: Robot,
+    *,
+    title: str,
+    at: Sequence[float] = (),
+    terrain: Terrain = LEVEL,
+) -> Figure:
     """Draw the robot in 3-D at some times (Fig. 2-1 above, 5-20 to 5-22, 5-24 and 5-25).
 
     Args:
@@ -29,6 +37,7 @@ def snapshots(path: WalkPath, robot: Robot, *, title: str, at: Sequence[float] =
         robot: The robot, for the size of body and legs.
         title: Title of the figure, which names the model; "(simulated)" is appended.
         at: Times [s]; empty for six, evenly spaced from start to end.
+        terrain: The ground.
 
     Returns:
         The figure: a panel for each time, with the legs in contact named in its title and drawn in
@@ -52,7 +61,7 @@ def snapshots(path: WalkPath, robot: Robot, *, title: str, at: Sequence[float] =
         axes = cast("Axes3D", figure.add_axes(box, projection="3d", computed_zorder=False))
         axes.patch.set_visible(False)
         sample = int(np.abs(path.t - t).argmin())
-        Scene(axes, path, robot).show(sample)
+        Scene(axes, path, robot, terrain=terrain).show(sample)
         legs = ", ".join(str(leg + 1) for leg in np.flatnonzero(path.contact[sample]))
         figure.text(
             left + 0.03 * width, bottom + 0.9 * height, f"t = {when} s   {{{legs}}}", va="center",

@@ -76,7 +76,10 @@ def write_walk(
         _write_thesis(folder, walked)
         _draw(request, walked, folder, watcher)
         if walked.band is not None:
-            write_band(folder, walked.band, title=walked.title, form=request.pictures.form)
+            write_band(
+                folder, walked.band, title=walked.title, form=request.pictures.form,
+                terrain=walked.terrain,
+            )  # fmt: skip
 
 
 def _write_thesis(folder: Path, walked: Walked) -> None:
@@ -97,7 +100,7 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
         gait = walked.reference if isinstance(walked.reference, CyclicReference) else None
         draw_walk(
             folder, walked.path, robot, title=title, asked=_asked(request, walked), gait=gait,
-            slip=walked.slip,
+            slip=walked.slip, terrain=walked.terrain,
         )  # fmt: skip
     if request.pictures.animate:
         from zebro_lab.plots.animation import animate  # matplotlib takes most of a second
@@ -106,7 +109,9 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
             watcher.step("filming", fraction)
             _raise_if_stopped(watcher)
 
-        animate(walked.path, robot, folder, title=title, progress=follow)
+        animate(
+            walked.path, robot, folder, title=title, progress=follow, terrain=walked.terrain
+        )  # fmt: skip
 
 
 def _asked(request: ModelRequest, walked: Walked) -> PictureRequest:

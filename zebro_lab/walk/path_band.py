@@ -15,6 +15,7 @@ from model.poses import Poses
 from model.predict import ModelSpread, on_terrain, predict_paths, walk_draws
 from model.progress import Watcher
 from model.robot import GRAVITY
+from model.walk.terrain import LEVEL, Terrain
 from model.walk.traction import ToeLaw
 from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.files.arrays import read_arrays
@@ -137,7 +138,14 @@ def offset_sd_deg(request: BandRequest, legs: LegReference | InexactLog) -> floa
     return ASSUMED_OFFSET_DEG
 
 
-def write_band(folder: Path, paths: Poses, *, title: str, form: PictureFormat = "png") -> None:
+def write_band(
+    folder: Path,
+    paths: Poses,
+    *,
+    title: str,
+    form: PictureFormat = "png",
+    terrain: Terrain = LEVEL,
+) -> None:
     """Write `draws.npz`, the quantiles `band.csv` and the picture `band` into a walk folder.
 
     Args:
@@ -145,6 +153,7 @@ def write_band(folder: Path, paths: Poses, *, title: str, form: PictureFormat = 
         paths: The paths, in the time base of the walk folder.
         title: Gait and model, for the title of the picture.
         form: Format of the picture.
+        terrain: The ground, which is drawn below the paths.
     """
     import pandas as pd
 
@@ -159,7 +168,7 @@ def write_band(folder: Path, paths: Poses, *, title: str, form: PictureFormat = 
     pd.DataFrame(columns).to_csv(
         folder / BAND_CSV, index=False, float_format="%.8g", lineterminator="\n"
     )
-    figure = path_band.path_band(paths, title=f"Predicted path: {title}")
+    figure = path_band.path_band(paths, title=f"Predicted path: {title}", terrain=terrain)
     save(figure, folder / f"{BAND_PICTURE}.{form}")
 
 

@@ -10,6 +10,7 @@ from model.robot import Robot
 from model.slip.curve import SlipCurve
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
+from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.walk.request import PictureRequest
 from zebro_lab.walk.shown_time import part_in
@@ -24,6 +25,7 @@ def draw_walk(
     asked: PictureRequest,
     gait: CyclicReference | None = None,
     slip: Slip | None = None,
+    terrain: Terrain = LEVEL,
 ) -> None:
     """Draw path, motion, orientation, slip ratios, forces, leg angles and contacts of a walk.
 
@@ -38,6 +40,7 @@ def draw_walk(
         asked: Format, times of snapshots and window of time.
         gait: The gait, whose touchdown and lift-off are drawn; None for a log or a program.
         slip: The slip law, which is drawn if it is a curve; None for a model without.
+        terrain: The ground, drawn below the path and the snapshots.
 
     Raises:
         SettingsError: The window is not in the walk.
@@ -74,10 +77,10 @@ def draw_walk(
         name: draw(part, title=f"{what}: {title}") for name, (what, draw, part) in drawers.items()
     }
     figures["path"] = walk_path.path_with_snapshots(
-        path, robot, title=f"Path: {title}", at=asked.snapshots
+        path, robot, title=f"Path: {title}", at=asked.snapshots, terrain=terrain
     )
     figures["snapshots"] = walk_snapshots.snapshots(
-        path, robot, title=f"Snapshots: {title}", at=asked.snapshots
+        path, robot, title=f"Snapshots: {title}", at=asked.snapshots, terrain=terrain
     )
     if gait is not None:
         figures["stances"] = walk_stance.stances(gait, robot, title=f"Stances: {title}")

@@ -181,7 +181,7 @@ def walk_with(
         notes = (*notes, *ground_notes(ground, path, described.robot))
     grip = "" if slip is None else f", slip {slip.title}"
     own = _named_rule(rule, request, switch)
-    on = "" if request.ground is None else f", ground {request.ground.stem}"
+    on = "" if request.ground is None else f", on {request.ground.name}"
     title = f"{what}, model '{model.name}'{own}{grip}{on}"
     found = (part.notes for part in (informed, slip) if part is not None)
     notes = (*notes, *unused, *(note for part in found for note in part))

@@ -52,7 +52,7 @@ def test_a_walk_over_slope_step_roughness_and_ice_says_so(run_command, ground, t
     file, out = ground(GROUND), tmp_path / "out"
     code, text, error = run_command("walk", *GAIT, "--duration", 5, "--ground", file, "--out", out)
     assert code == 0, error
-    for part in ("ground ground", "slope of 4 deg along x", "1 step: 5 mm at x 0.1 m",
+    for part in ("on ground.toml", "slope of 4 deg along x", "1 step: 5 mm at x 0.1 m",
                  "roughness of 2 mm", "area 1: slip coulomb:0.1"):  # fmt: skip
         assert part in text
     manifest = json.loads((out / "manifest.json").read_text())

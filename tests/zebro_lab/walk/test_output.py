@@ -77,7 +77,7 @@ def test_pictures_and_film_come_only_when_asked_for(finished, tmp_path, monkeypa
     saved = figures_saved(monkeypatch)
     filmed = []
 
-    def animate(path, robot, folder, *, title, progress):
+    def animate(path, robot, folder, *, title, progress, terrain):
         filmed.append(title)
         progress(0.5)
 

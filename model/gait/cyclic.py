@@ -168,6 +168,22 @@ class CyclicReference:
         down = (np.arange(first, last + 1)[:, None] - self.phase) * self.period
         return event_intervals(down, down + self.ground_time, span)
 
+    def touchdowns(self, span: tuple[float, float]) -> list[tuple[Array, Array]]:
+        """Compute when each leg is asked to touch down, and its unwrapped angle there.
+
+        Args:
+            span: Start and end of the time in which touchdowns are listed [s].
+
+        Returns:
+            Times [s] and angles, `offset` left out, of each leg [rad].
+        """
+        found = []
+        for down, phase in zip(self.touchdown, self.phase, strict=True):
+            first = np.ceil(span[0] / self.period + phase)
+            turns = np.arange(first, np.floor(span[1] / self.period + phase) + 1)
+            found.append(((turns - phase) * self.period, down + 2 * np.pi * turns))
+        return found
+
     def _since_touchdown(self, t: ArrayLike) -> tuple[Array, Array]:
         """Return the number k of the last touchdown and the time since it [s], (m, n) each.
 

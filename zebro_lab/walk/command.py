@@ -20,7 +20,7 @@ zebro-lab walk --touchdown-deg 50,37.8 --liftoff-deg 130,138 --arc-deg 200 --sli
 
 zebro-lab walk --gait suriana --tau-turn 0.1 --model thesis --slip thesis --duration 4.8 --animate
 
-zebro-lab walk --gait tetrapod --model thesis --duration 9
+zebro-lab walk --gait tetrapod --model thesis --duration 9 --contacts
 
 zebro-lab walk --gait "{1,4} < {2,5} < {3,6}" --tau-turn 0.1 --slip thesis --duration 20
 

@@ -40,6 +40,8 @@ PICTURES = (
 )  # fmt: skip
 SOME_PICTURES = ("stances", "slip_law")
 """Pictures of walks by a gait, and with a slip curve."""
+CONTACTS_CSV, TOUCHDOWNS_CSV, CONTACTS_PICTURE = "contacts.csv", "touchdowns.csv", "contacts"
+CONTACTS = (CONTACTS_CSV, TOUCHDOWNS_CSV, *in_every_format(CONTACTS_PICTURE))
 ANIMATIONS = ("animation.mp4", "animation.gif")
 DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band"
 BAND = (DRAWS, BAND_CSV, *in_every_format(BAND_PICTURE))
@@ -49,6 +51,7 @@ FILES = (
     *in_every_format(*PICTURES, *SOME_PICTURES, *THESIS_PICTURES),
     *ANIMATIONS,
     *BAND,
+    *CONTACTS,
 )
 WALKED = {kind: ResultKind(kind, kind, FILES, SCHEMA) for kind in KINDS}
 """Kinds of folders that `walk` and `predict` write."""

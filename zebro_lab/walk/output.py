@@ -11,9 +11,11 @@ from model.robot import Robot
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.terminal.picture_options import Window
-from zebro_lab.walk.folder import THESIS_CSV, walk_folder
+from zebro_lab.walk.contact_files import write_contacts, write_touchdowns
+from zebro_lab.walk.contacts import WalkContacts
+from zebro_lab.walk.folder import CONTACTS_CSV, THESIS_CSV, TOUCHDOWNS_CSV, walk_folder
 from zebro_lab.walk.path_band import band_settings, write_band
-from zebro_lab.walk.pictures import draw_walk
+from zebro_lab.walk.pictures import draw_contacts, draw_walk
 from zebro_lab.walk.request import ModelRequest, PictureRequest
 from zebro_lab.walk.walking import Walked
 
@@ -61,6 +63,7 @@ def write_walk(
         "toe": request.toe,
         **({} if request.thesis is None else {"thesis": asdict(request.thesis)}),
         "contact_by": walked.contact_by,
+        **({} if walked.contacts is None else {"contacts_least": request.contact.least}),
         "slip": None if slip is None else {"named": slip.text, "source": slip.source},
         "robot": _robot_settings(described.robot),
         "doubts": list(walked.doubts),
@@ -75,6 +78,8 @@ def write_walk(
     ) as folder:
         _write_thesis(folder, walked)
         _draw(request, walked, folder, watcher)
+        if walked.contacts is not None:
+            _write_contacts(folder, walked, walked.contacts, request.pictures)
         if walked.band is not None:
             write_band(
                 folder, walked.band, title=walked.title, form=request.pictures.form,
@@ -90,6 +95,15 @@ def _write_thesis(folder: Path, walked: Walked) -> None:
         from zebro_lab.walk.thesis_file import write_thesis
 
         write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot)
+
+
+def _write_contacts(
+    folder: Path, walked: Walked, contacts: WalkContacts, asked: PictureRequest
+) -> None:
+    """Write the tables of contact states and touchdowns, and the picture of the states."""
+    write_contacts(folder / CONTACTS_CSV, contacts)
+    write_touchdowns(folder / TOUCHDOWNS_CSV, contacts.touchdowns)
+    draw_contacts(folder, walked.path, contacts, title=walked.title, asked=asked)
 
 
 def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:

@@ -12,6 +12,8 @@ from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.files.source_names import is_simulated
+from zebro_lab.walk.contacts import RULES, WalkContacts
+from zebro_lab.walk.folder import CONTACTS_PICTURE
 from zebro_lab.walk.request import PictureRequest
 from zebro_lab.walk.shown_time import part_in
 
@@ -103,3 +105,32 @@ def _of_the_thesis(part: WalkPath) -> dict[str, tuple[str, Callable[..., Any], W
         "contact_velocity": ("Speeds of legs and ground", walk_thesis.contact_velocities, part),
         "static_load": ("Normal forces and static loads", walk_thesis.static_loads, part),
     }
+
+
+def draw_contacts(
+    folder: Path, path: WalkPath, contacts: WalkContacts, *, title: str, asked: PictureRequest
+) -> None:
+    """Draw the contact states in the last two cycles of walking, or in the window of time.
+
+    Args:
+        folder: Folder to write the picture into.
+        path: The walk.
+        contacts: Its contact states by each rule.
+        title: Gait and model.
+        asked: Format, and window of time.
+
+    Raises:
+        SettingsError: The window is not in the walk.
+    """
+    from zebro_lab.plots import save  # matplotlib takes most of a second
+    from zebro_lab.plots.walk_contacts import DrawnContacts, contact_states_chart
+
+    shown = part_in(path, asked.window)
+    drawn = [
+        DrawnContacts(RULES[trace.by], trace.t, trace.contact, trace.sequence.states)
+        for trace in contacts.traces
+    ]
+    figure = contact_states_chart(
+        drawn, (float(shown.t[0]), float(shown.t[-1])), title=f"Contact states: {title}"
+    )
+    save(figure, folder / f"{CONTACTS_PICTURE}.{asked.form}")

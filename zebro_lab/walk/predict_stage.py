@@ -25,7 +25,7 @@ from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.request import PredictRequest
 from zebro_lab.walk.shown_time import require_shown_times
-from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with
+from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
 
 
 def prediction_folder(request: PredictRequest) -> Path:
@@ -92,7 +92,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
             duration=end - start, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
         walked = replace(walked, band=band)
-    walked = walked.delayed(start)
+    walked = with_contacts(walked.delayed(start), request.model.contact, watcher)
     write_walk(
         out, request.model, walked, watcher, kind="predict", files=log.files,
         settings={"leg_angles": log.source, "direction": request.direction},

@@ -32,6 +32,8 @@ LONGEST_STEP: Final = 0.02
 """Longest time step [s], for models without slip: with it, paths of cycles of 0.5 s hold to 1 %."""
 LONGEST_SLIPPING_STEP: Final = 0.005
 """The same for models with slip; longer steps leave the path, and give false slip."""
+LEAST_CONTACT: Final = 0.01
+"""Contact states that last less are joined to the next: five steps of the model dynamics [s]."""
 DETECTED: Final = ("events", "balanced")
 """Automata of the model thesis that are kinematics, and so without slip."""
 _SLIPPING: Final = ("dynamics", "thesis")
@@ -121,6 +123,41 @@ class PictureRequest:
 
 
 @dataclass(frozen=True)
+class ContactRequest:
+    """Options of the contact states of a walk."""
+
+    contacts: Annotated[
+        bool,
+        Option(
+            "--contacts",
+            help="Write contact states by rigid legs and by the model (contacts.csv, a figure) and "
+            "touchdowns of each leg (touchdowns.csv), and print the sequence of a cycle.",
+        ),
+    ] = False
+    contacts_least: Annotated[
+        float | None,
+        Option(
+            min=0.0,
+            metavar="SECONDS",
+            help="With --contacts: shorter contact states are joined to the next, and shorter gaps "
+            "in a leg's contact left out [s]; default: 0.01.",
+        ),
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Raise `BadParameter` for a shortest state without contact states."""
+        if self.contacts_least is not None and not self.contacts:
+            raise BadParameter(
+                "says how contacts are listed; give --contacts too", param_hint="'--contacts-least'"
+            )
+
+    @property
+    def least(self) -> float:
+        """Shortest time that a contact state lasts [s]."""
+        return LEAST_CONTACT if self.contacts_least is None else self.contacts_least
+
+
+@dataclass(frozen=True)
 class ModelRequest:
     """Options of model, slip law, robot, band and pictures, shared by `walk` and `predict`."""
 
@@ -182,6 +219,7 @@ class ModelRequest:
     ] = None
     band: BandRequest = field(default_factory=BandRequest)
     pictures: PictureRequest = field(default_factory=PictureRequest)
+    contact: ContactRequest = field(default_factory=ContactRequest)
 
     @property
     def inputs(self) -> tuple[Path, ...]:

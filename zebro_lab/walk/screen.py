@@ -19,6 +19,7 @@ from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.tables import plain_table
+from zebro_lab.walk.contact_screen import contact_document, contact_lines, touchdown_table
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.program_summary import segment_summaries, segment_table
@@ -74,6 +75,7 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "mean_slip_m_per_s": summary.mean_slip,
         **_support_document(_support(walked)),
         "schedule": _schedule_document(walked),
+        "contacts": None if walked.contacts is None else contact_document(walked.contacts),
         "segments": [each.document() for each in segment_summaries(walked.path, walked.segments)],
         "notes": _notes(walked, summary),
     }
@@ -111,6 +113,10 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
     summary = _summary(walked)
     for line in _in_order([*summary_lines(summary), *_notes(walked, summary)]):
         console.print(plain(line))
+    if walked.contacts is not None:
+        for line in contact_lines(walked.contacts):
+            console.print(plain(line))
+        console.print(touchdown_table(walked.contacts))
     console.print(Text(f"\nwritten to {out}:"))
     for path in sorted(out.iterdir()):
         if path.name in (*FILES, MANIFEST):

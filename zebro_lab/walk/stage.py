@@ -18,7 +18,7 @@ from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
-from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with
+from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
@@ -61,6 +61,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
     walked = replace(
         walked, schedule=asked.schedule, segments=asked.segments, stances=asked.stances
     )
+    walked = with_contacts(walked, request.model.contact, watcher)
     write_walk(
         request.out, request.model, walked, watcher, kind="walk", settings=asked.settings,
         files=asked.files,

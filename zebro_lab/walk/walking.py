@@ -14,6 +14,7 @@ from model.gait.reference import LegReference
 from model.gait.stance import Intervals
 from model.poses import Poses
 from model.predict import FINE
+from model.progress import Watcher
 from model.walk.path import WalkPath
 from model.walk.terrain import LEVEL, Terrain
 from model.walk.thesis.legs import Switch
@@ -24,10 +25,11 @@ from zebro_lab.files.errors import SettingsError
 from zebro_lab.ground.ground_file import GroundFile, read_ground
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.asked import WalkedSegment
+from zebro_lab.walk.contacts import WalkContacts, contacts_of
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.ground_notes import ground_notes
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
-from zebro_lab.walk.request import DETECTED, ModelRequest
+from zebro_lab.walk.request import DETECTED, ContactRequest, ModelRequest
 from zebro_lab.walk.thesis_argument import named_switches
 
 MOST_STEPS: Final = 500_000
@@ -62,6 +64,7 @@ class Walked:
         schedule: The max-plus system of the gait's events; None for other gaits and for logs.
         segments: Of a program, where each segment ended; empty for others.
         stances: When each leg stands by a program's schedule [s]; None for others.
+        contacts: Contact states and touchdowns; None unless requested.
     """
 
     path: WalkPath
@@ -79,6 +82,7 @@ class Walked:
     schedule: EventSystem | None = None
     segments: tuple[WalkedSegment, ...] = ()
     stances: Intervals | None = None
+    contacts: WalkContacts | None = None
 
     @property
     def terrain(self) -> Terrain:
@@ -96,6 +100,24 @@ class Walked:
         """Return a copy with `delay` [s] added to times of path and band, not of `reference`."""
         path = replace(self.path, t=self.path.t + delay)
         return replace(self, path=path, band=self.band and self.band.delayed(delay))
+
+
+def with_contacts(walked: Walked, request: ContactRequest, watcher: Watcher) -> Walked:
+    """Return a walk with its contact states, if they are requested.
+
+    Args:
+        walked: The walk, with the times that its files have.
+        request: Whether contact states are requested, and how short they may be.
+        watcher: Receives progress.
+    """
+    if not request.contacts:
+        return walked
+    watcher.step("finding contacts", None)
+    found = contacts_of(
+        walked.path, walked.reference, walked.described.robot, by=walked.contact_by,
+        request=request,
+    )  # fmt: skip
+    return replace(walked, contacts=found)
 
 
 def robot_of(request: ModelRequest) -> RobotFile:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +39,8 @@ def simple(**changes):
     """Make a leg with stance from 1 to 2 rad in the first second of three."""
     one = {"touchdown": 1.0, "liftoff": 2.0, "ground_time": 1.0, "flight_time": 2.0}
     values = {**one, "phase": np.zeros(6), **changes}
-    return CyclicReference(**{name: np.asarray(value) for name, value in values.items()})
+    arrays: dict[str, Any] = {name: np.asarray(value) for name, value in values.items()}
+    return CyclicReference(**arrays)
 
 
 @given(references(), st.floats(-10.0, 10.0))
@@ -157,3 +159,14 @@ def test_legs_that_cannot_walk_are_refused(changes, fault):
     with pytest.raises(DomainError) as caught:
         simple(**changes)
     assert fault in str(caught.value)
+
+
+def test_touchdowns_are_where_a_stance_begins_at_the_touchdown_angle():
+    gait = CyclicReference(
+        touchdown=np.array([0.6, 0.7]), liftoff=np.array(2.2), ground_time=np.array([0.8, 0.9]),
+        flight_time=np.array([0.7, 0.6]), phase=np.array([0.25, 0.5]),
+    )  # fmt: skip
+    stances = gait.stance_intervals((0.0, 6.0))
+    for leg, (times, angles) in enumerate(gait.touchdowns((0.0, 6.0))):
+        np.testing.assert_allclose(times, stances[leg][stances[leg][:, 0] > 0, 0])
+        np.testing.assert_allclose(gait.angles(times)[:, leg], angles)

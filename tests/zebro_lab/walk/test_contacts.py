@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: MIT
+"""Contact states of a walk, as found, written, printed and drawn from gait to files by commands."""
+
+import csv
+import io
+import json
+from contextlib import redirect_stdout
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from model.contact.detection import Detection, detect_contacts
+from model.errors import DomainError
+from model.gait import tetrapod_reference, tripod_angles, tripod_reference
+from model.gait.reference import SampledReference
+from model.robot import Robot
+from model.walk.detected import walk_detected
+from zebro_lab.main import app
+from zebro_lab.terminal import ending
+from zebro_lab.walk.contacts import RULES, contacts_of
+from zebro_lab.walk.folder import CONTACTS, read_walk
+from zebro_lab.walk.request import ContactRequest
+
+TETRAPOD = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+ASKED = ContactRequest(contacts=True)
+EQ_3_33 = (
+    "{2,5,6} → {2,3,6} (0.41 s) → {1,3,4,6} (0.95 s) → {1,4,5} (1.93 s) → {2,4,5} (2.41 s)"
+    " → {2,5,6} (2.93 s)"
+)
+
+
+def rows_of(file):
+    with file.open(newline="") as text:
+        return list(csv.DictReader(text))
+
+
+def found(reference, *, by="rest", detection: Detection = "balanced", duration=6.1):
+    path = walk_detected(Robot(), reference, duration=duration, dt=0.002, detection=detection)
+    return contacts_of(path, reference, Robot(), by=by, request=ASKED)
+
+
+def test_detection_stands_beside_the_models_own_contacts():
+    contacts = found(TETRAPOD)
+    assert [trace.by for trace in contacts.traces] == ["events", "rest"]
+    assert contacts.same is not None
+    assert 0.85 < contacts.same < 0.95  # {2,3,5} for 0.3 s of 3 s
+    assert contacts.same_legs is not None
+    assert contacts.same < contacts.same_legs.mean() < 1
+
+
+def test_a_model_that_walks_by_this_detection_has_no_other_beside_it():
+    contacts = found(TETRAPOD, by="events", detection="events")
+    assert [trace.by for trace in contacts.traces] == ["events"]
+    assert str(contacts.own.cycle) == EQ_3_33
+    assert (contacts.same, contacts.same_legs) == (None, None)
+
+
+def test_the_cycle_of_a_log_is_the_time_its_legs_take_for_a_turn():
+    t = np.arange(3051, dtype=float) * 0.002
+    log = SampledReference(t, TETRAPOD.angles(t))
+    contacts = found(log, by="events", detection="events")
+    assert contacts.period == pytest.approx(3.0, abs=0.005)
+    assert contacts.own.cycle is not None
+    assert len(contacts.own.cycle.states) == 5
+    assert all(np.isnan(each.asked_t) for each in contacts.touchdowns)
+
+
+def test_a_log_whose_gait_changes_has_no_cycle():
+    tripod = tripod_reference(tripod_angles(np.radians(50.0), 1.0), 1.5)
+    t = np.arange(4000, dtype=float) * 0.002
+    later = tripod.angles(t - 4.0) + TETRAPOD.angles(4.0) - tripod.angles(0.0)
+    theta = np.where(t[:, None] < 4.0, TETRAPOD.angles(t), later)
+    contacts = found(SampledReference(t, theta), by="events", detection="events", duration=7.9)
+    assert contacts.period is None
+    assert contacts.own.cycle is None
+
+
+def test_where_no_legs_hold_the_robot_there_is_a_note_and_no_detection(walked, monkeypatch):
+    def none(*_, **__):
+        raise DomainError("no three legs hold the robot")
+
+    monkeypatch.setattr("zebro_lab.walk.contacts.detect_contacts", none)
+    contacts = contacts_of(walked, TETRAPOD, Robot(), by="force", request=ASKED)
+    assert [trace.by for trace in contacts.traces] == ["force"]
+    assert contacts.notes == (
+        "no contacts are detected on rigid legs: no three legs hold the robot",
+    )
+
+
+def test_a_detection_that_ends_early_is_compared_as_far_as_it_goes(walked, monkeypatch):
+    def ends(robot, theta, **options):
+        return replace(detect_contacts(robot, theta[:100], **options), ended="no legs fit")
+
+    monkeypatch.setattr("zebro_lab.walk.contacts.detect_contacts", ends)
+    contacts = contacts_of(walked, TETRAPOD, Robot(), by="force", request=ASKED)
+    assert [len(trace.t) for trace in contacts.traces] == [100, len(walked.t)]
+    assert contacts.notes == (
+        f"contact detection on rigid legs ends at {walked.t[100]:.3f} s: no legs fit",
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Return the folder of a tetrapod by the thesis's model, and what the command printed."""
+    out, printed = tmp_path_factory.mktemp("contacts") / "walk", io.StringIO()
+    words = "walk --gait tetrapod --model thesis --duration 6.5 --dt 0.002 --contacts --format svg"
+    with redirect_stdout(printed), pytest.raises(SystemExit) as ended:
+        ending.run(lambda: app([*words.split(), "--out", str(out)], prog_name="zebro-lab"))
+    assert not ended.value.code
+    return out, " ".join(printed.getvalue().split())
+
+
+def test_one_command_prints_eq_3_33_with_its_times(folder):
+    _, printed = folder
+    assert EQ_3_33 in printed
+    assert f"contact states by {RULES['events']}" in printed
+    assert "a cycle of 3 s, which repeats from 0.41 s on" in printed
+    assert f"touchdowns by {RULES['events']}" in printed
+
+
+def test_the_folder_has_the_tables_and_the_figure_in_the_format(folder):
+    out, _ = folder
+    names = {path.name for path in out.iterdir()}
+    assert {"contacts.csv", "touchdowns.csv", "contacts.svg"} <= names
+    assert "contacts.svg" in CONTACTS
+    manifest = json.loads((out / "manifest.json").read_text())
+    assert {"contacts.csv", "touchdowns.csv", "contacts.svg"} <= set(manifest["outputs"])
+    assert manifest["settings"]["contact_by"] == "events"
+    assert manifest["settings"]["contacts_least"] == 0.01
+
+
+def test_contacts_csv_says_what_path_csv_does(folder):
+    out, _ = folder
+    path = read_walk(out)
+    rows = rows_of(out / "contacts.csv")
+    assert float(rows[0]["start"]) == path.t[0]
+    assert float(rows[-1]["end"]) == path.t[-1]
+    for row in rows:
+        assert float(row["duration"]) == pytest.approx(float(row["end"]) - float(row["start"]))
+        middle = np.searchsorted(path.t, (float(row["start"]) + float(row["end"])) / 2)
+        legs = ",".join(str(leg + 1) for leg in np.flatnonzero(path.contact[middle]))
+        assert row["contact"] == "{" + legs + "}"
+    assert [row["cycle"] for row in rows] == ["", *"11111", *"22222", "3"]
+
+
+def test_touchdowns_csv_says_what_path_csv_does(folder):
+    out, _ = folder
+    path = read_walk(out)
+    rows = rows_of(out / "touchdowns.csv")
+    assert len(rows) >= 12
+    for row in rows:
+        leg, k = int(row["leg"]) - 1, int(np.searchsorted(path.t, float(row["t"]) - 1e-6))
+        assert path.contact[k, leg]
+        assert not path.contact[k - 1, leg]
+        angle = path.theta[k, leg] - 2 * np.pi * int(row["turn"])
+        assert float(row["angle"]) == pytest.approx(angle, abs=1e-6)
+        assert float(row["asked_angle"]) == pytest.approx(np.radians(45.0))
+        assert float(row["late"]) == pytest.approx(float(row["t"]) - float(row["asked_t"]))
+
+
+def test_a_program_and_a_log_have_contacts_too(run_command, tmp_path):
+    program = tmp_path / "p.toml"
+    program.write_text('[[segment]]\ngait = "tripod"\nuntil = { strides = 1 }\n\n'
+                       "[[segment]]\nstand = 0.5\n")  # fmt: skip
+    given = ("--slip", "coulomb:0.4", "--contacts", "--json", "--out")
+    walk = run_command("walk", program, *given, tmp_path / "w")
+    log = run_command("predict", tmp_path / "w", *given, tmp_path / "p")
+    for ended, folder in ((walk, "w"), (log, "p")):
+        assert ended.code == 0, ended.err
+        document = json.loads(ended.out)["contacts"]
+        assert [rule["by"] for rule in document["rules"]] == ["events", "force"]
+        assert [each["leg"] for each in document["touchdowns"]] == [1, 2, 3, 4, 5, 6]
+        assert 0.5 < document["same_legs_share"] <= 1
+        assert rows_of(tmp_path / folder / "contacts.csv")[-1]["by"] == "force"
+
+
+def test_a_shortest_state_without_contacts_is_refused(run_command):
+    code, _, err = run_command("walk", "--slip", "thesis", "--duration", 1, "--contacts-least", 0.1)
+    assert code == 2
+    assert "give --contacts too" in err

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: MIT
+"""What a person reads of a walk's contacts: the sequence of a cycle, and touchdowns by leg."""
+
+from collections.abc import Callable, Sequence
+from itertools import islice
+
+import numpy as np
+from rich.table import Table
+
+from model.contact.sequence import ContactState, named_legs
+from model.contact.touchdown import Touchdown
+from model.counted import counted
+from model.robot import N_LEGS
+from zebro_lab.terminal.tables import plain_table
+from zebro_lab.walk.contacts import RULES, ContactTrace, WalkContacts
+
+_SHOWN = 12  # states of a walk that does not repeat; `contacts.csv` has all
+
+
+def contact_lines(contacts: WalkContacts) -> list[str]:
+    """Say the sequence of contact states by each rule, and how far the rules agree."""
+    lines = [line for trace in contacts.traces for line in _trace_lines(trace, contacts)]
+    if contacts.same is not None and contacts.same_legs is not None:
+        lines.append(
+            f"both have the same legs on the ground in {contacts.same:.1%} of the time, and agree "
+            f"on a leg in {contacts.same_legs.mean():.1%}"
+        )
+    return [*lines, *contacts.notes]
+
+
+def _trace_lines(trace: ContactTrace, contacts: WalkContacts) -> list[str]:
+    sequence, cycle = trace.sequence, trace.cycle
+    lines = [f"contact states by {RULES[trace.by]}:"]
+    if cycle is not None:
+        lines.append(f"  {cycle}")
+        lines.append(
+            f"  a cycle of {cycle.period:.4g} s, which repeats from {cycle.settled:.2f} s on, "
+            f"times within {1000 * float(cycle.spread.max()):.0f} ms in {cycle.cycles} cycles"
+        )
+    else:
+        shown = " → ".join(_with_start(state) for state in islice(sequence.states, _SHOWN))
+        more = len(sequence.states) - _SHOWN
+        lines.append(f"  {shown}" + (f" → … ({counted(more, 'more state')})" if more > 0 else ""))
+        lines.append(f"  {_why_no_cycle(trace, contacts)}")
+    if sequence.joined:
+        lines.append(
+            f"  states shorter than {1000 * sequence.least:g} ms are joined to the next: "
+            f"{sequence.joined}, {sequence.joined_time:.3f} s in all"
+        )
+    return lines
+
+
+def _with_start(state: ContactState) -> str:
+    return f"{named_legs(state.legs)} ({state.start:.2f} s)"
+
+
+def _why_no_cycle(trace: ContactTrace, contacts: WalkContacts) -> str:
+    if contacts.period is None:
+        return "these leg angles have no cycle that repeats"
+    if len(trace.sequence.states) == 1:
+        return "the legs on the ground never change"
+    return (
+        f"the last two cycles of {contacts.period:.4g} s do not repeat within "
+        f"{1000 * contacts.tolerance:.0f} ms; walk longer, or join longer states by "
+        "--contacts-least"
+    )
+
+
+def touchdown_table(contacts: WalkContacts) -> Table:
+    """Return a table of touchdowns, a row per leg: means and standard deviations."""
+    numbers = ("touchdowns", "missed", "angle\n[deg]", "sd\n[deg]", "asked\n[deg]", "late\n[ms]",
+               "sd\n[ms]", "lift-off\n[deg]", "again\ndown")  # fmt: skip
+    title = f"touchdowns by {RULES[contacts.own.by]}"
+    table = plain_table(title, ("leg",), numbers)
+    for leg in range(N_LEGS):
+        row = touchdown_summary([each for each in contacts.touchdowns if each.leg == leg])
+        cells = (
+            f"{row['touchdowns']}", f"{row['missed']}",
+            *(_cell(row[key], scale) for key, scale in _SHOWN_MEANS), f"{row['again']}",
+        )  # fmt: skip
+        table.add_row(str(leg + 1), *cells)
+    return table
+
+
+_SHOWN_MEANS = (
+    ("angle_rad", 180 / np.pi), ("angle_sd_rad", 180 / np.pi), ("asked_angle_rad", 180 / np.pi),
+    ("late_s", 1000.0), ("late_sd_s", 1000.0), ("liftoff_angle_rad", 180 / np.pi),
+)  # fmt: skip
+
+
+def _cell(value: float | None, scale: float) -> str:
+    return "-" if value is None else f"{scale * value:.2f}"
+
+
+def touchdown_summary(downs: Sequence[Touchdown]) -> dict[str, float | None]:
+    """Summarise touchdowns of a leg: counts, means and standard deviations, None without any.
+
+    Args:
+        downs: Touchdowns of one leg; turns without contact count as missed.
+    """
+
+    def mean(value: Callable[[Touchdown], float]) -> float | None:
+        values = [value(each) for each in downs if not np.isnan(value(each))]
+        return float(np.mean(values)) if values else None
+
+    def spread(value: Callable[[Touchdown], float]) -> float | None:
+        values = [value(each) for each in downs if not np.isnan(value(each))]
+        return float(np.std(values, ddof=1)) if len(values) > 1 else None
+
+    return {
+        "touchdowns": sum(each.contacts > 0 for each in downs),
+        "missed": sum(each.contacts == 0 for each in downs),
+        "again": sum(max(each.contacts - 1, 0) for each in downs),
+        "angle_rad": mean(lambda each: each.angle),
+        "angle_sd_rad": spread(lambda each: each.angle),
+        "asked_angle_rad": mean(lambda each: each.asked_angle),
+        "late_s": mean(lambda each: each.late),
+        "late_sd_s": spread(lambda each: each.late),
+        "liftoff_angle_rad": mean(lambda each: each.liftoff_angle),
+    }
+
+
+def contact_document(contacts: WalkContacts) -> dict[str, object]:
+    """Return contacts and touchdowns for `--json`; keys end in the unit."""
+    return {
+        "least_s": contacts.own.sequence.least,
+        "tolerance_s": contacts.tolerance,
+        "rules": [_trace_document(trace) for trace in contacts.traces],
+        "same_legs_share": contacts.same,
+        "same_leg_shares": contacts.same_legs,
+        "touchdowns": [
+            {"leg": leg + 1,
+             **touchdown_summary([each for each in contacts.touchdowns if each.leg == leg])}
+            for leg in range(N_LEGS)
+        ],
+    }  # fmt: skip
+
+
+def _trace_document(trace: ContactTrace) -> dict[str, object]:
+    cycle = trace.cycle
+    return {
+        "by": trace.by,
+        "states": len(trace.sequence.states),
+        "joined": trace.sequence.joined,
+        "joined_s": trace.sequence.joined_time,
+        "cycle": None if cycle is None else {
+            "period_s": cycle.period,
+            "contacts": [named_legs(legs) for legs in cycle.states],
+            "begins_s": cycle.begins,
+            "spread_s": cycle.spread,
+            "settled_s": cycle.settled,
+            "cycles": cycle.cycles,
+        },
+    }  # fmt: skip

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: MIT
+"""Walks on slopes, patches, steps and rough ground, by the command and by an independent engine.
+
+The engine (group `bench`) walks the leg angles of the command's path.csv and searches each leg's
+arc for the places where it touches the same ground. Compared are the path and, at every hundredth
+of a second, which legs are in contact.
+
+Usage: python -m benchmarks.accuracy.engine_ground [--seeds 10] [--only KIND] [--finer]
+"""
+
+import argparse
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from itertools import repeat
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from benchmarks.accuracy.engine_programs import COMMAND, angles_on_file, motion_on_file
+from benchmarks.accuracy.rigid_engine.agreement import Agreement, Motion, agreement, motion_of
+from benchmarks.accuracy.rigid_engine.arcs import FLAT, NO_STEPS, Heights
+from benchmarks.accuracy.rigid_engine.references import refined
+from benchmarks.accuracy.rigid_engine.stepping import Friction
+from benchmarks.accuracy.rigid_engine.walking import SETTINGS, Settings, walk
+from benchmarks.tables import print_table
+from model.robot import Robot
+from model.slip.law import Array
+
+FRICTION = 0.38
+DURATION = 10.0  # s
+GAITS = {
+    "straight": ["--gait", "tripod"],
+    "left": ["--gait", "tripod", "--steering", "1.2"],
+    "right": ["--gait", "tripod", "--steering", "1.3", "--direction", "right"],
+}
+STEP_HEIGHT = 0.01  # m
+ROUGHNESS, CORRELATION, GRID = 0.005, 0.05, 0.005  # m
+HALF = 1.28  # m; half the side of the map, which repeats itself at twice that
+
+
+@dataclass(frozen=True)
+class Case:
+    """A walk on a ground.
+
+    Attributes:
+        kind: slope, patches, steps or rough.
+        name: What it is.
+        gait: Key of `GAITS`.
+        slope: Slope along x and y [deg].
+        edges: x and height of steps [m], shape (k, 2).
+        patches: x from, x to, y from, y to [m] and friction of patches, shape (k, 5).
+        seed: Of a rough ground; none of an even one.
+    """
+
+    kind: str
+    name: str
+    gait: str
+    slope: tuple[float, float] = (0.0, 0.0)
+    edges: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    patches: Array = field(default_factory=lambda: np.zeros((0, 5)))
+    seed: int | None = None
+
+
+def slopes_and_patches() -> list[Case]:
+    """Return walks up, down and across a slope of 5 degrees, and over patches of other friction."""
+    across = np.array([[x, x + 0.12, -5, 5, mu] for x, mu in zip(
+        np.arange(-0.1, 1.4, 0.24), (0.15, 0.7) * 7, strict=False)])  # fmt: skip
+    beside = np.array([[-1.0, 5.0, 0.0, 5.0, 0.12]])
+    return [
+        Case("slope", "up 5°", "straight", (5.0, 0.0)),
+        Case("slope", "down 5°", "straight", (-5.0, 0.0)),
+        Case("slope", "across 5°", "straight", (0.0, 5.0)),
+        Case("slope", "up 5°, turning left", "left", (5.0, 0.0)),
+        Case("slope", "up 4° and across 3°, turning right", "right", (4.0, 3.0)),
+        Case("patches", "stripes of 0.15 and 0.7", "straight", patches=across),
+        Case("patches", "stripes of 0.15 and 0.7, turning", "right", patches=across),
+        Case("patches", "0.12 under the left legs", "straight", patches=beside),
+        Case("patches", "0.12 to the left of x, turning left", "left", patches=beside),
+    ]
+
+
+def steps_and_roughness(seeds: int) -> list[Case]:
+    """Return walks over steps of 10 mm at random places, up and down, and on rough ground."""
+    cases = []
+    for seed in range(1, seeds + 1):
+        rng = np.random.default_rng(seed)
+        gait = str(rng.choice(list(GAITS)))
+        x = 0.1 + np.cumsum(rng.uniform(0.12, 0.3, 5))
+        up = STEP_HEIGHT * rng.choice([-1.0, 1.0], 5)
+        cases.append(Case("steps", f"seed {seed}", gait, edges=np.column_stack([x, up])))
+        cases.append(Case("rough", f"seed {seed}", gait, seed=seed))
+    return sorted(cases, key=lambda each: each.kind, reverse=True)
+
+
+def rough_heights(seed: int) -> Array:
+    """Draw a Gaussian field of heights with a square-exponential correlation, periodic [m]."""
+    n = round(2 * HALF / GRID)
+    k = 2 * np.pi * np.fft.fftfreq(n, GRID)
+    amplitude = np.exp(-0.25 * CORRELATION**2 * (k[:, None] ** 2 + k**2))
+    noise = np.random.default_rng(seed).normal(size=(n, n))
+    field = np.fft.ifft2(np.fft.fft2(noise) * amplitude).real
+    return ROUGHNESS * (field - field.mean()) / field.std()
+
+
+def engine_ground(case: Case) -> tuple[Heights, Friction]:
+    """Return the ground and friction of a case for the engine."""
+    z = np.zeros((1, 1)) if case.seed is None else rough_heights(case.seed)
+    edge, up = (
+        (np.ascontiguousarray(each) for each in case.edges.T)
+        if len(case.edges)
+        else (NO_STEPS,) * 2
+    )
+    highest = float(z.max() + max(0.0, np.cumsum(up).max(initial=0.0)))
+    rise = np.tan(np.radians(case.slope))
+    heights = FLAT._replace(z=z, highest=highest, rise_x=float(rise[0]), rise_y=float(rise[1]),
+                            edge=edge, up=up)  # fmt: skip
+    if case.seed is not None:
+        heights = heights._replace(x=-HALF, y=-HALF, step=GRID)
+    return heights, Friction(FRICTION, 1e-3, case.patches)
+
+
+def write_ground(case: Case, folder: Path) -> Path:
+    """Write ground.toml of a case, and heights.csv of a rough ground beside it."""
+    folder.mkdir(parents=True)
+    parts = [f"slope_deg = [{case.slope[0]}, {case.slope[1]}]"] if any(case.slope) else []
+    if case.seed is not None:
+        seen_from_above = rough_heights(case.seed).T[::-1]
+        np.savetxt(folder / "heights.csv", seen_from_above, fmt="%.17g", delimiter=",")
+        place = f"step = {GRID}, origin = [{-HALF}, {-HALF}]"
+        parts.append(f'heights = {{ file = "heights.csv", {place} }}')
+    parts += [f"[[step]]\nx = {x!r}\nheight = {up!r}" for x, up in case.edges.tolist()]
+    for x0, x1, y0, y1, mu in case.patches.tolist():
+        corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+        parts.append(f'[[area]]\npolygon = {corners}\nslip = "coulomb:{mu:g}:0.001"')
+    file = folder / "ground.toml"
+    file.write_text("\n\n".join(parts) + "\n")
+    return file
+
+
+def walk_by_command(case: Case, folder: Path) -> pd.DataFrame:
+    """Walk a case by the command and return the table of its path.csv."""
+    ground, out = write_ground(case, folder), folder / "walk"
+    command = [COMMAND, "walk", *GAITS[case.gait], "--duration", f"{DURATION:g}", "--out", out]
+    command += ["--slip", f"coulomb:{FRICTION:g}:0.001", "--ground", ground]
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"walk on {ground} ended with {done.returncode}:\n{done.stderr}")
+    return pd.read_csv(out / "path.csv")
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A walk by the command and by the engine.
+
+    Attributes:
+        case: The case.
+        errors: Of the command's walk against the engine's.
+        refined: Changes of the engine's walk with half the step, and with contacts four times as
+            stiff; none unless asked for.
+    """
+
+    case: Case
+    errors: Agreement
+    refined: tuple[Agreement, ...]
+
+
+def compare(case: Case, folder: Path, finer: bool = False) -> Compared:
+    """Walk a case by the command and by the engine, and compare."""
+    table = walk_by_command(case, folder / f"{case.kind} {case.name}")
+    heights, friction = engine_ground(case)
+
+    def engine(settings: Settings) -> Motion:
+        t, theta = table["t"].to_numpy(), angles_on_file(table)
+        return motion_of(walk(Robot(), t, theta, friction, heights=heights, settings=settings))
+
+    truth = engine(SETTINGS)
+    changes = tuple(agreement(engine(each), truth) for each in refined()) if finer else ()
+    return Compared(case, agreement(motion_on_file(table), truth), changes)
+
+
+def print_compared(all_compared: Sequence[Compared]) -> None:
+    """Print each walk's row, then median and worst of each kind."""
+    head = ("ground", "walk", "gait", "path", "contacts agree")
+    finer = bool(all_compared[0].refined)
+    head += ("engine, half the step", "contacts four times as stiff") if finer else ()
+    print_table(head, *(_row(each) for each in all_compared))
+    for kind in dict.fromkeys(each.case.kind for each in all_compared):
+        errors = [each.errors for each in all_compared if each.case.kind == kind]
+        path = 100 * np.array([each.path for each in errors])
+        contacts = 100 * np.array([each.contacts for each in errors])
+        print(
+            f"{kind}: path median {np.median(path):.2f} %, worst {path.max():.2f} %; contacts "
+            f"agree median {np.median(contacts):.1f} %, worst {contacts.min():.1f} %"
+        )
+
+
+def _row(one: Compared) -> tuple[str, ...]:
+    """Return the cells of a walk."""
+    return (
+        one.case.kind, one.case.name, one.case.gait, f"{100 * one.errors.path:.2f} %",
+        f"{100 * one.errors.contacts:.1f} %", *(f"{100 * each.path:.2f} %" for each in one.refined),
+    )  # fmt: skip
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=10, help="of steps and of rough ground each")
+    parser.add_argument("--only", choices=("slope", "patches", "steps", "rough"))
+    parser.add_argument("--finer", action="store_true", help="refine the engine, too")
+    parser.add_argument("--keep", type=Path, help="new folder for grounds and walks")
+    asked = parser.parse_args(arguments)
+    cases = slopes_and_patches() + steps_and_roughness(asked.seeds)
+    cases = [case for case in cases if asked.only in (None, case.kind)]
+    with tempfile.TemporaryDirectory() as scratch, ProcessPoolExecutor(2) as processes:
+        folder = asked.keep or Path(scratch)
+        print_compared(list(processes.map(compare, cases, repeat(folder), repeat(asked.finer))))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+from benchmarks.accuracy.rigid_engine.stepping import Friction
+from benchmarks.accuracy.rigid_engine.walking import EVERY, walk
+from model.robot import GRAVITY, N_LEGS, Robot
+
+NO_AREAS = np.zeros((0, 5))
+STANDING = np.radians([118.0, 50.0, 50.0, 118.0, 118.0, 50.0])
+pytestmark = pytest.mark.long
+
+
+def stand(friction, seconds=0.3, **options):
+    t = np.array([0.0, seconds])
+    return walk(Robot(), t, np.tile(STANDING, (2, 1)), friction, **options)
+
+
+def test_legs_that_stand_carry_the_weight_and_stay():
+    path = stand(Friction(0.38, 1e-3, NO_AREAS))
+    assert path.load[-1].sum() == pytest.approx(Robot().mass * GRAVITY, rel=1e-3)
+    assert np.abs(path.position[-1, :2]).max() < 1e-4
+    assert path.angle_error < np.radians(0.02)
+
+
+def test_a_robot_on_ice_slides_down_a_slope_as_fast_as_gravity_lets_it():
+    from benchmarks.accuracy.rigid_engine.arcs import FLAT
+
+    slope = np.tan(np.radians(5.0))
+    path = stand(Friction(0.0, 1e-3, NO_AREAS), heights=FLAT._replace(rise_x=slope))
+    fall = 0.5 * GRAVITY * np.sin(np.radians(5.0)) * np.cos(np.radians(5.0)) * path.t[-1] ** 2
+    assert path.position[-1, 0] == pytest.approx(-fall, rel=0.02)
+
+
+def test_a_patch_has_its_own_friction():
+    from benchmarks.accuracy.rigid_engine.arcs import FLAT
+
+    heights = FLAT._replace(rise_x=np.tan(np.radians(10.0)))
+    everywhere = np.array([[-5.0, 5.0, -5.0, 5.0, 0.7]])
+    held = stand(Friction(0.0, 1e-3, everywhere), heights=heights)
+    assert abs(held.position[-1, 0]) < 1e-3
+
+
+def test_legs_that_turn_together_walk_at_the_speed_of_their_arcs():
+    theta = np.radians([[50.0] * N_LEGS, [80.0] * N_LEGS])
+    path = walk(Robot(), np.array([0.0, 1.0]), theta, Friction(0.38, 1e-3, NO_AREAS))
+    rolled = Robot().leg_radius * (np.radians(30.0) + np.cos(theta[0, 0]) - np.cos(theta[1, 0]))
+    assert path.position[-1, 0] == pytest.approx(rolled, rel=0.03)
+    assert len(path.t) == round(1.0 / EVERY) + 1

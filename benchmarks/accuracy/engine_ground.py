@@ -174,6 +174,7 @@ def compare(case: Case, folder: Path, finer: bool = False) -> Compared:
     heights, friction = engine_ground(case)
 
     def engine(settings: Settings) -> Motion:
+        """Walk the case's leg angles by the engine with some steps and contacts."""
         t, theta = table["t"].to_numpy(), angles_on_file(table)
         return motion_of(walk(Robot(), t, theta, friction, heights=heights, settings=settings))
 

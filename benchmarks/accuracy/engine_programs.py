@@ -173,6 +173,7 @@ def compare(program: Program, folder: Path, finer: bool = False) -> Compared:
     friction = Friction(program.friction, 1e-3, np.zeros((0, 5)))
 
     def engine(settings: Settings) -> tuple[Motion, float]:
+        """Return the motion by the engine, and how well it kept the leg angles [rad]."""
         path = walk(Robot(), t, theta, friction, settings=settings)
         return motion_of(path), path.angle_error
 

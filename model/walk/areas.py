@@ -105,6 +105,7 @@ def _cross(a: Array, b: Array, c: Array, d: Array) -> bool:
     """Return whether the segments from a to b and from c to d have a common inner point."""
 
     def side(p: Array, q: Array, r: Array) -> float:
+        """Return twice the signed area of the triangle p, q, r: the side of pq that r is on."""
         return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
 
     return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0

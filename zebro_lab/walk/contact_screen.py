@@ -100,10 +100,12 @@ def touchdown_summary(downs: Sequence[Touchdown]) -> dict[str, float | None]:
     """
 
     def mean(value: Callable[[Touchdown], float]) -> float | None:
+        """Return the mean over the touchdowns that have the value; None without any."""
         values = [value(each) for each in downs if not np.isnan(value(each))]
         return float(np.mean(values)) if values else None
 
     def spread(value: Callable[[Touchdown], float]) -> float | None:
+        """Return the standard deviation of the values; None of fewer than two."""
         values = [value(each) for each in downs if not np.isnan(value(each))]
         return float(np.std(values, ddof=1)) if len(values) > 1 else None
 

@@ -170,6 +170,7 @@ def stepper() -> Callable[..., None]:
     @numba.njit
     def steps(model, data, theta, speed, carried, views, shape, heights, friction, bead, places,
               scratch):  # fmt: skip
+        """Prepare forces and step, once for each row of leg angles; sum up the loads."""
         for k in range(len(theta)):
             prepare(views, theta[k], speed[k], shape, heights, friction, bead, places, scratch)
             mj_step(model, data)

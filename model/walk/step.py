@@ -11,9 +11,10 @@ and traction of every contact are taken there, linear in them,
 with stiffness k and damping c of contact i, gap g, normal n, contact Jacobian J, the leg's own
 velocity u at its contact, and the secant G of the slip law. A prime marks the step's end, v' stands
 for v and w there, and the index t for the part along the ground. This gives a symmetric positive
-definite 6x6 system. A few iterations determine
-which contacts press and what G is. No contact pulls, and traction opposes slip whatever the step.
-The step is therefore stable at any length, unlike the explicit step of the thesis.
+definite 6x6 system. A few iterations determine which contacts press and what G is: two, and more
+until the velocities settle where feet that slid take hold or let go, since G then changes by orders
+of magnitude within a step. No contact pulls, and traction opposes slip whatever the step. The step
+is therefore stable at any length, unlike the explicit step of the thesis.
 """
 
 import numpy as np
@@ -29,7 +30,9 @@ from model.walk.quaternion import rotate, rotation_matrix
 from model.walk.traction_lookup import toe_traction, traction_secant
 
 ROUNDS = 2  # solves a step: one for the contacts that press and their loads, one to use them
-MOST_ROUNDS = 8  # largest number of solves until the assumed contacts are those that press
+MOST_ROUNDS = 8  # largest number of solves until contacts press as assumed and velocities settle
+SETTLED = 1e-3  # m/s; velocities have settled when a solve moves no foot by more
+FOOT = 0.15  # m, distance of the feet from the body's centre, to compare its turning with that
 BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of a millimetre
 
 
@@ -71,7 +74,8 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
         start_system(body.mass, inertia, gyro, state, dt, work.A, work.b)
         add_contact_forces(table, contacts, state, work, n, speed, dt)
         solve_positive(work.A, work.b, 6)
-        if contacts_agree(contacts, work, n, dt) and solved >= ROUNDS:
+        agree = contacts_agree(contacts, work, n, dt)
+        if agree and solved >= ROUNDS and velocity_change(work) < SETTLED:
             break
     for i in range(3):
         state.v[i], state.w[i] = work.b[i], work.b[3 + i]
@@ -80,6 +84,21 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     if table.bristle:
         for i in range(n):
             _stretch_bristle(table, contacts, state, work, i, dt)
+
+
+@inlined
+def velocity_change(work):
+    """Return by how much a solve changed the velocity of the body and, by turning, of feet [m/s].
+
+    It is the root of the sum of both squares, which depends on no compass heading.
+
+    Args:
+        work: Arrays of the step with the solved velocities in `b`, those before in `v` and `w`.
+    """
+    squares = 0.0
+    for i in range(3):
+        squares += (work.b[i] - work.v[i]) ** 2 + (FOOT * (work.b[3 + i] - work.w[i])) ** 2
+    return np.sqrt(squares)
 
 
 @inlined

@@ -8,7 +8,7 @@ from model.robot import GRAVITY, Robot
 from model.walk.arrays import Contacts, body_arrays, new_work
 from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.ground import FLAT
-from model.walk.step import BRISTLE_STIFFNESS, bristle_pull, leg_turn, one_step
+from model.walk.step import BRISTLE_STIFFNESS, SETTLED, bristle_pull, leg_turn, one_step
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()
@@ -17,11 +17,11 @@ CONTACTS = Contacts(DEFAULT_OPTIONS.stiffness, DEFAULT_OPTIONS.damping)
 STANDING = np.full(6, np.pi / 2)
 
 
-def stepped(state, *, speed=0.0, toe="bristle"):
+def stepped(state, *, speed=0.0, toe="bristle", dt=0.001):
     table = VelocityCoulomb(0.4).table(weight=WEIGHT, toe=toe)
     work = new_work()
     one_step(
-        body_arrays(ROBOT), table, FLAT, CONTACTS, state, work, STANDING, np.full(6, speed), 0.001
+        body_arrays(ROBOT), table, FLAT, CONTACTS, state, work, STANDING, np.full(6, speed), dt
     )
     return work
 
@@ -30,6 +30,16 @@ def test_legs_of_a_standing_robot_carry_its_weight():
     work = stepped(start_state(ROBOT, STANDING, DEFAULT_OPTIONS))
     assert work.load.sum() == pytest.approx(WEIGHT, rel=1e-3)
     assert np.all(work.load[:6] > 0)
+
+
+def test_traction_is_that_of_the_final_slip_where_sliding_feet_almost_take_hold():
+    state, dt = start_state(ROBOT, STANDING, DEFAULT_OPTIONS), 0.004
+    state.v[0] = 0.02
+    work = stepped(state, toe="peak", dt=dt)
+    slip = [state.v[0] + state.w[1] * place[2] - state.w[2] * place[1] for place in work.place[:6]]
+    traction = 0.4 * work.load[:6] * slip / np.hypot(slip, 1e-3)
+    by_traction = 0.02 - dt * traction.sum() / ROBOT.mass
+    assert state.v[0] == pytest.approx(by_traction, abs=2 * SETTLED)
 
 
 def test_a_body_in_the_air_has_no_contact_and_falls():

@@ -10,6 +10,8 @@ from model.errors import DomainError
 from model.gait.events import scheduled_reference
 from model.gait.notation import TETRAPOD, TRIPOD, parse_gait
 from model.gait.program import ProgramLegs, cycle_gait
+from model.gait.steering import highest_hip
+from model.gait.swing import TURN
 
 WAVE = parse_gait("{1} < {4} < {5} < {2} < {3} < {6}")
 
@@ -67,17 +69,63 @@ def test_no_leg_lifts_off_at_a_handover_before_all_are_down(parts):
         assert cycle.liftoff.min() >= at + pause - 1e-9
 
 
-@given(PARTS)
-def test_angles_have_no_steps_and_stances_are_no_faster_than_a_gaits(parts):
-    legs = program(*parts)
+STOPS = st.none() | st.floats(0.02, 0.98)
+
+
+def stopping(parts, stops):
+    """Return the legs of parts, each of which is stopped after a share of its last cycle."""
+    legs = ProgramLegs.beginning_with(next(part[0] for part in parts if isinstance(part, tuple)))
+    for part, stop in zip(parts, stops, strict=False):
+        before = legs.end
+        if not isinstance(part, tuple):
+            legs = legs.with_stand(part)
+            continue
+        for _ in range(part[1]):
+            before, legs = legs.end, legs.with_cycle(part[0])
+        if stop is not None:
+            legs = legs.stopped_at(before + stop * (legs.end - before))
+    return legs
+
+
+@settings(max_examples=30)
+@given(PARTS, st.lists(STOPS, min_size=5, max_size=5))
+def test_angles_have_no_steps_and_legs_turn_no_faster_than_in_a_swing(parts, stops):
+    legs = stopping(parts, stops)
     if legs.end == 0:
         return
     reference = legs.reference()
     assert reference.t[0] == 0.0
     assert reference.t[-1] == pytest.approx(legs.end)
     speeds = np.abs(np.diff(reference.theta, axis=0)) / np.diff(reference.t)[:, None]
-    shortest = min(c.touchdown[i] - c.liftoff[i] for c in legs.cycles[1:] for i in range(6))
+    steady = [part[0].system.steady_state for part in parts if isinstance(part, tuple)]
+    shortest = min((each.touchdown[0] - each.liftoff[0]).min() for each in steady)
     assert speeds.max() <= 2.5 * np.pi / shortest + 1e-6
+
+
+def knots(reference, leg, begin, end):
+    """Return the angles between which a leg turns steadily in a time, from 0 to below 360 deg."""
+    within = reference.t[(reference.t > begin + 1e-6) & (reference.t < end - 1e-6)]
+    theta = reference.angles(np.concatenate([[begin], within, [end]]))[:, leg]
+    return theta - TURN * np.floor(theta[0] / TURN)
+
+
+@settings(max_examples=25)
+@given(PARTS, st.lists(STOPS, min_size=5, max_size=5))
+def test_no_leg_goes_round_on_the_ground_or_stands_up_in_flight(parts, stops):
+    legs = stopping(parts, stops)
+    if legs.end == 0:
+        return
+    reference, slack = legs.reference(), np.radians(1.5)
+    for leg, stands in enumerate(legs.stance_intervals()):
+        for begin, end in stands:
+            theta = knots(reference, leg, begin, end)
+            assert theta.min() >= min(theta[0], np.radians(50.0)) - 1e-6
+            assert theta.max() <= max(theta[0], np.radians(118.0)) + 1e-6
+        for begin, end in zip(stands[:-1, 1], stands[1:, 0], strict=True):
+            theta = knots(reference, leg, begin, end)
+            tops = highest_hip(np.pi) + TURN * np.arange(-2, 4)
+            for low, high in np.sort(np.stack([theta[:-1], theta[1:]], axis=1), axis=1):
+                assert not np.any((low + slack < tops) & (tops < high - slack))
 
 
 def test_legs_stand_still_for_as_long_as_they_are_held():

@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: MIT
+"""Lanes: several numbers side by side in vector registers, for numba's compiled loops.
+
+A value of type `Lanes` holds `LANES` float64, one of each of as many independent computations. Its
+operators and the functions below work on all of them by one instruction where the processor has
+vector instructions. The same functions take a plain float, so that one source of a formula is
+compiled for one computation or for `LANES`, by the type of the array that it reads:
+
+====================  ==========================  ==================
+`row(array, i)` of     an array of shape (n,)      (n, LANES)
+====================  ==========================  ==================
+is                     a float                     `Lanes`
+a comparison gives     a bool                      `Mask`
+====================  ==========================  ==================
+
+Lanes exist only within compiled functions. Products and sums may be contracted to one rounding
+where the processor has that instruction; nothing else is relaxed.
+"""
+
+import operator
+from collections.abc import Callable
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.imputils import lower_builtin, lower_constant
+from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.extending import intrinsic, models, register_model
+
+LANES = 4
+"""Number of lanes: as many float64 as a vector register of AVX2 holds."""
+
+_DOUBLE, _LONG = ir.DoubleType(), ir.IntType(64)
+_CONTRACT = ("contract",)
+
+
+class LanesType(types.Type):
+    """numba's type of `LANES` float64 side by side."""
+
+    def __init__(self) -> None:
+        super().__init__(name=f"Lanes({LANES})")
+
+
+class MaskType(types.Type):
+    """numba's type of `LANES` truth values side by side."""
+
+    def __init__(self) -> None:
+        super().__init__(name=f"Mask({LANES})")
+
+
+lanes, mask, one = LanesType(), MaskType(), types.float64
+
+
+@register_model(LanesType)
+class _LanesModel(models.PrimitiveModel):
+    def __init__(self, manager, kind):
+        super().__init__(manager, kind, ir.VectorType(_DOUBLE, LANES))
+
+
+@register_model(MaskType)
+class _MaskModel(models.PrimitiveModel):
+    def __init__(self, manager, kind):
+        super().__init__(manager, kind, ir.VectorType(ir.IntType(1), LANES))
+
+
+def _vector(builder, context, kind, value):
+    """Return an LLVM value as a vector: a float is repeated in all lanes."""
+    if isinstance(kind, LanesType):
+        return value
+    value = context.cast(builder, value, kind, one)
+    vector = ir.Constant(ir.VectorType(_DOUBLE, LANES), ir.Undefined)
+    for lane in range(LANES):
+        vector = builder.insert_element(vector, value, ir.Constant(ir.IntType(32), lane))
+    return vector
+
+
+def _operator(op: Callable, emit: Callable, result: types.Type) -> None:
+    """Give an operator of two `Lanes`, or of a float and `Lanes`, its type and its instruction."""
+    pairs = [(lanes, lanes), (lanes, one), (one, lanes)]
+
+    @infer_global(op)
+    class _Typed(ConcreteTemplate):
+        cases = [signature(result, *pair) for pair in pairs]  # noqa: RUF012 numba's own way
+
+    def lower(context, builder, sig, args):
+        left, right = (
+            _vector(builder, context, *each) for each in zip(sig.args, args, strict=True)
+        )
+        return emit(builder, left, right)
+
+    for pair in pairs:
+        lower_builtin(op, *pair)(lower)
+
+
+def _compared(sign: str) -> Callable:
+    return lambda builder, a, b: builder.fcmp_ordered(sign, a, b)
+
+
+_operator(operator.add, lambda b, x, y: b.fadd(x, y, flags=_CONTRACT), lanes)
+_operator(operator.sub, lambda b, x, y: b.fsub(x, y, flags=_CONTRACT), lanes)
+_operator(operator.mul, lambda b, x, y: b.fmul(x, y, flags=_CONTRACT), lanes)
+_operator(operator.truediv, lambda b, x, y: b.fdiv(x, y), lanes)
+for _op, _sign in (
+    (operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="),
+    (operator.eq, "=="),
+):  # fmt: skip
+    _operator(_op, _compared(_sign), mask)
+
+
+@infer_global(operator.neg)
+class _Negated(ConcreteTemplate):
+    cases = [signature(lanes, lanes)]  # noqa: RUF012 numba's own way
+
+
+@lower_builtin(operator.neg, lanes)
+def _negate(context, builder, sig, args):
+    return builder.fneg(args[0])
+
+
+def _mask_operator(op: Callable, emit: Callable) -> None:
+    @infer_global(op)
+    class _Typed(ConcreteTemplate):
+        cases = [signature(mask, mask, mask)]  # noqa: RUF012 numba's own way
+
+    lower_builtin(op, mask, mask)(lambda context, builder, sig, args: emit(builder, *args))
+
+
+_mask_operator(operator.and_, lambda b, x, y: b.and_(x, y))
+_mask_operator(operator.or_, lambda b, x, y: b.or_(x, y))
+_mask_operator(operator.xor, lambda b, x, y: b.xor(x, y))
+
+
+def _place(context, builder, array_type, array, index):
+    """Return a pointer to row `index` of an array: to a float, or to a vector of the lanes."""
+    shape = context.make_array(array_type)(context, builder, array)
+    if array_type.ndim == 1:
+        return builder.gep(shape.data, [index])
+    first = builder.mul(index, ir.Constant(_LONG, LANES))
+    pointer = builder.gep(shape.data, [first])
+    return builder.bitcast(pointer, ir.VectorType(_DOUBLE, LANES).as_pointer())
+
+
+def _element(array_type):
+    return one if array_type.ndim == 1 else lanes
+
+
+@intrinsic
+def row(typing, array, index):
+    """Return row `index` of an array of shape (n,), a float, or of (n, LANES), `Lanes`."""
+
+    def emit(context, builder, sig, args):
+        at = context.cast(builder, args[1], sig.args[1], types.intp)
+        loaded = builder.load(_place(context, builder, sig.args[0], args[0], at))
+        loaded.align = 8
+        return loaded
+
+    return _element(array)(array, index), emit
+
+
+@intrinsic
+def put(typing, array, index, value):
+    """Store a float or `Lanes` in row `index` of an array of shape (n,) or (n, LANES)."""
+    kind = _element(array)
+
+    def emit(context, builder, sig, args):
+        at = context.cast(builder, args[1], sig.args[1], types.intp)
+        stored = args[2]
+        if isinstance(kind, LanesType):
+            stored = _vector(builder, context, sig.args[2], stored)
+        builder.store(stored, _place(context, builder, sig.args[0], args[0], at)).align = 8
+        return context.get_dummy_value()
+
+    return types.void(array, index, value), emit
+
+
+@intrinsic
+def select(typing, where, yes, no):
+    """Return `yes` where a bool or `Mask` is true, else `no`, without a branch."""
+    kind = lanes if isinstance(where, MaskType) else one
+
+    def emit(context, builder, sig, args):
+        picked = args[1:]
+        if isinstance(kind, LanesType):
+            picked = [
+                _vector(builder, context, k, a) for k, a in zip(sig.args[1:], args[1:], strict=True)
+            ]
+        return builder.select(args[0], *picked)
+
+    if kind == one:
+        return kind(types.boolean, one, one), emit
+    return kind(where, yes, no), emit
+
+
+@intrinsic
+def any_of(typing, where):
+    """Return whether a bool, or any of the lanes of a `Mask`, is true."""
+
+    def emit(context, builder, sig, args):
+        if not isinstance(where, MaskType):
+            return args[0]
+        bits = builder.bitcast(args[0], ir.IntType(LANES))
+        return builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
+
+    return types.boolean(where), emit
+
+
+@intrinsic
+def negated(typing, where):
+    """Return the negation of a bool or of each lane of a `Mask`."""
+
+    def emit(context, builder, sig, args):
+        return builder.not_(args[0])
+
+    return where(where), emit
+
+
+def _rounded(name: str, doc: str):
+    """Return a function of a float or `Lanes` that is an LLVM intrinsic of one argument."""
+
+    def typed(typing, x):
+        def emit(context, builder, sig, args):
+            kind = args[0].type
+            suffix = "f64" if kind == _DOUBLE else f"v{LANES}f64"
+            called = cgutils.get_or_insert_function(
+                builder.module, ir.FunctionType(kind, [kind]), f"llvm.{name}.{suffix}"
+            )
+            return builder.call(called, args)
+
+        return (lanes if isinstance(x, LanesType) else one)(x), emit
+
+    typed.__doc__, typed.__name__ = doc, name
+    return intrinsic(typed)
+
+
+root = _rounded("sqrt", "Return the square root of a float or of each of the `Lanes`.")
+floor = _rounded("floor", "Return the largest whole number not above a float or each of `Lanes`.")
+nearest = _rounded("rint", "Return the whole number nearest to a float or each of `Lanes`.")
+size = _rounded("fabs", "Return the absolute value of a float or of each of the `Lanes`.")
+
+
+def _long_like(kind, value):
+    """Return an integer constant, repeated for all lanes where `kind` is a vector."""
+    if isinstance(kind, ir.VectorType):
+        return ir.Constant(ir.VectorType(_LONG, LANES), [value] * LANES)
+    return ir.Constant(_LONG, value)
+
+
+_SPLIT = 0x3FE6A09E << 32  # bits of the float at which mantissas are split: sqrt(1/2)
+_ONE = 0x3FF0 << 48  # bits of 1.0
+_WHOLE = 0x4330 << 48  # bits of 2^52: a float from there on counts whole numbers in its last bits
+
+
+@intrinsic
+def exponent_and_mantissa(typing, x):
+    """Split positive floats: x = 2^e m, with whole e and m from sqrt(1/2) to sqrt(2)."""
+
+    def emit(context, builder, sig, args):
+        kind = args[0].type
+        whole = ir.VectorType(_LONG, LANES) if isinstance(kind, ir.VectorType) else _LONG
+        bits = builder.add(builder.bitcast(args[0], whole), _long_like(kind, _ONE - _SPLIT))
+        biased = builder.or_(builder.lshr(bits, _long_like(kind, 52)), _long_like(kind, _WHOLE))
+        magic = builder.bitcast(_long_like(kind, _WHOLE + 1023), kind)
+        exponent = builder.fsub(builder.bitcast(biased, kind), magic)
+        rest = builder.and_(bits, _long_like(kind, (1 << 52) - 1))
+        mantissa = builder.bitcast(builder.add(rest, _long_like(kind, _SPLIT)), kind)
+        return context.make_tuple(builder, sig.return_type, (exponent, mantissa))
+
+    kind = lanes if isinstance(x, LanesType) else one
+    return types.UniTuple(kind, 2)(x), emit
+
+
+@intrinsic(prefer_literal=True)
+def gathered(typing, table, index, count):
+    """Return `count` successive values of each lane's own row of a table, from a column on.
+
+    Args:
+        table: One row a lane, shape (LANES, n), or of shape (1, n) for a float.
+        index: Whole numbers as a float or `Lanes`: first column.
+        count: Number of values, a literal.
+
+    Returns:
+        A tuple of `count` floats or `Lanes`.
+    """
+    many = count.literal_value
+    kind = lanes if isinstance(index, LanesType) else one
+
+    def emit(context, builder, sig, args):
+        shape = context.make_array(sig.args[0])(context, builder, args[0])
+        (_, columns) = cgutils.unpack_tuple(builder, shape.shape)
+        if kind == one:
+            first = builder.fptosi(args[1], _LONG)
+            found = [
+                builder.load(builder.gep(shape.data, [builder.add(first, ir.Constant(_LONG, i))]))
+                for i in range(many)
+            ]
+            return context.make_tuple(builder, sig.return_type, found)
+        where = builder.fptosi(args[1], ir.VectorType(ir.IntType(32), LANES))
+        found = [ir.Constant(ir.VectorType(_DOUBLE, LANES), ir.Undefined) for _ in range(many)]
+        for lane in range(LANES):
+            number = ir.Constant(ir.IntType(32), lane)
+            own = builder.sext(builder.extract_element(where, number), _LONG)
+            first = builder.add(own, builder.mul(columns, ir.Constant(_LONG, lane)))
+            for i in range(many):
+                at = builder.gep(shape.data, [builder.add(first, ir.Constant(_LONG, i))])
+                found[i] = builder.insert_element(found[i], builder.load(at), number)
+        return context.make_tuple(builder, sig.return_type, found)
+
+    return types.UniTuple(kind, many)(table, index, count), emit

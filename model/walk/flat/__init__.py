@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Walks on flat ground, several side by side in vector registers."""

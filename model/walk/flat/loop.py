@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""The loop over the steps of walks on flat ground, each walk at its own time, compiled.
+
+Every walk goes by the rule of `model.walk.loop`: a long step in which a contact begins or ends is
+repeated in fine steps. Walks side by side need not be fine at the same time. Each round of the loop
+is one step of every walk, long or fine, and a walk that needs more of them ends later.
+"""
+
+import numpy as np
+
+from model.compiled import borrowing, inlined
+from model.lanes import put, row, select
+from model.robot import N_LEGS
+from model.walk.arrays import N_CONTACTS
+from model.walk.flat import rows
+from model.walk.flat.step import flat_step
+from model.walk.loop import FINE_STEP, FINE_TIME
+
+ENDED = -1  # in place of the number of fine steps left
+N_SAVED = rows.N_STATE + N_CONTACTS
+
+
+@borrowing
+def run_flat(A, each, laws, theta, dt, pose, done, fine_left):
+    """Integrate walks through leg angles at equal steps, by the rule of `model.walk.loop`.
+
+    Args:
+        A: The walks' rows, shape (N_ROWS, LANES) or (N_ROWS,): what is given once, and the states,
+            which are overwritten with the final ones.
+        each: The same memory as `A`, shape (N_ROWS, walks), to address one walk.
+        laws: The slip laws.
+        theta: Leg angles at every long step's start and the last one's end, (walks, n + 1, 6) [rad].
+        dt: Length of a long step [s].
+        pose: Filled at each step's end: position and quaternion, shape (walks, n, 7).
+        done: Steps of each walk, zero at the start; filled with the number computed, which is less
+            than n where the state stopped being finite, shape (walks,).
+        fine_left: Work array of integers, shape (walks,).
+    """
+    n, walks = theta.shape[1] - 1, theta.shape[0]
+    parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
+    fine_steps = int(np.ceil(FINE_TIME / dt)) if parts > 1 else 0
+    left = walks
+    for walk in range(walks):
+        fine_left[walk] = fine_steps
+        begin_step(each, theta, dt, 0, walk, fine_left[walk] > 0, parts)
+    while left > 0:
+        prepare(A)
+        flat_step(A, laws)
+        compare(A)
+        for walk in range(walks):
+            if fine_left[walk] == ENDED:
+                continue
+            changed = each[rows.CHANGED, walk] > 0
+            if each[rows.PARTS, walk] == 1:
+                if parts > 1 and changed:
+                    fine_left[walk] = fine_steps
+                    restart(each, walk, parts)
+                    continue
+            else:
+                each[rows.PART, walk] += 1.0
+                if each[rows.PART, walk] < each[rows.PARTS, walk]:
+                    each[rows.FRESH, walk] = 0.0
+                    continue
+                fine_left[walk] = fine_steps if changed else fine_left[walk] - 1
+            step = done[walk]
+            finite = is_finite(each, walk)
+            if finite:
+                for a in range(7):
+                    pose[walk, step, a] = each[rows.P + a, walk]
+                done[walk] = step + 1
+            if finite and step + 1 < n:
+                begin_step(each, theta, dt, step + 1, walk, fine_left[walk] > 0, parts)
+            else:
+                left -= 1
+                fine_left[walk] = ENDED
+
+
+@inlined
+def begin_step(each, theta, dt, step, walk, fine, parts):
+    """Set up the next long step of one walk, to be made at once or in `parts` fine steps."""
+    for i in range(N_LEGS):
+        each[rows.FROM + i, walk] = theta[walk, step, i]
+        each[rows.TO + i, walk] = theta[walk, step + 1, i]
+    each[rows.LONG_STEP, walk] = dt
+    each[rows.PARTS, walk] = parts if fine else 1.0
+    each[rows.PART, walk] = 0.0
+    each[rows.FRESH, walk] = 1.0
+
+
+@inlined
+def restart(each, walk, parts):
+    """Return one walk to the start of its long step, to be made in `parts` fine steps."""
+    for i in range(N_SAVED):
+        each[rows.STATE + i, walk] = each[rows.BEFORE + i, walk]
+    each[rows.PARTS, walk] = parts
+    each[rows.PART, walk] = 0.0
+    each[rows.FRESH, walk] = 1.0
+
+
+@inlined
+def prepare(A):
+    """Compute length, leg angles and leg speeds of the next step; save states at a long one's start.
+
+    The legs move evenly over a long step.
+    """
+    fresh, whole, parts = row(A, rows.FRESH) == 1.0, row(A, rows.LONG_STEP), row(A, rows.PARTS)
+    per_whole, once = 1.0 / whole, parts == 1.0
+    for i in range(N_SAVED):
+        put(A, rows.BEFORE + i, select(fresh, row(A, rows.STATE + i), row(A, rows.BEFORE + i)))
+    put(A, rows.DT, whole / parts)
+    done = (row(A, rows.PART) + 1.0) / parts * whole
+    for i in range(N_LEGS):
+        before, after = row(A, rows.FROM + i), row(A, rows.TO + i)
+        speed = (after - before) * per_whole
+        put(A, rows.SPEED + i, speed)
+        put(A, rows.ANGLE + i, select(once, after, before + done * speed))
+
+
+@inlined
+def compare(A):
+    """Compare which contacts have load with those at the long step's start."""
+    first = row(A, rows.LOAD) > 0.0
+    changed = first ^ first
+    for i in range(N_CONTACTS):
+        now, then = row(A, rows.LOAD + i) > 0.0, row(A, rows.BEFORE + rows.N_STATE + i) > 0.0
+        changed = changed | (now ^ then)
+    put(A, rows.CHANGED, select(changed, row(A, rows.DT) * 0.0 + 1.0, 0.0))
+
+
+@inlined
+def is_finite(each, walk):
+    """Return whether position and angular velocity of one walk are finite."""
+    total = 0.0
+    for a in range(3):
+        total += each[rows.P + a, walk] + each[rows.OMEGA + a, walk]
+    return np.isfinite(total)

@@ -19,17 +19,27 @@ where the processor has that instruction; nothing else is relaxed.
 
 import operator
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
-import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.imputils import lower_builtin, lower_constant
+from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, models, register_model
 
 LANES = 4
 """Number of lanes: as many float64 as a vector register of AVX2 holds."""
+
+
+def _inline(function: Callable[..., object], **options: bool) -> Callable[..., Any]:
+    """Return the intrinsic of a function that types a call and emits its instructions.
+
+    Calls leave out the function's first argument, numba's typing context.
+    """
+    return intrinsic(**options)(function) if options else intrinsic(function)
+
 
 _DOUBLE, _LONG = ir.DoubleType(), ir.IntType(64)
 _CONTRACT = ("contract",)
@@ -79,7 +89,7 @@ def _operator(op: Callable, emit: Callable, result: types.Type) -> None:
     """Give an operator of two `Lanes`, or of a float and `Lanes`, its type and its instruction."""
     pairs = [(lanes, lanes), (lanes, one), (one, lanes)]
 
-    @infer_global(op)
+    @infer_global(op)  # pyright: ignore[reportOptionalCall] its stub lacks it
     class _Typed(ConcreteTemplate):
         cases = [signature(result, *pair) for pair in pairs]  # noqa: RUF012 numba's own way
 
@@ -108,7 +118,7 @@ for _op, _sign in (
     _operator(_op, _compared(_sign), mask)
 
 
-@infer_global(operator.neg)
+@infer_global(operator.neg)  # pyright: ignore[reportOptionalCall] its stub lacks it
 class _Negated(ConcreteTemplate):
     cases = [signature(lanes, lanes)]  # noqa: RUF012 numba's own way
 
@@ -119,7 +129,7 @@ def _negate(context, builder, sig, args):
 
 
 def _mask_operator(op: Callable, emit: Callable) -> None:
-    @infer_global(op)
+    @infer_global(op)  # pyright: ignore[reportOptionalCall] its stub lacks it
     class _Typed(ConcreteTemplate):
         cases = [signature(mask, mask, mask)]  # noqa: RUF012 numba's own way
 
@@ -145,7 +155,7 @@ def _element(array_type):
     return one if array_type.ndim == 1 else lanes
 
 
-@intrinsic
+@_inline
 def row(typing, array, index):
     """Return row `index` of an array of shape (n,), a float, or of (n, LANES), `Lanes`."""
 
@@ -158,7 +168,7 @@ def row(typing, array, index):
     return _element(array)(array, index), emit
 
 
-@intrinsic
+@_inline
 def put(typing, array, index, value):
     """Store a float or `Lanes` in row `index` of an array of shape (n,) or (n, LANES)."""
     kind = _element(array)
@@ -174,7 +184,7 @@ def put(typing, array, index, value):
     return types.void(array, index, value), emit
 
 
-@intrinsic
+@_inline
 def select(typing, where, yes, no):
     """Return `yes` where a bool or `Mask` is true, else `no`, without a branch."""
     kind = lanes if isinstance(where, MaskType) else one
@@ -192,7 +202,7 @@ def select(typing, where, yes, no):
     return kind(where, yes, no), emit
 
 
-@intrinsic
+@_inline
 def any_of(typing, where):
     """Return whether a bool, or any of the lanes of a `Mask`, is true."""
 
@@ -205,7 +215,7 @@ def any_of(typing, where):
     return types.boolean(where), emit
 
 
-@intrinsic
+@_inline
 def negated(typing, where):
     """Return the negation of a bool or of each lane of a `Mask`."""
 
@@ -215,7 +225,7 @@ def negated(typing, where):
     return where(where), emit
 
 
-def _rounded(name: str, doc: str):
+def _rounded(name: str, doc: str) -> Callable[..., Any]:
     """Return a function of a float or `Lanes` that is an LLVM intrinsic of one argument."""
 
     def typed(typing, x):
@@ -230,7 +240,7 @@ def _rounded(name: str, doc: str):
         return (lanes if isinstance(x, LanesType) else one)(x), emit
 
     typed.__doc__, typed.__name__ = doc, name
-    return intrinsic(typed)
+    return _inline(typed)
 
 
 root = _rounded("sqrt", "Return the square root of a float or of each of the `Lanes`.")
@@ -251,7 +261,7 @@ _ONE = 0x3FF0 << 48  # bits of 1.0
 _WHOLE = 0x4330 << 48  # bits of 2^52: a float from there on counts whole numbers in its last bits
 
 
-@intrinsic
+@_inline
 def exponent_and_mantissa(typing, x):
     """Split positive floats: x = 2^e m, with whole e and m from sqrt(1/2) to sqrt(2)."""
 
@@ -270,17 +280,13 @@ def exponent_and_mantissa(typing, x):
     return types.UniTuple(kind, 2)(x), emit
 
 
-@intrinsic(prefer_literal=True)
+@partial(_inline, prefer_literal=True)
 def gathered(typing, table, index, count):
     """Return `count` successive values of each lane's own row of a table, from a column on.
 
-    Args:
-        table: One row a lane, shape (LANES, n), or of shape (1, n) for a float.
-        index: Whole numbers as a float or `Lanes`: first column.
-        count: Number of values, a literal.
-
-    Returns:
-        A tuple of `count` floats or `Lanes`.
+    The table has one row a lane, shape (LANES, n), or (1, n) for a float. The first column `index`
+    is a whole number as a float, or `Lanes` of them; `count` is a literal. The result is a tuple of
+    `count` floats or `Lanes`.
     """
     many = count.literal_value
     kind = lanes if isinstance(index, LanesType) else one

@@ -10,7 +10,6 @@ alone decides which legs are in contact. Where this departs from the thesis's mo
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
@@ -18,9 +17,10 @@ from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
-from model.walk.ground import FACE, FLAT, Ground, ground_at, is_even
+from model.walk.flat.batch import FlatWalk, is_flat_walk, run_side_by_side
+from model.walk.ground import FACE, FLAT, Ground, ground_at, is_even, is_level
 from model.walk.loop import run_steps
-from model.walk.path import WalkPath
+from model.walk.path import WalkPath, path_of
 from model.walk.quaternion import roll_pitch_yaw, turned_about_vertical
 from model.walk.traction import TractionTable, VelocityCoulomb
 
@@ -116,7 +116,7 @@ def walk(
     theta = reference.angles(t) + robot.leg_offset
     state = start_state(robot, theta[0], options, ground=ground, start=start)
     pose, legs = integrate(robot, table, state, theta, options, ground=ground, keep_legs=True)
-    return _path(t, pose, theta, legs)
+    return path_of(t, pose, theta, legs)
 
 
 def step_times(duration: float, dt: float) -> Array:
@@ -171,20 +171,36 @@ def integrate(
     Raises:
         WalkError: A step diverged; the message says when and where.
     """
+    contacts, dt = Contacts(options.stiffness, options.damping), options.dt
+    if is_flat_walk(table, ground):
+        walk = FlatWalk(robot, table, contacts, state, theta)
+        height = float(ground.height[0, 0])
+        poses, every, counts = run_side_by_side([walk], dt, height=height, keep_legs=keep_legs)
+        require_finished(poses[0], counts[0], dt, began=began)
+        return poses[0], every[0]
     n = len(theta) - 1
     pose, legs = np.empty((n + 1, 7)), np.empty((n if keep_legs else 0, N_LEGS + 1, 6))
     pose[0] = np.concatenate([state.p, state.q])
-    contacts = Contacts(options.stiffness, options.damping)
-    done = run_steps(
-        body_arrays(robot), table, ground, contacts, state, theta, options.dt, pose[1:], legs
-    )
-    if done < n:
+    done = run_steps(body_arrays(robot), table, ground, contacts, state, theta, dt, pose[1:], legs)
+    require_finished(pose, done, dt, began=began)
+    return pose, legs
+
+
+def require_finished(pose: Array, done: int, dt: float, *, began: float = 0.0) -> None:
+    """Raise `WalkError` if a walk diverged; its message says when and where.
+
+    Args:
+        pose: Position and quaternion at the times of all steps, shape (n + 1, 7).
+        done: Number of steps computed.
+        dt: Length of a step [s].
+        began: Time of the first step [s].
+    """
+    if done < len(pose) - 1:
         x, y, z = pose[done, :3]
         raise WalkError(
-            f"the walk diverged at t = {began + done * options.dt:.4g} s, with the body at "
+            f"the walk diverged at t = {began + done * dt:.4g} s, with the body at "
             f"x {x:.4g}, y {y:.4g}, z {z:.4g} m; look at the leg angles there, or take a smaller dt"
         )
-    return pose, legs
 
 
 def start_state(
@@ -198,6 +214,8 @@ def start_state(
     """Compute the initial state: the robot settled on its legs, or level at the start's height.
 
     Angular velocity and bristles are zero. A robot that its legs do not hold settles on its body.
+    On uneven ground it is held above its place all the time, and the ground is slippery: moved back
+    there afterwards, its legs could be deep in the ground.
 
     Args:
         robot: The robot.
@@ -209,19 +227,76 @@ def start_state(
     Raises:
         WalkError: Settling diverged, as with leg angles that are not finite.
     """
+    state = unsettled_state(robot, ground=ground, start=start)
+    if start.height is not None:
+        return state
+    still, slow = standing_angles(theta), replace(options, dt=SETTLE_STEP)
+    try:
+        if is_level(ground) or is_even(ground):
+            integrate(robot, STICKY, state, still, slow, ground=ground)
+        else:
+            for _ in range(len(still) - 1):
+                integrate(robot, SLIPPERY, state, still[:2], slow, ground=ground)
+                _hold(state, start.x, start.y, start.yaw)
+    except WalkError as error:
+        raise cannot_stand(theta, start) from error
+    return settled(state, ground=ground, start=start)
+
+
+def unsettled_state(robot: Robot, *, ground: Ground = FLAT, start: Start = ORIGIN) -> State:
+    """Compute the state that settling begins from: level above the ground, at rest.
+
+    With a height given by the start it is the initial state itself, with the start's velocity.
+
+    Args:
+        robot: The robot.
+        ground: The ground.
+        start: Initial pose and velocity.
+    """
     half = 0.5 * start.yaw
     highest = _highest_under(robot, ground, start)
     reach = 2 * robot.leg_radius + max(0.5 * robot.body_size[2], -float(robot.hips[:, 2].min()))
-    state = State(
+    return State(
         p=np.array([start.x, start.y, highest + reach if start.height is None else start.height]),
         q=np.array([np.cos(half), 0.0, 0.0, np.sin(half)]),
-        v=np.array(start.velocity, dtype=float),
+        v=np.zeros(3) if start.height is None else np.array(start.velocity, dtype=float),
         w=np.zeros(3),
         stretch=np.zeros((N_CONTACTS, 3)),
     )
-    if start.height is not None:
-        return state
-    return _settled(robot, theta, ground, state, options)
+
+
+def standing_angles(theta: Array) -> Array:
+    """Repeat leg angles (6,) for all steps of settling, shape (n + 1, 6) [rad]."""
+    return np.tile(theta, (round(SETTLE_TIME / SETTLE_STEP) + 1, 1))
+
+
+def cannot_stand(theta: Array, start: Start = ORIGIN) -> WalkError:
+    """Return the error of a robot whose settling at a start on leg angles (6,) [rad] diverged."""
+    return WalkError(
+        f"the robot cannot stand at x {start.x:g}, y {start.y:g} m on legs at "
+        f"{np.degrees(theta).round(1)} degrees: settling diverged; check that all are finite, and "
+        "stiffness and damping"
+    )
+
+
+def settled(state: State, *, ground: Ground = FLAT, start: Start = ORIGIN) -> State:
+    """Move a body that has settled back to the start's x, y and yaw.
+
+    Args:
+        state: State after 1 s on motionless legs, overwritten and returned: its height as settled
+            over the ground at x and y, roll and pitch as settled, its velocity the start's, angular
+            velocity and bristles zero.
+        ground: The ground.
+        start: Initial pose and velocity.
+    """
+    if not is_level(ground):
+        there, here = (ground_at(ground, *each)[0] for each in ((start.x, start.y), state.p[:2]))
+        state.p[2] += there - here
+    _hold(state, start.x, start.y, start.yaw)
+    state.v[:] = start.velocity
+    state.w[:] = 0.0
+    state.stretch[:] = 0.0
+    return state
 
 
 def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
@@ -243,79 +318,9 @@ def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
     return float(near.max()) + float(over.max(initial=0.0)) + plane
 
 
-def _settled(
-    robot: Robot,
-    theta: Array,
-    ground: Ground,
-    state: State,
-    options: DynamicsOptions,
-) -> State:
-    """Simulate 1 s on motionless legs and sticky ground; move the body back to its x, y and yaw.
-
-    On uneven ground it is held there all the time, and the ground is slippery: moved back, its legs
-    could be deep in the ground. The state is overwritten and returned: its height as settled over
-    the ground at x and y, roll and pitch as settled, its velocity the initial one, angular velocity
-    and bristles zero. Raise `WalkError` if it diverges.
-    """
-    x, y = state.p[:2]
-    yaw = 2 * np.arctan2(state.q[3], state.q[0])
-    velocity = state.v.copy()
-    state.v[:] = 0.0
-    still = np.tile(theta, (round(SETTLE_TIME / SETTLE_STEP) + 1, 1))
-    options, even = replace(options, dt=SETTLE_STEP), is_even(ground)
-    try:
-        if even:
-            integrate(robot, STICKY, state, still, options, ground=ground)
-        else:
-            for _ in range(len(still) - 1):
-                integrate(robot, SLIPPERY, state, still[:2], options, ground=ground)
-                _hold(state, x, y, yaw)
-    except WalkError as error:
-        raise WalkError(
-            f"the robot cannot stand at x {x:g}, y {y:g} m on legs at {np.degrees(theta).round(1)} "
-            "degrees: settling diverged; check that all are finite, and stiffness and damping"
-        ) from error
-    state.p[2] += ground_at(ground, x, y)[0] - ground_at(ground, state.p[0], state.p[1])[0]
-    _hold(state, x, y, yaw)
-    state.v[:] = velocity
-    state.w[:] = 0.0
-    state.stretch[:] = 0.0
-    return state
-
-
 def _hold(state: State, x: float, y: float, yaw: float) -> None:
     """Move a state to x, y [m] and yaw [rad], and stop its motion along the ground and its yaw."""
     state.p[:2] = x, y
     state.q[:] = turned_about_vertical(state.q, yaw - roll_pitch_yaw(state.q[None])[0, 2])
     state.v[:2] = 0.0
     state.w[2] = 0.0
-
-
-def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
-    """Convert poses (n + 1, 7) and the rows of legs and body of `run_steps`, (n, 7, 6), to a path.
-
-    The first sample takes the rows of the first step's end, each other one those of its step.
-    """
-    orientation = roll_pitch_yaw(pose[:, 3:])
-    legs = np.concatenate([legs[:1], legs])
-    body, legs = legs[:, N_LEGS, 0], legs[:, :N_LEGS]
-    load: NDArray[np.float64] = legs[..., 0]
-    return WalkPath(
-        t=t,
-        position=pose[:, :3],
-        orientation=orientation,
-        theta=theta,
-        contact=load > 0,
-        slip_velocity=_to_heading(legs[..., 3:5], orientation[:, 2]),
-        slip_ratio=legs[..., 5],
-        normal_force=load,
-        traction_force=_to_heading(legs[..., 1:3], orientation[:, 2]),
-        body_force=body,
-    )
-
-
-def _to_heading(vectors: Array, yaw: Array) -> Array:
-    """Rotate world vectors (x, y), shape (n, 6, 2), by -yaw to components forward and left."""
-    c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
-    x, y = vectors[..., 0], vectors[..., 1]
-    return np.stack([c * x + s * y, c * y - s * x], axis=-1)

@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
@@ -22,10 +23,14 @@ from model.walk.dynamics import (
     start_state,
     step_times,
 )
+from model.walk.flat.batch import is_flat_walk
 from model.walk.ground import FLAT, Ground, is_level
 from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
+from model.walk.side_by_side import MOST, LevelWalk, OneOfSeveralError, walk_side_by_side
 from model.walk.stride import walk_by_strides
 from model.walk.traction import TractionTable
+
+UNWRAPPED = 0.02  # s
 
 
 @dataclass(frozen=True)
@@ -56,6 +61,12 @@ class WalkDraw:
     def is_alike_everywhere(self) -> bool:
         """Whether the walk depends on no place or heading: level ground of one law, from zero."""
         return is_level(self.ground) and not self.areas and self.start == ORIGIN
+
+    @property
+    def walks_beside_others(self) -> bool:
+        """Whether the draw is walked beside others: every step, on level ground, no bristles."""
+        steady = self.reference.period is None and self.is_alike_everywhere
+        return steady and is_flat_walk(self.table, self.ground)
 
     def options(self, common: DynamicsOptions) -> DynamicsOptions:
         """Return the common options, contact stiffness and damping times this draw's factors."""
@@ -111,24 +122,71 @@ def walk_ensemble(
     _require_draws(draws, t)
     duration = max(float(t[-1]), options.dt)
 
-    def walk(numbered: tuple[int, WalkDraw]) -> Array:
-        number, draw = numbered
+    def walk(batch: list[int]) -> Array:
         try:
-            path = planar_walk(draw, duration=duration, options=options, tilt=tilt)
+            if len(batch) > 1:
+                together = [draws[i] for i in batch]
+                return _walked_together(together, t, duration, options, tilt=tilt)
+            path = planar_walk(draws[batch[0]], duration=duration, options=options, tilt=tilt)
         except WalkError as error:
+            number = batch[error.walk if isinstance(error, OneOfSeveralError) else 0] + 1
             raise WalkError(f"draw {number} of {len(draws)}: {error}") from error
-        poses = path.poses
-        columns = [*poses.states.T, *(_tilt_of(path) if tilt else ())]
-        return np.stack([np.interp(t, poses.t, a) for a in columns], axis=-1)
+        columns = [*path.poses.states.T, *(_tilt_of(path) if tilt else ())]
+        return np.stack([np.interp(t, path.poses.t, a) for a in columns], axis=-1)[None]
 
-    paths = []
+    states, done = np.empty((len(draws), len(t), 5 if tilt else 3)), 0
+    batches = _batches(draws)
     with ThreadPoolExecutor(threads) as pool:
-        for path in pool.map(walk, enumerate(draws, start=1)):
-            paths.append(path)
+        for batch, paths in zip(batches, pool.map(walk, batches), strict=True):
+            states[batch] = paths
+            done += len(batch)
             if progress is not None:
-                progress(len(paths) / len(draws))
-    states = np.stack(paths)
-    return PlanarWalk(Poses.of_states(t, states), states[..., 3:] if tilt else None)
+                progress(done / len(draws))
+    return PlanarWalk(Poses.of_states(t, states[..., :3]), states[..., 3:] if tilt else None)
+
+
+def _batches(draws: Sequence[WalkDraw]) -> list[list[int]]:
+    """Group the indices of draws: those walked side by side, up to `MOST`, and others alone."""
+    together = [i for i, draw in enumerate(draws) if draw.walks_beside_others]
+    alone = [[i] for i, draw in enumerate(draws) if not draw.walks_beside_others]
+    return [together[i : i + MOST] for i in range(0, len(together), MOST)] + alone
+
+
+def _walked_together(
+    draws: Sequence[WalkDraw], t: Array, duration: float, options: DynamicsOptions, *, tilt: bool
+) -> Array:
+    """Compute x, y, yaw, and roll and pitch if `tilt`, of draws that are walked side by side.
+
+    Returns:
+        Interpolated linearly at `t`, shape (draws, n, 3 or 5) [m, rad].
+    """
+    times = step_times(duration, options.dt)
+    walks = [
+        LevelWalk(
+            draw.robot, draw.table, draw.options(options),
+            draw.reference.angles(times) + draw.robot.leg_offset,
+        )
+        for draw in draws
+    ]  # fmt: skip
+    needed = _needed(times, t)
+    pose = walk_side_by_side(walks)[:, needed]
+    found = []
+    for each in pose:
+        q = each[:, 3:]
+        columns = [each[:, 0], each[:, 1], unwrapped_yaw(q)]
+        columns += [*roll_pitch_yaw(q)[:, :2].T] if tilt else []
+        found.append(np.stack([np.interp(t, times[needed], a) for a in columns], axis=-1))
+    return np.stack(found)
+
+
+def _needed(times: Array, t: Array) -> NDArray[np.intp]:
+    """Return the indices of steps to interpolate between at `t`, with one every 20 ms at least.
+
+    No robot turns by half a turn in so short a time, so yaw can be unwrapped along them.
+    """
+    after = np.clip(np.searchsorted(times, t, side="right"), 1, len(times) - 1)
+    every = max(int(UNWRAPPED / (times[1] - times[0])), 1)
+    return np.unique(np.concatenate([after - 1, after, np.arange(0, len(times), every)]))
 
 
 def _tilt_of(path: PlanarWalk) -> Array:

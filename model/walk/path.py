@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.poses import Poses
+from model.robot import N_LEGS
 from model.slip.law import Array
+from model.walk.quaternion import roll_pitch_yaw
 
 
 @dataclass(frozen=True)
@@ -100,3 +102,33 @@ def turning_radius(position_xy: Array, yaw: Array) -> float:
     chord = float(np.linalg.norm(position_xy[-1] - position_xy[0]))
     turn = float(yaw[-1] - yaw[0])
     return np.inf if turn == 0 else float(np.copysign(chord / (2 * abs(np.sin(0.5 * turn))), turn))
+
+
+def path_of(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
+    """Convert poses (n + 1, 7) and the rows of legs and body of `run_steps`, (n, 7, 6), to a path.
+
+    The first sample takes the rows of the first step's end, each other one those of its step.
+    """
+    orientation = roll_pitch_yaw(pose[:, 3:])
+    legs = np.concatenate([legs[:1], legs])
+    body, legs = legs[:, N_LEGS, 0], legs[:, :N_LEGS]
+    load: NDArray[np.float64] = legs[..., 0]
+    return WalkPath(
+        t=t,
+        position=pose[:, :3],
+        orientation=orientation,
+        theta=theta,
+        contact=load > 0,
+        slip_velocity=_to_heading(legs[..., 3:5], orientation[:, 2]),
+        slip_ratio=legs[..., 5],
+        normal_force=load,
+        traction_force=_to_heading(legs[..., 1:3], orientation[:, 2]),
+        body_force=body,
+    )
+
+
+def _to_heading(vectors: Array, yaw: Array) -> Array:
+    """Rotate world vectors (x, y), shape (n, 6, 2), by -yaw to components forward and left."""
+    c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([c * x + s * y, c * y - s * x], axis=-1)

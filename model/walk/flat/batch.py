@@ -3,16 +3,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 import numpy as np
 
 from model.lanes import LANES
-from model.robot import Robot
+from model.robot import N_LEGS, Robot
 from model.slip.law import Array
+from model.walk.areas import AreaTractions
 from model.walk.arrays import Contacts, State, body_arrays
 from model.walk.flat import rows
 from model.walk.flat.loop import run_flat
+from model.walk.ground import Ground, is_level
 from model.walk.traction import TractionTable
 
 
@@ -52,19 +54,32 @@ class FlatWalk:
     theta: Array
 
 
+def is_flat_walk(table: TractionTable | AreaTractions, ground: Ground) -> TypeGuard[TractionTable]:
+    """Return whether walks of a law on a ground are computed here: level, one law, no bristles.
+
+    Args:
+        table: The slip law.
+        ground: The ground.
+    """
+    return isinstance(table, TractionTable) and not table.bristle and is_level(ground)
+
+
 def run_side_by_side(
-    walks: Sequence[FlatWalk], dt: float, *, height: float = 0.0
-) -> tuple[Array, list[int]]:
+    walks: Sequence[FlatWalk], dt: float, *, height: float = 0.0, keep_legs: bool = False
+) -> tuple[Array, Array, list[int]]:
     """Integrate one walk, or up to `LANES` side by side, through leg angles at equal steps.
 
     Args:
         walks: The walks, with equally many steps.
         dt: Length of a step [s].
         height: Height of the ground [m].
+        keep_legs: Whether to return slip and forces of the legs and the body.
 
     Returns:
-        Position [m] and quaternion at each step's end, shape (walks, n, 7), and for each walk the
-        number of steps computed: n, or fewer where the state stopped being finite.
+        Position [m] and quaternion at the times of the leg angles, shape (walks, n + 1, 7); slip
+        and forces at each step's end as in `model.walk.loop.run_steps`, shape (walks, n, 7, 6), or
+        (walks, 0, 7, 6) if not kept; and for each walk the number of steps computed: n, or fewer
+        where the state stopped being finite.
     """
     single = len(walks) == 1
     filled = list(walks) if single else [*walks, *[walks[-1]] * (LANES - len(walks))]
@@ -72,15 +87,19 @@ def run_side_by_side(
     for column, walk in zip(each.T, filled, strict=True):
         _fill(column, walk, height)
     theta = np.stack([walk.theta for walk in filled])
-    pose = np.empty((len(filled), theta.shape[1] - 1, 7))
+    n = theta.shape[1] - 1
+    pose = np.empty((len(filled), n + 1, 7))
+    pose[:, 0] = each[rows.P : rows.P + 7].T
+    legs = np.empty((len(filled), n if keep_legs else 0, N_LEGS + 1, 6))
     done = np.zeros(len(filled), dtype=np.int64)
     laws = _laws([walk.table for walk in filled])
-    run_flat(each.ravel() if single else each, each, laws, theta, dt, pose, done, done.copy())
+    A = each.ravel() if single else each
+    run_flat(A, each, laws, theta, dt, pose[:, 1:], legs, done, done.copy())
     for column, walk in zip(each.T, walks, strict=False):
         state = column[rows.STATE : rows.STATE + rows.N_STATE]
         for to, values in zip(walk.state[:4], np.split(state, [3, 7, 10]), strict=True):
             to[:] = values
-    return pose[: len(walks)], done[: len(walks)].tolist()
+    return pose[: len(walks)], legs[: len(walks)], done[: len(walks)].tolist()
 
 
 def _fill(column: Array, walk: FlatWalk, height: float) -> None:

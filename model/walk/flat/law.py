@@ -7,7 +7,14 @@ The tables are those of `model.walk.traction`, and so are the results but for ro
 from model.compiled import inlined
 from model.elementary import arsinh, log_of
 from model.lanes import any_of, floor, gathered, negated, root, row, select
-from model.walk.flat.rows import BY_VELOCITY, FIRST_LOAD, PER_LOAD_STEP, PER_SCALE, PER_STEP, SPEED_SCALE
+from model.walk.flat.rows import (
+    BY_VELOCITY,
+    FIRST_LOAD,
+    PER_LOAD_STEP,
+    PER_SCALE,
+    PER_STEP,
+    SPEED_SCALE,
+)
 
 LEAST_SLIP = 1e-9  # the secant's limit at no slip is the law's slope
 

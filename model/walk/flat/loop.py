@@ -21,7 +21,7 @@ N_SAVED = rows.N_STATE + N_CONTACTS
 
 
 @borrowing
-def run_flat(A, each, laws, theta, dt, pose, done, fine_left):
+def run_flat(A, each, laws, theta, dt, pose, legs, done, fine_left):
     """Integrate walks through leg angles at equal steps, by the rule of `model.walk.loop`.
 
     Args:
@@ -29,9 +29,12 @@ def run_flat(A, each, laws, theta, dt, pose, done, fine_left):
             which are overwritten with the final ones.
         each: The same memory as `A`, shape (N_ROWS, walks), to address one walk.
         laws: The slip laws.
-        theta: Leg angles at every long step's start and the last one's end, (walks, n + 1, 6) [rad].
+        theta: Leg angles at every long step's start and the last one's end, shape
+            (walks, n + 1, 6) [rad].
         dt: Length of a long step [s].
         pose: Filled at each step's end: position and quaternion, shape (walks, n, 7).
+        legs: Filled at each step's end with rows of legs and body as in `run_steps`, shape
+            (walks, n, 7, 6), or (walks, 0, 7, 6) not to keep them.
         done: Steps of each walk, zero at the start; filled with the number computed, which is less
             than n where the state stopped being finite, shape (walks,).
         fine_left: Work array of integers, shape (walks,).
@@ -67,6 +70,8 @@ def run_flat(A, each, laws, theta, dt, pose, done, fine_left):
             if finite:
                 for a in range(7):
                     pose[walk, step, a] = each[rows.P + a, walk]
+                if legs.shape[1]:
+                    keep_legs(each, walk, legs[walk, step])
                 done[walk] = step + 1
             if finite and step + 1 < n:
                 begin_step(each, theta, dt, step + 1, walk, fine_left[walk] > 0, parts)
@@ -99,9 +104,9 @@ def restart(each, walk, parts):
 
 @inlined
 def prepare(A):
-    """Compute length, leg angles and leg speeds of the next step; save states at a long one's start.
+    """Compute length, leg angles and leg speeds of the next step, even over a long one.
 
-    The legs move evenly over a long step.
+    The states at a long step's start are saved.
     """
     fresh, whole, parts = row(A, rows.FRESH) == 1.0, row(A, rows.LONG_STEP), row(A, rows.PARTS)
     per_whole, once = 1.0 / whole, parts == 1.0
@@ -128,9 +133,45 @@ def compare(A):
 
 
 @inlined
+def keep_legs(each, walk, out):
+    """Fill rows of legs and body of one walk's step, shape (7, 6), as in `run_steps`."""
+    out[N_LEGS, :] = 0.0
+    for k in range(N_LEGS, N_CONTACTS):
+        out[N_LEGS, 0] += each[rows.LOAD + k, walk]
+    v, w, R = rows.V, rows.OMEGA, rows.R
+    about_y = 0.0
+    for a in range(3):
+        about_y += each[R + 3 * a + 1, walk] * each[w + a, walk]
+    for i in range(N_LEGS):
+        out[i, :] = 0.0
+        out[i, 5] = np.nan
+        if each[rows.LOAD + i, walk] == 0.0:
+            continue
+        place, velocity = rows.PLACE + 3 * i, rows.VELOCITY + 3 * i
+        x, y, z = each[place, walk], each[place + 1, walk], each[place + 2, walk]
+        slip_x = each[v, walk] + each[w + 1, walk] * z - each[w + 2, walk] * y
+        slip_y = each[v + 1, walk] + each[w + 2, walk] * x - each[w, walk] * z
+        slip_x, slip_y = slip_x + each[velocity, walk], slip_y + each[velocity + 1, walk]
+        out[i, 0] = each[rows.LOAD + i, walk]
+        out[i, 1] = -each[rows.SECANT + i, walk] * slip_x
+        out[i, 2] = -each[rows.SECANT + i, walk] * slip_y
+        out[i, 3], out[i, 4] = slip_x, slip_y
+        if each[rows.ROLLS + i, walk] == 1.0:
+            along = slip_x * each[R, walk] + slip_y * each[R + 3, walk]
+            forward = along / np.sqrt(1 - each[R + 6, walk] ** 2)
+            turn = each[rows.SPEED + i, walk] + about_y
+            out[i, 5] = -forward / (turn * each[rows.RADIUS, walk])
+
+
+@inlined
 def is_finite(each, walk):
-    """Return whether position and angular velocity of one walk are finite."""
+    """Return whether leg angles and speeds, position and angular velocity of one walk are finite.
+
+    A leg whose angle is not finite would otherwise pass for one in the air.
+    """
     total = 0.0
+    for i in range(N_LEGS):
+        total += each[rows.ANGLE + i, walk] + each[rows.SPEED + i, walk]
     for a in range(3):
         total += each[rows.P + a, walk] + each[rows.OMEGA + a, walk]
     return np.isfinite(total)

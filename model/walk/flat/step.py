@@ -3,7 +3,7 @@ r"""One step of walks on flat ground, compiled for one walk or for several side 
 
 The equations are those of `model.walk.step` with the normal straight up, and so are the results but
 for rounding. There each contact's matrix is diag(G, G, k dt + c), and the system's block of the
-velocity is diagonal: the velocity is eliminated, and three equations in the angular velocity remain,
+velocity is diagonal. The velocity is eliminated; three equations in the angular velocity remain,
 
 .. math::
     \begin{pmatrix} D & C^T \\ C & B \end{pmatrix} \begin{pmatrix} v \\ w \end{pmatrix} =
@@ -20,7 +20,7 @@ from model.walk.arrays import N_CONTACTS
 from model.walk.contact_points import NEAR
 from model.walk.flat import rows
 from model.walk.flat.law import secant
-from model.walk.step import MOST_ROUNDS, ROUNDS
+from model.walk.step import FOOT, MOST_ROUNDS, ROUNDS, SETTLED
 
 
 @inlined
@@ -50,11 +50,14 @@ def flat_step(A, laws):
     done = dt < 0.0
     for solved in range(1, MOST_ROUNDS + 1):
         x = solved_velocities(A, laws, n, (v0, v1, v2, w0, w1, w2), I, start, done)
+        d0, d1, d2, d3, d4, d5 = x[0] - v0, x[1] - v1, x[2] - v2, x[3] - w0, x[4] - w1, x[5] - w2
+        turned = d3 * d3 + d4 * d4 + d5 * d5
+        moved = d0 * d0 + d1 * d1 + d2 * d2 + FOOT * FOOT * turned
         v0, v1, v2 = select(done, v0, x[0]), select(done, v1, x[1]), select(done, v2, x[2])
         w0, w1, w2 = select(done, w0, x[3]), select(done, w1, x[4]), select(done, w2, x[5])
         agree = contacts_agree(A, n, (v0, v1, v2, w0, w1, w2), done)
         if solved >= ROUNDS:
-            done = done | agree
+            done = done | (agree & (moved < SETTLED * SETTLED))
             if not any_of(negated(done)):
                 break
     advance(A, (v0, v1, v2, w0, w1, w2))

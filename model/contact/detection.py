@@ -6,7 +6,8 @@ them, as in the thesis's section 5-5 on the tetrapod. Nothing here has mass or s
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from functools import partial
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from model.compiled import compiled
 from model.contact.events import Contact, next_stance
 from model.contact.polygon import depth_in_triangle
-from model.contact.stance import ON_GROUND, Stance, on_three_legs, resting_stance
+from model.contact.stance import ON_GROUND, Stance, on_three_legs, resting_stance, stand
 from model.errors import DomainError
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
@@ -26,7 +27,7 @@ DETECTIONS: tuple[Detection, ...] = ("events", "balanced")
 
 @dataclass(frozen=True)
 class RigidContacts:
-    """Contacts and orientation of a body on rigid legs on flat, level ground.
+    """Contacts and orientation of a body on rigid legs.
 
     Attributes:
         contact: Which legs are on the ground, shape (n, 6).
@@ -49,8 +50,74 @@ class RigidContacts:
         return len(self.height)
 
 
+class Footing(Protocol):
+    """How a rigid body stands on its legs at each of n instants."""
+
+    def stand(self, instant: int, legs: NDArray[np.intp]) -> Stance:
+        """Return the stance on three legs; raise `DomainError` if they lie on a line."""
+        ...
+
+    def rest(self, instant: int) -> Stance:
+        """Return the stance in which the robot rests; raise `DomainError` if there is none."""
+        ...
+
+    def stay(
+        self, instant: int, three: NDArray[np.intp], balanced: bool, up: Array, height: Array
+    ) -> int:
+        """Keep the body on three legs from an instant on until something else happens.
+
+        Args:
+            instant: The first instant.
+            three: Indices of the legs, shape (3,).
+            balanced: Whether to stop when the centre of mass leaves the legs' triangle.
+            up: Filled: vertical direction in the body frame, a row an instant, shape (k, 3) [-].
+            height: Filled: height of the body's centre, shape (k,) [m].
+
+        Returns:
+            Number of instants before another leg reaches the ground, the three legs come to lie on
+            a line, or the centre of mass leaves their triangle.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class FlatFooting:
+    """A rigid body on its legs on flat, level ground.
+
+    Attributes:
+        robot: The robot; its leg offsets are not added.
+        theta: Leg angles at the instants, shape (n, 6) [rad].
+    """
+
+    robot: Robot
+    theta: Array
+
+    def stand(self, instant: int, legs: NDArray[np.intp]) -> Stance:
+        """Return the stance on three legs; raise `DomainError` if they lie on a line."""
+        return stand(self.robot, self.theta[instant], legs=legs)
+
+    def rest(self, instant: int) -> Stance:
+        """Return the stance in which the robot rests; raise `DomainError` if there is none."""
+        return resting_stance(self.robot, self.theta[instant])
+
+    def stay(
+        self, instant: int, three: NDArray[np.intp], balanced: bool, up: Array, height: Array
+    ) -> int:
+        """Keep the body on three legs; see `Footing`."""
+        robot = self.robot
+        return _stay(
+            self.theta[instant:], robot.hips, robot.leg_radius, robot.toe_beyond, three, balanced,
+            up, height,
+        )  # fmt: skip
+
+
 def detect_contacts(
-    robot: Robot, theta: Array, *, start: Contact | None = None, detection: Detection = "events"
+    robot: Robot,
+    theta: Array,
+    *,
+    start: Contact | None = None,
+    detection: Detection = "events",
+    footing: Footing | None = None,
 ) -> RigidContacts:
     """Turn the legs and keep a rigid body on them, by the contact detection of section 3-5-2.
 
@@ -66,6 +133,7 @@ def detect_contacts(
         detection: "events", as Eq. (3-33) is computed: the centre of mass is tested when a leg
             touches down. "balanced", as the text of 3-5-1 says: it is tested at every instant, and
             the robot topples when the centre of mass leaves the contact polygon.
+        footing: How the body stands on its legs; None for flat, level ground.
 
     Returns:
         The contacts; of fewer than n instants if no contact state fits at one of them.
@@ -76,7 +144,8 @@ def detect_contacts(
     if detection not in DETECTIONS:
         raise DomainError(f"detection is '{detection}'; expected {' or '.join(DETECTIONS)}")
     balanced = detection == "balanced"
-    before = start if start is not None else _on_ground(resting_stance(robot, theta[0]))
+    footing = footing or FlatFooting(robot, theta)
+    before = start if start is not None else _on_ground(footing.rest(0))
     n = len(theta)
     up, height = np.zeros((n, 3)), np.zeros(n)
     contact, legs = np.zeros((n, N_LEGS), dtype=bool), np.zeros((n, 3), dtype=np.intp)
@@ -84,17 +153,17 @@ def detect_contacts(
     while done < n:
         if len(before) == 3:
             three = np.array(before, dtype=np.intp)
-            stayed = _stay(
-                theta[done:], robot.hips, robot.leg_radius, robot.toe_beyond, three, balanced,
-                up[done:], height[done:],
-            )  # fmt: skip
+            stayed = footing.stay(done, three, balanced, up[done:], height[done:])
             legs[done : done + stayed] = three
             contact[done : done + stayed, list(before)] = True
             done += stayed
             if done == n:
                 break
         try:
-            stance = next_stance(robot, theta[done], contact=before, always_balanced=balanced)
+            stance = next_stance(
+                robot, theta[done], contact=before, always_balanced=balanced,
+                stand_on=partial(footing.stand, done),
+            )  # fmt: skip
         except DomainError as error:
             ended = str(error)
             break

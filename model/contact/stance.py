@@ -34,6 +34,9 @@ class Stance:
             points; negative below it, shape (6,) [m].
         depth: Distance of the centre of mass inside the three legs' triangle seen from above;
             negative outside [m].
+        level: Cosine of the angle between the body and the plane of the ground below it [-].
+        tolerance: Distance to the ground within which a leg stands, and of a mass to the edge of
+            the triangle within which that holds it [m].
     """
 
     legs: NDArray[np.intp]
@@ -42,6 +45,8 @@ class Stance:
     points: Array
     clearance: Array
     depth: float
+    level: float
+    tolerance: float = ON_GROUND
 
     @property
     def roll(self) -> float:
@@ -55,13 +60,20 @@ class Stance:
 
     @property
     def standing(self) -> NDArray[np.bool_]:
-        """Whether each leg is within `ON_GROUND` of the ground, as the three are, shape (6,)."""
-        return np.abs(self.clearance) <= ON_GROUND
+        """Whether each leg is within `tolerance` of the ground, as the three are, shape (6,)."""
+        stands = np.abs(self.clearance) <= self.tolerance
+        stands[self.legs] = True
+        return stands
 
     @property
     def feasible(self) -> bool:
-        """Whether no leg is below the ground by more than `ON_GROUND`."""
-        return bool(np.all(self.clearance >= -ON_GROUND))
+        """Whether no leg is below the ground by more than `tolerance`."""
+        return bool(np.all(self.clearance >= -self.tolerance))
+
+    @property
+    def holds(self) -> bool:
+        """Whether the centre of mass is inside the three legs' triangle or on its edge."""
+        return self.depth >= -self.tolerance
 
 
 def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...]) -> Stance:
@@ -88,7 +100,7 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
     levels = points @ up
     height = -float(levels[three].mean())
     depth = float(depth_in_triangle(np.zeros(2), seen[three]))
-    return Stance(three, up, height, points, levels + height, depth)
+    return Stance(three, up, height, points, levels + height, depth, float(up[2]))
 
 
 def resting_stance(robot: Robot, theta: Array) -> Stance:
@@ -108,7 +120,7 @@ def resting_stance(robot: Robot, theta: Array) -> Stance:
     three = np.empty(3, np.intp)
     rest(theta, robot.hips, robot.leg_radius, robot.toe_beyond, three)
     stance = stand(robot, theta, legs=three) if three[0] >= 0 else None
-    if stance is None or stance.depth < -ON_GROUND:
+    if stance is None or not stance.holds:
         angles = ", ".join(f"{angle:.4g}" for angle in theta)
         raise DomainError(
             f"at leg angles {angles} rad no three legs hold the robot; check angles, hips and arc"

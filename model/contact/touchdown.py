@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from model.robot import N_LEGS
 from model.slip.law import Array
@@ -18,11 +18,14 @@ Asked = Sequence[tuple[Array, Array]]
 class Touchdown:
     """First contact of a leg in a turn, and the end of its last; NaN where there is none.
 
-    A turn is from straight up over ahead, down and behind to straight up again.
+    A turn is from straight up over ahead, down and behind to straight up again. Where the gait asks
+    for touchdowns, it ends where the leg points up most between two of them: legs that swing to and
+    fro touch down in their turn each time.
 
     Attributes:
         leg: Index of the leg.
-        turn: Number of the turn: 0 is that of the angles from -90 to 270 degrees.
+        turn: Number of the turn: 0 is that of the angles from -90 to 270 degrees. Legs that go back
+            come through a turn again.
         t: Time of the first sample in contact; NaN if the leg does not touch in this turn [s].
         angle: Leg angle at that sample, from -pi/2 to 3/2 pi [rad].
         asked_t: Time at which the gait asked for touchdown; NaN where it is not known [s].
@@ -71,15 +74,36 @@ def touchdowns(
             count [s].
 
     Returns:
-        The touchdowns, by leg and then by turn.
+        The touchdowns, by leg and then by time.
     """
     found = []
     for leg in range(N_LEGS):
         spans = _spans(t, contact[:, leg], least)
-        plan = ([], []) if asked is None else asked[leg]
-        wanted = {_turn(angle): (time, angle) for time, angle in zip(*plan, strict=True)}
-        found.extend(_of_leg(leg, t, theta[:, leg], spans, wanted))
+        if asked is None:
+            turn = _turn(theta[:, leg])
+            found.extend(_of_leg(leg, t, theta[:, leg], spans, turn - turn.min(), {}))
+        else:
+            step, wanted = _steps(t, theta[:, leg], *asked[leg])
+            found.extend(_of_leg(leg, t, theta[:, leg], spans, step, wanted))
     return tuple(found)
+
+
+def _steps(
+    t: Array, theta: Array, times: Array, angles: Array
+) -> tuple[NDArray[np.intp], dict[int, tuple[float, float]]]:
+    """Return the number of each sample's step, (n,), and the touchdown asked for in each step.
+
+    Between two touchdowns a step ends where the leg points up most; step 0 is before the first.
+    """
+    step, begin = np.zeros(len(t), dtype=np.intp), 0
+    for time in times:
+        end = int(np.searchsorted(t, time - 1e-9)) + 1
+        between = np.sin(theta[begin:end])
+        top = begin + int(between.argmin()) if len(between) else begin
+        step[top:] += 1
+        begin = end
+    wanted = zip(map(float, times), map(float, angles), strict=True)
+    return step, dict(enumerate(wanted, start=1))
 
 
 def _of_leg(
@@ -87,25 +111,30 @@ def _of_leg(
     t: Array,
     theta: Array,
     spans: list[tuple[int, int]],
+    step: NDArray[np.intp],
     wanted: dict[int, tuple[float, float]],
 ) -> list[Touchdown]:
-    """List one leg's touchdowns from its contacts and those that the gait asked for, by turn."""
-    by_turn: dict[int, list[tuple[int, int]]] = {}
+    """List one leg's touchdowns from its contacts and those that the gait asked for, by step."""
+    by_step: dict[int, list[tuple[int, int]]] = {}
     for span in spans:
-        by_turn.setdefault(_turn(theta[span[0]]), []).append(span)
-    furthest = int(max(_turn(theta.min()), _turn(theta.max())))
-    missed = {turn for turn, (time, _) in wanted.items() if t[0] < time and turn < furthest}
+        by_step.setdefault(int(step[span[0]]), []).append(span)
+    last_turn = _turn(theta[-1])
+    missed = {
+        number for number, (time, angle) in wanted.items()
+        if t[0] < time and (number < step[-1] or _turn(angle) != last_turn)
+    }  # fmt: skip
     rows = []
-    for turn in sorted({*by_turn, *missed}):
-        contacts = by_turn.get(turn, [])
+    for number in sorted({*by_step, *missed}):
+        contacts = by_step.get(number, [])
         if contacts and contacts[0][0] == 0:
             continue
-        asked_t, asked_angle = wanted.get(turn, (np.nan, np.nan))
+        asked_t, asked_angle = wanted.get(number, (np.nan, np.nan))
         first = contacts[0][0] if contacts else None
+        turn = int(_turn(asked_angle if first is None else theta[first]))
         last = contacts[-1][1] if contacts and contacts[-1][1] < len(t) else None
         rows.append(
             Touchdown(
-                leg, turn, *_at(t, theta, first, turn), float(asked_t),
+                leg, turn, *_at(t, theta, first, turn), asked_t,
                 _within(asked_angle, turn), *_at(t, theta, last, turn), len(contacts),
             )
         )  # fmt: skip
@@ -124,9 +153,9 @@ def _spans(t: Array, contact: NDArray[np.bool_], least: float) -> list[tuple[int
     return [(i, j) for i, j in spans if i == 0 or j == n or t[j] - t[i] >= least - 1e-9]
 
 
-def _turn(angle: float) -> int:
-    """Return the number of the turn that an unwrapped leg angle is in."""
-    return int(np.floor((angle + np.pi / 2) / (2 * np.pi)))
+def _turn(angle: ArrayLike) -> NDArray[np.intp]:
+    """Return the numbers of the turns that unwrapped leg angles are in."""
+    return np.floor((np.asarray(angle) + np.pi / 2) / (2 * np.pi)).astype(np.intp)
 
 
 def _within(angle: float, turn: int) -> float:

@@ -12,7 +12,7 @@ from model.contact.touchdown import Touchdown
 from model.counted import counted
 from model.robot import N_LEGS
 from zebro_lab.terminal.tables import plain_table
-from zebro_lab.walk.contacts import RULES, ContactTrace, WalkContacts
+from zebro_lab.walk.contacts import ContactTrace, WalkContacts
 
 _SHOWN = 12  # states of a walk that does not repeat; `contacts.csv` has all
 
@@ -30,7 +30,7 @@ def contact_lines(contacts: WalkContacts) -> list[str]:
 
 def _trace_lines(trace: ContactTrace, contacts: WalkContacts) -> list[str]:
     sequence, cycle = trace.sequence, trace.cycle
-    lines = [f"contact states by {RULES[trace.by]}:"]
+    lines = [f"contact states by {trace.rule}:"]
     if cycle is not None:
         lines.append(f"  {cycle}")
         lines.append(
@@ -59,10 +59,12 @@ def _why_no_cycle(trace: ContactTrace, contacts: WalkContacts) -> str:
         return "these leg angles have no cycle that repeats"
     if len(trace.sequence.states) == 1:
         return "the legs on the ground never change"
+    uneven = any(each.on_ground for each in contacts.traces)
+    advice = "; on uneven ground they may never" if uneven else ""
     return (
         f"the last two cycles of {contacts.period:.4g} s do not repeat within "
         f"{1000 * contacts.tolerance:.0f} ms; walk longer, or join longer states by "
-        "--contacts-least"
+        f"--contacts-least{advice}"
     )
 
 
@@ -70,7 +72,7 @@ def touchdown_table(contacts: WalkContacts) -> Table:
     """Return a table of touchdowns, a row per leg: means and standard deviations."""
     numbers = ("touchdowns", "missed", "angle\n[deg]", "sd\n[deg]", "asked\n[deg]", "late\n[ms]",
                "sd\n[ms]", "lift-off\n[deg]", "again\ndown")  # fmt: skip
-    title = f"touchdowns by {RULES[contacts.own.by]}"
+    title = f"touchdowns by {contacts.own.rule}"
     table = plain_table(title, ("leg",), numbers)
     for leg in range(N_LEGS):
         row = touchdown_summary([each for each in contacts.touchdowns if each.leg == leg])
@@ -142,6 +144,7 @@ def _trace_document(trace: ContactTrace) -> dict[str, object]:
     cycle = trace.cycle
     return {
         "by": trace.by,
+        "on_ground": trace.on_ground,
         "states": len(trace.sequence.states),
         "joined": trace.sequence.joined,
         "joined_s": trace.sequence.joined_time,

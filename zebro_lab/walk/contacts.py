@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Contact states of a walk: by detection on rigid legs, and by the model that was walked."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
 
@@ -20,8 +20,11 @@ from model.contact.touchdown import Touchdown, touchdowns
 from model.errors import DomainError
 from model.gait import CyclicReference
 from model.gait.reference import LegReference
+from model.gait.stance import Intervals
 from model.robot import Robot
 from model.slip.law import Array
+from model.walk.footing import GroundFooting
+from model.walk.ground import FLAT, Ground, is_level
 from model.walk.path import WalkPath
 from zebro_lab.walk.request import ContactRequest
 
@@ -51,6 +54,7 @@ class ContactTrace:
         sequence: The contact states in order.
         cycle: The cycle in which they repeat; None if they do not, or the gait has no cycle.
         ended: Why a detection ended before the walk; empty if it did not.
+        on_ground: Whether legs are detected on the ground of the walk, which is not flat and level.
     """
 
     by: str
@@ -59,6 +63,12 @@ class ContactTrace:
     sequence: ContactSequence
     cycle: ContactCycle | None
     ended: str = ""
+    on_ground: bool = False
+
+    @property
+    def rule(self) -> str:
+        """What decides contact, in words."""
+        return RULES[self.by] + (", on the walk's ground" if self.on_ground else "")
 
 
 @dataclass(frozen=True)
@@ -91,7 +101,14 @@ class WalkContacts:
 
 
 def contacts_of(
-    path: WalkPath, reference: LegReference, robot: Robot, *, by: str, request: ContactRequest
+    path: WalkPath,
+    reference: LegReference,
+    robot: Robot,
+    *,
+    by: str,
+    request: ContactRequest,
+    ground: Ground = FLAT,
+    stances: Intervals | None = None,
 ) -> WalkContacts:
     """Find contact states, their cycle and the touchdowns of a walk.
 
@@ -101,6 +118,9 @@ def contacts_of(
         robot: The robot.
         by: What decides contact in the model, a key of `RULES`.
         request: Shortest time that a state lasts.
+        ground: The ground, on which legs are detected along the path.
+        stances: When each leg stands by a program's schedule, from the walk's start on [s]; None
+            for others.
     """
     start, end = float(path.t[0]), float(path.t[-1])
     cyclic = isinstance(reference, CyclicReference)
@@ -108,8 +128,8 @@ def contacts_of(
     tolerance = max(_REPEATS * (period or 0.0), 2 * float(path.t[1] - start))
     timing = _Timing(path.t, period, tolerance, request.least)
     own = timing.trace(by, path.contact)
-    detected, notes = (None, ()) if by == DETECTED_BY else _detected(path, robot, timing)
-    asked = reference.touchdowns((start, end)) if cyclic else None
+    detected, notes = (None, ()) if by == DETECTED_BY else _detected(path, robot, timing, ground)
+    asked = reference.touchdowns((start, end)) if cyclic else _scheduled(reference, stances, start)
     downs = touchdowns(path.t, path.theta, path.contact, asked=asked, least=request.least)
     if detected is None:
         return WalkContacts((own,), period, tolerance, None, None, downs, notes)
@@ -136,15 +156,30 @@ class _Timing:
         return ContactTrace(by, t, contact, sequence, cycle, ended)
 
 
+def _scheduled(
+    reference: LegReference, stances: Intervals | None, start: float
+) -> list[tuple[Array, Array]] | None:
+    """Return the touchdowns of a program's schedule, but those at its start; None without one."""
+    if stances is None:
+        return None
+    down = [rows[rows[:, 0] > 0, 0] for rows in stances]
+    return [(t + start, reference.angles(t)[:, leg]) for leg, t in enumerate(down)]
+
+
 def _detected(
-    path: WalkPath, robot: Robot, timing: _Timing
+    path: WalkPath, robot: Robot, timing: _Timing, ground: Ground
 ) -> tuple[ContactTrace | None, tuple[str, ...]]:
     """Detect contacts on rigid legs; also return a note if they end, None if there are none."""
+    footing = None if is_level(ground) else GroundFooting(
+        robot, path.theta, np.column_stack([path.position, path.orientation]), ground
+    )  # fmt: skip
     try:
-        found = detect_contacts(robot, path.theta, detection=DETECTED_BY)
+        found = detect_contacts(robot, path.theta, detection=DETECTED_BY, footing=footing)
     except DomainError as error:
         return None, (f"no contacts are detected on rigid legs: {error}",)
     trace = timing.trace(DETECTED_BY, found.contact, found.ended) if len(found) else None
+    if trace is not None and footing is not None:
+        trace = replace(trace, on_ground=True)
     if not found.ended:
         return trace, ()
     at = path.t[len(found)]

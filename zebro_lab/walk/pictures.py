@@ -12,7 +12,7 @@ from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.walk.contacts import RULES, WalkContacts
+from zebro_lab.walk.contacts import WalkContacts
 from zebro_lab.walk.folder import CONTACTS_PICTURE
 from zebro_lab.walk.request import PictureRequest
 from zebro_lab.walk.shown_time import part_in
@@ -127,7 +127,7 @@ def draw_contacts(
 
     shown = part_in(path, asked.window)
     drawn = [
-        DrawnContacts(RULES[trace.by], trace.t, trace.contact, trace.sequence.states)
+        DrawnContacts(trace.rule, trace.t, trace.contact, trace.sequence.states)
         for trace in contacts.traces
     ]
     figure = contact_states_chart(

@@ -99,8 +99,8 @@ class PictureRequest:
         Window | None,
         Option(
             parser=parse_window, metavar="BEGIN:END",
-            help="With --figures: time that motion, forces and contacts are drawn of [s]; default: "
-            "the last two cycles of walking, motion whole; of a program all.",
+            help="With --figures or --contacts: time that motion, forces and contacts are drawn of "
+            "[s]; default: the last two cycles of walking, motion whole; of a program all.",
         ),
     ] = None  # fmt: skip
     form: FormatOption = "png"
@@ -109,12 +109,9 @@ class PictureRequest:
     ] = False
 
     def __post_init__(self) -> None:
-        """Raise `BadParameter` for times to draw without figures."""
-        for name in ("at", "window"):
-            if getattr(self, name) is not None and not self.figures:
-                raise BadParameter(
-                    "says what figures show; give --figures too", param_hint=f"'--{name}'"
-                )
+        """Raise `BadParameter` for times of snapshots without figures."""
+        if self.at is not None and not self.figures:
+            raise BadParameter("says what figures show; give --figures too", param_hint="'--at'")
 
     @property
     def snapshots(self) -> tuple[float, ...]:
@@ -233,8 +230,14 @@ class ModelRequest:
         Raises:
             SettingsError: A `coulomb:…` is no friction law, the step is too long, or a ground is
                 given for a model that walks on level ground only.
-            BadParameter: Switches of the thesis's model are given for another one.
+            BadParameter: Switches of the thesis's model are given for another one, or a window of
+                time without figures to draw.
         """
+        pictures = self.pictures
+        if pictures.window is not None and not (pictures.figures or self.contact.contacts):
+            raise BadParameter(
+                "says what figures show; give --figures or --contacts too", param_hint="'--window'"
+            )
         if self.thesis is not None and self.model != "thesis":
             raise BadParameter(
                 f"switches the thesis's model; the model '{self.model}' has none of it: give "

@@ -115,7 +115,7 @@ def with_contacts(walked: Walked, request: ContactRequest, watcher: Watcher) -> 
     watcher.step("finding contacts", None)
     found = contacts_of(
         walked.path, walked.reference, walked.described.robot, by=walked.contact_by,
-        request=request,
+        request=request, ground=walked.terrain.ground, stances=walked.stances,
     )  # fmt: skip
     return replace(walked, contacts=found)
 

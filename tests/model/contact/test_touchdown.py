@@ -80,3 +80,16 @@ def test_legs_that_turn_back_have_their_touchdowns_in_their_turns():
     assert all(np.radians(105.0) < row.angle < np.radians(110.0) for row in rows)
     turns = [row.turn for row in rows if row.leg == 2]
     assert turns == sorted(set(turns))
+
+
+def test_legs_that_swing_to_and_fro_touch_down_in_one_turn_each_time():
+    theta = np.tile(np.radians(90.0 + 60.0 * np.sin(0.5 * np.pi * T))[:, None], (1, 6))
+    contact = np.abs(theta - np.radians(90.0)) < np.radians(20.0)  # for 0.2 s about 0, 2, 4, ... s
+    times = np.array([1.78, 3.78, 5.78, 7.78, 9.78])
+    angles = np.radians([110.0, 70.0, 110.0, 70.0, 110.0])
+    rows = [row for row in touchdowns(T, theta, contact, asked=[(times, angles)] * 6)
+            if row.leg == 3]  # fmt: skip
+    assert [row.asked_t for row in rows] == times.tolist()
+    assert {(row.turn, row.contacts) for row in rows} == {(0, 1)}
+    assert max(abs(row.late) for row in rows) < 0.02
+    assert max(abs(row.angle - row.asked_angle) for row in rows) < 0.03

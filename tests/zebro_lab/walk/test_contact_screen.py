@@ -94,7 +94,7 @@ def test_the_table_has_a_row_per_leg_and_the_document_every_leg():
     assert document["least_s"] == 0.03
     assert document["rules"] == [
         {
-            "by": "force", "states": 6, "joined": 0, "joined_s": 0.0,
+            "by": "force", "on_ground": False, "states": 6, "joined": 0, "joined_s": 0.0,
             "cycle": {
                 "period_s": 2.0, "contacts": ["{1,4,5}", "{2,3,6}"],
                 "begins_s": pytest.approx([0.0, 1.0]), "spread_s": pytest.approx([0.0, 0.0]),

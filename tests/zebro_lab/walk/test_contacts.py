@@ -12,10 +12,13 @@ import pytest
 
 from model.contact.detection import Detection, detect_contacts
 from model.errors import DomainError
+from model.frames import attitude
 from model.gait import tetrapod_reference, tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
 from model.robot import Robot
 from model.walk.detected import walk_detected
+from model.walk.ground import heights_on
+from zebro_lab.ground.ground_file import read_ground
 from zebro_lab.main import app
 from zebro_lab.terminal import ending
 from zebro_lab.walk.contacts import RULES, contacts_of
@@ -173,6 +176,88 @@ def test_a_program_and_a_log_have_contacts_too(run_command, tmp_path):
         assert [each["leg"] for each in document["touchdowns"]] == [1, 2, 3, 4, 5, 6]
         assert 0.5 < document["same_legs_share"] <= 1
         assert rows_of(tmp_path / folder / "contacts.csv")[-1]["by"] == "force"
+
+
+def test_a_program_asks_for_the_touchdowns_of_its_schedule(run_command, tmp_path):
+    program = tmp_path / "p.toml"
+    program.write_text('[[segment]]\ngait = "tripod"\nuntil = { strides = 2 }\n\n'
+                       '[[segment]]\ngait = "tripod"\nsteering = -1\n'
+                       'until = { strides = 2 }\n')  # fmt: skip
+    out = tmp_path / "w"
+    assert (
+        run_command("walk", program, "--slip", "coulomb:0.4", "--contacts", "--out", out).code == 0
+    )
+    rows = rows_of(out / "touchdowns.csv")
+    assert [float(row["asked_t"]) for row in rows if row["leg"] == "1"] == [1.0, 3.0, 5.0, 7.0]
+    assert [row["turn"] for row in rows if row["leg"] == "1"] == ["1", "2", "2", "1"]  # back again
+    for row in rows:
+        assert abs(float(row["late"])) < 0.05
+        assert float(row["angle"]) == pytest.approx(float(row["asked_angle"]), abs=0.1)
+
+
+GROUND = """
+slope_deg = [3.0, -1.0]
+roughness = { sd = 0.003, correlation = 0.06, seed = 4 }
+[[step]]
+x = 0.3
+height = 0.008
+"""
+
+
+@pytest.fixture(scope="module")
+def on_ground(tmp_path_factory):
+    """Return a walk folder on uneven ground, what the command printed, and the ground."""
+    folder, printed = tmp_path_factory.mktemp("ground"), io.StringIO()
+    (folder / "ground.toml").write_text(GROUND)
+    words = "walk --gait tripod --slip coulomb:0.6 --duration 6 --contacts --window 1:3 --ground"
+    with redirect_stdout(printed), pytest.raises(SystemExit) as ended:
+        ending.run(lambda: app([*words.split(), str(folder / "ground.toml"), "--out",
+                                str(folder / "walk")], prog_name="zebro-lab"))  # fmt: skip
+    assert not ended.value.code
+    ground = read_ground(folder / "ground.toml").terrain.ground
+    return folder / "walk", " ".join(printed.getvalue().split()), ground
+
+
+def test_legs_are_detected_on_the_ground_of_the_walk_and_that_is_said(on_ground):
+    out, printed, _ = on_ground
+    assert f"contact states by {RULES['events']}, on the walk's ground" in printed
+    assert f"contact states by {RULES['force']}:" in printed
+    share = float(printed.split("both have the same legs on the ground in ")[1].split("%")[0])
+    assert share > 85.0
+    assert (out / "contacts.png").is_file()
+
+
+def over(ground, path, robot, leg, k):
+    """Return how high a leg is over the ground at a sample, by many points of its arc [m]."""
+    theta, R = path.theta[k, leg], attitude(*path.orientation[k])
+    psi = np.linspace(theta - robot.toe_beyond, theta + np.pi, 1001)
+    centre = robot.hips[leg] + robot.leg_radius * np.array([np.cos(theta), 0, -np.sin(theta)])
+    arc = np.stack([np.cos(psi), 0 * psi, -np.sin(psi)], axis=-1) * robot.leg_radius
+    points = (centre + arc) @ R.T + path.position[k]
+    return min(z - heights_on(ground, np.array([x]), np.array([y]))[0, 0] for x, y, z in points)
+
+
+def test_touchdowns_are_where_the_leg_comes_down_to_the_ground(on_ground):
+    out, _, ground = on_ground
+    path, robot = read_walk(out), Robot()
+    rows = rows_of(out / "touchdowns.csv")
+    assert len(rows) >= 15
+    late = []
+    for row in rows:
+        leg, k = int(row["leg"]) - 1, int(np.searchsorted(path.t, float(row["t"]) - 1e-6))
+        high = [over(ground, path, robot, leg, i) for i in (k + 1, k, k - 1)]
+        assert high[0] < 0 < high[2]
+        angle = np.interp(0.0, high, path.theta[[k + 1, k, k - 1], leg])
+        own = float(row["angle"])
+        assert own == pytest.approx(angle - 2 * np.pi * int(row["turn"]), abs=np.radians(0.5))
+        late.append(own - float(row["asked_angle"]))
+    assert np.ptp(late) > np.radians(5.0)  # the ground decides
+
+
+def test_a_window_without_anything_to_draw_is_refused(run_command):
+    code, _, err = run_command("walk", "--slip", "thesis", "--duration", 1, "--window", "0:1")
+    assert code == 2
+    assert "give --figures or --contacts too" in err
 
 
 def test_a_shortest_state_without_contacts_is_refused(run_command):

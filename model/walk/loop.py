@@ -22,6 +22,7 @@ from model.walk.arrays import (
 )
 from model.walk.contact_points import point_velocity
 from model.walk.ground import Ground
+from model.walk.leg_work import add_work
 from model.walk.step import BRISTLE_STIFFNESS, leg_turn, one_step
 from model.walk.traction import TractionTable
 
@@ -38,6 +39,7 @@ class Spare(NamedTuple):
         speed: Leg speeds in a step, shape (6,) [rad/s].
         angles: Leg angles at the end of a finer step, shape (6,) [rad].
         loaded: Loads before a step, shape (14,) [N].
+        energy: Energies of a step, see `add_work`, shape (4,) [J].
     """
 
     work: Work
@@ -45,6 +47,7 @@ class Spare(NamedTuple):
     speed: Array
     angles: Array
     loaded: Array
+    energy: Array
 
 
 @compiled
@@ -75,20 +78,25 @@ def run_steps(
         pose: Filled at each step's end: position and quaternion, shape (n, 7).
         legs: Filled at each step's end: normal force, traction (world x, y), slip velocity (world
             x, y) and slip ratio of each leg, then a row for the body with the sum of the normal
-            forces on its corners and zeros, shape (n, 7, 6), or (0, 7, 6) not to keep them; a leg
-            in the air has 0, and the ratio is NaN unless a leg rolls on the ground.
+            forces on its corners, the energies of the step (`add_work`) and zero, shape (n, 7, 6),
+            or (0, 7, 6) not to keep them; a leg in the air has 0, and the ratio is NaN unless a leg
+            rolls on the ground.
 
     Returns:
         Number of steps computed: n, or fewer where the state stopped being finite.
     """
-    spare = Spare(new_work(), new_state(), np.empty(N_LEGS), np.empty(N_LEGS), np.zeros(N_CONTACTS))
+    spare = Spare(
+        new_work(), new_state(), np.empty(N_LEGS), np.empty(N_LEGS), np.zeros(N_CONTACTS),
+        np.empty(4),
+    )  # fmt: skip
     return _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare)
 
 
 @borrowing
 def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
     """Integrate a walk; arguments and result are those of `run_steps`, `spare` its work arrays."""
-    work, before, speed, angles, loaded = spare
+    work, before, speed, angles, loaded, energy = spare
+    keep = len(legs) > 0
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt))
     fine_left = fine_steps
@@ -97,23 +105,28 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
             speed[i] = (theta[step + 1, i] - theta[step, i]) / dt
         copy_state(state, before)
         _copy(work.load, loaded)
+        energy[:] = 0.0
         if fine_left == 0 or parts == 1:
             one_step(body, table, ground, contacts, state, work, theta[step + 1], speed, dt)
             if parts > 1 and _contacts_changed(work.load, loaded):
                 copy_state(before, state)
                 _copy(loaded, work.load)
                 fine_left = fine_steps
+            elif keep:
+                add_work(contacts, state, work, dt, energy)
         if fine_left > 0 and parts > 1:
             for part in range(parts):
                 for i in range(N_LEGS):
                     angles[i] = theta[step, i] + (part + 1) / parts * dt * speed[i]
                 one_step(body, table, ground, contacts, state, work, angles, speed, dt / parts)
+                if keep:
+                    add_work(contacts, state, work, dt / parts, energy)
             fine_left = fine_steps if _contacts_changed(work.load, loaded) else fine_left - 1
         if not np.isfinite(state.p.sum() + state.w.sum()):
             return step
         _keep_pose(pose[step], state)
-        if len(legs):
-            _keep_legs(legs[step], contacts, state, work, speed)
+        if keep:
+            _keep_legs(legs[step], contacts, state, work, speed, energy)
     return theta.shape[0] - 1
 
 
@@ -143,12 +156,14 @@ def _keep_pose(out, state):
 
 
 @inlined
-def _keep_legs(out, contacts, state, work, speed):
+def _keep_legs(out, contacts, state, work, speed, energy):
     """Fill rows, shape (7, 6), of `run_steps`; a leg in the air has 0 and slip ratio NaN."""
     R, point = work.R, work.point
     out[N_LEGS, :] = 0.0
     for i in range(N_LEGS, N_CONTACTS):
         out[N_LEGS, 0] += work.load[i]
+    for i in range(4):
+        out[N_LEGS, 1 + i] = energy[i]
     bristle = BRISTLE_STIFFNESS * contacts.stiffness
     for i in range(N_LEGS):
         out[i, :] = 0.0

@@ -35,6 +35,9 @@ class WalkPath:
             heading; zero and NaN as `normal_force`, shape (n, 6, 2) [N].
         body_force: Normal force of the ground on the body itself; zero while it clears the ground,
             NaN where a model has none, shape (n,), or a number for all samples [N].
+        energy: Since the walk began: work that the legs' motors did and took back, energy that slip
+            and contacts took (`model.walk.leg_work`); NaN where a model has none, shape (n, 4), or
+            a number for all [J].
     """
 
     t: Array
@@ -47,11 +50,13 @@ class WalkPath:
     normal_force: Array
     traction_force: Array
     body_force: Array | float = np.nan
+    energy: Array | float = np.nan
 
     def __post_init__(self) -> None:
-        """Broadcast a number for `body_force` to all samples."""
-        full = np.broadcast_to(np.asarray(self.body_force, dtype=float), self.t.shape)
-        object.__setattr__(self, "body_force", full)
+        """Broadcast numbers for `body_force` and `energy` to all samples."""
+        for name, shape in (("body_force", self.t.shape), ("energy", (*self.t.shape, 4))):
+            full = np.broadcast_to(np.asarray(getattr(self, name), dtype=float), shape)
+            object.__setattr__(self, name, full)
 
     @property
     def on_body(self) -> NDArray[np.bool_]:
@@ -110,6 +115,7 @@ def path_of(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
     The first sample takes the rows of the first step's end, each other one those of its step.
     """
     orientation = roll_pitch_yaw(pose[:, 3:])
+    energy = np.concatenate([np.zeros((1, 4)), np.cumsum(legs[:, N_LEGS, 1:5], axis=0)])
     legs = np.concatenate([legs[:1], legs])
     body, legs = legs[:, N_LEGS, 0], legs[:, :N_LEGS]
     load: NDArray[np.float64] = legs[..., 0]
@@ -124,6 +130,7 @@ def path_of(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
         normal_force=load,
         traction_force=_to_heading(legs[..., 1:3], orientation[:, 2]),
         body_force=body,
+        energy=energy,
     )
 
 

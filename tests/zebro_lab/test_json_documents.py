@@ -49,7 +49,8 @@ def test_predict_gives_the_walked_path_in_numbers(run_command, tmp_path):
         "length_m", "strides", "speed_m_per_s", "yaw_rate_rad_per_s", "radius_m",
         "largest_roll_rad", "largest_pitch_rad", "mean_slip_m_per_s", "notes",
         "schedule", "flight_share", "body_contact_share", "loaded_shares", "sliding_shares",
-        "unloaded_shares", "segments", "contacts",
+        "unloaded_shares", "segments", "contacts", "work_done_j", "work_taken_back_j",
+        "slip_energy_j", "contact_energy_j",
     })  # fmt: skip
     assert found["length_m"] > 0
     assert found["folder"] == str(tmp_path / "out")

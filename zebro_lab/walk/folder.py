@@ -109,6 +109,12 @@ _BLOCKS = (
         may_be_missing=True,
         form="%d",
     ),
+    _Block(
+        ("work_done", "work_taken_back", "slip_energy", "contact_energy"),
+        lambda path: np.asarray(path.energy),
+        may_be_empty=True,
+        may_be_missing=True,
+    ),
 )
 COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
 """The columns of `path.csv`, in order."""
@@ -266,4 +272,5 @@ def _path_from(numbers: Array) -> WalkPath:
         normal_force=parts["normal1"],
         traction_force=np.stack([parts["force_x1"], parts["force_y1"]], axis=-1),
         body_force=parts["body_force"][:, 0],
+        energy=parts["work_done"],
     )

@@ -92,9 +92,18 @@ def laid_out(
     settings = {"program": str(file), "duration": legs.end,
                 "segments": [asdict(each) for each in segments]}  # fmt: skip
     return AskedWalk(
-        legs.reference(), legs.end, f"program {file.stem}", settings, segments=segments,
+        legs.reference(), legs.end, _named(file), settings, segments=segments,
         stances=legs.stance_intervals(), files=(file,), notes=missed,
     )  # fmt: skip
+
+
+def _named(file: Path) -> str:
+    """Return the name of a program for titles, which says once that it is one.
+
+    >>> _named(Path("garden.toml")), _named(Path("program.toml"))
+    ("program 'garden'", 'program')
+    """
+    return "program" if file.stem == "program" else f"program '{file.stem}'"
 
 
 def _slip(program: Program, request: ModelRequest) -> NamedSlip | None:

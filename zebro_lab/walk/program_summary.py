@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from rich.table import Table
 
+from model.counted import counted
 from model.walk.path import WalkPath
+from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.walk.asked import WalkedSegment
 from zebro_lab.walk.summary import STRAIGHT, circle_of
@@ -83,16 +85,22 @@ def _summary(path: WalkPath, segment: WalkedSegment, begin: float) -> SegmentSum
 
 
 def segment_table(summaries: tuple[SegmentSummary, ...]) -> Table:
-    """Return a table of a program's segments: cycles, end, pose there, length, turn and radius."""
-    numbers = ("cycles", "end\n[s]", "x\n[m]", "y\n[m]", "yaw\n[deg]", "length\n[m]", "turn\n[deg]",
+    """Return a table of a program's segments: end, pose there, length, turn, speed and radius.
+
+    It fits in 80 columns: what a segment does is folded, numbers are not.
+    """
+    numbers = ("end\n[s]", "x\n[m]", "y\n[m]", "yaw\n[deg]", "length\n[m]", "turn\n[deg]",
                "speed\n[mm/s]", "radius\n[m]")  # fmt: skip
-    table = plain_table("the program, segment by segment", ("segment", "what"), numbers)
+    title = "the program, segment by segment"
+    table = plain_table(title, ("segment",), numbers, fold=True, no_wrap=True)
+    table.padding, table.pad_edge = (0, 1, 0, 0), False
     for number, each in enumerate(summaries, start=1):
         x, y, yaw = each.pose
+        cycles = f", {counted(each.segment.cycles, 'cycle')}" if each.segment.cycles else ""
         table.add_row(
-            str(number), each.segment.what, str(each.segment.cycles or "-"),
-            f"{each.segment.end:.3f}", f"{x:.4f}", f"{y:.4f}", f"{np.degrees(yaw):.2f}",
-            f"{each.length:.3f}", f"{np.degrees(each.turn):.2f}", *_course(each),
+            plain(f"{number}: {each.segment.what}{cycles}"), f"{each.segment.end:.2f}",
+            f"{x:.3f}", f"{y:.3f}", f"{np.degrees(yaw):.1f}", f"{each.length:.3f}",
+            f"{np.degrees(each.turn):.1f}", *_course(each),
         )  # fmt: skip
     return table
 

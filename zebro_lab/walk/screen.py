@@ -14,6 +14,7 @@ from model.errors import DomainError
 from model.gait import CyclicReference, EventSystem
 from model.progress import Watcher
 from model.slip.law import Array
+from model.walk.leg_work import LegWork, leg_work
 from model.walk.support import SLIDES, Support, support_of
 from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain
@@ -73,11 +74,22 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "largest_roll_rad": summary.largest_roll,
         "largest_pitch_rad": summary.largest_pitch,
         "mean_slip_m_per_s": summary.mean_slip,
+        **_work_document(walked),
         **_support_document(_support(walked)),
         "schedule": _schedule_document(walked),
         "contacts": None if walked.contacts is None else contact_document(walked.contacts),
         "segments": [each.document() for each in segment_summaries(walked.path, walked.segments)],
         "notes": _notes(walked, summary),
+    }
+
+
+def _work_document(walked: Walked) -> dict[str, object]:
+    work = leg_work(walked.path)
+    return {
+        "work_done_j": work.done,
+        "work_taken_back_j": work.taken_back,
+        "slip_energy_j": work.slip,
+        "contact_energy_j": work.contacts,
     }
 
 
@@ -126,7 +138,8 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
 def _notes(walked: Walked, summary: WalkSummary) -> list[str]:
     support = _support(walked)
     lines = [*walked.notes, *tilt_lines(summary), *support_lines(support)]
-    return _in_order([*lines, *slip_lines(walked, summary, support)])
+    lines += [*slip_lines(walked, summary, support), *work_lines(leg_work(walked.path))]
+    return _in_order(lines)
 
 
 def _summary(walked: Walked) -> WalkSummary:
@@ -245,6 +258,16 @@ def slip_lines(walked: Walked, summary: WalkSummary, support: Support) -> list[s
             "lowest load the slip law was tested at"
         )
     return lines
+
+
+def work_lines(work: LegWork) -> list[str]:
+    """Say what work the legs' motors do and take back; nothing of a model without."""
+    if np.isnan(work.done):
+        return []
+    return [
+        f"motors of the legs do {work.done:.3g} J and take back {work.taken_back:.3g} J; slip "
+        f"takes {work.slip:.3g} J, contacts {work.contacts:.3g} J"
+    ]
 
 
 def schedule_line(schedule: EventSystem) -> str:

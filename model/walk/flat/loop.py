@@ -14,6 +14,7 @@ from model.robot import N_LEGS
 from model.walk.arrays import N_CONTACTS
 from model.walk.flat import rows
 from model.walk.flat.step import flat_step
+from model.walk.leg_work import add_powers
 from model.walk.loop import FINE_STEP, FINE_TIME
 
 ENDED = -1  # in place of the number of fine steps left
@@ -42,7 +43,9 @@ def run_flat(A, each, laws, theta, dt, pose, legs, done, fine_left):
     n, walks = theta.shape[1] - 1, theta.shape[0]
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt)) if parts > 1 else 0
-    left = walks
+    left, keep = walks, legs.shape[1] > 0
+    if keep:
+        legs[:, :, N_LEGS, :] = 0.0
     for walk in range(walks):
         fine_left[walk] = fine_steps
         begin_step(each, theta, dt, 0, walk, fine_left[walk] > 0, parts)
@@ -54,12 +57,14 @@ def run_flat(A, each, laws, theta, dt, pose, legs, done, fine_left):
             if fine_left[walk] == ENDED:
                 continue
             changed = each[rows.CHANGED, walk] > 0
-            if each[rows.PARTS, walk] == 1:
-                if parts > 1 and changed:
-                    fine_left[walk] = fine_steps
-                    restart(each, walk, parts)
-                    continue
-            else:
+            whole = each[rows.PARTS, walk] == 1
+            if whole and parts > 1 and changed:
+                fine_left[walk] = fine_steps
+                restart(each, walk, parts)
+                continue
+            if keep:
+                add_work(each, walk, legs[walk, done[walk], N_LEGS, 1:5])
+            if not whole:
                 each[rows.PART, walk] += 1.0
                 if each[rows.PART, walk] < each[rows.PARTS, walk]:
                     each[rows.FRESH, walk] = 0.0
@@ -70,7 +75,7 @@ def run_flat(A, each, laws, theta, dt, pose, legs, done, fine_left):
             if finite:
                 for a in range(7):
                     pose[walk, step, a] = each[rows.P + a, walk]
-                if legs.shape[1]:
+                if keep:
                     keep_legs(each, walk, legs[walk, step])
                 done[walk] = step + 1
             if finite and step + 1 < n:
@@ -134,8 +139,10 @@ def compare(A):
 
 @inlined
 def keep_legs(each, walk, out):
-    """Fill rows of legs and body of one walk's step, shape (7, 6), as in `run_steps`."""
-    out[N_LEGS, :] = 0.0
+    """Fill rows of legs and body of one walk's step, shape (7, 6), as in `run_steps`.
+
+    The body's energies are left as they are.
+    """
     for k in range(N_LEGS, N_CONTACTS):
         out[N_LEGS, 0] += each[rows.LOAD + k, walk]
     v, w, R = rows.V, rows.OMEGA, rows.R
@@ -161,6 +168,25 @@ def keep_legs(each, walk, out):
             forward = along / np.sqrt(1 - each[R + 6, walk] ** 2)
             turn = each[rows.SPEED + i, walk] + about_y
             out[i, 5] = -forward / (turn * each[rows.RADIUS, walk])
+
+
+@inlined
+def add_work(each, walk, out):
+    """Add the energies of one walk's step, shape (4,) [J], see `model.walk.leg_work.add_work`."""
+    v, w = rows.V, rows.OMEGA
+    for i in range(N_CONTACTS):
+        load = each[rows.LOAD + i, walk]
+        if load == 0.0:
+            continue
+        place, velocity = rows.PLACE + 3 * i, rows.VELOCITY + 3 * i
+        x, y, z = each[place, walk], each[place + 1, walk], each[place + 2, walk]
+        u0, u1, u2 = each[velocity, walk], each[velocity + 1, walk], each[velocity + 2, walk]
+        s0 = each[v, walk] + each[w + 1, walk] * z - each[w + 2, walk] * y + u0
+        s1 = each[v + 1, walk] + each[w + 2, walk] * x - each[w, walk] * z + u1
+        rise = each[v + 2, walk] + each[w, walk] * y - each[w + 1, walk] * x + u2
+        G = each[rows.SECANT + i, walk]
+        power = G * (s0 * u0 + s1 * u1) - load * u2
+        add_powers(out, power, G * (s0 * s0 + s1 * s1), -load * rise, each[rows.DT, walk])
 
 
 @inlined

@@ -46,7 +46,8 @@ def test_columns_stand_in_their_documented_order(walked, tmp_path):
     legs = "123456"
     names = ["theta", "contact", "slip_x", "slip_y", "normal", "force_x", "force_y", "slip_ratio"]
     expected = ["t", "x", "y", "z", "roll", "pitch", "yaw", *(n + i for n in names for i in legs),
-                "body_force", "flight"]  # fmt: skip
+                "body_force", "flight", "work_done", "work_taken_back", "slip_energy",
+                "contact_energy"]  # fmt: skip
     assert header == list(COLUMNS) == expected
 
 
@@ -71,16 +72,17 @@ def test_what_is_written_is_read_back(data, tmp_path_factory):
         normal_force=table(6),
         traction_force=table(6, 2),
         body_force=table(elements=st.floats(0, 1e6) | st.just(np.nan)),
+        energy=table(4, elements=numbers | st.just(np.nan)),
     )
     folder = tmp_path_factory.mktemp("walk")
     write_path(folder / "path.csv", path)
     assert_same(read_walk(folder), path)
 
 
-def test_a_folder_without_the_columns_of_the_body_is_read(walked, tmp_path):
+def test_a_folder_without_the_columns_of_body_and_energies_is_read(walked, tmp_path):
     file = tmp_path / "path.csv"
     write_path(file, walked)
-    old = [line.rsplit(",", 2)[0] for line in file.read_text().splitlines()]
+    old = [line.rsplit(",", 6)[0] for line in file.read_text().splitlines()]
     file.write_text("\n".join(old) + "\n")
     assert_same(read_walk(file), walked)
 

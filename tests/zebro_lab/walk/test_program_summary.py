@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A program is summarised segment by segment."""
 
+import io
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from rich.console import Console
 
 from model.walk.path import WalkPath
 from zebro_lab.walk.asked import WalkedSegment
@@ -42,3 +46,17 @@ def test_the_table_says_where_a_segment_is_straight_and_where_it_stands():
     table = segment_table(segment_summaries(path(), SEGMENTS))
     radius = [*table.columns[-1].cells]
     assert radius == ["straight", "-", "1.000"]
+
+
+def test_the_table_is_whole_in_80_columns():
+    long = WalkedSegment(
+        "{1,4} < {2,5} < {3,6}, steering -0.123456, turn time 0.1 s right", 12, 15.0
+    )
+    summaries = segment_summaries(path(), (*SEGMENTS[:2], long))
+    console = Console(file=io.StringIO(), width=80)
+    far = replace(summaries[2], pose=(-12.345, -10.678, np.radians(-170.0)), length=12.345)
+    console.print(segment_table((*summaries[:2], far)))
+    printed = console.file.getvalue()
+    assert "…" not in printed
+    assert all(text in printed for text in ("-12.345", "-10.678", "-170.0", "12.345", "straight"))
+    assert "12 cycles" in printed

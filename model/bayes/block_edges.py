@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
@@ -81,7 +81,7 @@ def _jumps(slip: Array, starts: NDArray[np.intp], noise: Array) -> NDArray[np.in
     beyond = total - noise * spare
     jumped = (
         (count >= FEWEST)
-        & (total > noise * chi2.isf(BY_CHANCE, spare))
+        & (total > noise * chdtri(spare, BY_CHANCE))
         & (best > LEAST_JUMP**2)
         & (beyond - best < LEFT_OVER * beyond)
     )

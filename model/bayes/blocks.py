@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from model.bayes.block_edges import BY_CHANCE, block_starts
 from model.bayes.samples import SlipSamples
@@ -150,7 +150,7 @@ def _median_variance(estimates: Array, freedom: Array) -> float:
     """
     if len(estimates) == 0:
         return 0.0
-    return float(np.median(estimates * freedom / chi2.median(freedom)))
+    return float(np.median(estimates * freedom / chdtri(freedom, 0.5)))
 
 
 def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array:
@@ -269,7 +269,7 @@ def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise
     shared = np.maximum(_shrink(of_run, error_of_run, float(np.median(of_run))), 0.0)[run]
     error = 2 * noise[run] * (noise[run] + 2 * shared) / spare
     own = shared**2 / np.maximum(shared**2 + error, 1e-300)
-    jump = spread * spare > (noise[run] + shared) * chi2.isf(BY_CHANCE, spare)
+    jump = spread * spare > (noise[run] + shared) * chdtri(spare, BY_CHANCE)
     wander = np.where(jump, excess, shared + own * (excess - shared))
     # Around the block's own mean a variance is smaller by 1/n than around the true one.
     return np.maximum(wander, 0.0) * (1 - 1 / count)

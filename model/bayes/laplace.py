@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 from scipy.special import logsumexp
-from scipy.stats import multivariate_t
 
 from model.errors import FitError
 from model.slip.law import Array
@@ -69,6 +68,8 @@ class LaplaceMixture:
 
     @cached_property
     def _parts(self) -> list[Any]:
+        from scipy.stats import multivariate_t  # late: takes longest of all to import
+
         frozen: Any = multivariate_t  # scipy's stub has the covariance as an int
         return [frozen(laplace.mode, laplace.covariance, df=8) for laplace in self.modes]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular, toeplitz
-from scipy.stats import binomtest, f, norm
+from scipy.special import fdtrc, fdtri, ndtri
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import PredictedForces, predict_blocks
@@ -71,11 +71,13 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     Raises:
         LinAlgError: The covariance of a run's blocks is singular.
     """
+    from scipy.stats import binomtest  # late: takes longest of all to import
+
     predicted = predict_blocks(blocks, law, values)
     residual = blocks.traction_force - predicted.force.mean(axis=0)
     factors = _covariance_factors(blocks, predicted, values)
     score = _run_scores(blocks, residual, factors, blocks.run_mean(predicted.force).std(axis=0))
-    inside = int(np.sum(np.abs(score) <= norm.ppf(0.95)))
+    inside = int(np.sum(np.abs(score) <= ndtri(0.95)))
     whitened = _whiten(blocks, residual, factors)
     repeating = _structure(blocks, residual, predicted)
     variance = np.mean((blocks.traction_force - blocks.traction_force.mean()) ** 2)
@@ -335,9 +337,9 @@ def _analysed(values: Array, design: Array, taken: int, shared: float) -> _Repea
     between = float(np.sum(explained**2)) / rank
     within = max(float(np.sum((values - explained) ** 2)) / spare, 1e-300)
     size = float(np.sum(design**2)) / rank  # values of a group
-    ratio = f(rank / shared, spare / shared)
+    freedom = rank / shared, spare / shared
     return _Repeating(
         misfit=float(np.sqrt(max(0.0, between - within) / size)),
-        p=float(ratio.sf(between / within)),
-        detectable=float(np.sqrt((ratio.isf(MISFIT_P) - 1) * within / size)),
+        p=float(fdtrc(*freedom, between / within)),
+        detectable=float(np.sqrt((fdtri(*freedom, 1 - MISFIT_P) - 1) * within / size)),
     )

@@ -13,7 +13,6 @@ from math import gcd, lcm
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse.csgraph import connected_components, shortest_path
 
 from model.errors import DomainError
 from model.slip.law import Array
@@ -225,6 +224,8 @@ def cyclicity(A: Array) -> int:
     >>> cyclicity(np.array([[EPSILON, 3.0], [1.0, EPSILON]]))
     2
     """
+    from scipy.sparse.csgraph import connected_components, shortest_path  # late: slow to import
+
     mean = eigenvalue(A)
     if mean == EPSILON:
         raise DomainError("the max-plus matrix has no circuit, so events do not repeat")

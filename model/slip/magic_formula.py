@@ -201,6 +201,9 @@ class MagicFormula:
             values: Parameter values, one entry a parameter.
         """
         B, C, _, E = self.coefficients(load, values)
+        if self.curvature == "peak":  # given, and E from it
+            x_m = np.asarray(values[3]) * np.asarray(load, dtype=float)
+            return np.where(np.broadcast_to(C, E.shape) > 1, x_m, np.inf)
         return peak_slip(B, C, E)
 
 

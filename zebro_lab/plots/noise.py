@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.residuals import lag_correlation
-from model.bayes.verdict import lag_one_limit
 from model.slip.law import Array
 from zebro_lab.plots.sheet import BLUE, RED, new_figure, slip_label, styled, with_minus
 
@@ -87,6 +86,8 @@ def _draw_autocorrelation(axes: Axes, whitened: Array, run: NDArray[np.intp]) ->
     axes.vlines(lags, 0, correlations, color=BLUE, lw=2)
     axes.plot(lags, correlations, ls="none", marker="o", ms=3.5, color=BLUE)
     axes.axhline(0, color="black", lw=0.6)
+    from model.bayes.verdict import lag_one_limit  # late: it imports the sampler
+
     limit = lag_one_limit(int(counts[0]))
     axes.hlines([-limit, limit], 0.5, 1.5, color=RED, lw=1.4, label=f"limit at lag 1: ±{limit:.2f}")
     reach = 1.15 * max(limit, float(np.abs(correlations).max()), float(chance.max()))

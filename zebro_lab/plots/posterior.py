@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from scipy.ndimage import gaussian_filter
 
 from model.slip.law import Array
 from zebro_lab.plots.sheet import BLUE, CYCLE, legend_below, new_figure, styled, with_minus
@@ -101,7 +100,14 @@ def _middles(edges: Array) -> Array:
 
 def _density(values: Array, edges: Array) -> Array:
     heights, _ = np.histogram(values, edges, density=True)
-    return gaussian_filter(heights, _bandwidth(values, edges, power=1 / 5), mode="constant")
+    return _smoothed(heights, _bandwidth(values, edges, power=1 / 5))
+
+
+def _smoothed(counts: Array, width: float | list[float]) -> Array:
+    """Smooth counts by a Gaussian of a standard deviation along each axis [bins]."""
+    from scipy.ndimage import gaussian_filter  # late: every picture imports this file
+
+    return gaussian_filter(counts, width, mode="constant")
 
 
 def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
@@ -127,7 +133,7 @@ def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
     widths = [
         _bandwidth(each, bins, power=1 / 6) for each, bins in zip(values.T, edges, strict=True)
     ]
-    smooth = gaussian_filter(counts, widths, mode="constant")
+    smooth = _smoothed(counts, widths)
     falling = np.sort(smooth, axis=None)[::-1]
     held = np.cumsum(falling) / falling.sum()
     half, most = (float(falling[np.searchsorted(held, mass)]) for mass in (0.5, 0.9))

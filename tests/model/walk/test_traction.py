@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from model.errors import DomainError
 from model.leg import ROLLING, TOE
@@ -31,6 +32,14 @@ def test_a_table_is_the_law_to_a_hundredth_of_its_peak_and_a_thousandth_on_avera
         error = np.abs(found - exact) / exact.max()
         assert error.max() < 0.01
         assert error.mean() < 0.001
+
+
+@pytest.mark.parametrize(("law", "values"), LAWS, ids=lambda x: getattr(x, "name", ""))
+def test_slopes_of_columns_are_those_of_a_spline(law, values):
+    table = law_table(law, values, weight=WEIGHT)
+    w = table.step * np.arange(table.phi.shape[1])
+    spline = CubicSpline(w, table.phi, axis=1)(w, 1)
+    np.testing.assert_allclose(table.slope[:, 1:], spline[:, 1:], atol=1e-13)
 
 
 TABLE = law_table(LAWS[0][0], SOURCE, weight=WEIGHT)

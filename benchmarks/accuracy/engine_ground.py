@@ -10,6 +10,7 @@ Usage: python -m benchmarks.accuracy.engine_ground [--seeds 10] [--only KIND] [-
 
 import argparse
 import subprocess
+import sys
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -213,13 +214,18 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seeds", type=int, default=10, help="of steps and of rough ground each")
     parser.add_argument("--only", choices=("slope", "patches", "steps", "rough"))
     parser.add_argument("--finer", action="store_true", help="refine the engine, too")
+    parser.add_argument("--processes", type=int, default=2, help="at a time")
     parser.add_argument("--keep", type=Path, help="new folder for grounds and walks")
     asked = parser.parse_args(arguments)
     cases = slopes_and_patches() + steps_and_roughness(asked.seeds)
     cases = [case for case in cases if asked.only in (None, case.kind)]
-    with tempfile.TemporaryDirectory() as scratch, ProcessPoolExecutor(2) as processes:
+    all_compared = []
+    with tempfile.TemporaryDirectory() as scratch, ProcessPoolExecutor(asked.processes) as pool:
         folder = asked.keep or Path(scratch)
-        print_compared(list(processes.map(compare, cases, repeat(folder), repeat(asked.finer))))
+        for one in pool.map(compare, cases, repeat(folder), repeat(asked.finer)):
+            print(*_row(one), sep="  ", file=sys.stderr, flush=True)
+            all_compared.append(one)
+    print_compared(all_compared)
 
 
 if __name__ == "__main__":

@@ -26,6 +26,8 @@ from model.walk.traction import TractionTable, VelocityCoulomb
 
 SETTLE_STEP = 0.005  # s
 SETTLE_TIME = 1.0  # s; ten times the duration of the drop
+REST_TIME, MOST_RESTS = 0.2, 20  # s on uneven ground without being held, and how often
+AT_REST = 1e-5  # m by which a robot at rest moves in that time
 STICKY = VelocityCoulomb(3.0, 1e-4).table(weight=1.0)  # to settle on a slope without sliding down
 SLIPPERY = VelocityCoulomb(0.01).table(weight=1.0)  # to settle in a place where the body is held
 
@@ -215,7 +217,8 @@ def start_state(
 
     Angular velocity and bristles are zero. A robot that its legs do not hold settles on its body.
     On uneven ground it is held above its place all the time, and the ground is slippery: moved back
-    there afterwards, its legs could be deep in the ground.
+    there afterwards, its legs could be deep in the ground. It then comes to rest by itself, see
+    `_come_to_rest`.
 
     Args:
         robot: The robot.
@@ -238,6 +241,7 @@ def start_state(
             for _ in range(len(still) - 1):
                 integrate(robot, SLIPPERY, state, still[:2], slow, ground=ground)
                 _hold(state, start.x, start.y, start.yaw)
+            _come_to_rest(robot, still, ground, state, slow)
     except WalkError as error:
         raise cannot_stand(theta, start) from error
     return settled(state, ground=ground, start=start)
@@ -316,6 +320,27 @@ def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
     plane = ground.slope_x * start.x + ground.slope_y * start.y
     plane += far * (abs(ground.slope_x) + abs(ground.slope_y))
     return float(near.max()) + float(over.max(initial=0.0)) + plane
+
+
+def _come_to_rest(
+    robot: Robot, still: Array, ground: Ground, state: State, options: DynamicsOptions
+) -> None:
+    """Let a held robot go on sticky ground, and move it back, until it moves no more.
+
+    Feet on slopes push a robot aside, which holds it up as no friction under the feet would: let
+    go, it may tip onto other legs. Each time it is moved back its feet come to other heights, but
+    by a tenth or less of the way, so that few times suffice. The state is overwritten. Where the
+    robot does not come to rest it is left as it is after the last time.
+    """
+    x, y = state.p[:2].tolist()
+    yaw = float(roll_pitch_yaw(state.q[None])[0, 2])
+    rest = still[: round(REST_TIME / options.dt) + 1]
+    for _ in range(MOST_RESTS):
+        integrate(robot, STICKY, state, rest, options, ground=ground)
+        moved = float(np.hypot(state.p[0] - x, state.p[1] - y))
+        _hold(state, x, y, yaw)
+        if moved < AT_REST:
+            break
 
 
 def _hold(state: State, x: float, y: float, yaw: float) -> None:

@@ -12,8 +12,10 @@ from benchmarks.accuracy.rigid_engine.arcs import (
     FLAT,
     N_CORNERS,
     N_SLOTS,
+    NEAR,
     Heights,
     Places,
+    find_places,
     height_at,
     no_places,
     shape_of,
@@ -32,6 +34,8 @@ from model.slip.law import Array
 DT = 6.25e-5  # s; friction about rest, of 1 mm/s, is explicit and unstable above 0.2 ms
 EVERY = 0.01  # s between the samples of a walk
 SETTLING = 1.0  # s on still legs before the walk
+MOST_DROPS = 20  # times that it is put down
+AT_REST = 5e-4  # m that it may creep in that time: friction is smooth about rest
 STICKY = Friction(3.0, 1e-2, np.zeros((0, 5)))  # as stiff about rest as one of 0.3 at 1 mm/s
 
 
@@ -122,13 +126,39 @@ class _Run:
         return carried / len(theta)
 
     def settle(self, theta: Array) -> None:
-        """Drop the robot onto still legs and sticky ground, then move it to x = y = yaw = 0."""
+        """Put the robot on still legs and sticky ground until it rests at x = y = yaw = 0.
+
+        On uneven ground it comes to rest beside the place. Put back, it would tip: it therefore
+        settles again there.
+        """
         data = self.data
         x, y = np.meshgrid(np.linspace(-0.2, 0.2, 41), np.linspace(-0.2, 0.2, 41))
         highest = max(height_at(self.heights, a, b) for a, b in zip(x.flat, y.flat, strict=True))
         data.qpos[2] = highest + self.reach
         still = np.tile(theta, (round(SETTLING / self.dt), 1))
-        self.step(still, np.zeros_like(still), STICKY)
+        for _ in range(MOST_DROPS):
+            self._lower(theta)
+            self.step(still, np.zeros_like(still), STICKY)
+            moved = float(np.hypot(*data.qpos[:2]))
+            self._put_back()
+            if moved < AT_REST or (self.heights.z.size == 1 and not len(self.heights.edge)):
+                break
+            data.qpos[2] += moved
+
+    def _lower(self, theta: Array) -> None:
+        """Lower the robot until it nearly touches the ground: in a hard landing it turns over."""
+        data, places = self.data, self.places
+        for _ in range(round(self.reach / (0.5 * NEAR))):
+            rotation = rotation_of(data.qpos[3:7])
+            find_places(data.qpos[:3], rotation, theta, self.shape, self.heights, places,
+                        self.scratch)  # fmt: skip
+            if places.near.any():
+                break
+            data.qpos[2] -= 0.5 * NEAR
+
+    def _put_back(self) -> None:
+        """Move the robot to x = y = yaw = 0, as high over the ground there, and stop it."""
+        data = self.data
         data.qpos[2] += height_at(self.heights, 0.0, 0.0) - height_at(self.heights, *data.qpos[:2])
         data.qpos[:2] = 0.0
         half = -0.5 * _yaw(data.qpos[3:7])

@@ -357,3 +357,15 @@ def test_a_robot_starts_settled_on_rough_ground(seed):
     assert path.yaw[0] == pytest.approx(0.5)
     assert path.normal_force[:5].sum(axis=1).max() < 2 * WEIGHT  # and not thrown up
     assert path.position[:, 2].max() < path.position[0, 2] + 0.001
+
+
+@pytest.mark.parametrize("seed", [1, 24])  # held in its place, the robot stood on other legs there
+def test_a_robot_that_starts_on_rough_ground_does_not_tip_as_it_is_let_go(seed):
+    ground = rough_ground(0.005, 0.05, rng=np.random.default_rng(seed))
+    legs = np.tile(np.radians([38.0, 118.0, 126.0, 50.0, 38.0, 118.0]), (2, 1))
+    sticky = VelocityCoulomb(3.0, 1e-4).table(weight=1.0)
+    path = walk(
+        ROBOT, SampledReference(np.array([0.0, 1.0]), legs), sticky, duration=0.3, ground=ground
+    )
+    np.testing.assert_allclose(path.orientation[-1], path.orientation[0], atol=np.radians(0.02))
+    np.testing.assert_allclose(path.position[-1, :2], 0.0, atol=2e-5)

@@ -7,6 +7,7 @@ import numpy as np
 
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
+from model.walk.bend import Bend
 from model.walk.traction import TractionTable
 
 ARCS = (np.pi / 2, np.radians(359.0))  # least and largest angle of a leg's arc [rad]
@@ -86,6 +87,16 @@ def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
         stiffness=float(state.stiffness[i]),
         fall=float(state.fall[i]),
     )
+
+
+def bend_in(state: LegState, i: int) -> Bend:
+    """Return how the path of one draw is stretched and bent.
+
+    Args:
+        state: Draws of the legs' state.
+        i: Index of the draw.
+    """
+    return Bend(float(state.stride[i]), float(state.steering[i]))
 
 
 def scaled_table(

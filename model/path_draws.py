@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from model.errors import DomainError
-from model.leg_state import LegState
 from model.poses import Poses, moved_onto
 from model.slip.law import Array
 from model.told_apart import told_apart
+from model.walk.bend import Bend, bent_states
 from model.walk.path import WalkPath
 
 LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
@@ -28,43 +28,24 @@ def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
         distance: epsilon, relative error of distance of each path, shape (m,) [-].
         curvature: kappa, added to the curvature of each path, positive to the left, (m,) [rad/m].
     """
-    step = np.diff(paths.position, axis=1)
-    forward = step[..., 0] + 1j * step[..., 1]
-    travelled = _from_zero(np.abs(forward))
-    turned = curvature[:, None] * travelled
-    middle = 0.5 * (turned[:, 1:] + turned[:, :-1])
-    steps = (1 + distance[:, None]) * forward * np.exp(1j * middle)
-    moved = np.stack([_from_zero(np.real(steps)), _from_zero(np.imag(steps))], axis=-1)
-    position = paths.position[:, :1] + moved
-    return Poses(paths.t, position, paths.yaw + turned)
+    states = bent_states(paths.states, distance=distance, curvature=curvature)
+    return Poses.of_states(paths.t, states)
 
 
-def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
+def bent_walk(path: WalkPath, bend: Bend) -> WalkPath:
     """Stretch and bend x, y and yaw of one walk as `bent` does; all else of the walk stays.
 
     Args:
         path: The walk.
-        distance: Relative error of distance [-].
-        curvature: Curvature added, positive to the left [rad/m].
+        bend: How the path is stretched and bent.
     """
     one = path.poses.draws()
-    moved = bent(one, distance=np.array([distance]), curvature=np.array([curvature]))
+    moved = bent(one, distance=np.array([bend.distance]), curvature=np.array([bend.curvature]))
     return replace(
         path,
         position=np.column_stack([moved.position[0], path.position[:, 2]]),
         orientation=np.column_stack([path.orientation[:, :2], moved.yaw[0]]),
     )
-
-
-def bent_as(legs: LegState, states: Array) -> Array:
-    """Stretch and bend states of one path as draw 0 of the legs' state says.
-
-    Args:
-        legs: The legs' state.
-        states: x, y and yaw, shape (1, n, 3), of which the first stays [m, m, rad].
-    """
-    path = Poses.of_states(np.arange(states.shape[1], dtype=float), states)
-    return bent(path, distance=legs.stride[:1], curvature=legs.steering[:1]).states
 
 
 def anchored(
@@ -130,8 +111,3 @@ def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
 def mean_path(paths: Poses) -> Poses:
     """Return the mean over the draws of position and unwrapped heading at every time, as a path."""
     return Poses(paths.t, paths.position.mean(axis=0), paths.yaw.mean(axis=0))
-
-
-def _from_zero(steps: Array) -> Array:
-    """Return the cumulative sum along axis 1, starting at zero: (m, n - 1) becomes (m, n)."""
-    return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)

@@ -8,6 +8,7 @@ error of the walking model, stated here as an error of distance and one of curva
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.areas import Area
+from model.walk.bend import Bend
 from model.walk.dynamics import DynamicsOptions, Start
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.terrain import Terrain
@@ -182,6 +184,8 @@ def predict_paths(
 ) -> Poses:
     """Compute the path of every draw, bent by its steering, its stride and a drawn model error.
 
+    Where the ground is not alike everywhere each draw walks on the ground under its bent path.
+
     Args:
         draws: Inputs of m walks; `with_contacts` draws stiffness and damping of the contacts.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
@@ -199,13 +203,14 @@ def predict_paths(
     draws = with_contacts(draws, error, rng=rng)
     if options is None:
         options = ensemble_step(draws, duration=float(t[-1]), threads=threads)
-    walked = walk_ensemble(draws, t, options=options, threads=threads, progress=progress).poses
     n = len(draws)
-    return bent(
-        walked,
-        distance=state.stride + error.distance * rng.standard_normal(n),
-        curvature=state.steering + error.curvature * rng.standard_normal(n),
-    )
+    distance = state.stride + error.distance * rng.standard_normal(n)
+    curvature = state.steering + error.curvature * rng.standard_normal(n)
+    walk = partial(walk_ensemble, t=t, options=options, threads=threads, progress=progress)
+    if all(draw.is_alike_everywhere for draw in draws):
+        return bent(walk(draws).poses, distance=distance, curvature=curvature)
+    bends = map(Bend, distance.tolist(), curvature.tolist())
+    return walk([replace(draw, bend=bend) for draw, bend in zip(draws, bends, strict=True)]).poses
 
 
 def with_contacts(

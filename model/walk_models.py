@@ -10,7 +10,7 @@ from model.errors import DomainError, WalkError
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import LegReference, SampledReference
-from model.leg_state import LegState, law_in, robot_in
+from model.leg_state import LegState, bend_in, law_in, robot_in
 from model.path_draws import bent_walk
 from model.poses import Poses
 from model.robot import GRAVITY, Robot
@@ -117,6 +117,7 @@ def baseline_paths(
 def _dynamics(run: ModelRun) -> WalkPath:
     """Walk by the project's model; with `legs`, correct robot, law and path by their draw 0."""
     from model.walk.areas import with_areas
+    from model.walk.bent_walk import walk_bent
     from model.walk.dynamics import DynamicsOptions, walk
 
     weight, options = run.robot.mass * GRAVITY, DynamicsOptions(dt=run.dt)
@@ -124,14 +125,18 @@ def _dynamics(run: ModelRun) -> WalkPath:
     if run.legs is not None:
         robot, law = robot_in(robot, run.legs, 0), law_in(law, run.legs, 0)
     laws = with_areas(law, run.terrain.tabulated(weight=weight, toe=run.toe))
+    if run.legs is not None and not run.terrain.is_alike_everywhere:
+        return walk_bent(
+            robot, run.reference, laws, bend=bend_in(run.legs, 0), duration=run.duration,
+            options=options, ground=run.terrain.ground,
+        )  # fmt: skip
     path = walk(
         robot, run.reference, laws, duration=run.duration, options=options,
         ground=run.terrain.ground,
     )  # fmt: skip
     if run.legs is None:
         return path
-    steering, stride = float(run.legs.steering[0]), float(run.legs.stride[0])
-    return bent_walk(path, distance=stride, curvature=steering)
+    return bent_walk(path, bend_in(run.legs, 0))
 
 
 def _thesis(run: ModelRun) -> WalkPath:

@@ -14,6 +14,8 @@ from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.areas import Area, with_areas
+from model.walk.bend import STRAIGHT, Bend
+from model.walk.bent_walk import integrate_bent
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
     ORIGIN,
@@ -46,6 +48,8 @@ class WalkDraw:
         ground: The ground.
         areas: Areas of the ground with other slip laws.
         start: Initial pose.
+        bend: How the path is stretched and bent while it is walked; on level ground of one law it
+            can as well be bent afterwards.
     """
 
     robot: Robot
@@ -56,11 +60,13 @@ class WalkDraw:
     ground: Ground = FLAT
     areas: tuple[Area, ...] = ()
     start: Start = ORIGIN
+    bend: Bend = STRAIGHT
 
     @property
     def is_alike_everywhere(self) -> bool:
         """Whether the walk depends on no place or heading: level ground of one law, from zero."""
-        return is_level(self.ground) and not self.areas and self.start == ORIGIN
+        from_zero = self.start == ORIGIN and self.bend == STRAIGHT
+        return is_level(self.ground) and not self.areas and from_zero
 
     @property
     def walks_beside_others(self) -> bool:
@@ -240,7 +246,12 @@ def planar_walk(
     theta = draw.reference.angles(t) + draw.robot.leg_offset
     state = start_state(draw.robot, theta[0], options, ground=draw.ground, start=draw.start)
     law = with_areas(draw.table, draw.areas)
-    pose, _ = integrate(draw.robot, law, state, theta, options, ground=draw.ground)
+    if draw.bend == STRAIGHT:
+        pose, _ = integrate(draw.robot, law, state, theta, options, ground=draw.ground)
+    else:
+        pose, _ = integrate_bent(
+            draw.robot, law, state, theta, options, bend=draw.bend, ground=draw.ground
+        )
     q = pose[:, 3:]
     poses = Poses(t, pose[:, :2], unwrapped_yaw(q))
     return PlanarWalk(poses, roll_pitch_yaw(q)[:, :2] if tilt else None)

@@ -1,24 +1,23 @@
 # SPDX-License-Identifier: MIT
 """Walk a program that grows, cycle by cycle, and tell the pose at its end."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from model.gait.program import ProgramLegs
 from model.gait.reference import SampledReference
-from model.poses import moved_onto
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import State
+from model.walk.bend import STRAIGHT, Bend
+from model.walk.bent_walk import integrate_bent
 from model.walk.dynamics import DynamicsOptions, integrate, start_state
 from model.walk.ground import FLAT, Ground
-from model.walk.quaternion import roll_pitch_yaw
+from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
 from model.walk.traction import TractionTable
-
-Bend = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class GrowingWalk:
         table: The slip law, as fitted walks correct it.
         options: Step length and contacts.
         ground: The ground.
-        bend: Bends states x, y, yaw of a path, shape (1, n, 3), about their first; None not to.
+        bend: How the path is stretched and bent while it is walked.
 
     Attributes:
         reached: What was walked last; None before the first walk. To take back the last cycles of a
@@ -59,7 +58,7 @@ class GrowingWalk:
         options: DynamicsOptions,
         *,
         ground: Ground = FLAT,
-        bend: Bend | None = None,
+        bend: Bend = STRAIGHT,
     ) -> None:
         self._robot, self._table, self._options = robot, table, options
         self._ground, self._bend = ground, bend
@@ -95,11 +94,11 @@ class GrowingWalk:
         dt = self._options.dt
         theta = reference.angles(dt * np.arange(last.step, end + 1)) + self._robot.leg_offset
         state = State(*(each.copy() for each in last.state))
-        pose, _ = integrate(
-            self._robot, self._table, state, theta, self._options, ground=self._ground,
-            began=last.step * dt,
-        )  # fmt: skip
-        states = np.column_stack([pose[:, :2], np.unwrap(roll_pitch_yaw(pose[:, 3:])[:, 2])])[None]
-        course = states if self._bend is None else self._bend(states)
-        moved = moved_onto(course, states[:, 0], last.pose)
-        return Reached(end, state, moved[0, -1])
+        began = last.step * dt
+        walk = integrate if self._bend == STRAIGHT else partial(integrate_bent, bend=self._bend)
+        pose, _ = walk(
+            self._robot, self._table, state, theta, self._options, ground=self._ground, began=began
+        )
+        turned = unwrapped_yaw(pose[:, 3:])
+        yaw = last.pose[2] + turned[-1] - turned[0]
+        return Reached(end, state, np.array([pose[-1, 0], pose[-1, 1], yaw]))

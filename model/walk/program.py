@@ -10,9 +10,10 @@ from model.errors import DomainError
 from model.gait.program import CycleGait, ProgramLegs
 from model.robot import Robot
 from model.walk.areas import AreaTractions
+from model.walk.bend import STRAIGHT, Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ground import FLAT, Ground
-from model.walk.growing_walk import Bend, GrowingWalk, Reached
+from model.walk.growing_walk import GrowingWalk, Reached
 from model.walk.traction import TractionTable
 
 MOST_CYCLES = 1000  # of one segment
@@ -102,7 +103,7 @@ def lay_out(
     *,
     options: DynamicsOptions,
     ground: Ground = FLAT,
-    bend: Bend | None = None,
+    bend: Bend = STRAIGHT,
     longest: float = np.inf,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[ProgramLegs, tuple[SegmentEnd, ...]]:
@@ -114,7 +115,7 @@ def lay_out(
         table: The slip law, as fitted walks correct it; None if no segment needs walking.
         options: Step length and contacts of the walk.
         ground: The ground.
-        bend: Bends the path as fitted walks say, see `GrowingWalk`; None not to.
+        bend: How fitted walks say that the path is stretched and bent.
         longest: Longest duration of the program [s].
         progress: Called after every cycle with the share of the program that is laid out; it may
             raise an exception to stop.

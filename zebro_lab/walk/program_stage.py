@@ -2,16 +2,15 @@
 """Compute the leg angles of a walking program, walking it where a segment ends at a place."""
 
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from model.leg_state import LegState, law_in, robot_in
-from model.path_draws import bent_as
+from model.leg_state import LegState, bend_in, law_in, robot_in
 from model.progress import Watcher
 from model.robot import GRAVITY
 from model.walk.areas import AreaTractions, with_areas
+from model.walk.bend import STRAIGHT
 from model.walk.dynamics import DynamicsOptions
 from model.walk.program import lay_out
 from model.walk.terrain import LEVEL, Terrain
@@ -76,7 +75,7 @@ def laid_out(
         described.robot if corrections is None else robot_in(described.robot, corrections, 0),
         _table(slip, request, described, terrain, corrections),
         options=DynamicsOptions(dt=dt), ground=terrain.ground,
-        bend=None if corrections is None else partial(bent_as, corrections),
+        bend=STRAIGHT if corrections is None else bend_in(corrections, 0),
         longest=MOST_STEPS * dt, progress=progress,
     )  # fmt: skip
     segments = tuple(

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: MIT
 """A program that is walked cycle by cycle comes to where it does walked at once."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 
 from model.gait.notation import TRIPOD
 from model.gait.program import ProgramLegs, cycle_gait
-from model.leg_state import LegState, law_in, robot_in
-from model.path_draws import bent_as, bent_walk
+from model.leg_state import LegState, bend_in, law_in, robot_in
+from model.path_draws import bent_walk
 from model.robot import GRAVITY, Robot
+from model.walk.bend import STRAIGHT
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.growing_walk import GrowingWalk
 from model.walk.traction import VelocityCoulomb
@@ -27,7 +26,7 @@ FITTED = LegState(np.full((1, 6), 0.03), 0.8 * ONE, ONE, ONE, 0.1 * ONE, 0.3 * O
 def test_poses_of_a_growing_program_are_those_of_its_walk(corrections):
     law = TABLE if corrections is None else law_in(TABLE, corrections, 0)
     robot = ROBOT if corrections is None else robot_in(ROBOT, corrections, 0)
-    bend = None if corrections is None else partial(bent_as, corrections)
+    bend = STRAIGHT if corrections is None else bend_in(corrections, 0)
     growing = GrowingWalk(robot, law, OPTIONS, bend=bend)
     legs, found = ProgramLegs.beginning_with(CURVE), []
     for _ in range(4):
@@ -35,7 +34,7 @@ def test_poses_of_a_growing_program_are_those_of_its_walk(corrections):
         found.append(growing.pose(legs))
     path = walk(robot, legs.reference(), law, duration=legs.end, options=OPTIONS)
     if corrections is not None:
-        path = bent_walk(path, distance=0.05, curvature=0.3)
+        path = bent_walk(path, bend)
     at = [round(t / OPTIONS.dt) for t in (1.0, 2.0, 3.0, 4.0)]
     expected = np.column_stack([path.position[at, :2], path.yaw[at]])
     np.testing.assert_allclose(found, expected, atol=2e-3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab init FILE`: write a `columns.toml` template from a table's header."""
+"""`zebro-lab init FILE`: write a `columns.toml` from a table's header, or a `ground.toml`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -15,23 +15,33 @@ if TYPE_CHECKING:
 
 @request_command()
 def init(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Table whose header is read.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="Table whose header is read; of kind ground the file to write."
+        ),
+    ],
     kind: Annotated[
-        Literal["rig", "legs", "imu", "track"] | None,
-        typer.Option(help="What the table holds; default: told from its headers."),
+        Literal["rig", "legs", "imu", "track", "ground"] | None,
+        typer.Option(
+            help="What the table holds; default: told from its headers. ground: no table, write "
+            "FILE, a ground.toml for walk --ground."
+        ),
     ] = None,
     sheet: Annotated[
         str | None, typer.Option(help="Sheet of a workbook; default: the only one.")
     ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace an existing columns.toml.")
-    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     output: Output = TEXT,
 ) -> None:
     """Write a commented columns.toml to the folder of FILE, guessed from its header.
 
-    What is not sure ends in "?" there; no command reads the table until somebody deleted it.
+    What is not sure ends in "?" there; no command reads the table until somebody deleted it. With
+    --kind ground write FILE itself, a commented ground.toml of level ground.
     """
+    if kind == "ground":
+        _write_ground(file, sheet, force, output)
+        return
     from zebro_lab.exchange.init_stage import write_columns_template
 
     written = write_columns_template(file, kind=kind, sheet=sheet, force=force)
@@ -49,6 +59,18 @@ def init(
     columns = {name: guess.name for name, guess in written.guesses.items()}
     content = {"written": [written.file], "kind": written.kind, "columns": columns}
     output.document("init", {**content, "to_check": advice, "notes": list(written.notes)})
+
+
+def _write_ground(file: Path, sheet: str | None, force: bool, output: Output) -> None:
+    """Write a `ground.toml` and say how to use it; raise `BadParameter` for a sheet."""
+    from zebro_lab.ground.template import write_ground_template
+
+    if sheet is not None:
+        raise typer.BadParameter("is of a workbook; a ground has none", param_hint="'--sheet'")
+    written = write_ground_template(file, force=force)
+    output.say(f"wrote {written}, level ground with all keys as comments; edit it, then:")
+    output.say(f"  zebro-lab walk --ground {written} --slip thesis --duration 20 --figures")
+    output.document("init", {"written": [written], "kind": "ground"})
 
 
 def _to_check(written: "WrittenColumns") -> list[str]:

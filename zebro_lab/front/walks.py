@@ -4,9 +4,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from typer import BadParameter
+
 from model.gait.direction import Direction
 from model.poses import Poses
 from model.walk.path import WalkPath
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
 from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import LegLog
@@ -21,6 +24,7 @@ from zebro_lab.walk.request import (
     WalkRequest,
 )
 from zebro_lab.walk.stage import walk
+from zebro_lab.walk.thesis_argument import parse_thesis
 from zebro_lab.walk.walking import Walked
 
 
@@ -67,6 +71,8 @@ def walk_gait(
     model: ModelName = "dynamics",
     steering: float | None = None,
     direction: Direction | None = None,
+    thesis: str | None = None,
+    ground: PathLike | None = None,
     robot: PathLike | None = None,
     draws: int = 0,
     seed: int = 1,
@@ -85,6 +91,9 @@ def walk_gait(
             1, straight [-].
         direction: Side to turn to, "left" or "right", of tripod, suriana and maxplus; None for
             left.
+        thesis: Switches of the model "thesis" as `--thesis` takes them, such as
+            "no-height-reset,heading=90"; None for none.
+        ground: A `ground.toml` for the model "dynamics"; None for level ground of one slip law.
         robot: A `robot.toml`; None for the thesis's robot.
         draws: Number of draws for a band, at least two, with the model "dynamics"; 0 for the single
             path only.
@@ -100,7 +109,7 @@ def walk_gait(
             GaitRequest(gait, steering=steering, direction=direction),
             duration,
             folder,
-            ModelRequest(slip, model, robot=optional(robot), band=BandRequest(draws, seed)),
+            _model_request(slip, model, thesis, ground, robot, BandRequest(draws, seed)),
         )
         return _walk_result(walk(request, Silent()), folder, draws)
 
@@ -110,6 +119,8 @@ def predict_walk(
     *,
     slip: str | None,
     model: ModelName = "dynamics",
+    thesis: str | None = None,
+    ground: PathLike | None = None,
     robot: PathLike | None = None,
     columns: PathLike | None = None,
     draws: int = 0,
@@ -122,6 +133,8 @@ def predict_walk(
         legs: A table of leg angles, a recorded run, or a walk folder.
         slip: As in `walk_gait`.
         model: As in `walk_gait`.
+        thesis: As in `walk_gait`.
+        ground: As in `walk_gait`.
         robot: A `robot.toml`; None for that of the run, else the thesis's robot.
         columns: A `columns.toml` to use instead of the one beside the table; ignored for a run.
         draws: As in `walk_gait`.
@@ -137,9 +150,27 @@ def predict_walk(
             Path(legs),
             folder,
             optional(columns),
-            model=ModelRequest(slip, model, robot=optional(robot), band=BandRequest(draws, seed)),
+            model=_model_request(slip, model, thesis, ground, robot, BandRequest(draws, seed)),
         )
         return _walk_result(predict(request, Silent()), folder, draws)
+
+
+def _model_request(
+    slip: str | None,
+    model: ModelName,
+    thesis: str | None,
+    ground: PathLike | None,
+    robot: PathLike | None,
+    band: BandRequest,
+) -> ModelRequest:
+    """Return the options of the model; raise `SettingsError` for invalid ones."""
+    try:
+        switches = None if thesis is None else parse_thesis(thesis)
+        return ModelRequest(
+            slip, model, thesis=switches, ground=optional(ground), robot=optional(robot), band=band
+        )
+    except BadParameter as error:
+        raise SettingsError(error.message, key="thesis") from error
 
 
 def _walk_result(walked: Walked, folder: Path, draws: int) -> WalkResult:

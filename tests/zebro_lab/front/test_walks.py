@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import zebro_lab as zl
-from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.errors import AlreadyExists, SettingsError
+from zebro_lab.walk.folder import read_walk
 
 WALK = Path(__file__).parents[3] / "datasets" / "walk-sim"
 
@@ -43,3 +44,35 @@ def test_files_of_others_are_kept(tmp_path):
     with pytest.raises(AlreadyExists):
         zl.walk_gait("tripod", slip="coulomb:0.4", duration=1.0, out=tmp_path / "mine.txt")
     assert (tmp_path / "mine.txt").read_text() == "mine"
+
+
+def test_a_walk_on_a_ground_is_that_of_the_command(run_command, tmp_path):
+    ground = tmp_path / "ground.toml"
+    ground.write_text("slope_deg = [4.0, 1.0]\n[[step]]\nx = 0.1\nheight = 0.005\n")
+    result = zl.walk_gait("tripod", slip="coulomb:0.5", duration=2.0, ground=str(ground))
+    words = ("walk", "--slip", "coulomb:0.5", "--duration", 2, "--ground", ground, "--out")
+    assert run_command(*words, tmp_path / "w").code == 0
+    np.testing.assert_allclose(result.walk.position, read_walk(tmp_path / "w").position, atol=1e-9)
+    again = zl.predict_walk(tmp_path / "w", slip="coulomb:0.5", ground=ground)
+    np.testing.assert_allclose(again.path.position[-1], result.path.position[-1], atol=2e-3)
+    assert any(note.startswith("ground: slope of 4 deg") for note in result.notes)
+
+
+def test_switches_of_the_thesis_are_those_of_the_command(run_command, tmp_path):
+    given = {"slip": "thesis", "model": "thesis", "steering": 1.2, "duration": 1.0}
+    switches = "no-height-reset,heading=30"
+    result = zl.walk_gait("tripod", thesis=switches, **given)
+    words = ("walk", "--slip", "thesis", "--model", "thesis", "--steering", 1.2, "--duration", 1)
+    assert run_command(*words, "--thesis", switches, "--out", tmp_path / "w").code == 0
+    np.testing.assert_allclose(result.walk.position, read_walk(tmp_path / "w").position, atol=1e-9)
+    plain = zl.walk_gait("tripod", **given)
+    assert np.abs(result.walk.position - plain.walk.position).max() > 1e-3
+
+
+@pytest.mark.parametrize(("model", "thesis", "message"), [
+    ("thesis", "mend-rol", "'mend-rol' is no switch; 'mend-roll'?"),
+    ("dynamics", "mend-roll", "switches the thesis's model; the model 'dynamics' has none"),
+])  # fmt: skip
+def test_wrong_switches_are_errors_of_the_library(model, thesis, message):
+    with pytest.raises(SettingsError, match=message):
+        zl.walk_gait("tripod", slip="thesis", model=model, thesis=thesis, duration=1.0)

@@ -146,6 +146,7 @@ def _thesis(run: ModelRun) -> WalkPath:
     """
     from model.walk.detected import walk_detected
     from model.walk.thesis import ThesisOptions, walk_thesis
+    from model.walk.thesis.kinematic import kinematic_path
 
     automaton = thesis_automaton(run.automaton, run.reference)
     if automaton == "events" or automaton == "balanced":
@@ -159,9 +160,10 @@ def _thesis(run: ModelRun) -> WalkPath:
                 "switches of the thesis's model are of its dynamics of tripods; by the automaton "
                 f"'{automaton}' it walks kinematics: leave them out, or walk a tripod"
             )
-        return walk_detected(
+        path = walk_detected(
             run.robot, run.reference, duration=run.duration, dt=run.dt, detection=automaton
         )
+        return kinematic_path(run.robot, path)
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
     legs = _legs_of_the_thesis(run.reference)
     # The legs of a log stand still and turn back by fractions of a degree; by the listing's slip

@@ -123,15 +123,9 @@ def leg_angles(path: WalkPath, *, title: str) -> Figure:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded. At 90 degrees
         a leg points down, at 0 ahead.
     """
-    angle = np.degrees(path.theta) % 360
-    turned = np.abs(np.diff(angle, axis=0, prepend=angle[:1])) > 180
-    lines = {"angle; 0 ahead, 90 down": np.where(turned, np.nan, angle)}
-    figure = leg_panels(
-        path.t, path.contact, lines, (0.0, 360.0), label="leg angle", unit="deg", title=title
+    return turn_panels(
+        path, path.theta, "angle; 0 ahead, 90 down", label="leg angle", least=0, title=title
     )
-    for axes in figure.axes:
-        axes.set(ylim=(0, 360), yticks=range(0, 361, 90))
-    return figure
 
 
 @styled
@@ -245,9 +239,35 @@ def leg_panels(
         for (name, values), colour in zip(lines.items(), (BLUE, RED, GREEN), strict=False):
             axes.plot(t, values[:, leg], color=colour, lw=0.9, label=name)
             mark_beyond(axes, t, values[:, leg], limits, label=beyond)
-    computed = any(np.isfinite(each).any() for each in lines.values())
+    drawn = contact if contact.any() else np.ones_like(contact)  # in the air forces are zero
+    computed = any(np.isfinite(each[drawn]).any() for each in lines.values())
     _label(figure, t, f"{label} [{unit}]", computed=computed)
     legend_below(figure, columns=4)
+    return figure
+
+
+def turn_panels(
+    path: WalkPath, angle: Array, name: str, *, label: str, least: int, title: str
+) -> Figure:
+    """Draw an angle over time, modulo a turn, in a panel per leg as `leg_panels` does.
+
+    Args:
+        path: Part of a walk to draw.
+        angle: The angle, shape (n, 6) [rad].
+        name: Name of the line.
+        label: What the vertical axes show.
+        least: Lower limit of the vertical axes, which show a turn [deg].
+        title: Title of the figure; "(simulated)" is appended.
+    """
+    shown = (np.degrees(angle) - least) % 360 + least
+    turned = np.abs(np.diff(shown, axis=0, prepend=shown[:1])) > 180
+    lines = {name: np.where(turned, np.nan, shown)}
+    limits = float(least), float(least + 360)
+    figure = leg_panels(
+        path.t, path.contact, lines, limits, label=label, unit="deg", title=title
+    )  # fmt: skip
+    for axes in figure.axes:
+        axes.set(ylim=limits, yticks=range(least, least + 361, 90))
     return figure
 
 

@@ -6,6 +6,7 @@ from typing import cast
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox, TransformedBbox
 from mpl_toolkits.mplot3d import Axes3D
 
 from model.robot import Robot
@@ -61,7 +62,10 @@ def snapshots(
         axes = cast("Axes3D", figure.add_axes(box, projection="3d", computed_zorder=False))
         axes.patch.set_visible(False)
         sample = int(np.abs(path.t - t).argmin())
-        Scene(axes, path, robot, terrain=terrain).show(sample)
+        scene = Scene(axes, path, robot, terrain=terrain)
+        panel = Bbox.from_bounds(left, bottom, width, height)
+        scene.clip_ground(TransformedBbox(panel, figure.transFigure))
+        scene.show(sample)
         legs = ", ".join(str(leg + 1) for leg in np.flatnonzero(path.contact[sample]))
         figure.text(
             left + 0.03 * width, bottom + 0.9 * height, f"t = {when} s   {{{legs}}}", va="center",

@@ -18,7 +18,7 @@ from zebro_lab.plots.sheet import (
     styled,
     time_axis,
 )
-from zebro_lab.plots.walk_legs import leg_limits, leg_panels
+from zebro_lab.plots.walk_legs import leg_limits, leg_panels, turn_panels
 
 _COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 _LEAST = np.array([[0.002, 0.01, 0.1], [0.1, 1.0, 10.0]])  # range of an axis: m, deg; rates of it
@@ -35,18 +35,19 @@ def coordinates(path: ThesisPath, *, title: str) -> Figure:
     Returns:
         The figure: a column for each of x, y, z and the angles of Eq. (3-7), a row each for values,
         rates and accelerations of single steps, in which traction alternates; 1 % at either end
-        may lie beyond the limits, which is marked.
+        may lie beyond the limits, which is marked. Of kinematics there are no accelerations.
     """
     values = np.column_stack([path.position, path.angles])
     rows = np.stack([values, path.rates, path.acceleration])
     rows[:, :, 3:] = np.degrees(rows[:, :, 3:])
-    figure = new_figure(title, True, width=13.0, height=6.4)
-    panels = figure.subplots(3, 6, sharex=True)
+    drawn = 2 if path.is_kinematic else 3
+    figure = new_figure(title, True, width=13.0, height=0.6 + 1.95 * drawn)
+    panels = figure.subplots(drawn, 6, sharex=True)
     for (row, column), axes in np.ndenumerate(panels):
         least = float(_LEAST[column // 3, row])
         _draw_line(axes, path.t, rows[row, :, column], least=least, cut=0.0 if row == 0 else 0.01)
     units = ("[{}]", "rate [{}/s]", "acceleration [{}/s²]")
-    for row, text in enumerate(units):
+    for row, text in enumerate(units[:drawn]):
         panels[row, 0].set_ylabel(text.format("m"))
         panels[row, 3].set_ylabel(text.format("deg"))
     for top, bottom, name in zip(panels[0], panels[-1], _COORDINATES, strict=True):
@@ -68,15 +69,10 @@ def lowest_angles(path: ThesisPath, *, title: str) -> Figure:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded. Above 0 a
         half-circle leg rolls, from 0 to -90 degrees it stands on its toe.
     """
-    phi = np.degrees(path.phi)
-    turned = np.abs(np.diff(phi, axis=0, prepend=phi[:1])) > 180
-    lines = {"angle of the lowest point; 0 at the toe": np.where(turned, np.nan, phi)}
-    figure = leg_panels(
-        path.t, path.contact, lines, (-180.0, 180.0), label="angle phi", unit="deg", title=title
-    )
-    for axes in figure.axes:
-        axes.set(ylim=(-180, 180), yticks=range(-180, 181, 90))
-    return figure
+    return turn_panels(
+        path, path.phi, "angle of the lowest point; 0 at the toe", label="angle phi", least=-180,
+        title=title,
+    )  # fmt: skip
 
 
 @styled

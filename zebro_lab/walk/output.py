@@ -76,7 +76,7 @@ def write_walk(
     with walk_folder(
         out, walked.path, kind=kind, source=source, settings=everything, inputs=inputs
     ) as folder:
-        _write_thesis(folder, walked)
+        _write_thesis(folder, walked, request.rows_every)
         _draw(request, walked, folder, watcher)
         if walked.contacts is not None:
             _write_contacts(folder, walked, walked.contacts, request.pictures)
@@ -87,14 +87,14 @@ def write_walk(
             )  # fmt: skip
 
 
-def _write_thesis(folder: Path, walked: Walked) -> None:
+def _write_thesis(folder: Path, walked: Walked, every: float) -> None:
     """Write the quantities of the thesis's model, if it walked."""
     from model.walk.thesis.path import ThesisPath  # its package takes most of a second
 
     if isinstance(walked.path, ThesisPath):
         from zebro_lab.walk.thesis_file import write_thesis
 
-        write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot)
+        write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot, every=every)
 
 
 def _write_contacts(

@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from model.gait.cyclic import CyclicReference
 from model.robot import Robot
@@ -16,6 +16,9 @@ from zebro_lab.walk.contacts import WalkContacts
 from zebro_lab.walk.folder import CONTACTS_PICTURE
 from zebro_lab.walk.request import PictureRequest
 from zebro_lab.walk.shown_time import part_in
+
+_Drawers: TypeAlias = dict[str, tuple[str, Callable[..., Any], WalkPath]]
+"""Pictures by name: what they show, the function that draws them, and of what part of a walk."""
 
 
 def draw_walk(
@@ -51,30 +54,15 @@ def draw_walk(
     from zebro_lab.plots import (  # matplotlib takes most of a second
         save,
         slip_law,
-        walk_legs,
         walk_path,
         walk_snapshots,
         walk_stance,
     )
 
     end = part_in(path, asked.window)
-    whole = path if asked.window is None else end
-    drawers: dict[str, tuple[str, Callable[..., Any], WalkPath]] = {
-        "motion": ("Motion of the body", walk_path.motion, whole),
-        "orientation": ("Orientation of the body", walk_path.orientation, whole),
-        "slip_ratio": ("Slip ratios", walk_legs.slip_ratios, end),
-        "normal_force": ("Normal forces", walk_legs.normal_forces, end),
-        "traction_force": ("Traction forces", walk_legs.traction_forces, end),
-        "paired_traction": (
-            "Sums of traction over pairs of time steps",
-            walk_legs.paired_traction,
-            end,
-        ),
-        "leg_angles": ("Leg angles", walk_legs.leg_angles, end),
-        "gantt": ("Contact", walk_legs.gantt, end),
-    }
+    drawers = _over_time(end, path if asked.window is None else end)
     if isinstance(path, ThesisPath):
-        drawers |= _of_the_thesis(end)
+        drawers |= _of_the_thesis(end, kinematic=path.is_kinematic)
     figures = {
         name: draw(part, title=f"{what}: {title}") for name, (what, draw, part) in drawers.items()
     }
@@ -94,16 +82,42 @@ def draw_walk(
         save(figure, folder / f"{name}.{asked.form}")
 
 
-def _of_the_thesis(part: WalkPath) -> dict[str, tuple[str, Callable[..., Any], WalkPath]]:
-    """Return the pictures of `THESIS_PICTURES`, of a part of a walk by the thesis's model."""
+def _over_time(end: WalkPath, whole: WalkPath) -> _Drawers:
+    """Return the pictures over time of every walk: legs of its end, the body's motion of it all."""
+    from zebro_lab.plots import walk_legs, walk_path
+
+    return {
+        "motion": ("Motion of the body", walk_path.motion, whole),
+        "orientation": ("Orientation of the body", walk_path.orientation, whole),
+        "slip_ratio": ("Slip ratios", walk_legs.slip_ratios, end),
+        "normal_force": ("Normal forces", walk_legs.normal_forces, end),
+        "traction_force": ("Traction forces", walk_legs.traction_forces, end),
+        "paired_traction": (
+            "Sums of traction over pairs of time steps",
+            walk_legs.paired_traction,
+            end,
+        ),
+        "leg_angles": ("Leg angles", walk_legs.leg_angles, end),
+        "gantt": ("Contact", walk_legs.gantt, end),
+    }
+
+
+def _of_the_thesis(part: WalkPath, *, kinematic: bool) -> _Drawers:
+    """Return the pictures of `THESIS_PICTURES`, of a part of a walk by the thesis's model.
+
+    Those of its dynamics of tripods, hip heights by side and static loads, only if it walked them.
+    """
     from zebro_lab.plots import walk_thesis
 
+    dynamics = {} if kinematic else {
+        "hip_height": ("Hip heights", walk_thesis.hip_heights, part),
+        "static_load": ("Normal forces and static loads", walk_thesis.static_loads, part),
+    }  # fmt: skip
     return {
         "coordinates": ("Coordinates of the model", walk_thesis.coordinates, part),
         "lowest_angle": ("Lowest points of the legs", walk_thesis.lowest_angles, part),
-        "hip_height": ("Hip heights", walk_thesis.hip_heights, part),
         "contact_velocity": ("Speeds of legs and ground", walk_thesis.contact_velocities, part),
-        "static_load": ("Normal forces and static loads", walk_thesis.static_loads, part),
+        **dynamics,
     }
 
 

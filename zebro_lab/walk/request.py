@@ -34,6 +34,8 @@ LONGEST_SLIPPING_STEP: Final = 0.005
 """The same for models with slip; longer steps leave the path, and give false slip."""
 LEAST_CONTACT: Final = 0.01
 """Contact states that last less are joined to the next: five steps of the model dynamics [s]."""
+THESIS_ROWS: Final = 0.01
+"""Time between the rows of `thesis.csv`, 1 kB each [s]."""
 DETECTED: Final = ("events", "balanced")
 """Automata of the model thesis that are kinematics, and so without slip."""
 _SLIPPING: Final = ("dynamics", "thesis")
@@ -189,6 +191,15 @@ class ModelRequest:
         ThesisSwitches | None,
         Option(parser=parse_thesis, metavar="SWITCH,…", help=THESIS_HELP),
     ] = None
+    thesis_every: Annotated[
+        float | None,
+        Option(
+            metavar="SECONDS",
+            help="With --model thesis: time between the rows of thesis.csv [s], 0 for a row each "
+            f"step; default: {THESIS_ROWS:g}.",
+        ),
+        Limits(least=0),
+    ] = None
     robot: Annotated[
         Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
     ] = None
@@ -219,6 +230,11 @@ class ModelRequest:
     contact: ContactRequest = field(default_factory=ContactRequest)
 
     @property
+    def rows_every(self) -> float:
+        """Time between the rows of `thesis.csv`, 0 for every step [s]."""
+        return THESIS_ROWS if self.thesis_every is None else self.thesis_every
+
+    @property
     def inputs(self) -> tuple[Path, ...]:
         """Given `--slip` (not `thesis`, also `coulomb:…`), `--robot` and `--ground` as paths."""
         slip = () if self.slip in (None, "thesis") else (Path(self.slip),)
@@ -243,6 +259,12 @@ class ModelRequest:
                 f"switches the thesis's model; the model '{self.model}' has none of it: give "
                 "--model thesis too",
                 param_hint="'--thesis'",
+            )
+        if self.thesis_every is not None and self.model != "thesis":
+            raise BadParameter(
+                f"is for thesis.csv, which the model '{self.model}' does not write; give --model "
+                "thesis too",
+                param_hint="'--thesis-every'",
             )
         if self.slip is not None:
             coulomb_numbers(self.slip)

@@ -32,7 +32,7 @@ COLUMNS = (
 """The columns of `thesis.csv`, in order."""
 
 
-def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
+def write_thesis(file: Path, path: ThesisPath, robot: Robot, *, every: float = 0.0) -> None:
     """Write the quantities of the thesis's model as CSV in SI with the columns `COLUMNS`.
 
     Frames and forces are computed and written part by part, since all at once of a long walk they
@@ -42,7 +42,11 @@ def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
         file: File to write; an existing one is overwritten.
         path: The walk; NaN, for what a leg in the air does not have, becomes an empty cell.
         robot: The robot that walked.
+        every: Time between two rows, rounded to whole steps; 0 for every step [s].
     """
+    if every > 0 and len(path.t) > 1:
+        steps = max(round(every / float(path.t[1] - path.t[0])), 1)
+        path = path.part(slice(None, None, steps))
     parts = (path.part(slice(first, first + _PART)) for first in range(0, len(path.t), _PART))
     values = (_values(part, robot) for part in parts)
     write_rows(file, COLUMNS, values, [_DIGITS] * len(COLUMNS))

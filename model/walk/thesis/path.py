@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from model.slip.law import Array
 from model.walk.path import WalkPath
 
@@ -42,3 +44,8 @@ class ThesisPath(WalkPath):
     leg_speed: Array
     contact_speed: Array
     hip_speed: Array
+
+    @property
+    def is_kinematic(self) -> bool:
+        """Whether no forces were computed: accelerations and static loads are NaN."""
+        return bool(np.isnan(self.acceleration).all())

@@ -9,6 +9,7 @@ inertia with the body; both are kept.
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.compiled import compiled
 from model.contact.tripod import switch_by_listing, switch_by_table
@@ -258,6 +259,55 @@ def turn_on(motion, step, dt, sides):
         motion.speed[step + 1, i] = speeds[step + 1, i]
 
 
+class Spare(NamedTuple):
+    """Preallocated work arrays of a step.
+
+    Attributes:
+        legs: Kinematics of the legs.
+        balance: Contacts of the legs that carry load.
+        three: Indices of these legs, shape (3,).
+        loads: Their normal forces, shape (3,) [N].
+        static: Their normal forces in static equilibrium, shape (3,) [N].
+        forces: Their forces forward and to the left, shape (3, 2) [N].
+        spin: Gyroscopic acceleration, shape (3,) [rad/s2].
+        here: Coordinates in the frame of the heading, see `to_heading`, shape (6,) [m, rad].
+        rates: Their rates, shape (6,) [m/s, rad/s].
+        turning: Rates by which the legs' planes tilt, shape (6,) [m/s, rad/s].
+        before: Position of the body one step ago, in that frame, shape (3,) [m].
+        centre_before: The same in the inertial frame, shape (3,) [m].
+    """
+
+    legs: Legs
+    balance: Balance
+    three: NDArray[np.intp]
+    loads: Array
+    static: Array
+    forces: Array
+    spin: Array
+    here: Array
+    rates: Array
+    turning: Array
+    before: Array
+    centre_before: Array
+
+
+@compiled
+def _new_spare(machine, q):
+    """Allocate the work arrays of a step; the body's position one step ago is that of `q`."""
+    legs = Legs(
+        np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(6),
+        np.empty((6, 3)), np.empty((6, 3)),
+    )  # fmt: skip
+    balance = Balance(
+        np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 2)), machine.inertia[:2], np.empty(2),
+        np.empty((3, 3)),
+    )  # fmt: skip
+    return Spare(
+        legs, balance, np.zeros(3, np.intp), np.empty(3), np.empty(3), np.empty((3, 2)),
+        np.empty(3), np.empty(6), np.empty(6), np.empty(6), np.empty(3), q[:3].copy(),
+    )  # fmt: skip
+
+
 @compiled
 def run(machine, manner, traction, motion, q, v, sides, record):
     """Integrate the thesis's model over all steps.
@@ -280,55 +330,73 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         Number of steps computed: all, or those before one in which a rate reached `RUNAWAY` or
         became NaN.
     """
-    legs = Legs(
-        np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(6),
-        np.empty((6, 3)), np.empty((6, 3)),
-    )  # fmt: skip
-    balance = Balance(
-        np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 2)), machine.inertia[:2], np.empty(2),
-        np.empty((3, 3)),
-    )  # fmt: skip
-    three, loads, spin, forces = np.zeros(3, np.intp), np.empty(3), np.empty(3), np.empty((3, 2))
-    static, here, rates, turning = np.empty(3), np.empty(6), np.empty(6), np.empty(6)
-    before, centre_before = np.empty(3), q[:3].copy()
-    steps = len(motion.theta)
-    for step in range(steps):
-        keep, row = step % manner.every == 0, step // manner.every
-        if keep:
-            record.state[row] = q
-        theta, speed, stance_speed = (
-            motion.theta[step], motion.speed[step], motion.stance_speed[step]
-        )  # fmt: skip
-        to_heading(manner.mend_heading, q, v, centre_before, here, rates, turning, before)
-        tilt = place_legs(machine, here, turning, theta, speed, stance_speed, before, legs)
-        centre_before[:] = q[:3]
-        if manner.by_table:
-            changed = switch_by_table(legs.height, sides)
-        else:
-            changed = switch_by_listing(legs.height, sides, manner.inner)
-        if manner.by_contact:
-            turn_on(motion, step, manner.dt, sides)
-        three_legs(sides, legs, here, three)
-        if changed or step == 0:
-            reset(machine, manner, legs, sides, here, rates)
-        contact_axes(here[5], tilt, balance.axes)
-        find_slip(machine, manner, traction, legs, three, here, rates, balance)
-        gyroscopic(machine.inertia, rates, spin)
-        total = demands(machine, manner, legs, sides, here, rates, spin, balance)
-        find_loads(machine, manner, traction, balance, total, static, loads)
-        if keep:
-            from_heading(manner.mend_heading, q[5], here, rates, q, record.rates[row])
-            keep_legs(record, row, legs)
-        fall = rates[2]
-        accelerate(machine, manner, traction, balance, loads, spin, rates, forces)
-        if manner.static_loads:
-            prescribe(machine, manner, legs, sides, here, total, fall, rates)
-        from_heading(manner.mend_heading, q[5], here, rates, q, v)
-        if not np.abs(v).max() < RUNAWAY:
+    spare = _new_spare(machine, q)
+    for step in range(len(motion.theta)):
+        if not _one_step(machine, manner, traction, motion, step, q, v, sides, spare, record):
             return step
-        if keep:
-            record.acceleration[row] = (v - record.rates[row]) / manner.dt
-            keep_contacts(record, row, three, balance, static, loads, forces)
-        for a in range(6):
-            q[a] += manner.dt * v[a]
-    return steps
+    return len(motion.theta)
+
+
+@compiled
+def _one_step(machine, manner, traction, motion, step, q, v, sides, spare, record):
+    """Integrate one step, and keep its sample if it is one of those that are kept.
+
+    Arguments are those of `run`, the number of the step, and work arrays.
+
+    Returns:
+        False if a rate reached `RUNAWAY` or became NaN; the coordinates are then not moved.
+    """
+    legs, balance, three, loads, static, forces, spin, here, rates = spare[:9]
+    keep, row = step % manner.every == 0, step // manner.every
+    if keep:
+        record.state[row] = q
+    tilt = _find_contacts(machine, manner, motion, step, q, v, sides, spare)
+    contact_axes(here[5], tilt, balance.axes)
+    find_slip(machine, manner, traction, legs, three, here, rates, balance)
+    gyroscopic(machine.inertia, rates, spin)
+    total = demands(machine, manner, legs, sides, here, rates, spin, balance)
+    find_loads(machine, manner, traction, balance, total, static, loads)
+    if keep:
+        from_heading(manner.mend_heading, q[5], here, rates, q, record.rates[row])
+        keep_legs(record, row, legs)
+    fall = rates[2]
+    accelerate(machine, manner, traction, balance, loads, spin, rates, forces)
+    if manner.static_loads:
+        prescribe(machine, manner, legs, sides, here, total, fall, rates)
+    from_heading(manner.mend_heading, q[5], here, rates, q, v)
+    if not np.abs(v).max() < RUNAWAY:
+        return False
+    if keep:
+        record.acceleration[row] = (v - record.rates[row]) / manner.dt
+        keep_contacts(record, row, three, balance, static, loads, forces)
+    for a in range(6):
+        q[a] += manner.dt * v[a]
+    return True
+
+
+@compiled
+def _find_contacts(machine, manner, motion, step, q, v, sides, spare):
+    """Find the legs on the ground, and set what a change of contacts sets; return the tilt X.
+
+    Arguments are those of `run`, the number of the step, and work arrays, of which the coordinates
+    in the frame of the heading and their rates, the legs and the three that carry load are filled.
+    """
+    legs, here, rates = spare.legs, spare.here, spare.rates
+    to_heading(
+        manner.mend_heading, q, v, spare.centre_before, here, rates, spare.turning, spare.before
+    )
+    tilt = place_legs(
+        machine, here, spare.turning, motion.theta[step], motion.speed[step],
+        motion.stance_speed[step], spare.before, legs,
+    )  # fmt: skip
+    spare.centre_before[:] = q[:3]
+    if manner.by_table:
+        changed = switch_by_table(legs.height, sides)
+    else:
+        changed = switch_by_listing(legs.height, sides, manner.inner)
+    if manner.by_contact:
+        turn_on(motion, step, manner.dt, sides)
+    three_legs(sides, legs, here, spare.three)
+    if changed or step == 0:
+        reset(machine, manner, legs, sides, here, rates)
+    return tilt

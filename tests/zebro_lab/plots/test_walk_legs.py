@@ -109,3 +109,12 @@ def test_a_single_ratio_without_neighbours_has_no_mark(walked):
     ratio[151, 0] = 0.9
     figure = slip_ratios(replace(walked, slip_ratio=ratio), title="")
     assert any("furthest 0.9" in line.get_label() for line in figure.axes[0].lines)
+
+
+def test_forces_that_a_model_does_not_compute_are_said_to_be_none(walked):
+    """In the air they are zero, which is no force that was computed."""
+    force = np.where(walked.contact, np.nan, 0.0)
+    for path, texts in ((walked, 0), (replace(walked, normal_force=force), 6)):
+        figure = normal_forces(path, title="A walk")
+        said = [each for axes in figure.axes for each in axes.texts]
+        assert len([each for each in said if "computes none" in each.get_text()]) == texts

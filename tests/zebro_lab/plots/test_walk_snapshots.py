@@ -23,3 +23,15 @@ def test_one_snapshot_has_room_for_its_title(walked):
     (axes,) = figure.axes
     axes.set_visible(False)  # 3-D axes reach beyond the page by intent
     assert overhang(figure) <= 0
+
+
+def test_the_ground_of_a_snapshot_stays_out_of_the_others(walked):
+    figure = snapshots(walked, Robot(), title="A walk", at=(0.5, 1.0, 1.5, 1.9))
+    boxes = [
+        collection.get_clip_box().transformed(figure.transFigure.inverted())
+        for axes in figure.axes for collection in axes.collections
+        if collection.get_clip_on() and collection.get_clip_box() is not None
+    ]  # fmt: skip
+    assert len(boxes) == 8  # grid and areas of each
+    assert {round(box.width, 6) for box in boxes} == {round(1 / 3, 6)}
+    assert max(box.x1 for box in boxes) <= 1 + 1e-9

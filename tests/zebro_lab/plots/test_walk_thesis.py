@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Figures of the thesis's model: each draws what the path holds, in units, on its page."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -57,3 +59,9 @@ def test_the_lowest_point_is_drawn_without_a_line_across(path):
     for axes in lowest_angles(path, title="A walk").axes:
         drawn = axes.lines[-1].get_ydata()
         assert np.nanmax(np.abs(np.diff(drawn))) < 5.0
+
+
+def test_coordinates_of_kinematics_have_no_accelerations(path):
+    kinematic = replace(path, acceleration=np.full_like(path.acceleration, np.nan))
+    assert len(coordinates(kinematic, title="A walk").axes) == 12
+    assert len(coordinates(path, title="A walk").axes) == 18

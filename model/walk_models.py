@@ -17,6 +17,7 @@ from model.robot import GRAVITY, Robot
 from model.slip.thesis import thesis_curve
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
+from model.walk.slipping import SLIPPING
 from model.walk.terrain import LEVEL, Terrain
 from model.walk.thesis_switches import AS_LISTED, ThesisSwitches
 from model.walk.traction import ToeLaw
@@ -71,15 +72,18 @@ class WalkModel:
 
     Attributes:
         name: Key of the model in `MODELS`.
-        slips: Whether the model needs a slip law.
         dt: Default length of a step [s].
         run: Function that computes the path from the model's inputs.
     """
 
     name: str
-    slips: bool
     dt: float
     run: Callable[[ModelRun], WalkPath]
+
+    @property
+    def slips(self) -> bool:
+        """Whether the model needs a slip law."""
+        return self.name in SLIPPING
 
 
 def baseline_paths(
@@ -246,10 +250,10 @@ def _slip_of(run: ModelRun) -> Slip:
 MODELS: Mapping[str, WalkModel] = MappingProxyType({
     model.name: model
     for model in (
-        WalkModel("dynamics", slips=True, dt=0.002, run=_dynamics),
-        WalkModel("thesis", slips=True, dt=0.001, run=_thesis),
-        WalkModel("no-slip", slips=False, dt=0.002, run=_no_slip),
-        WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),
+        WalkModel("dynamics", dt=0.002, run=_dynamics),
+        WalkModel("thesis", dt=0.001, run=_thesis),
+        WalkModel("no-slip", dt=0.002, run=_no_slip),
+        WalkModel("no-slip-simple", dt=0.002, run=_wheels),
     )
 })  # fmt: skip
 """Walking models by name: the project's own, the thesis's, and the two without slip."""

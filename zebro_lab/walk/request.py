@@ -7,6 +7,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from typer import Argument, BadParameter, Option
 
+from model.walk.slipping import SLIPPING
 from model.walk.thesis_switches import ThesisSwitches
 from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
@@ -38,8 +39,6 @@ THESIS_ROWS: Final = 0.01
 """Time between the rows of `thesis.csv`, 1 kB each [s]."""
 DETECTED: Final = ("events", "balanced")
 """Automata of the model thesis that are kinematics, and so without slip."""
-_SLIPPING: Final = ("dynamics", "thesis")
-"""Models whose legs slip; `model.walk_models`, which says so, too, takes long to import."""
 
 
 @dataclass(frozen=True)
@@ -280,7 +279,7 @@ class ModelRequest:
                 "--model dynamics with it",
                 key="--ground",
             )
-        longest = LONGEST_SLIPPING_STEP if self.model in _SLIPPING else LONGEST_STEP
+        longest = LONGEST_SLIPPING_STEP if self.model in SLIPPING else LONGEST_STEP
         if self.dt is not None and self.dt > longest:
             raise SettingsError(
                 f"found {self.dt:g} s; expected at most {longest:g} s with the model "
@@ -294,7 +293,7 @@ class ModelRequest:
         Raises:
             BadParameter: The model has slipping legs and `--slip` is missing.
         """
-        if self.slip is None and self.model in _SLIPPING and self.automaton not in DETECTED:
+        if self.slip is None and self.model in SLIPPING and self.automaton not in DETECTED:
             raise BadParameter(
                 f"missing: legs slip in the model '{self.model}'; name a slip.toml, the folder "
                 "that holds it, coulomb:MU[:V] or thesis",

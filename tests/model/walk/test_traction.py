@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
+import numba
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
 from model.errors import DomainError
 from model.leg import ROLLING, TOE
+from model.leg_state import scaled_table
 from model.slip import Brush, CoulombStribeck, MagicFormula, SlipDefinition, convert_slip
 from model.walk.traction import TOE_LAWS, VelocityCoulomb, law_table
 from model.walk.traction_lookup import table_value, traction_secant
@@ -43,6 +45,14 @@ def test_slopes_of_columns_are_those_of_a_spline(law, values):
 
 
 TABLE = law_table(LAWS[0][0], SOURCE, weight=WEIGHT)
+
+
+@pytest.mark.parametrize(("law", "values"), LAWS, ids=lambda x: getattr(x, "name", ""))
+def test_all_tables_have_one_type_so_that_a_walk_is_compiled_once(law, values):
+    table = law_table(law, values, weight=WEIGHT)
+    scaled = scaled_table(table, grip=0.9, stiffness=1.1, fall=0.5)
+    by_velocity = VelocityCoulomb(0.4).table(weight=WEIGHT)
+    assert numba.typeof(table) == numba.typeof(scaled) == numba.typeof(by_velocity)
 
 
 def test_a_law_proportional_to_load_has_one_row():

@@ -28,6 +28,15 @@ settings.register_profile("lab", deadline=None, derandomize=True)
 settings.load_profile("lab")
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_setupnodes(config):
+    """Compile the loops once before several workers run all tests; each worker would do it."""
+    if config.args_source == pytest.Config.ArgsSource.TESTPATHS:
+        from support.compile_loops import compile_loops
+
+        compile_loops()
+
+
 @pytest.fixture(scope="session")
 def shared() -> Path:
     """Return the folder of reference data; skip where this machine has none."""

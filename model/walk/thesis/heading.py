@@ -27,7 +27,10 @@ def to_heading(mended, q, v, centre_before, here, rates, turning, before):
             of the heading, which turns with the body, shape (6,) [m/s, rad/s].
         before: Filled: position of the body one step ago, shape (3,) [m].
     """
-    here[:], rates[:], turning[:], before[:] = q, v, v, centre_before
+    for i in range(6):  # slices would take longer to compile than all the rest
+        here[i], rates[i], turning[i] = q[i], v[i], v[i]
+    for a in range(3):
+        before[a] = centre_before[a]
     if not mended:
         return
     c, s = np.cos(q[5]), np.sin(q[5])
@@ -49,8 +52,10 @@ def from_heading(mended, yaw, here, rates, q, v):
         q: Coordinates; height, roll and pitch are overwritten, shape (6,) [m, rad].
         v: Filled: rates of the coordinates, shape (6,) [m/s, rad/s].
     """
-    q[2:5] = here[2:5]
-    v[:] = rates
+    for i in range(2, 5):
+        q[i] = here[i]
+    for i in range(6):
+        v[i] = rates[i]
     if mended:
         c, s = np.cos(yaw), np.sin(yaw)
         v[0], v[1] = c * rates[0] - s * rates[1], s * rates[0] + c * rates[1]

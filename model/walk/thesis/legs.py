@@ -110,10 +110,8 @@ class SwitchedLegs:
             self.start, self.touchdown, self.liftoff, self.ground_speed, self.flight_speed,
             dt, theta, speed,
         )  # fmt: skip
-        return LegMotion(
-            theta, speed, *(np.broadcast_to(v, theta.shape) for v in
-                            (self.ground_speed, self.flight_speed)),
-        )  # fmt: skip
+        speeds = (np.tile(v, (steps, 1)) for v in (self.ground_speed, self.flight_speed))
+        return LegMotion(theta, speed, *speeds)
 
 
 def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> LegMotion:

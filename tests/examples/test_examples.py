@@ -1,15 +1,22 @@
 # SPDX-License-Identifier: MIT
 import os
 import re
+import runpy
+import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.py"))
-ONE_LOAD = Path(__file__).parents[2] / "datasets" / "rig-sim" / "simulated_load_02.13N.parquet"
+CHECKOUT = Path(__file__).parents[2]
+EXAMPLES = sorted((CHECKOUT / "examples").glob("*.py"))
+ONE_LOAD = "simulated_load_02.13N.parquet"
 ARGUMENTS = {"calibrate.py": [ONE_LOAD, "slip_curve.png", "500"]}
+EVERY_RUN, EVERY_PHOTO = 5, 4
+"""Of a load's runs and a walk's photographs every how many are in the tests' smaller datasets."""
 SAYS = {
     "calibrate.py": "wrote slip_curve.png",
     "track.py": "poses in",
@@ -34,11 +41,37 @@ def test_an_example_fits_on_a_page_and_imports_the_front_door_alone(path):
     assert "SIMULATED" in text
 
 
+@pytest.fixture
+def smaller(tmp_path, monkeypatch):
+    """Return a checkout of the examples with a part of the data, and work in its folder."""
+    shutil.copytree(CHECKOUT / "examples", tmp_path / "examples")
+    walk = tmp_path / "datasets" / "walk-sim"
+    shutil.copytree(
+        CHECKOUT / "datasets" / "walk-sim", walk, ignore=shutil.ignore_patterns("composite")
+    )
+    for n, photo in enumerate(sorted((walk / "photos").glob("*.jpg"))):
+        if n % EVERY_PHOTO:
+            photo.unlink()
+    rig = CHECKOUT / "datasets" / "rig-sim"
+    table = pd.read_parquet(rig / ONE_LOAD)
+    table[table.run.isin(table.run.unique()[::EVERY_RUN])].to_parquet(tmp_path / ONE_LOAD)
+    shutil.copy(rig / "columns.toml", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
-def test_an_example_runs_and_shows_what_it_promises(path, tmp_path):
+def test_an_example_runs_and_shows_what_it_promises(path, smaller, monkeypatch, capsys):
+    monkeypatch.setattr(tempfile, "tempdir", str(smaller))
+    monkeypatch.setattr(sys, "argv", [path.name, *ARGUMENTS.get(path.name, [])])
+    runpy.run_path(str(smaller / "examples" / path.name), run_name="__main__")
+    assert SAYS[path.name] in capsys.readouterr().out
+
+
+def test_an_example_is_a_program_of_its_own(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-W", "error", path, *ARGUMENTS.get(path.name, [])],
+        [sys.executable, "-W", "error", CHECKOUT / "examples" / "twins.py"],
         cwd=tmp_path, env={**os.environ, "TMPDIR": str(tmp_path)}, capture_output=True, text=True,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert SAYS[path.name] in done.stdout
+    assert SAYS["twins.py"] in done.stdout

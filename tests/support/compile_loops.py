@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
@@ -33,22 +34,23 @@ TIMES = np.arange(0.0, 0.1, 0.005)
 
 
 def compile_simple_models() -> None:
-    """Walk by the thesis's model and without slip."""
+    """Reconstruct counted angles, and walk by the thesis's model and without slip."""
+    count = np.radians(3.6)
+    t = np.arange(0.0, 2.0, 0.01)
+    InexactLog(t, count * np.round(GAIT.angles(t) / count), count)
     for name in ("thesis", "no-slip"):
         model = MODELS[name]
         model.run(ModelRun(Robot(), GAIT, SLIP, TIMES[-1], model.dt))
 
 
 def compile_dynamics() -> None:
-    """Walk by the project's model: alone and side by side, on a slope and over areas."""
+    """Walk by the project's model: alone and side by side, on a slope, over areas."""
     log = SampledReference(TIMES, GAIT.angles(TIMES))
     walk_ensemble([WalkDraw(Robot(), log, TABLE)] * 2, TIMES, options=OPTIONS)
     square = Area(np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]), TABLE)
-    for law in (TABLE, with_areas(TABLE, (square,))):
-        walk(
-            Robot(), GAIT, law, duration=TIMES[-1], options=OPTIONS,
-            ground=with_slope(FLAT, 0.05, 0.0),
-        )  # fmt: skip
+    slope = with_slope(FLAT, 0.05, 0.0)
+    for law, ground in ((TABLE, FLAT), (TABLE, slope), (with_areas(TABLE, (square,)), slope)):
+        walk(Robot(), GAIT, law, duration=TIMES[-1], ground=ground, options=OPTIONS)
 
 
 SHARES = {"simple models": compile_simple_models, "dynamics": compile_dynamics}

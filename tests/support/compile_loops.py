@@ -37,7 +37,8 @@ def compile_simple_models() -> None:
     """Reconstruct counted angles, and walk by the thesis's model and without slip."""
     count = np.radians(3.6)
     t = np.arange(0.0, 2.0, 0.01)
-    InexactLog(t, count * np.round(GAIT.angles(t) / count), count)
+    log = InexactLog(t, count * np.round(GAIT.angles(t) / count), count)
+    log.smooth(np.random.default_rng(1))
     for name in ("thesis", "no-slip"):
         model = MODELS[name]
         model.run(ModelRun(Robot(), GAIT, SLIP, TIMES[-1], model.dt))

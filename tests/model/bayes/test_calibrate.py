@@ -42,8 +42,15 @@ def fitted(samples, watcher, **options):
     )  # fmt: skip
 
 
-def test_a_fit_that_was_stopped_goes_on_to_the_same_calibration(samples):
-    whole, chains = fitted(samples, Watcher())
+@pytest.fixture(scope="module")
+def uninterrupted(samples):
+    """Return a fit that nothing stopped, its chains, and these as they were handed out."""
+    kept = []
+    return *fitted(samples, Watcher(), keep=kept.append), kept
+
+
+def test_a_fit_that_was_stopped_goes_on_to_the_same_calibration(samples, uninterrupted):
+    whole, chains, _ = uninterrupted
     with pytest.raises(FitStopped) as stopped:
         fitted(samples, Watcher(stop_at=4))
     assert 1 < stopped.value.chains.n_steps < chains.n_steps
@@ -59,10 +66,8 @@ def test_a_fit_stopped_before_sampling_has_no_chains(samples):
     assert stopped.value.chains is None
 
 
-def test_chains_are_handed_out_as_they_grow(samples):
-    kept = []
-    fitted(samples, Watcher(), keep=kept.append)
-    lengths = [chains.n_steps for chains in kept]
+def test_chains_are_handed_out_as_they_grow(uninterrupted):
+    lengths = [chains.n_steps for chains in uninterrupted[2]]
     assert lengths == sorted(set(lengths))
     assert lengths[-1] >= 100
 

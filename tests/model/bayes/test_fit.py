@@ -146,11 +146,15 @@ def test_averaging_wandering_slip_over_a_run_blunts_the_curve(wandering):
 # --- preparing a fit
 
 
-def test_the_block_length_is_chosen_unless_it_is_given():
+@pytest.fixture(scope="module")
+def fit():
+    return prepared(simulated(), choice=TEN)
+
+
+def test_the_block_length_is_chosen_unless_it_is_given(fit):
     samples = simulated()
-    given = prepared(samples, choice=TEN)
-    assert given.block_choice is TEN
-    assert len(given.posterior.blocks) == len(block_means(samples, 10))
+    assert fit.block_choice is TEN
+    assert len(fit.posterior.blocks) == len(block_means(samples, 10))
     chosen = prepared(samples)
     assert chosen.block_choice.correlation >= 1
     blocks = block_means(samples, chosen.block_choice.length)
@@ -164,8 +168,7 @@ def test_what_is_known_of_the_load_cell_is_kept_with_the_fit():
     assert fit.posterior.priors["offset_spread"].scale == 0.03
 
 
-def test_the_mode_is_higher_than_the_truth():
-    fit = prepared(simulated(), choice=TEN)
+def test_the_mode_is_higher_than_the_truth(fit):
     truth = dict(zip((p.name for p in THESIS_LAW.parameters), THESIS_VALUES, strict=True))
     truth |= {"noise_floor": 0.03, "noise_slope": 0.02, "offset_spread": 0.05}
     at_truth = fit.posterior.log_density(fit.posterior.coordinates(truth)[None])[0]
@@ -173,9 +176,9 @@ def test_the_mode_is_higher_than_the_truth():
     assert fit.laplace.log_density > at_truth
 
 
-def test_the_same_seed_prepares_the_same_fit():
-    one, same = (prepared(simulated(), choice=TEN) for _ in range(2))
-    np.testing.assert_array_equal(one.laplace.mode, same.laplace.mode)
+def test_the_same_seed_prepares_the_same_fit(fit):
+    same = prepared(simulated(), choice=TEN)
+    np.testing.assert_array_equal(fit.laplace.mode, same.laplace.mode)
 
 
 def test_runs_of_one_block_fix_what_they_cannot_tell_apart():

@@ -46,14 +46,24 @@ def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(reque
     assert len((result.folder / "track.tum").read_text().splitlines()) == len(SOME)
 
 
-def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(request_, undrawn):
-    track(request_, Nobody())
-    (request_.folder / "notes.txt").write_text("mine")
-    track(request_, Nobody())
-    assert (request_.folder / "notes.txt").read_text() == "mine"
-    (request_.folder / "manifest.json").write_text('{"kind": "walk", "schema": 1}')
+@pytest.fixture
+def few(request_, tmp_path):
+    """Return what is asked of two of the photographs."""
+    photos = tmp_path / "few"
+    photos.mkdir()
+    for number in SOME[:2]:
+        shutil.copy(request_.photos / f"simulated_{number}.jpg", photos)
+    return replace(request_, photos=photos)
+
+
+def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(few, undrawn):
+    track(few, Nobody())
+    (few.folder / "notes.txt").write_text("mine")
+    track(few, Nobody())
+    assert (few.folder / "notes.txt").read_text() == "mine"
+    (few.folder / "manifest.json").write_text('{"kind": "walk", "schema": 1}')
     with pytest.raises(AlreadyExists, match="another command"):
-        track(request_, Nobody())
+        track(few, Nobody())
 
 
 def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
@@ -164,8 +174,8 @@ def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str)
     return replace(request, **{file.stem: file})
 
 
-def test_a_floor_of_another_dictionary_says_which_is_seen(request_, tmp_path):
-    asked = edited(request_, tmp_path, "floor.toml", "side", 'dictionary = "5x5_50"\nside')
+def test_a_floor_of_another_dictionary_says_which_is_seen(few, tmp_path):
+    asked = edited(few, tmp_path, "floor.toml", "side", 'dictionary = "5x5_50"\nside')
     with pytest.raises(NoUsablePhoto, match="markers of '4x4_50'"):
         track(asked, Nobody())
 

@@ -52,7 +52,8 @@ def track(run_command, photos: Path, *options: object) -> np.ndarray:
     """Track and return x, y [m] and yaw [rad] of every photograph."""
     ended = run_command(
         "track", photos, "--camera", "camera.toml", "--floor", "floor.toml", "--robot",
-        "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out", *options,
+        "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out",
+        "--workers", 1, *options,
     )  # fmt: skip
     assert ended.code == 0
     table = pd.read_csv("out/track.csv")

@@ -14,6 +14,8 @@ from support.foreign_trajectories import drive, tum, written
 from support.walk_requests import write_log
 from support.written_runs import make_run
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def document(ended, command, keys, *, code=0):
     """Return the document of a command that ended with a code, which must be all of its stdout."""

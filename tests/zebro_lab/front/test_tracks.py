@@ -3,7 +3,11 @@
 
 from pathlib import Path
 
+import pytest
+
 import zebro_lab as zl
+
+pytestmark = pytest.mark.usefixtures("blank_pictures")
 
 WALK = Path(__file__).parents[3] / "datasets" / "walk-sim"
 

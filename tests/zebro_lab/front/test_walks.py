@@ -10,6 +10,8 @@ import zebro_lab as zl
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.walk.folder import read_walk
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 WALK = Path(__file__).parents[3] / "datasets" / "walk-sim"
 
 

@@ -15,6 +15,8 @@ import pytest
 from zebro_lab.main import app
 from zebro_lab.terminal.ending import run as run_app
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 SIZE = (800, 600)
 GOOD = ("simulated_00.jpg", "simulated_02.jpg", "simulated_03.jpg")

@@ -14,6 +14,8 @@ from zebro_lab.track.command import track_lines
 from zebro_lab.track.request import MergedAs
 from zebro_lab.track.stage import track
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 @pytest.mark.parametrize(
     "command", [("track",), ("annotate",), ("camera",), ("camera", "calibrate"), ("camera", "kit")]

@@ -19,6 +19,8 @@ from zebro_lab.recording.devices import profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 PROFILE = "zebro-100-serial"
 BEGUN = datetime(2020, 6, 1, 12, 0, 0, tzinfo=UTC)  # of the walk, as the camera has it

@@ -9,6 +9,8 @@ from zebro_lab.validation.chosen_runs import pairs_of_runs
 from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.validation.request import ValidateRequest
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 @pytest.fixture
 def others(tmp_path):

@@ -3,7 +3,11 @@
 
 import json
 
+import pytest
+
 from zebro_lab.validation.predicted_walks import pairs_of_run
+
+pytestmark = pytest.mark.usefixtures("blank_pictures")
 
 
 def test_the_command_prints_a_table_and_says_simulated(walk, tmp_path, run_command):

@@ -12,6 +12,8 @@ from support.watchers import Nobody
 from zebro_lab.validation.folder import metrics
 from zebro_lab.validation.stage import validate
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def test_the_folder_holds_tables_pictures_tum_files_and_a_manifest(validated, walk):
     folder = walk / "validation"

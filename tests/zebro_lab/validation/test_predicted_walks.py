@@ -11,6 +11,8 @@ from zebro_lab.validation.predicted_walks import pairs_of_run, read_predicted_wa
 from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.stage import validate
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def test_a_run_without_a_track_says_what_to_do(walk, tmp_path):
     with pytest.raises(NotFound, match="predict"):

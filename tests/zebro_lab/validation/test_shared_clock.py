@@ -18,6 +18,8 @@ from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.validation.shared_clock import estimated_clock, shifted
 from zebro_lab.validation.stage import validate
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def test_clocks_apart_are_refused_and_an_offset_brings_them_together(walk, tmp_path):
     prediction, track = pairs_of_run(walk)

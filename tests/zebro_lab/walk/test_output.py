@@ -20,6 +20,8 @@ from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.request import BandRequest, ModelRequest, PictureRequest
 from zebro_lab.walk.walking import Walked
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0, direction="left")
 
 

@@ -17,6 +17,8 @@ from zebro_lab.walk.program_file import read_program
 from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 PROGRAM = """
 [[segment]]
 gait = "tripod"

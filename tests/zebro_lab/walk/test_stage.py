@@ -19,6 +19,8 @@ from zebro_lab.walk.request import BandRequest, ModelRequest, PictureRequest
 from zebro_lab.walk.stage import walk, write_robot
 from zebro_lab.walk.summary import summarise
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def test_a_gait_has_a_band_around_its_path(tmp_path):
     asked = request(tmp_path / "out", dt=0.005, band=BandRequest(12, offset_sd_deg=1.0))

@@ -8,6 +8,8 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.validation.compare.request import CompareRequest
 from zebro_lab.validation.compare.stage import compare
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def test_more_friction_is_more_traction_and_the_same_slope(tmp_path):
     one = calibration(tmp_path / "one")

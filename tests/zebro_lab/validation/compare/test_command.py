@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab compare` prints differences with how surely they are."""
 
+import pytest
+
 from support.compared_folders import calibration
+
+pytestmark = pytest.mark.usefixtures("blank_pictures")
 
 
 def test_the_command_prints_probabilities_and_says_simulated(tmp_path, run_command):

@@ -7,6 +7,8 @@ import pytest
 from support.compared_folders import compared, run_folder
 from zebro_lab.validation.compare.runs import compare_runs
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def test_a_tighter_turn_is_told_from_a_wide_one_wherever_it_was_walked(tmp_path):
     one, other = run_folder(tmp_path / "a"), run_folder(tmp_path / "b", radius=1.9, seed=2)

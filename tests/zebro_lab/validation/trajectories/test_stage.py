@@ -9,6 +9,8 @@ import pytest
 
 from support.foreign_trajectories import drive, kitti, tum, written
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 T, POSITION, ROTATION = drive()
 
 

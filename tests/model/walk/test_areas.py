@@ -52,6 +52,17 @@ def test_legs_on_ice_have_the_traction_of_ice_and_others_that_of_the_ground():
     assert most[~on_left].max() > 0.2
 
 
+def test_single_steps_exceed_friction_by_next_to_no_impulse():
+    # velocities that have settled to 1 mm/s leave traction open where the law rises over 1 mm/s
+    path = walked(
+        with_areas(COULOMB, [Area(EVERYWHERE, VelocityCoulomb(0.1).table(weight=WEIGHT))])
+    )
+    allowed = 0.1 * path.normal_force
+    beyond = np.maximum(np.linalg.norm(path.traction_force, axis=2) - allowed, 0.0)
+    assert (beyond > 0.02 * allowed).mean() < 0.005
+    assert beyond.sum() < 5e-4 * allowed.sum()
+
+
 def test_the_last_of_overlapping_areas_counts():
     laws = with_areas(COULOMB, [Area(EVERYWHERE, CURVE), Area(ELL, ICE)])
     assert [area_at(laws, x, y) for x, y in ((0.5, 0.5), (1.5, 1.5), (20.0, 0.0))] == [2, 1, 0]

@@ -41,6 +41,11 @@ def test_a_slope_rises_along_x_and_y(read):
     assert ground.what == ("slope of 5 deg along x, -2 deg along y",)
 
 
+def test_the_ground_is_higher_beyond_a_step_up_and_lower_beyond_one_down(read):
+    ground = read(STEP + STEP.replace("0.5", "0.8").replace("0.01", "-0.03"))
+    assert [height(ground, x, 0.0) for x in (0.45, 0.6, 0.9)] == pytest.approx([0, 0.01, -0.02])
+
+
 def test_parts_add_up(read):
     whole = 'heights = { file = "h.csv", step = 0.1, origin = [1, 2] }\nslope_deg = [1, 2]\n' + STEP
     alone = ('heights = { file = "h.csv", step = 0.1, origin = [1, 2] }', "slope_deg = [1, 2]",

@@ -47,7 +47,7 @@ GAITS = {
 }
 STEP_HEIGHT = 0.01  # m
 ROUGHNESS, CORRELATION, GRID = 0.005, 0.05, 0.005  # m
-ALLOWED = {"slope": 0.002, "patches": 0.002, "steps": 0.01, "rough": 0.02}  # of the length
+ALLOWED = {"slope": 0.002, "patches": 0.002, "steps": 0.01, "rough": 0.01}  # of the length
 HALF = 1.28  # m; half the side of the map, which repeats itself at twice that
 
 

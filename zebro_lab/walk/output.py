@@ -79,7 +79,7 @@ def write_walk(
         _write_thesis(folder, walked, request.rows_every)
         _draw(request, walked, folder, watcher)
         if walked.contacts is not None:
-            _write_contacts(folder, walked, walked.contacts, request.pictures)
+            _write_contacts(folder, walked, walked.contacts, _asked(request, walked))
         if walked.band is not None:
             write_band(
                 folder, walked.band, title=walked.title, form=request.pictures.form,

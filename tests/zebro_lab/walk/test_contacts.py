@@ -178,7 +178,10 @@ def test_a_program_and_a_log_have_contacts_too(run_command, tmp_path):
         assert rows_of(tmp_path / folder / "contacts.csv")[-1]["by"] == "force"
 
 
-def test_a_program_asks_for_the_touchdowns_of_its_schedule(run_command, tmp_path):
+def test_a_program_asks_for_the_touchdowns_of_its_schedule(run_command, tmp_path, monkeypatch):
+    shown = []
+    monkeypatch.setattr("zebro_lab.walk.output.draw_contacts",
+                        lambda *_, asked, **__: shown.append(asked.window))  # fmt: skip
     program = tmp_path / "p.toml"
     program.write_text('[[segment]]\ngait = "tripod"\nuntil = { strides = 2 }\n\n'
                        '[[segment]]\ngait = "tripod"\nsteering = -1\n'
@@ -188,6 +191,7 @@ def test_a_program_asks_for_the_touchdowns_of_its_schedule(run_command, tmp_path
         run_command("walk", program, "--slip", "coulomb:0.4", "--contacts", "--out", out).code == 0
     )
     rows = rows_of(out / "touchdowns.csv")
+    assert [(each.begin, each.end) for each in shown] == [(0.0, 8.0)]  # all of it is drawn
     assert [float(row["asked_t"]) for row in rows if row["leg"] == "1"] == [1.0, 3.0, 5.0, 7.0]
     assert [row["turn"] for row in rows if row["leg"] == "1"] == ["1", "2", "2", "1"]  # back again
     for row in rows:

@@ -66,11 +66,7 @@ def normal_forces(path: WalkPath, *, title: str) -> Figure:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded. The largest
         1 % may lie beyond the limits, which is marked.
     """
-    limits = 0.0, leg_limits(path.normal_force[path.contact], least=1.0)[1]
-    lines = {"normal force": path.normal_force}
-    return leg_panels(
-        path.t, path.contact, lines, limits, label="normal force", unit="N", title=title
-    )
+    return load_panels(path, {"normal force": path.normal_force}, title=title)
 
 
 @styled
@@ -244,6 +240,20 @@ def leg_panels(
     _label(figure, t, f"{label} [{unit}]", computed=computed)
     legend_below(figure, columns=4)
     return figure
+
+
+def load_panels(path: WalkPath, lines: Mapping[str, Array], *, title: str) -> Figure:
+    """Draw normal forces over time in a panel per leg as `leg_panels` does.
+
+    Args:
+        path: Part of a walk to draw; the limits hold all but 1 % of its normal forces.
+        lines: Forces by label, shape (n, 6) each [N].
+        title: Title of the figure; "(simulated)" is appended.
+    """
+    limits = 0.0, leg_limits(path.normal_force[path.contact], least=1.0)[1]
+    return leg_panels(
+        path.t, path.contact, lines, limits, label="normal force", unit="N", title=title
+    )
 
 
 def turn_panels(

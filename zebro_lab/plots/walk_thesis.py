@@ -18,7 +18,7 @@ from zebro_lab.plots.sheet import (
     styled,
     time_axis,
 )
-from zebro_lab.plots.walk_legs import leg_limits, leg_panels, turn_panels
+from zebro_lab.plots.walk_legs import leg_limits, leg_panels, load_panels, turn_panels
 
 _COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 _LEAST = np.array([[0.002, 0.01, 0.1], [0.1, 1.0, 10.0]])  # range of an axis: m, deg; rates of it
@@ -146,10 +146,7 @@ def static_loads(path: ThesisPath, *, title: str) -> Figure:
         "normal force, Eq. (4-22)": path.normal_force,
         "in static equilibrium, Eq. (4-18)": path.static_load,
     }
-    limits = 0.0, leg_limits(path.normal_force[path.contact], least=1.0)[1]
-    return leg_panels(
-        path.t, path.contact, lines, limits, label="normal force", unit="N", title=title
-    )
+    return load_panels(path, lines, title=title)
 
 
 def _draw_line(axes: Axes, t: Array, values: Array, *, least: float, cut: float) -> None:

@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 
 from model.contact.detection import Detection, detect_contacts
+from model.contact.sequence import named_legs
 from model.errors import DomainError
 from model.frames import attitude
 from model.gait import tetrapod_reference, tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
 from model.robot import Robot
 from model.walk.detected import walk_detected
+from model.walk.footing import GroundFooting
 from model.walk.ground import heights_on
 from zebro_lab.ground.ground_file import read_ground
 from zebro_lab.main import app
@@ -223,12 +225,25 @@ def on_ground(tmp_path_factory):
 
 
 def test_legs_are_detected_on_the_ground_of_the_walk_and_that_is_said(on_ground):
-    out, printed, _ = on_ground
+    out, printed, ground = on_ground
     assert f"contact states by {RULES['events']}, on the walk's ground" in printed
     assert f"contact states by {RULES['force']}:" in printed
     share = float(printed.split("both have the same legs on the ground in ")[1].split("%")[0])
     assert share > 85.0
     assert (out / "contacts.png").is_file()
+    path = read_walk(out)
+    pose = np.column_stack([path.position, path.orientation])
+    footing = GroundFooting(Robot(), path.theta, pose, ground)
+    own, flat = (detect_contacts(Robot(), path.theta, footing=each) for each in (footing, None))
+    rows = [row for row in rows_of(out / "contacts.csv") if row["by"] == "events"]
+    middles = [(float(row["start"]) + float(row["end"])) / 2 for row in rows]
+    samples = np.searchsorted(path.t, middles)
+    written = [row["contact"] for row in rows]
+    on_legs = [[named_legs(frozenset(np.flatnonzero(found.contact[k]).tolist())) for k in samples]
+               for found in (own, flat)]  # fmt: skip
+    same, same_flat = (np.mean(np.array(written) == np.array(each)) for each in on_legs)
+    assert same > 0.9
+    assert same_flat < 0.8
 
 
 def over(ground, path, robot, leg, k):

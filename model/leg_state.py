@@ -115,6 +115,8 @@ def scaled_table(
             toe sets in, are scaled by grip over stiffness [-].
         fall: Factor on how far traction falls beyond its peak; 0 keeps it at the peak [-].
     """
+    if grip == stiffness == fall == 1.0:  # draws that no walk informs share the tables
+        return table
     table = _with_fall(table, fall)
     shrink = stiffness / grip
     return table._replace(

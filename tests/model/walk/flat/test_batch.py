@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from model.gait.notation import TETRAPOD, TRIPOD
+from model.gait.program import cycle_gait
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.lanes import LANES
@@ -16,6 +18,7 @@ from model.walk.dynamics import DynamicsOptions, start_state
 from model.walk.flat.batch import FlatWalk, is_flat_walk, run_side_by_side
 from model.walk.ground import FLAT, with_slope
 from model.walk.loop import run_steps
+from model.walk.program import Segment, Until, lay_out
 from model.walk.traction import VelocityCoulomb, law_table
 
 ROBOT = Robot()
@@ -111,3 +114,34 @@ def test_bristles_and_slopes_are_left_to_the_general_loop():
     assert is_flat_walk(CURVE, FLAT)
     assert not is_flat_walk(CURVE._replace(bristle=True), FLAT)
     assert not is_flat_walk(CURVE, with_slope(FLAT, 0.1, 0.0))
+
+
+def random_walks(rng, seconds=1.5):
+    """Return walks of a program each, spot turns to straight, on legs mounted 5 degrees off."""
+    t = DT * np.arange(round(seconds / DT) + 1)
+    walks = []
+    for steering in (-1.0, *rng.uniform(-1.0, 1.0, LANES - 1)):
+        groups = TRIPOD if rng.uniform() < 0.5 else TETRAPOD
+        gait = cycle_gait(groups, ground_time=0.5, flight_time=0.25, steering=steering)
+        legs, _ = lay_out([Segment(gait, Until(strides=2))], ROBOT, None, options=DynamicsOptions())
+        theta = legs.reference().angles(t) + np.radians(5.0) * rng.standard_normal(N_LEGS)
+        table = VelocityCoulomb(rng.uniform(0.1, 1.0)).table(weight=WEIGHT)
+        if rng.uniform() < 0.5:
+            table = CURVE._replace(phi=CURVE.phi * rng.uniform(0.3, 1.5))
+        contacts = Contacts(*np.exp(rng.standard_normal(2)) * [2e5, 200.0])
+        state = start_state(ROBOT, theta[0], DynamicsOptions())
+        walks.append(FlatWalk(ROBOT, table, contacts, state, theta))
+    return walks
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_random_walks_and_turns_on_dragging_feet_are_those_of_the_general_loop(seed):
+    walks = random_walks(np.random.default_rng(seed))
+    expected = [general(walk, DT, len(walk.theta) - 1) for walk in walks]
+    pose, legs, _ = run_side_by_side(walks, DT, keep_legs=True)
+    dragged = 0.0
+    for i, (path, rows) in enumerate(expected):
+        np.testing.assert_allclose(pose[i, 1:], path, atol=1e-8, err_msg=str(i))
+        np.testing.assert_allclose(legs[i], rows, rtol=1e-4, atol=1e-4, err_msg=str(i))
+        dragged = max(dragged, np.nanmax(np.hypot(*rows[:, :N_LEGS, 3:5].T)))
+    assert dragged > 0.05  # m/s

@@ -309,6 +309,8 @@ def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
     Reach, along x and y each: distance of the furthest hip plus twice the leg's radius. Where it
     goes beyond the grid, the grid's edge counts; of a grid that repeats itself all of it counts.
     """
+    if is_level(ground):
+        return float(ground.height[0, 0])
     far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
     m, n = ground.height.shape
     i = (np.array([start.x - far, start.x + far]) - ground.x) / ground.step

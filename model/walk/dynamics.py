@@ -18,7 +18,7 @@ from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
 from model.walk.flat.batch import FlatWalk, is_flat_walk, run_side_by_side
-from model.walk.ground import FACE, FLAT, Ground, ground_at, is_even, is_level
+from model.walk.ground import FLAT, Ground, ground_at, highest_near, is_even, is_level
 from model.walk.loop import run_steps
 from model.walk.path import WalkPath, path_of
 from model.walk.quaternion import roll_pitch_yaw, turned_about_vertical
@@ -258,7 +258,8 @@ def unsettled_state(robot: Robot, *, ground: Ground = FLAT, start: Start = ORIGI
         start: Initial pose and velocity.
     """
     half = 0.5 * start.yaw
-    highest = _highest_under(robot, ground, start)
+    far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
+    highest = highest_near(ground, start.x, start.y, far)
     reach = 2 * robot.leg_radius + max(0.5 * robot.body_size[2], -float(robot.hips[:, 2].min()))
     return State(
         p=np.array([start.x, start.y, highest + reach if start.height is None else start.height]),
@@ -301,27 +302,6 @@ def settled(state: State, *, ground: Ground = FLAT, start: Start = ORIGIN) -> St
     state.w[:] = 0.0
     state.stretch[:] = 0.0
     return state
-
-
-def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
-    """Return a height that no ground within the robot's reach of the start is above [m].
-
-    Reach, along x and y each: distance of the furthest hip plus twice the leg's radius. Where it
-    goes beyond the grid, the grid's edge counts; of a grid that repeats itself all of it counts.
-    """
-    if is_level(ground):
-        return float(ground.height[0, 0])
-    far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
-    m, n = ground.height.shape
-    i = (np.array([start.x - far, start.x + far]) - ground.x) / ground.step
-    j = (np.array([start.y - far, start.y + far]) - ground.y) / ground.step
-    i0, i1 = np.clip([np.floor(i[0]), np.ceil(i[1])], 0, m - 1).astype(int)
-    j0, j1 = np.clip([np.floor(j[0]), np.ceil(j[1])], 0, n - 1).astype(int)
-    near = ground.height if ground.repeats else ground.height[i0 : i1 + 1, j0 : j1 + 1]
-    over = np.cumsum(np.where(ground.edge - FACE < start.x + far, ground.rise, 0.0))
-    plane = ground.slope_x * start.x + ground.slope_y * start.y
-    plane += far * (abs(ground.slope_x) + abs(ground.slope_y))
-    return float(near.max()) + float(over.max(initial=0.0)) + plane
 
 
 def _come_to_rest(

@@ -60,6 +60,32 @@ def is_level(ground: Ground) -> bool:
     return even and ground.slope_x == 0 and ground.slope_y == 0
 
 
+def highest_near(ground: Ground, x: float, y: float, far: float) -> float:
+    """Return a height that no ground near a place is above [m].
+
+    Where the distance goes beyond the grid, the grid's edge counts; of a grid that repeats itself
+    all of it counts.
+
+    Args:
+        ground: The ground.
+        x: x of the place [m].
+        y: y of the place [m].
+        far: Distance along x and y each [m].
+    """
+    if is_level(ground):
+        return float(ground.height[0, 0])
+    m, n = ground.height.shape
+    i = (np.array([x - far, x + far]) - ground.x) / ground.step
+    j = (np.array([y - far, y + far]) - ground.y) / ground.step
+    i0, i1 = np.clip([np.floor(i[0]), np.ceil(i[1])], 0, m - 1).astype(int)
+    j0, j1 = np.clip([np.floor(j[0]), np.ceil(j[1])], 0, n - 1).astype(int)
+    near = ground.height if ground.repeats else ground.height[i0 : i1 + 1, j0 : j1 + 1]
+    over = np.cumsum(np.where(ground.edge - FACE < x + far, ground.rise, 0.0))
+    plane = ground.slope_x * x + ground.slope_y * y
+    plane += far * (abs(ground.slope_x) + abs(ground.slope_y))
+    return float(near.max()) + float(over.max(initial=0.0)) + plane
+
+
 def sample_ground(
     height: Callable[[Array, Array], Array],
     *,

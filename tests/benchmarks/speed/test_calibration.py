@@ -8,7 +8,7 @@ SMALL = SweepPlan(slips=(0.02, 0.05, 0.1, 0.2, 0.4, 0.8), duration=0.4)
 
 
 def test_a_small_sweep_has_a_row_for_each_likelihood_engine_and_reader(monkeypatch, rows):
-    for name, few in (("KEPT_STEPS", 20), ("IMPORTANCE_DRAWS", 500), ("READS", 1)):
+    for name, few in (("KEPT_STEPS", 10), ("IMPORTANCE_DRAWS", 500), ("READS", 1)):
         monkeypatch.setattr(calibration, name, few)
     monkeypatch.setattr(calibration.rate, "__kwdefaults__", {"seconds": 0.05})
     calibration.main(SMALL, SMALL)

@@ -3,6 +3,7 @@
 
 from zebro_lab.exchange import export_command, import_command, init_command
 from zebro_lab.experiment import command as rig
+from zebro_lab.reach import command as reach
 from zebro_lab.recording import check_command, simulate_command
 from zebro_lab.recording import command as record
 from zebro_lab.recording.doctor import command as doctor
@@ -25,6 +26,7 @@ app = Application(no_args_is_help=True)
 app.command(epilog=calibrate.EPILOG)(calibrate.calibrate)
 app.command()(init_command.init)
 app.command(epilog=walk.EPILOG)(walk.walk)
+app.command(epilog=reach.EPILOG)(reach.reach)
 app.command(epilog=predict_command.EPILOG)(predict_command.predict)
 app.command(epilog=validate.EPILOG)(validate.validate)
 app.command(epilog=compare.EPILOG)(compare.compare)

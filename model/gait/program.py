@@ -102,7 +102,7 @@ def cycle_gait(
             f"lift-off at {np.degrees(outer_up):g} degrees; expected beyond touchdown at "
             f"{np.degrees(touchdown):g}, by less than 180 degrees"
         )
-    inner_down, inner_up = _scaled_stance(touchdown, outer_up, abs(steering), leg_arc)
+    inner_down, inner_up = scaled_stance(touchdown, outer_up, abs(steering), leg_arc)
     down, up = np.where(inner, inner_down, touchdown), np.where(inner, inner_up, outer_up)
     sense = np.where(inner & (steering < 0), -1.0, 1.0) * (-1.0 if reverse else 1.0)
     system = turning_system(
@@ -115,13 +115,19 @@ def cycle_gait(
     )
 
 
-def _scaled_stance(
+def scaled_stance(
     touchdown: float, liftoff: float, share: float, leg_arc: float
 ) -> tuple[float, float]:
     """Return touchdown and lift-off angles of a share of a stance [rad].
 
     They differ from those of equal hip height by the share of the whole stance's difference: at 1
     they are the given ones, at 0 both are that of the highest hip.
+
+    Args:
+        touchdown: Touchdown angle of the whole stance [rad].
+        liftoff: Its lift-off angle [rad].
+        share: Share of the stance angle, from 0 to 1 [-].
+        leg_arc: Angle of the legs' arc [rad].
     """
     if share == 1:
         return touchdown, liftoff

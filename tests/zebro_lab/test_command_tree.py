@@ -28,6 +28,7 @@ REFUSED_TEXTS = {
     "ANGLE": ("5 kg", "wide", "nan deg", "0 deg", "90 deg"),
     "DICTIONARY:NUMBER:SIDE": ("4x4_50", "4x4_50:x:1cm", "4x4_50:0:1kg", "4x4_50:0:0mm"),
     "real|sim:WHAT": ("simulated", "sim:"),
+    "X,Y[,DEG]": ("1", "1,2,3,4", "x,y", "nan,1", "0,0"),
     "U,V": ("1", "1,2,3", "x,y", "nan,1"),
     "U,V U,V U,V U,V": ("1,2", "1,2 3,4 5,6 x,y"),
     "LENGTHxWIDTH@HEIGHT": ("1", "1mx2kg@3m", "x@", "-1mmx2mm@3mm"),
@@ -49,6 +50,7 @@ REFUSED_TEXTS = {
 
 NEEDED_TOO = {
     "walk": {"--duration": "1", "--slip": "thesis"},
+    "reach": {"--goal": "1,0", "--slip": "thesis"},
     "annotate": {"--photo": "a.jpg", "--corners": "1,1 2,1 2,2 1,2"},
 }
 """Options that are required by rules of a command, not of the parser."""

@@ -17,6 +17,7 @@ from zebro_lab.robot.gait_argument import LEAST_DEG
 _GAITS = {"tripod": TRIPOD, "tetrapod": TETRAPOD}
 _TIMES = ("ground_time", "flight_time")
 _ENDS = ("strides", "time", "heading_deg", "near")
+CYCLE = 2.0  # s, unless another is given
 _MOST = 1000  # strides of a segment
 _SHORTEST, _LONGEST = 0.01, 1000.0  # s, of any time
 
@@ -67,15 +68,41 @@ def read_program(file: Path, *, leg_arc: float) -> Program:
     return Program(segments, names, file)
 
 
+def groups_of(text: str) -> Gait:
+    """Return the groups of legs of a gait by its name, or by its groups in order.
+
+    Args:
+        text: "tripod", "tetrapod", or groups such as "{1,4} < {2,5} < {3,6}".
+
+    Raises:
+        DomainError: The text is neither.
+    """
+    try:
+        return _GAITS[text] if text in _GAITS else parse_gait(text, N_LEGS)
+    except DomainError as error:
+        known = ", ".join(f"'{name}'" for name in _GAITS)
+        raise DomainError(f"{error}; known names: {known}") from error
+
+
+def even_times(cycle: float, groups: Gait) -> tuple[float, float]:
+    """Return ground and flight time of a cycle that the groups share evenly [s].
+
+    Args:
+        cycle: Duration of the cycle [s].
+        groups: Groups of legs.
+    """
+    flight = cycle / max(len(groups.groups), 2)
+    return cycle - flight, flight
+
+
 def _segment(table: SettingsTable, leg_arc: float) -> tuple[Segment, str]:
     if "stand" in table:
         return Segment(stand=_seconds(table, "stand")), "stand"
     text = table.text("gait")
     try:
-        groups = _GAITS[text] if text in _GAITS else parse_gait(text, N_LEGS)
+        groups = groups_of(text)
     except DomainError as error:
-        known = ", ".join(f"'{name}'" for name in _GAITS)
-        raise table.fault(f"{error}; known names: {known}", "gait") from error
+        raise table.fault(str(error), "gait") from error
     try:
         gait, turn = _gait(table, groups, leg_arc)
         until = _until(table.table("until"))
@@ -117,9 +144,7 @@ def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
             _seconds(table, "ground_time"),
             _seconds(table, "flight_time"),
         )
-    cycle = _seconds(table, "cycle") if "cycle" in table else 2.0
-    flight = cycle / max(len(groups.groups), 2)
-    return cycle - flight, flight
+    return even_times(_seconds(table, "cycle") if "cycle" in table else CYCLE, groups)
 
 
 def _until(table: SettingsTable) -> Until:

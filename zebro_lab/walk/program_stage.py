@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from model.leg_state import LegState, bend_in, law_in, robot_in
+from model.leg_state import bend_in, law_in, robot_in
 from model.progress import Watcher
 from model.robot import GRAVITY
-from model.walk.areas import AreaTractions, with_areas
+from model.walk.areas import with_areas
 from model.walk.bend import STRAIGHT
 from model.walk.dynamics import DynamicsOptions
+from model.walk.manoeuvre import Surroundings
 from model.walk.program import lay_out
-from model.walk.terrain import LEVEL, Terrain
-from model.walk.traction import TractionTable
+from model.walk.terrain import LEVEL
 from model.walk_models import MODELS
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
@@ -58,11 +58,10 @@ def laid_out(
             walk diverged.
     """
     program = read_program(file, leg_arc=described.robot.leg_arc)
-    terrain = LEVEL if ground is None else ground.terrain
     slip = _slip(program, request)
-    informed = None if slip is None or slip.walks is None else informed_legs(slip.walks, described)
-    corrections = None if informed is None else informed.middle
-    dt = time_step(request, MODELS[request.model], informed)
+    around = _unwalked(request, described, ground) if slip is None else surroundings_of(
+        slip, request, described, ground
+    )  # fmt: skip
 
     def progress(share: float) -> None:
         """Show progress; stop if that is requested."""
@@ -71,12 +70,9 @@ def laid_out(
             raise WalkStopped("stopped; nothing was written")
 
     legs, ends = lay_out(
-        program.segments,
-        described.robot if corrections is None else robot_in(described.robot, corrections, 0),
-        _table(slip, request, described, terrain, corrections),
-        options=DynamicsOptions(dt=dt), ground=terrain.ground,
-        bend=STRAIGHT if corrections is None else bend_in(corrections, 0),
-        longest=MOST_STEPS * dt, progress=progress,
+        program.segments, around.robot, around.table, options=around.options,
+        ground=around.ground, bend=around.bend, longest=MOST_STEPS * around.options.dt,
+        progress=progress,
     )  # fmt: skip
     segments = tuple(
         WalkedSegment(what, end.cycles, end.end)
@@ -118,17 +114,38 @@ def _slip(program: Program, request: ModelRequest) -> NamedSlip | None:
     return parse_slip(request.slip)
 
 
-def _table(
-    slip: NamedSlip | None,
-    request: ModelRequest,
-    described: RobotFile,
-    terrain: Terrain,
-    corrections: LegState | None,
-) -> TractionTable | AreaTractions | None:
-    """Return the slip law, as fitted walks correct it, and those of areas; None without."""
+def surroundings_of(
+    slip: NamedSlip, request: ModelRequest, described: RobotFile, ground: GroundFile | None
+) -> Surroundings:
+    """Return what programs are walked with to find where they end, as fitted walks correct it.
+
+    Args:
+        slip: The slip law.
+        request: Toe law and time step.
+        described: The robot.
+        ground: The ground and its areas; None for level ground of one slip law.
+
+    Raises:
+        ModelError: The slip law loses its shape at the robot's loads.
+    """
+    terrain = LEVEL if ground is None else ground.terrain
+    informed = None if slip.walks is None else informed_legs(slip.walks, described)
+    options = DynamicsOptions(dt=time_step(request, MODELS[_WALKS], informed))
     weight = described.robot.mass * GRAVITY
-    if slip is None:
-        return None
     law = slip.traction_table(weight=weight, toe=request.toe)
-    law = law if corrections is None else law_in(law, corrections, 0)
-    return with_areas(law, terrain.tabulated(weight=weight, toe=request.toe))
+    robot, bend = described.robot, STRAIGHT
+    if informed is not None:
+        corrections = informed.middle
+        robot, law = robot_in(robot, corrections, 0), law_in(law, corrections, 0)
+        bend = bend_in(corrections, 0)
+    table = with_areas(law, terrain.tabulated(weight=weight, toe=request.toe))
+    return Surroundings(robot, table, options, terrain.ground, bend)
+
+
+def _unwalked(
+    request: ModelRequest, described: RobotFile, ground: GroundFile | None
+) -> Surroundings:
+    """Return what programs are laid out with of which no segment needs walking."""
+    terrain = LEVEL if ground is None else ground.terrain
+    options = DynamicsOptions(dt=time_step(request, MODELS[request.model], None))
+    return Surroundings(described.robot, None, options, terrain.ground)

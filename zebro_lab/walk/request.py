@@ -155,18 +155,49 @@ class ContactRequest:
         return LEAST_CONTACT if self.contacts_least is None else self.contacts_least
 
 
+SlipOption: TypeAlias = Annotated[
+    str | None,
+    Option(
+        help="Slip law: a slip.toml, its folder, thesis, or coulomb:MU[:V], friction MU, 71 % "
+        "of it at slip velocity V (0.001 m/s). Required by dynamics and thesis.",
+        metavar="SLIP",
+    ),
+]
+ToeOption: TypeAlias = Annotated[
+    ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
+]
+RobotOption: TypeAlias = Annotated[
+    Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
+]
+ArcOption: TypeAlias = Annotated[
+    float | None,
+    Option(metavar="DEG", help="Arc of the legs [deg]; default: the robot's."),
+    Limits(least=90, below=360),
+]
+StepOption: TypeAlias = Annotated[
+    float | None,
+    Option(
+        metavar="SECONDS",
+        help=f"Time step [s], at most {LONGEST_SLIPPING_STEP:g} with slip and "
+        f"{LONGEST_STEP:g} without; default: the model's.",
+    ),
+    Limits(above=0),
+]
+GroundOption: TypeAlias = Annotated[
+    Path | None,
+    Option(
+        metavar="FILE",
+        help="ground.toml: slope, steps, roughness, heights and areas of other slip, for "
+        "dynamics; default: flat.",
+    ),
+]
+
+
 @dataclass(frozen=True)
 class ModelRequest:
     """Options of model, slip law, robot, band and pictures, shared by `walk` and `predict`."""
 
-    slip: Annotated[
-        str | None,
-        Option(
-            help="Slip law: a slip.toml, its folder, thesis, or coulomb:MU[:V], friction MU, 71 % "
-            "of it at slip velocity V (0.001 m/s). Required by dynamics and thesis.",
-            metavar="SLIP",
-        ),
-    ] = None
+    slip: SlipOption = None
     model: Annotated[
         ModelName,
         Option(
@@ -183,9 +214,7 @@ class ModelRequest:
             "Default: listing for tripods, events for other gaits."
         ),
     ] = None
-    toe: Annotated[
-        ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
-    ] = "saturated"
+    toe: ToeOption = "saturated"
     thesis: Annotated[
         ThesisSwitches | None,
         Option(parser=parse_thesis, metavar="SWITCH,…", help=THESIS_HELP),
@@ -199,31 +228,10 @@ class ModelRequest:
         ),
         Limits(least=0),
     ] = None
-    robot: Annotated[
-        Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
-    ] = None
-    arc_deg: Annotated[
-        float | None,
-        Option(metavar="DEG", help="Arc of the legs [deg]; default: the robot's."),
-        Limits(least=90, below=360),
-    ] = None
-    dt: Annotated[
-        float | None,
-        Option(
-            metavar="SECONDS",
-            help=f"Time step [s], at most {LONGEST_SLIPPING_STEP:g} with slip and "
-            f"{LONGEST_STEP:g} without; default: the model's.",
-        ),
-        Limits(above=0),
-    ] = None
-    ground: Annotated[
-        Path | None,
-        Option(
-            metavar="FILE",
-            help="ground.toml: slope, steps, roughness, heights and areas of other slip, for "
-            "dynamics; default: flat.",
-        ),
-    ] = None
+    robot: RobotOption = None
+    arc_deg: ArcOption = None
+    dt: StepOption = None
+    ground: GroundOption = None
     band: BandRequest = field(default_factory=BandRequest)
     pictures: PictureRequest = field(default_factory=PictureRequest)
     contact: ContactRequest = field(default_factory=ContactRequest)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""Plot two ways to each of some goals from above."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from model.robot import Robot
+from model.slip.law import Array
+from model.walk.path import WalkPath
+from model.walk.terrain import LEVEL, Terrain
+from zebro_lab.plots.ground import draw_ground
+from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.walk_robot import outline, to_world
+
+_COLOURS = (BLUE, RED)
+_COLUMNS = 3
+_PANEL = 3.6  # inches
+_NARROWEST = 7.0  # inches, for title and legend
+_MARGIN = 0.05  # of the longer side, around everything
+
+
+@dataclass(frozen=True)
+class DrawnGoal:
+    """A goal with the ways to it.
+
+    Attributes:
+        title: Title of its panel.
+        place: x and y [m].
+        heading: Heading there; None for any [rad].
+        paths: The walk of each way by its name, at most two.
+    """
+
+    title: str
+    place: tuple[float, float]
+    heading: float | None
+    paths: Mapping[str, WalkPath]
+
+
+@styled
+def ways_to_goals(
+    goals: Sequence[DrawnGoal], robot: Robot, *, title: str, terrain: Terrain = LEVEL
+) -> Figure:
+    """Draw the paths of the body's centre, with the body at the start and at each end.
+
+    Args:
+        goals: The goals, a panel each.
+        robot: The robot, for the size of its body.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+        terrain: The ground, whose heights are shaded, and its areas, which are hatched.
+
+    Returns:
+        The figure, x to the right and y up, both to one scale in each panel.
+    """
+    columns = min(_COLUMNS, len(goals))
+    rows = -(-len(goals) // columns)
+    figure = new_figure(
+        title, True, width=max(_NARROWEST, _PANEL * columns), height=_PANEL * rows + 0.9
+    )
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    for panel, goal in zip(axes, goals, strict=False):
+        _draw_goal(panel, goal, robot, terrain)
+    for panel in axes[len(goals) :]:
+        panel.set_axis_off()
+    legend_below(figure, columns=5)
+    return figure
+
+
+def _draw_goal(axes: Axes, goal: DrawnGoal, robot: Robot, terrain: Terrain) -> None:
+    """Draw a goal and the ways to it; they are told apart by colour and by dashes."""
+    corners = [np.array(goal.place)[None]]
+    for (name, path), colour, dashes in zip(
+        goal.paths.items(), _COLOURS, ("-", "--"), strict=False
+    ):
+        end = _body(path, robot, -1)
+        axes.plot(*path.position[:, :2].T, color=colour, ls=dashes, lw=1.5, label=name, zorder=4)
+        axes.fill(*end.T, facecolor=colour, alpha=0.15, lw=0, zorder=2)
+        axes.plot(*end.T, color=colour, ls=dashes, lw=1.0, zorder=3)
+        corners += [path.position[:, :2], end]
+    start = _body(next(iter(goal.paths.values())), robot, 0)
+    axes.plot(*start.T, color="0.5", lw=1.0, label="start", zorder=1)
+    low, high = _square(np.concatenate([*corners, start]))
+    _mark_goal(axes, goal, arrow=0.12 * float(high[0] - low[0]))
+    axes.set(
+        xlabel="x [m]", ylabel="y [m]", aspect="equal",
+        xlim=(low[0], high[0]), ylim=(low[1], high[1]),
+    )  # fmt: skip
+    axes.set_title(goal.title, loc="left")
+    draw_ground(axes, terrain, low, high)
+    axes.grid(color="0.92", lw=0.6)
+    axes.set_axisbelow(True)
+
+
+def _mark_goal(axes: Axes, goal: DrawnGoal, *, arrow: float) -> None:
+    """Mark a goal by a cross, and the heading asked for by an arrow of a length [m]."""
+    x, y = goal.place
+    axes.plot(x, y, ls="none", marker="x", ms=8, mew=2.0, color="black", label="goal", zorder=5)
+    if goal.heading is not None:
+        to = (x + arrow * np.cos(goal.heading), y + arrow * np.sin(goal.heading))
+        axes.annotate(
+            "", xy=to, xytext=(x, y), arrowprops={"arrowstyle": "->", "lw": 1.5}, zorder=5
+        )
+
+
+def _square(points: Array) -> tuple[Array, Array]:
+    """Return the corners of a square around points, shape (n, 2), with a margin [m]."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    half = (0.5 + _MARGIN) * float((high - low).max())
+    middle = (low + high) / 2
+    return middle - half, middle + half
+
+
+def _body(path: WalkPath, robot: Robot, sample: int) -> Array:
+    """Return the outline of the body at a sample from above, shape (6, 2) [m]."""
+    pose = path.position[sample], path.orientation[sample]
+    return to_world(outline(robot), *pose)[:, :2]

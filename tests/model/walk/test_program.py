@@ -11,6 +11,7 @@ from model.gait.notation import TETRAPOD, TRIPOD
 from model.gait.program import cycle_gait
 from model.robot import GRAVITY, Robot
 from model.walk.dynamics import DynamicsOptions, walk
+from model.walk.path import turning_radius
 from model.walk.program import Segment, Until, lay_out
 from model.walk.traction import VelocityCoulomb
 
@@ -52,7 +53,7 @@ def test_headings_and_places_are_met_in_a_walk_of_the_whole_program():
 @settings(max_examples=10)
 @given(
     heading=st.floats(5, 200), groups=st.sampled_from([TRIPOD, TETRAPOD]),
-    steering=st.sampled_from([-1.0, -0.6, 0.0, 0.5]), side=st.sampled_from(["left", "right"]),
+    steering=st.sampled_from([-1.0, -0.6, 0.0, 0.5, 0.8]), side=st.sampled_from(["left", "right"]),
     straight_before=st.booleans(),
 )  # fmt: skip
 def test_every_heading_is_met(heading, groups, steering, side, straight_before):
@@ -68,6 +69,17 @@ def test_every_heading_is_met(heading, groups, steering, side, straight_before):
     began = ends[0].end if straight_before else 0.0
     turned = np.degrees(path.yaw[-1] - np.interp(began, path.t, path.yaw))
     assert turned == pytest.approx(heading if side == "left" else -heading, abs=1.2)
+
+
+@pytest.mark.parametrize("steering", [0.3, 0.6, 0.75, 0.95])
+def test_the_circle_is_as_wide_as_the_mean_of_both_stances_over_half_their_difference(steering):
+    gait = cycle_gait(TRIPOD, ground_time=1.0, flight_time=1.0, steering=steering)
+    legs, _ = laid_out(Segment(gait, Until(strides=3)))
+    path = walk(ROBOT, legs.reference(), TABLE, duration=legs.end, options=OPTIONS)
+    strides = [round(t / OPTIONS.dt) for t in (2.0, 6.0)]
+    radius = turning_radius(path.position[strides, :2], path.yaw[strides])
+    arm = float(ROBOT.hips[0, 1])
+    assert radius * (1 - steering) / (1 + steering) == pytest.approx(1.22 * arm, rel=0.15)
 
 
 @pytest.mark.parametrize("reverse", [False, True])

@@ -40,6 +40,7 @@ def way_table(ways: Sequence[Way]) -> Table:
     title = "ways to goals"
     table = plain_table(title, ("goal", "manoeuvre"), numbers, fold=True, no_wrap=True)
     table.padding, table.pad_edge = (0, 1, 0, 0), False
+    table.columns[1].no_wrap = True
     last = 0
     for way in ways:
         off = way.heading_error

@@ -82,6 +82,19 @@ def test_the_circle_widens_with_steering_as_without_slip_and_somewhat_more(steer
     assert without_slip < radius < 1.4 * without_slip
 
 
+@pytest.mark.parametrize("heading", [45, 120])
+def test_only_the_first_stride_after_a_turn_on_the_spot_turns_once_more(heading):
+    legs, ends = laid_out(
+        Segment(STRAIGHT, Until(strides=2)), Segment(SPOT, Until(heading=np.radians(heading))),
+        Segment(STRAIGHT, Until(strides=3)),
+    )  # fmt: skip
+    path = walk(ROBOT, legs.reference(), TABLE, duration=legs.end, options=OPTIONS)
+    between = np.interp(ends[1].end + 2.0 * np.arange(4), path.t, path.yaw)
+    first, *others = np.degrees(np.diff(between))
+    assert 5 < first < 25
+    assert np.abs(others).max() < 0.2
+
+
 @pytest.mark.parametrize("reverse", [False, True])
 def test_walked_backwards_a_circle_is_the_same_and_the_heading_turns_to_the_other_side(reverse):
     gait = cycle_gait(TRIPOD, ground_time=1.0, flight_time=1.0, steering=0.5, reverse=reverse)

@@ -109,6 +109,7 @@ WORK = {
     "calibrate-slip": Work(FIT, keeps=a_fit_to_resume, says=f"{AT_ONCE}|{RESUMED}"),
     "zebro-lab init": Work("bench.csv --kind rig"),
     "zebro-lab walk": Work("--slip coulomb:0.4 --duration 4 --figures --out walked"),
+    "zebro-lab reach": Work("--goal 0.3,0.1 --slip coulomb:0.4 --out reached"),
     "zebro-lab predict": Work("data/walk --slip coulomb:0.4 --draws 50 --out predicted"),
     "zebro-lab validate": Work("data/walk --out judged"),
     "zebro-lab compare": Work("one other --out compared"),

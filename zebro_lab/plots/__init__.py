@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Figures of calibrations, walks, tracks and validations from arrays, without pyplot."""
 
-from zebro_lab.plots.noise import residuals
-from zebro_lab.plots.posterior import corner, traces
-from zebro_lab.plots.sheet import add_to_title, parameter_labels, save
-from zebro_lab.plots.slip import slip_curves
-from zebro_lab.plots.surface import slip_surface
+from zebro_lab.terminal.stopping import stops_deferred
+
+with stops_deferred():  # matplotlib has C extensions
+    from zebro_lab.plots.noise import residuals
+    from zebro_lab.plots.posterior import corner, traces
+    from zebro_lab.plots.sheet import add_to_title, parameter_labels, save
+    from zebro_lab.plots.slip import slip_curves
+    from zebro_lab.plots.surface import slip_surface
 
 __all__ = [
     "add_to_title",

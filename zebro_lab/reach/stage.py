@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab reach`: plan both ways to each goal, walk them, and write the folder."""
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -184,7 +185,9 @@ def _options(request: ReachRequest) -> str:
     given = {"--slip": request.slip, "--robot": request.robot, "--arc-deg": request.arc_deg,
              "--dt": request.dt, "--ground": request.ground,
              "--toe": None if request.toe == "saturated" else request.toe}  # fmt: skip
-    return " ".join(f"{name} {value}" for name, value in given.items() if value is not None)
+    return shlex.join(
+        word for name, value in given.items() if value is not None for word in (name, str(value))
+    )
 
 
 def _slip_title(ways: Sequence[Way]) -> str:

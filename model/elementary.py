@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Sine, cosine, logarithm and inverse hyperbolic sine of floats or `Lanes`, without branches.
+"""Elementary functions of floats or `Lanes`, without branches: sin, cos, arctan, log, exp, arsinh.
 
-The polynomials are those of FreeBSD's msun (k_sin.c, k_cos.c, k_log.h: Copyright (C) 1993 by Sun
-Microsystems, permission to use, copy, modify and distribute freely granted). Results are within
-some units in the last place of the exact ones.
+The polynomials are those of FreeBSD's msun (k_sin.c, k_cos.c, k_log.h, s_atan.c, e_exp.c: Copyright
+(C) 1993 by Sun Microsystems, permission to use, copy, modify and distribute freely granted).
+Results are within some units in the last place of the exact ones.
 """
+
+import math
 
 import numpy as np
 
 from model.compiled import inlined
-from model.lanes import exponent_and_mantissa, floor, nearest, root, select
+from model.lanes import exponent_and_mantissa, floor, nearest, power_of_two, root, select, size
 
 # pi/2 in three parts; products of the first two by whole numbers below 2^20 are exact
 HALF_PI = (1.57079632673412561417e00, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
+HALF_PI_FLOAT = 1.5707963267948966
 SIN = (
     -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
     2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10,
@@ -27,6 +30,19 @@ LOG = (
     2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01,
     1.479819860511658591e-01,
 )  # fmt: skip
+ARCTAN = (
+    3.33333333333329318027e-01, -1.99999999998764832476e-01, 1.42857142725034663711e-01,
+    -1.11111104054623557880e-01, 9.09088713343650656196e-02, -7.69187620504482999495e-02,
+    6.66107313738753120669e-02, -5.83357013379057348645e-02, 4.97687799461593236017e-02,
+    -3.65315727442169155270e-02, 1.62858201153657823623e-02,
+)  # fmt: skip
+EXP = (
+    1.66666666666666019037e-01, -2.77777777770155933842e-03, 6.61375632143793436117e-05,
+    -1.65339022054652515390e-06, 4.13813679705723846039e-08,
+)  # fmt: skip
+SERIES = tuple((-1) ** n / math.factorial(2 * n + 1) for n in range(1, 11))  # of the sine
+TAN_PI_8, TAN_3_PI_8 = 0.4142135623730950, 2.414213562373095
+MOST_EXPONENT = 708.0  # the argument whose exponential is just below the largest float
 
 
 @inlined
@@ -53,6 +69,74 @@ def sin_cos(x):
     sine, cosine = select(odd, c, s), select(odd, s, c)
     sine = select(quadrant >= 2.0, -sine, sine)
     return sine, select((quadrant == 1.0) | (quadrant == 2.0), -cosine, cosine)
+
+
+@inlined
+def sin_half_turn(x):
+    """Compute the sine of an angle from -pi to pi, a float or `Lanes` [rad].
+
+    It is that of the angle mirrored into -pi/2 to pi/2, by the series up to x^21.
+    """
+    x = select(x > HALF_PI_FLOAT, 2.0 * HALF_PI_FLOAT - x, x)
+    x = select(x < -HALF_PI_FLOAT, -2.0 * HALF_PI_FLOAT - x, x)
+    z = x * x
+    w = z * z
+    even = SERIES[1] + w * (SERIES[3] + w * (SERIES[5] + w * (SERIES[7] + w * SERIES[9])))
+    odd = SERIES[0] + w * (SERIES[2] + w * (SERIES[4] + w * (SERIES[6] + w * SERIES[8])))
+    return x + x * z * (odd + z * even)
+
+
+@inlined
+def arctan(x):
+    """Compute the inverse tangent of a float or `Lanes` [rad]."""
+    turned, r, less = _reduced_arctan(size(x))
+    angle = turned + (r - less)
+    return select(x < 0.0, -angle, angle)
+
+
+@inlined
+def minus_arctan(x):
+    """Compute x - arctan(x) of a float or `Lanes`, to its full relative accuracy near zero too."""
+    t = size(x)
+    turned, r, less = _reduced_arctan(t)
+    difference = select(turned > 0.0, t - (turned + (r - less)), less)
+    return select(x < 0.0, -difference, difference)
+
+
+@inlined
+def _reduced_arctan(t):
+    """Reduce an inverse tangent, arctan(t) = angle + arctan(r), to a small r; t is not negative.
+
+    The angle is 0, pi/4 or pi/2, such that r is at most tan(pi/8) in size:
+    arctan(t) = pi/4 + arctan((t - 1) / (t + 1)) = pi/2 + arctan(-1 / t).
+
+    Returns:
+        The angle, r and r - arctan(r).
+    """
+    middle, far = t > TAN_PI_8, t > TAN_3_PI_8
+    above = select(far, -1.0, select(middle, t - 1.0, t))
+    below = select(far, t, select(middle, t + 1.0, 1.0))
+    r = above / below
+    z = r * r
+    w = z * z
+    even = w * (ARCTAN[1] + w * (ARCTAN[3] + w * (ARCTAN[5] + w * (ARCTAN[7] + w * ARCTAN[9]))))
+    odd = ARCTAN[4] + w * (ARCTAN[6] + w * (ARCTAN[8] + w * ARCTAN[10]))
+    odd = z * (ARCTAN[0] + w * (ARCTAN[2] + w * odd))
+    turned = select(far, HALF_PI_FLOAT, select(middle, 0.5 * HALF_PI_FLOAT, 0.0))
+    return turned, r, r * (even + odd)
+
+
+@inlined
+def exp_of(x):
+    """Compute the exponential of a float or `Lanes`; beyond +-`MOST_EXPONENT` that of the limit."""
+    x = select(x > MOST_EXPONENT, MOST_EXPONENT, x)
+    x = select(x < -MOST_EXPONENT, -MOST_EXPONENT, x)
+    k = nearest(x * (1.0 / (LN2[0] + LN2[1])))
+    high, low = x - k * LN2[0], k * LN2[1]
+    r = high - low
+    z = r * r
+    c = r - z * (EXP[0] + z * (EXP[1] + z * (EXP[2] + z * (EXP[3] + z * EXP[4]))))
+    return (1.0 - ((low - r * c / (2.0 - c)) - high)) * power_of_two(k)
 
 
 @inlined

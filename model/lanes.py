@@ -280,6 +280,20 @@ def exponent_and_mantissa(typing, x):
     return types.UniTuple(kind, 2)(x), emit
 
 
+@_inline
+def power_of_two(typing, k):
+    """Return 2^k of whole numbers k from -1022 to 1023, a float or `Lanes`."""
+
+    def emit(context, builder, sig, args):
+        kind = args[0].type
+        whole = ir.VectorType(_LONG, LANES) if isinstance(kind, ir.VectorType) else _LONG
+        magic = builder.bitcast(_long_like(kind, _WHOLE + 1023), kind)
+        bits = builder.bitcast(builder.fadd(args[0], magic), whole)
+        return builder.bitcast(builder.shl(bits, _long_like(kind, 52)), kind)
+
+    return (lanes if isinstance(k, LanesType) else one)(k), emit
+
+
 @partial(_inline, prefer_literal=True)
 def gathered(typing, table, index, count):
     """Return `count` successive values of each lane's own row of a table, from a column on.

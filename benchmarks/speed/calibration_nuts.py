@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from model.bayes.fit import PreparedFit
-from model.bayes.likelihood import load_rule
+from model.bayes.load_rule import load_rule
 from model.bayes.posterior import SlipPosterior
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Prior, Uniform
 

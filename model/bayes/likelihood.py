@@ -17,7 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.bayes.blocks import SlipBlocks
+from model.bayes.lane_likelihood import lane_log_likelihood
+from model.bayes.load_rule import load_rule
 from model.compiled import compiled
+from model.slip.lane_force import lane_law
 from model.slip.law import Array, Parameter, SlipLaw
 
 NUISANCE = (
@@ -98,52 +101,6 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
     return PredictedForces(force, slope, s_0 + s_1 * np.abs(force))
 
 
-@dataclass(frozen=True)
-class LoadRule:
-    """Two weighted loads with the mean, variance and skewness of each block's; shape (n,) each.
-
-    Attributes:
-        light: The lighter load, as measured [N].
-        heavy: The heavier load, as measured [N].
-        heavy_share: Share of the block at the heavier load [-].
-        slip_light: Slip ratio at the lighter load [-].
-        slip_heavy: Slip ratio at the heavier load [-].
-        slip_per_load: Slope of slip over load within the block [1/N].
-        slip_variance: Variance of the slip that follows load by that slope [-].
-    """
-
-    light: Array
-    heavy: Array
-    heavy_share: Array
-    slip_light: Array
-    slip_heavy: Array
-    slip_per_load: Array
-    slip_variance: Array
-
-
-def load_rule(blocks: SlipBlocks) -> LoadRule:
-    """Compute two loads and their shares with each block's mean, variance and skewness of load.
-
-    Slip at the two loads follows load by the block's regression of slip on load. The load's
-    standard deviation counts as 0.1 % of its mean at least.
-    """
-    # A block at a single load gets a small spread, so that the slope in load is defined.
-    spread = np.maximum(np.sqrt(blocks.load_variance), 1e-3 * blocks.normal_force)
-    half = 0.5 * blocks.load_skewness
-    root = np.sqrt(1 + half**2)
-    up, down = spread * (half + root), spread * (half - root)
-    per_load = blocks.slip_load_covariance / spread**2
-    return LoadRule(
-        light=blocks.normal_force + down,
-        heavy=blocks.normal_force + up,
-        heavy_share=0.5 * (1 - half / root),
-        slip_light=blocks.slip + per_load * down,
-        slip_heavy=blocks.slip + per_load * up,
-        slip_per_load=per_load,
-        slip_variance=per_load**2 * spread**2,
-    )
-
-
 def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
     """Compute the log density of each run's measured block means of traction.
 
@@ -157,9 +114,13 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     Returns:
         Log density of each run, shape (w, n_runs).
     """
+    k = len(law.parameters)
+    known = lane_law(law, values[:, :k])
+    if known is not None:
+        return lane_log_likelihood(blocks, known, values[:, k:])
     predicted = predict_blocks(blocks, law, values)
     rho, tau = values[:, -2], values[:, -1]
-    return _filter_runs(
+    return filter_runs(
         blocks.traction_force - predicted.force, predicted.noise, predicted.slope,
         blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), rho, tau,
     )  # fmt: skip
@@ -180,7 +141,7 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
 
 
 @compiled
-def _filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho, tau):
+def filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho, tau):
     """Compute each run's log density by a Kalman filter, offset and shared slip error integrated.
 
     State: the standardised noise z, AR(1) with unit variance; observation noise: the block's own

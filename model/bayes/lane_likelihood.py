@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""Log likelihood of block means, compiled: several parameter vectors side by side in lanes.
+
+The equations are those of `model.bayes.likelihood`, and so are the results but for rounding. One
+loop goes through each run's blocks: it computes the expected traction of a block and updates the
+Kalman filter, so that nothing is stored for each block and parameter vector.
+"""
+
+import math
+
+import numpy as np
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.load_rule import load_rule
+from model.compiled import borrowing, inlined
+from model.elementary import log_of
+from model.lanes import LANES, put, row, select, size
+from model.slip.lane_force import ROWS, LaneLaw, law_at_load, law_at_slip
+from model.slip.law import Array
+
+GAIN_T, GAIN_N, BIAS, CROSSTALK, FLOOR, GROWTH, RHO, TAU = range(ROWS, ROWS + 8)
+(
+    LOAD, CENTRE, ABOVE, BELOW, LIGHT_LOAD, LIGHT, HEAVY_LOAD, HEAVY, HALF_WIDTH, HEAVY_SHARE,
+    LOAD_STEP, SLIP_PER_LOAD, FORCE, OWN_ERROR,
+) = range(14)  # fmt: skip
+"""Columns of `block_table`."""
+LOG_2PI = math.log(2 * math.pi)
+
+
+def block_table(blocks: SlipBlocks) -> Array:
+    """Compute what the likelihood needs of each block, shape (n, 14).
+
+    Load with its slip and that above and below it by sqrt(3) standard deviations, light load with
+    slip, heavy load with slip, half the distance of the outer slips, the share of the heavy load,
+    the difference of the two loads, slip over load, traction and the variance of slip's own error.
+    """
+    rule, slip = load_rule(blocks), blocks.slip
+    half = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
+    return np.column_stack(
+        [
+            blocks.normal_force, slip, slip + half, slip - half,
+            rule.light, rule.slip_light, rule.heavy, rule.slip_heavy,
+            half, rule.heavy_share, rule.heavy - rule.light, rule.slip_per_load,
+            blocks.traction_force, blocks.slip_error,
+        ]
+    )  # fmt: skip
+
+
+def lane_log_likelihood(blocks: SlipBlocks, law: LaneLaw, measurement: Array) -> Array:
+    """Compute the log density of each run's block means; see `run_log_likelihood`.
+
+    Args:
+        blocks: The block means.
+        law: Coefficients of the law for w parameter vectors.
+        measurement: The 8 parameters of the measurement, shape (w, 8).
+
+    Returns:
+        Log density of each run, shape (w, n_runs).
+    """
+    w = len(measurement)
+    groups = -(-w // LANES)
+    values = np.concatenate([law.coefficients, measurement.T])
+    padded = np.concatenate([values, np.repeat(values[:, -1:], groups * LANES - w, axis=1)], axis=1)
+    rows = np.ascontiguousarray(padded.reshape(len(values), groups, LANES).swapaxes(0, 1))
+    found = np.empty((groups, blocks.n_runs, LANES))
+    _fill(
+        law.kind, law.sensitive, law.reference, rows, block_table(blocks), blocks.run_starts(),
+        blocks.run_slip_error, np.zeros((1, LANES)), found,
+    )  # fmt: skip
+    return found.swapaxes(1, 2).reshape(groups * LANES, -1)[:w]
+
+
+@borrowing
+def _fill(kind, sensitive, reference, rows, table, starts, run_slip_error, zero, found):
+    """Fill the log densities `found`, shape (groups, n_runs, LANES); see `lane_log_likelihood`.
+
+    The filter is that of `model.bayes.likelihood.filter_runs`. `rows` has shape (groups, values,
+    LANES), `table` (n, 14), `starts` (n_runs + 1,), `run_slip_error` (n_runs,), `zero` (1, LANES).
+    """
+    for group in range(len(rows)):
+        A, result = rows[group], found[group]
+        rho, nothing = row(A, RHO), row(zero, 0)
+        forget = rho * rho
+        for i in range(len(starts) - 1):
+            m_r = m_1 = m_g = rr = r1 = rg = s11 = s1g = sgg = log_determinant = nothing
+            variance = nothing + 1.0
+            for j in range(starts[i], starts[i + 1]):
+                block = table[j]
+                force, g, s = _predicted(kind, sensitive, reference, A, block)
+                sv = s * variance
+                total = _positive(s * sv + g * g * block[OWN_ERROR])
+                weight = 1.0 / total
+                e_r, e_1, e_g = block[FORCE] - force - s * m_r, 1.0 - s * m_1, g - s * m_g
+                gain = sv * weight
+                w_r, w_1, w_g = e_r * weight, e_1 * weight, e_g * weight
+                rr, r1, rg = rr + e_r * w_r, r1 + e_r * w_1, rg + e_r * w_g
+                s11, s1g, sgg = s11 + e_1 * w_1, s1g + e_1 * w_g, sgg + e_g * w_g
+                log_determinant = log_determinant + log_of(total)
+                m_r = rho * (m_r + gain * e_r)
+                m_1 = rho * (m_1 + gain * e_1)
+                m_g = rho * (m_g + gain * e_g)
+                variance = forget * variance * (1.0 - gain * s) + (1.0 - forget)
+            d_1, d_g = row(A, TAU) * row(A, TAU), run_slip_error[i]
+            a, b, c, d = 1.0 + d_1 * s11, d_1 * s1g, d_g * s1g, 1.0 + d_g * sgg
+            determinant = _positive(a * d - b * c)
+            x_1 = (d * d_1 * r1 - b * d_g * rg) / determinant
+            x_g = (a * d_g * rg - c * d_1 * r1) / determinant
+            quadratic, least = rr - r1 * x_1 - rg * x_g, 1e-14 * rr
+            quadratic = select(quadratic < least, least, quadratic)
+            blocks = starts[i + 1] - starts[i]
+            density = quadratic + log_determinant + log_of(determinant) + blocks * LOG_2PI
+            put(result, i, -0.5 * density)
+
+
+@inlined
+def _positive(variance):
+    """Return a variance, NaN where rounding or overflow has left none that is positive."""
+    return select(variance > 0.0, variance, math.nan)
+
+
+@inlined
+def _predicted(kind, sensitive, reference, A, block):
+    """Compute a block's expected traction, slope in slip and noise; see `predict_blocks`."""
+    g_t, g_n, b_n = 1.0 + row(A, GAIN_T), 1.0 + row(A, GAIN_N), row(A, BIAS)
+    load = _true_load(g_n, b_n, block[LOAD])
+    at_load = law_at_load(kind, sensitive, reference, A, load)
+    centre = g_t * law_at_slip(kind, at_load, block[CENTRE], load)
+    above = g_t * law_at_slip(kind, at_load, block[ABOVE], load)
+    below = g_t * law_at_slip(kind, at_load, block[BELOW], load)
+    load = _true_load(g_n, b_n, block[LIGHT_LOAD])
+    at_load = law_at_load(kind, sensitive, reference, A, load)
+    light = g_t * law_at_slip(kind, at_load, block[LIGHT], load)
+    load = _true_load(g_n, b_n, block[HEAVY_LOAD])
+    at_load = law_at_load(kind, sensitive, reference, A, load)
+    heavy = g_t * law_at_slip(kind, at_load, block[HEAVY], load)
+    across = heavy - light
+    mean = light + block[HEAVY_SHARE] * across + (above - 2.0 * centre + below) * (1.0 / 6.0)
+    slope = (above - below) * (0.5 / block[HALF_WIDTH])
+    slope_in_load = across * (1.0 / block[LOAD_STEP]) - slope * block[SLIP_PER_LOAD]
+    force = mean + slope_in_load / g_n * row(A, CROSSTALK) * mean
+    return force, slope, row(A, FLOOR) + row(A, GROWTH) * size(force)
+
+
+@inlined
+def _true_load(g_n, b_n, measured):
+    """Compute the true load of a measured one, at least 1e-9 N [N]."""
+    load = g_n * measured - b_n
+    return select(load > 1e-9, load, 1e-9)

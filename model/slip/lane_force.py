@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""Forces of the slip laws for compiled loops: each lane has its own parameter values.
+
+The functions are those of `magic_formula`, `brush` and `coulomb_stribeck`, and so are the results
+but for rounding.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from model.compiled import inlined
+from model.elementary import arctan, exp_of, log_of, minus_arctan, sin_half_turn
+from model.lanes import row, select, size
+from model.slip.brush import Brush, static_friction_from_peak
+from model.slip.coulomb import CoulombStribeck
+from model.slip.law import Array, SlipLaw
+from model.slip.magic_formula import MagicFormula
+
+MAGIC_PEAK: Final = 0  # the Magic Formula with E from the peak's position
+MAGIC: Final = 1  # the Magic Formula with E given
+BRUSH: Final = 2  # from here on coefficients do not depend on load
+COULOMB: Final = 3
+ROWS: Final = 7
+"""Number of coefficients of any law, in the first rows of a lane's values."""
+
+
+@dataclass(frozen=True)
+class LaneLaw:
+    """A slip law's kind and coefficients for many parameter vectors, as `law_force` takes them.
+
+    Attributes:
+        kind: `MAGIC_PEAK`, `MAGIC`, `BRUSH` or `COULOMB`.
+        sensitive: Whether friction and stiffness grow with powers of the load.
+        reference: Load at which they have their parameters' values [N].
+        coefficients: K, and of the Magic Formula C, mu, x_m/Fn or E, tan(pi/2C) and the exponents
+            of mu and K; of the brush model mu_s and q; of Coulomb's friction mu, q and kappa_s.
+            The rest is 0. Shape (`ROWS`, w).
+    """
+
+    kind: int
+    sensitive: bool
+    reference: float
+    coefficients: Array
+
+
+def lane_law(law: SlipLaw, values: Array) -> LaneLaw | None:
+    """Return a law's coefficients for compiled loops; None for a law that has none.
+
+    Args:
+        law: The slip law, of k parameters.
+        values: Parameter values, shape (w, k).
+    """
+    columns = values.T
+    if isinstance(law, MagicFormula):
+        return _magic_formula(law, columns)
+    if isinstance(law, Brush):
+        K, mu, *ratio = columns
+        q = ratio[0] if law.kinetic else np.ones_like(K)
+        return _law(BRUSH, K, static_friction_from_peak(mu, q), q)
+    if isinstance(law, CoulombStribeck):
+        K, mu, *fall = columns
+        return _law(COULOMB, K, mu, *(fall if law.stribeck else (np.ones_like(K),) * 2))
+    return None
+
+
+def _magic_formula(law: MagicFormula, columns: Array) -> LaneLaw:
+    """Return the coefficients of a Magic Formula from its parameters, shape (k, w)."""
+    K, C, mu = columns[:3]
+    peak = law.curvature == "peak"
+    shape = columns[3] if isinstance(law.curvature, str) else np.full_like(K, law.curvature)
+    exponents = columns[-2:] if law.load_sensitivity else np.zeros((2, len(K)))
+    kind = MAGIC_PEAK if peak else MAGIC
+    found = _law(kind, K, C, mu, shape, np.tan(np.pi / (2 * C)), *exponents)
+    return LaneLaw(kind, law.load_sensitivity, law.reference_load, found.coefficients)
+
+
+def _law(kind: int, *rows: Array) -> LaneLaw:
+    """Return a law that does not grow with powers of the load, its missing coefficients 0."""
+    coefficients = np.zeros((ROWS, len(rows[0])))
+    coefficients[: len(rows)] = rows
+    return LaneLaw(kind, False, 1.0, coefficients)
+
+
+@inlined
+def law_at_load(kind, sensitive, reference, A, load):
+    """Compute the four coefficients that `law_at_slip` takes at one load.
+
+    Args:
+        kind: Kind of the law.
+        sensitive: Whether friction and stiffness grow with powers of the load.
+        reference: Load at which they have their parameters' values [N].
+        A: Rows of values, the law's `ROWS` coefficients first.
+        load: Normal force, positive [N].
+
+    Returns:
+        B, C, D and E of the Magic Formula, or the law's first four coefficients.
+    """
+    K, C, mu, E = row(A, 0), row(A, 1), row(A, 2), row(A, 3)
+    if kind >= BRUSH:
+        return K, C, mu, E
+    if sensitive:
+        ratio = log_of(load * (1.0 / reference))
+        mu = mu * exp_of(row(A, 5) * ratio)
+        K = K * exp_of(row(A, 6) * ratio)
+    B = K / (C * mu)
+    if kind == MAGIC_PEAK:
+        Bx = B * (E * load)
+        E = (Bx - row(A, 4)) / minus_arctan(Bx)
+    return B, C, mu * load, E
+
+
+@inlined
+def law_at_slip(kind, at_load, slip, load):
+    """Compute the traction of a slip law [N].
+
+    Args:
+        kind: Kind of the law.
+        at_load: Coefficients of `law_at_load`.
+        slip: Slip ratio [-].
+        load: Normal force, positive [N].
+    """
+    if kind == BRUSH:
+        return load * _brush(slip, at_load[0], at_load[1], at_load[2])
+    if kind == COULOMB:
+        return load * _coulomb(slip, at_load[0], at_load[1], at_load[2], at_load[3])
+    B, C, D, E = at_load
+    Bk = B * slip
+    return D * sin_half_turn(C * arctan(Bk - E * minus_arctan(Bk)))
+
+
+@inlined
+def _brush(sigma, K, mu_s, q):
+    """Compute traction over load of the brush model; see `brush` [-]."""
+    psi = K * size(sigma) / (3.0 * mu_s)
+    psi = select(psi < 1.0, psi, 1.0)
+    sticking = 3.0 * psi * (1.0 - psi) * (1.0 - psi)
+    force = mu_s * (sticking + q * psi * psi * (3.0 - 2.0 * psi))
+    return select(sigma + 0.0 * K < 0.0, -force, force)
+
+
+@inlined
+def _coulomb(kappa, K, mu, q, kappa_s):
+    """Compute traction over load of Coulomb friction with a Stribeck drop [-]."""
+    kappa_c = 1.5 * mu / K
+    u = kappa / kappa_c
+    u = select(u < 1.0, u, 1.0)
+    u = select(u > -1.0, u, -1.0)
+    z = (size(kappa) - kappa_c) / kappa_s
+    z = select(z > 0.0, z, 0.0)
+    return mu * (0.5 * u * (3.0 - u * u)) * (q + (1.0 - q) * exp_of(-(z * z)))

@@ -54,6 +54,28 @@ class MeasureSlips(Advice):
 
 
 @dataclass(frozen=True)
+class MeasureAlso(Advice):
+    """Advice to measure the same plan again with changes, and to fit it with the first data.
+
+    Attributes:
+        loads: Loads of the plan; none where they stay as they are [N].
+        slips: Slip ratios of the plan in the material definition; none where they stay [-].
+        repeats: Passes of every set-point; 0 where that stays as it is.
+        times: Duration of a run, in multiples of the present one [-].
+    """
+
+    loads: tuple[float, ...] = ()
+    slips: tuple[float, ...] = ()
+    repeats: int = 0
+    times: float = 1.0
+
+
+@dataclass(frozen=True)
+class SampleAgain(Advice):
+    """Advice to sample the same posterior anew, with more ensembles from another seed."""
+
+
+@dataclass(frozen=True)
 class ZeroBeforeEach(Advice):
     """Advice to measure again in short runs with a zero of their own, and to fit only these."""
 

@@ -113,6 +113,7 @@ def conclude(
     narrowed = contraction(posterior, draws)
     levels = middle_loads(posterior.blocks)
     validation = fit.cross_validation
+    compared = agreement(draws, weighted, convergence)
     return Calibration(
         fit=fit,
         comparison=comparison,
@@ -125,7 +126,7 @@ def conclude(
         curves=_curves(posterior, draws, levels),
         convergence=convergence,
         residuals=residuals,
-        agreement=agreement(draws, weighted),
+        agreement=compared,
         verdict=judge(
             blocks=posterior.blocks,
             law=posterior.law,
@@ -133,6 +134,7 @@ def conclude(
             contraction=narrowed,
             convergence=convergence,
             residuals=residuals,
+            agreement=compared,
             offset_scale=fit.load_cell.zero_stability,
         ),
         contraction=narrowed,

@@ -151,11 +151,15 @@ class Agreement:
         mean: Largest absolute difference of means of z over the sampler's standard deviation [-].
         spread: Largest absolute difference of standard deviations of z over the sampler's [-].
         pareto_k: Tail index of the importance weights; from 0.7 on they are not reliable [-].
+        mean_error: Largest Monte Carlo error of the difference of means, as `mean` [-].
+        spread_error: Largest Monte Carlo error of that of spreads, as `spread` [-].
     """
 
     mean: float
     spread: float
     pareto_k: float
+    mean_error: float = 0.0
+    spread_error: float = 0.0
 
     @property
     def comparable(self) -> bool:
@@ -163,21 +167,28 @@ class Agreement:
         return self.pareto_k < MAX_PARETO_K
 
 
-def agreement(draws: Draws, weighted: WeightedDraws) -> Agreement:
+def agreement(draws: Draws, weighted: WeightedDraws, convergence: Convergence) -> Agreement:
     """Compute differences between the sampler's and importance-weighted means and spreads of z.
 
     Args:
         draws: Draws of the sampler.
         weighted: Draws of the Laplace approximations, in the same coordinates z, with importance
             weights.
+        convergence: Convergence diagnostics of the sampler, with its effective sample sizes.
     """
     z = draws.z.reshape(-1, draws.z.shape[-1])
+    centre, scale = z.mean(axis=0), z.std(axis=0)
     mean = weighted.weights @ weighted.z
     sd = np.sqrt(weighted.weights @ (weighted.z - mean) ** 2)
+    kurtosis = np.mean(((z - centre) / scale) ** 4, axis=0)
+    independent = np.minimum(convergence.ess_bulk, len(z))
+    fraction = 1 / independent + np.sum(weighted.weights**2)
     return Agreement(
-        mean=float(np.max(np.abs(z.mean(axis=0) - mean) / z.std(axis=0))),
-        spread=float(np.max(np.abs(sd / z.std(axis=0) - 1))),
+        mean=float(np.max(np.abs(centre - mean) / scale)),
+        spread=float(np.max(np.abs(sd / scale - 1))),
         pareto_k=weighted.pareto_k,
+        mean_error=float(np.sqrt(fraction.max())),
+        spread_error=float(np.sqrt(np.max(fraction * (kurtosis - 1))) / 2),
     )
 
 

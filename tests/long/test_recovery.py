@@ -134,7 +134,7 @@ def recover(seed: int) -> Recovery:
     if seed < N_SAMPLED:
         chains, convergence = walk(fit, rng)
         draws = thin_draws(posterior, chains, convergence, n=chains.z[0].size)
-        engines = agreement(draws, weighted)
+        engines = agreement(draws, weighted, convergence)
     return Recovery(
         seed=seed,
         chi_square=float(miss @ np.linalg.solve(covariance, miss)),

@@ -7,7 +7,9 @@ from typing import Final
 from model.bayes.advice import (
     Advice,
     ExcludeRuns,
+    MeasureAlso,
     MeasureSlips,
+    SampleAgain,
     SampleLonger,
     TryLaws,
     WeighLoadCell,
@@ -55,6 +57,33 @@ def _measure_slips(advice: MeasureSlips) -> str:
         f"{ZERO_SECONDS:g} s before each load",
         lines,
         "then fit both (calibrate-slip DATA FURTHER)",
+    )
+
+
+@advice_text.register
+def _measure_also(advice: MeasureAlso) -> str:
+    points: dict[str, str] = {}
+    if advice.loads:
+        points["loads"] = f"[{', '.join(f'{load:.3g}' for load in advice.loads)}]"
+    if advice.slips:
+        numbers = dict.fromkeys(f"{slip:.2g}" for slip in advice.slips)
+        points["slips"] = f"[{', '.join(numbers)}]"
+    if advice.repeats:
+        points["repeats"] = f"{advice.repeats}"
+    longer = f", with runs {advice.times:g} times as long" if advice.times != 1 else ""
+    fit = "then fit both (calibrate-slip DATA FURTHER)"
+    if not points:
+        return f"{advice.reason}: run the plan again into another folder{longer}, {fit}"
+    what = f"{advice.reason}: run the plan again, changed{longer}"
+    return _plan(what, {"points": points}, fit)
+
+
+@advice_text.register
+def _sample_again(advice: SampleAgain) -> str:
+    return (
+        f"{advice.reason}: give the same command with --ensembles 8 --seed 2 and an --out of its "
+        "own; if the differences stay, see corner.png for a second mode or a long tail, and use "
+        "the wider interval"
     )
 
 

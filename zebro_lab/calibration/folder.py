@@ -33,6 +33,8 @@ if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is re
 
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
+AS_TESTED = "trustworthy as far as tested"
+"""`State.AS_TESTED` of `model.bayes.verdict`, which takes long to import."""
 POSTERIOR = "posterior.nc"
 PICTURES = ("curves", "surface", "corner", "traces", "residuals")
 CALIBRATION = ResultKind(
@@ -60,14 +62,17 @@ class SlipFile:
             ratios.
         file: The `slip.toml` itself, also if its folder was named.
         source: Where the data come from; "unknown" if the file does not state it.
-        doubt: Headline of the verdict if the fit cannot be trusted; None if it can, or if the file
-            does not say.
+        doubt: Headline of the verdict if the fit cannot be trusted; None if it can, as far as it
+            was tested, or if the file does not say.
+        caveat: Headline of the verdict if the fit can be trusted as far as it was tested only;
+            else None.
     """
 
     curve: SlipCurve
     file: Path
     source: str
     doubt: str | None
+    caveat: str | None = None
 
 
 def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[str, str]) -> None:
@@ -111,12 +116,17 @@ def read_slip_file(path: Path) -> SlipFile:
                 file=file,
             )
         return SlipFile(_curve(content), file, _text(content, "source", "unknown"),
-                        _doubt(content.get("verdict", {})))  # fmt: skip
+                        *_reservations(content.get("verdict", {})))  # fmt: skip
 
 
-def _doubt(verdict: Mapping[str, Any]) -> str | None:
+def _reservations(verdict: Mapping[str, Any]) -> tuple[str | None, str | None]:
+    """Return doubt and caveat of `SlipFile`; files of earlier versions have no `state`."""
     headline = _text(verdict, "headline", "not trustworthy")
-    return None if verdict.get("trustworthy", True) else headline
+    if verdict.get("trustworthy", True):
+        return None, None
+    if verdict.get("state") == AS_TESTED:
+        return None, headline
+    return headline, None
 
 
 def _text(content: Mapping[str, Any], key: str, default: str) -> str:
@@ -175,9 +185,15 @@ def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
         "headline": verdict.headline(),
         "converged": verdict.converged,
         "trustworthy": verdict.trustworthy,
+        "state": str(verdict.state),
         "not_testable": list(verdict.not_testable),
+        "untested": list(verdict.untested),
         "weakly_identified": list(verdict.weak),
         "next_steps": [advice_text(step) for step in verdict.next_steps()],
+        "checks": [
+            {"name": check.name, "outcome": check.outcome.name.lower(), "evidence": check.evidence}
+            for check in verdict.checks
+        ],
     }
 
 

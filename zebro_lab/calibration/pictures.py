@@ -2,16 +2,25 @@
 """Draw the pictures of a calibration folder."""
 
 from pathlib import Path
+from typing import Final
 
 from model.bayes.calibration import Calibration
+from model.bayes.verdict import State
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
+
+_MARKS: Final = {
+    State.AS_TESTED: "NOT FULLY TESTED",
+    State.NOT_TRUSTWORTHY: "NOT TRUSTWORTHY",
+    State.NOT_CONVERGED: "NOT CONVERGED",
+}
+"""What titles say of a fit that is not trustworthy."""
 
 
 def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat = "png") -> None:
     """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit.
 
-    The titles of a fit that did not converge, or that is not trustworthy, say so.
+    The titles of a fit that did not converge, is not trustworthy or not fully tested say so.
 
     Args:
         folder: Existing folder to write the pictures into.
@@ -39,10 +48,7 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
         ),
     }
     for name, figure in figures.items():
-        if not calibration.verdict.trustworthy:
-            plots.add_to_title(figure, _doubt(calibration))
+        mark = _MARKS.get(calibration.verdict.state)
+        if mark is not None:
+            plots.add_to_title(figure, mark)
         plots.save(figure, folder / f"{name}.{form}")
-
-
-def _doubt(calibration: Calibration) -> str:
-    return "NOT TRUSTWORTHY" if calibration.verdict.converged else "NOT CONVERGED"

@@ -8,7 +8,9 @@ from rich.table import Table
 from rich.text import Text
 
 from model.bayes.calibration import Calibration
+from model.bayes.checks.check import Outcome
 from model.bayes.estimate import Estimate, informed
+from model.bayes.verdict import State
 from model.counted import counted
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import RigData
@@ -129,7 +131,7 @@ def _curve_table(calibration: Calibration) -> Table:
 
 
 def _print_quality(console: Console, calibration: Calibration) -> None:
-    residuals, agreement = calibration.residuals, calibration.agreement
+    residuals = calibration.residuals
     lines = [
         f"Fit of the block means: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE "
         f"of F/Fn {residuals.rmse_over_load:.3g}",
@@ -139,33 +141,21 @@ def _print_quality(console: Console, calibration: Calibration) -> None:
             f"Cross-validation: R² {calibration.r_squared:.4f} of samples "
             f"({calibration.fit.cross_validation.scheme})"
         )
-    if agreement.comparable:
-        lines.append(
-            f"Laplace approximation with importance weights (Pareto k = {agreement.pareto_k:.2f}): "
-            f"means agree with the sampler's to {agreement.mean:.2f} sd, spreads to "
-            f"{agreement.spread:.0%}"
-        )
-    else:
-        lines.append(
-            f"Laplace approximation with importance weights: not compared with the sampler, "
-            f"Pareto k = {agreement.pareto_k:.2f} is above 0.7"
-        )
     lines.append(f"Sampling took {calibration.seconds:.0f} s.")
     for line in lines:
         console.print(plain(line))
 
 
-_MARKS = {True: "ok  ", False: "FAIL", None: "--  "}  # of a check's `passed`
+_MARKS = {Outcome.PASSED: "ok  ", Outcome.FAILED: "FAIL", Outcome.NOT_TESTABLE: "--  "}
+_STYLES = {State.TRUSTWORTHY: "bold green", State.AS_TESTED: "bold yellow"}
 
 
 def _print_verdict(console: Console, calibration: Calibration) -> None:
     verdict = calibration.verdict
-    good = verdict.trustworthy
-    console.print(
-        Text("\nverdict: " + verdict.headline(), style="bold green" if good else "bold red")
-    )
-    for check in (*verdict.convergence, *verdict.trust):
-        console.print(plain(f"  {_MARKS[check.passed]} {check.name}: {check.evidence}"))
+    style = _STYLES.get(verdict.state, "bold red")
+    console.print(Text("\nverdict: " + verdict.headline(), style=style))
+    for check in verdict.checks:
+        console.print(plain(f"  {_MARKS[check.outcome]} {check.name}: {check.evidence}"))
     if verdict.weak:
         for load, row in zip(calibration.levels, calibration.curves, strict=True):
             known = {e.parameter.symbol: e for e in row}

@@ -91,6 +91,8 @@ def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
     walks = read_stored_walks(read.file) if with_walks else None
     files = (read.file, *(walks.files if walks is not None else ()))
     doubts = ()
+    if read.caveat is not None:
+        notes.append(f"slip: {read.caveat}")
     if read.doubt is not None:
         doubts = (f"WARNING: the calibration is not trustworthy: {read.doubt}",)
     return NamedSlip(read.curve, read.source, text, files, (*notes, *doubts), walks, doubts)

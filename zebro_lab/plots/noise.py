@@ -86,7 +86,7 @@ def _draw_autocorrelation(axes: Axes, whitened: Array, run: NDArray[np.intp]) ->
     axes.vlines(lags, 0, correlations, color=BLUE, lw=2)
     axes.plot(lags, correlations, ls="none", marker="o", ms=3.5, color=BLUE)
     axes.axhline(0, color="black", lw=0.6)
-    from model.bayes.verdict import lag_one_limit  # late: it imports the sampler
+    from model.bayes.checks.fit import lag_one_limit  # late: it imports the sampler
 
     limit = lag_one_limit(int(counts[0]))
     axes.hlines([-limit, limit], 0.5, 1.5, color=RED, lw=1.4, label=f"limit at lag 1: ±{limit:.2f}")

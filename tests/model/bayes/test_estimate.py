@@ -27,6 +27,7 @@ from model.slip.magic_formula import peak_slip
 
 ANY = Parameter("x", "x", "newton", -math.inf, math.inf, "anything")
 RNG = np.random.default_rng(3)
+CONVERGENCE = Convergence(0, 1000, *([np.ones(8)] * 2), *([np.full(8, 5e3)] * 2), np.full(8, 0.01))
 
 
 def posterior() -> SlipPosterior:
@@ -147,7 +148,7 @@ def weighted(z: np.ndarray, pareto_k: float = 0.3) -> WeightedDraws:
 
 def test_engines_with_the_same_draws_agree_exactly():
     z = RNG.normal(size=(4, 500, len(posterior().free)))
-    found = agreement(draws_of(z), weighted(z.reshape(2000, -1)))
+    found = agreement(draws_of(z), weighted(z.reshape(2000, -1)), CONVERGENCE)
     assert (found.mean, found.spread) == pytest.approx((0.0, 0.0), abs=1e-12)
     assert found.comparable
 
@@ -157,10 +158,11 @@ def test_disagreement_is_that_of_the_worst_parameter():
     other = z.reshape(2000, -1).copy()
     other[:, 2] += 0.5 * other[:, 2].std()
     other[:, 3] = 1.2 * (other[:, 3] - other[:, 3].mean()) + other[:, 3].mean()
-    found = agreement(draws_of(z), weighted(other))
+    found = agreement(draws_of(z), weighted(other), CONVERGENCE)
     assert (found.mean, found.spread) == pytest.approx((0.5, 0.2))
 
 
 def test_weights_with_a_heavy_tail_are_not_compared():
     z = RNG.normal(size=(4, 50, len(posterior().free)))
-    assert not agreement(draws_of(z), weighted(z.reshape(200, -1), pareto_k=0.71)).comparable
+    heavy = weighted(z.reshape(200, -1), pareto_k=0.71)
+    assert not agreement(draws_of(z), heavy, CONVERGENCE).comparable

@@ -14,71 +14,38 @@ from model.bayes.advice import (
     WeighLoadCell,
     ZeroBeforeEach,
 )
-from model.bayes.blocks import SlipBlocks
-from model.bayes.convergence import Convergence
+from model.bayes.checks.check import Outcome
+from model.bayes.checks.reach import slip_reach
 from model.bayes.fit import prepare_fit
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
-from model.bayes.residuals import Residuals, analyse_residuals
-from model.bayes.verdict import Check, Verdict, judge, slip_reach
-from model.slip import Brush, MagicFormula
-from model.slip.definition import SlipDefinition
+from model.bayes.residuals import analyse_residuals
+from model.bayes.verdict import State, Verdict, judge
+from model.slip import Brush
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from support.judged_fits import (
+    AGREED,
+    CONVERGED,
+    LAW,
+    RIG_VALUES,
+    WELL_INFORMED,
+    blocks_at,
+    clean,
+    draws,
+    failed,
+    two_sided,
+    verdict_on,
+)
 
-CONVERGED = Convergence(
-    burn_in=50, length=1000, autocorrelation_time=np.full(10, 10.0), r_hat=np.full(10, 1.001),
-    ess_bulk=np.full(10, 5000.0), ess_tail=np.full(10, 4000.0), mcse=np.full(10, 0.01),
-)  # fmt: skip
-CLEAN = Residuals(
-    whitened=np.zeros(48), lag_one=0.0, run_score=np.zeros(12), inside=11 / 12, inside_p=1.0,
-    misfit=0.001, misfit_p=0.5, detectable=0.01, r_squared=0.999, rmse=0.01, rmse_over_load=0.002,
-)  # fmt: skip
-LAW = MagicFormula("constant")
-RIG_VALUES = (34.34 * 1.564 * 0.38, 1.564, 0.38, 0.0)
 TYRE_VALUES = (20.0, 1.4, 1.2, 0.2)  # its peak lies at slip 0.16
-WELL_INFORMED = dict.fromkeys(("slip_stiffness", "shape", "friction", "curvature"), 0.99)
-
-
-def sweep_blocks(largest_slip: float, *, load: float = 6.0, per_run: int = 4) -> SlipBlocks:
-    """Make 12 runs of slip set-points that lie closer together near zero, as a curve does."""
-    return blocks_at(largest_slip * np.linspace(1 / 12, 1.0, 12) ** 2, load=load, per_run=per_run)
-
-
-def blocks_at(set_points: np.ndarray, *, load: float = 6.0, per_run: int = 4) -> SlipBlocks:
-    """Make runs, one a set-point of slip."""
-    slip = np.repeat(set_points, per_run)
-    zeros = np.zeros(len(slip))
-    return SlipBlocks(
-        slip=slip, normal_force=zeros + load, traction_force=zeros,
-        count=np.full(len(slip), 50), run=np.repeat(np.arange(len(set_points)), per_run),
-        run_names=tuple("abcdefghijkl"[: len(set_points)]),
-        definition=SlipDefinition.MATERIAL, slip_wander=zeros, slip_error=zeros,
-        load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
-        run_slip_error=np.zeros(len(set_points)),
-    )  # fmt: skip
-
-
-def draws(law_values: tuple[float, ...], *, offset_spread: float = 0.05) -> np.ndarray:
-    """Repeat one parameter vector, of a perfect load cell, as if it were draws."""
-    measurement = (0.0, 0.0, 0.0, 0.0, 0.02, 0.01, 0.1, offset_spread)
-    return np.tile([*law_values, *measurement], (5, 1))
-
-
-def verdict_on(**changes) -> Verdict:
-    """Judge a fit that nothing is wrong with, but for the changes."""
-    case = {
-        "blocks": sweep_blocks(0.9), "law": LAW, "values": draws(RIG_VALUES),
-        "contraction": WELL_INFORMED, "convergence": CONVERGED, "residuals": CLEAN,
-        "offset_scale": 0.1,
-    }  # fmt: skip
-    return judge(**(case | changes))
-
-
-def failed(verdict: Verdict) -> list[Check]:
-    return [check for check in (*verdict.convergence, *verdict.trust) if check.failed]
+EVENLY = np.linspace(0.09, 1.0, 6)
+ONE_RUN = replace(
+    two_sided(0.4, loads=(6.0,), per_run=4), run=np.zeros(96, dtype=int), run_names=("a",),
+    run_slip_error=np.zeros(1),
+)  # fmt: skip
 
 
 def test_fit_without_fault_is_trusted():
@@ -124,7 +91,7 @@ TRUST_FAULTS = {
 @pytest.mark.parametrize("check", TRUST_FAULTS)
 def test_fault_in_the_residuals_costs_the_trust_but_not_the_convergence(check):
     changes, advice = TRUST_FAULTS[check]
-    verdict = verdict_on(residuals=replace(CLEAN, **changes))
+    verdict = verdict_on(residuals=clean(**changes))
     assert [c.name for c in failed(verdict)] == [check]
     assert verdict.converged
     assert not verdict.trustworthy
@@ -134,10 +101,10 @@ def test_fault_in_the_residuals_costs_the_trust_but_not_the_convergence(check):
 
 @pytest.mark.parametrize("misfit", [0.001, 0.08])
 def test_a_shape_of_which_the_limit_would_not_show_is_not_testable(misfit):
-    blind = replace(CLEAN, misfit=misfit, misfit_p=0.02, detectable=0.12)
+    blind = clean(misfit=misfit, misfit_p=0.02, detectable=0.12)
     verdict = verdict_on(residuals=blind)
     assert verdict.not_testable == ("the law fits the shape of the curve",)
-    (check,) = [check for check in verdict.trust if check.passed is None]
+    (check,) = [check for check in verdict.trust if check.untested]
     assert "12.0% of the peak force" in check.evidence
     found = verdict_on(residuals=replace(blind, misfit=0.2, misfit_p=1e-4))
     assert [c.name for c in failed(found)] == ["the law fits the shape of the curve"]
@@ -145,14 +112,14 @@ def test_a_shape_of_which_the_limit_would_not_show_is_not_testable(misfit):
 
 @pytest.mark.parametrize("changes", [{"lag_one": -0.6}, {"lag_one": 0.6, "misfit_p": 1e-4}])
 def test_correlation_that_is_no_drift_is_answered_by_another_law(changes):
-    (step,) = verdict_on(residuals=replace(CLEAN, **changes)).next_steps()
+    (step,) = verdict_on(residuals=clean(**changes)).next_steps()
     assert isinstance(step, TryLaws)
     assert "brush" in step.laws
 
 
 def test_runs_that_do_not_belong_to_the_others_cost_the_trust_and_are_named():
     score = np.append(np.linspace(-0.5, 0.5, 11), -5.0)
-    verdict = verdict_on(residuals=replace(CLEAN, run_score=score, inside_p=1.0))
+    verdict = verdict_on(residuals=clean(run_score=score, inside_p=1.0))
     (check,) = failed(verdict)
     assert check.name == "run means are predicted"
     assert check.evidence.endswith("far from all others: l")
@@ -160,32 +127,32 @@ def test_runs_that_do_not_belong_to_the_others_cost_the_trust_and_are_named():
 
 
 def test_run_means_that_scatter_too_little_ask_for_a_known_load_cell():
-    residuals = replace(CLEAN, inside=1.0, inside_p=1e-3)
+    residuals = clean(inside=1.0, inside_p=1e-3)
     (step,) = verdict_on(residuals=residuals).next_steps()
     assert isinstance(step, WeighLoadCell)
 
 
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_correlation_of_either_sign_is_no_white_noise(sign):
-    assert failed(verdict_on(residuals=replace(CLEAN, lag_one=sign * 0.6)))
+    assert failed(verdict_on(residuals=clean(lag_one=sign * 0.6)))
 
 
 def test_correlation_is_judged_by_how_many_pairs_there_are():
-    few, many = sweep_blocks(0.9), sweep_blocks(0.9, per_run=400)
-    slight = replace(CLEAN, lag_one=0.1)
+    few, many = two_sided(0.4, per_run=2), two_sided(0.4, per_run=400)
+    slight = clean(lag_one=0.1)
     assert not failed(verdict_on(residuals=slight, blocks=few))
     assert failed(verdict_on(residuals=slight, blocks=many))
 
 
 def test_trials_of_one_block_cannot_be_correlated():
-    verdict = verdict_on(blocks=sweep_blocks(0.9, per_run=1), residuals=replace(CLEAN, lag_one=0.9))
-    assert verdict.trustworthy
+    verdict = verdict_on(blocks=two_sided(0.4, per_run=1), residuals=clean(lag_one=0.9))
+    assert verdict.state is State.AS_TESTED
 
 
 @pytest.mark.parametrize("changes", [{"misfit": 0.3, "misfit_p": 0.2},
                                      {"misfit": 0.01, "misfit_p": 1e-9}])  # fmt: skip
 def test_misfit_must_be_both_large_and_beyond_chance(changes):
-    assert verdict_on(residuals=replace(CLEAN, **changes)).trustworthy
+    assert verdict_on(residuals=clean(**changes)).trustworthy
 
 
 def test_offsets_as_large_as_the_curve_carry_it():
@@ -203,7 +170,7 @@ def test_offsets_far_beyond_the_load_cells_stability_are_not_believed():
 
 
 def test_slips_that_leap_over_the_rise_cost_the_trust_and_are_told_what_to_add():
-    verdict = verdict_on(blocks=blocks_at(np.linspace(0.0, 1.0, 12)))
+    verdict = verdict_on(blocks=blocks_at(np.append(-EVENLY[::-1], EVENLY)))
     (check,) = failed(verdict)
     assert check.name == "the rise of the curve is tested"
     assert "up to 1.00 of the peak's slip apart, limit 0.5" in check.evidence
@@ -212,28 +179,30 @@ def test_slips_that_leap_over_the_rise_cost_the_trust_and_are_told_what_to_add()
     )
     (step,) = verdict.next_steps()
     assert isinstance(step, MeasureSlips)
-    assert step.loads == (6.0,)
+    assert step.loads == (6.0, 12.0)
     assert 0 < min(step.slips) < 0.01
 
 
 def test_a_model_that_misfits_is_named_before_the_slips_that_are_missing():
     verdict = verdict_on(
-        blocks=blocks_at(np.linspace(0.0, 1.0, 12)), residuals=replace(CLEAN, lag_one=0.6)
+        blocks=blocks_at(np.append(-EVENLY[::-1], EVENLY)), residuals=clean(lag_one=0.6)
     )
     assert "the model does not describe" in verdict.headline()
     assert len(verdict.next_steps()) == 2
 
 
 NOT_TESTABLE = {
-    "residuals are white": {"blocks": sweep_blocks(0.9, per_run=1)},
+    "residuals are white": {"blocks": two_sided(0.4, per_run=1)},
     "run means are predicted": {
-        "blocks": blocks_at(np.array([0.02, 0.9]), per_run=24),
-        "residuals": replace(CLEAN, inside=0.0, inside_p=0.0100001),
+        "blocks": blocks_at(np.array([0.4]), per_run=24, loads=(6.0,)),
+        "residuals": clean(inside=0.0, inside_p=0.0100001),
     },
-    "the law fits the shape of the curve": {
-        "residuals": replace(CLEAN, misfit=0.0, misfit_p=float("nan"))
-    },
+    "the law fits the shape of the curve": {"residuals": clean(misfit=0.0, misfit_p=float("nan"))},
     "the rise of the curve is tested": {"law": Brush(), "values": draws((20.0, 0.38))},
+    "the peak lies within the tested slips": {"blocks": two_sided(0.045)},
+    "dependence on load is tested": {"blocks": two_sided(0.4, loads=(6.0, 6.0))},
+    "two computations of the posterior agree": {"agreement": replace(AGREED, pareto_k=0.71)},
+    "zero offsets between runs are small": {"blocks": ONE_RUN},
 }
 
 
@@ -241,16 +210,27 @@ NOT_TESTABLE = {
 def test_what_the_data_cannot_test_neither_passes_nor_fails_and_is_named(name):
     verdict = verdict_on(**NOT_TESTABLE[name])
     (check,) = [check for check in verdict.trust if check.name == name]
-    assert (check.passed, check.failed) == (None, False)
+    assert check.outcome is Outcome.NOT_TESTABLE
+    assert (check.passed, check.failed) == (False, False)
     assert check.evidence.startswith("not testable with these data: ")
-    assert verdict.not_testable == (name,)
-    assert f"; not testable with these data: {name}" in verdict.headline()
-    assert check.advice not in verdict.next_steps()
+    assert name in verdict.not_testable
+    assert check.untested in verdict.headline().split("; untested: ")[1]
+    assert not verdict.trustworthy
+    assert check.advice is None or check.advice in verdict.next_steps()
+
+
+def test_what_was_not_tested_costs_the_plain_headline_and_no_more():
+    verdict = verdict_on(blocks=ONE_RUN, residuals=clean(inside=1.0, misfit_p=float("nan")))
+    assert verdict.state is State.AS_TESTED
+    assert not verdict.doubtful
+    assert verdict.headline().startswith("converged and trustworthy as far as tested; untested: ")
+    assert verdict.untested.count("repeatability (one run)") == 1
+    assert "dependence on load (one load: it is the prior's)" in verdict.untested
 
 
 def test_three_runs_are_enough_to_test_whether_run_means_are_predicted():
     blocks = blocks_at(np.array([0.01, 0.03, 0.9]), per_run=16)
-    verdict = verdict_on(blocks=blocks, residuals=replace(CLEAN, inside=0.0, inside_p=1e-3))
+    verdict = verdict_on(blocks=blocks, residuals=clean(inside=0.0, inside_p=1e-3))
     assert "run means are predicted" in [check.name for check in failed(verdict)]
 
 
@@ -260,8 +240,9 @@ def test_a_fit_that_has_not_converged_says_nothing_else():
     assert verdict.headline() == "NOT CONVERGED: do not use these numbers"
 
 
-def test_sweep_that_stops_before_the_peak_names_shape_and_friction_weak():
-    verdict = verdict_on(blocks=sweep_blocks(0.15, load=1500.0), values=draws(TYRE_VALUES),
+def test_sweep_that_stops_soon_after_the_peak_names_shape_and_friction_weak():
+    blocks = two_sided(0.3, loads=(1500.0, 2500.0))
+    verdict = verdict_on(blocks=blocks, values=draws(TYRE_VALUES),
                          offset_scale=10.0)  # fmt: skip
     assert set(verdict.weak) == {"shape", "friction"}
     assert "cannot be separated" in verdict.weak["shape"].reason
@@ -273,7 +254,7 @@ def test_sweep_that_stops_before_the_peak_names_shape_and_friction_weak():
 
 def test_reach_is_counted_in_peak_slips_of_either_sign():
     peak = float(LAW.peak_slip(6.0, RIG_VALUES))
-    blocks = sweep_blocks(3.0 * peak)
+    blocks = two_sided(3.0 * peak)
     assert slip_reach(blocks, LAW, draws(RIG_VALUES)) == pytest.approx(3.0)
     braking = replace(blocks, slip=-blocks.slip)
     assert slip_reach(braking, LAW, draws(RIG_VALUES)) == pytest.approx(3.0)
@@ -282,7 +263,7 @@ def test_reach_is_counted_in_peak_slips_of_either_sign():
 @pytest.mark.parametrize(("reach", "weak"), [(2.4, True), (2.6, False)])
 def test_curve_is_told_from_its_peak_two_and_a_half_peak_slips_out(reach, weak):
     peak = float(LAW.peak_slip(6.0, RIG_VALUES))
-    assert ("shape" in verdict_on(blocks=sweep_blocks(reach * peak)).weak) == weak
+    assert ("shape" in verdict_on(blocks=two_sided(reach * peak)).weak) == weak
 
 
 def test_parameter_that_stays_as_wide_as_its_prior_is_weak():
@@ -297,13 +278,13 @@ def test_contraction_below_zero_reads_as_none():
 
 
 def test_law_without_a_shape_factor_needs_no_reach():
-    verdict = verdict_on(law=Brush(), values=draws((20.0, 0.38)), blocks=sweep_blocks(0.1))
+    verdict = verdict_on(law=Brush(), values=draws((20.0, 0.38)), blocks=two_sided(0.1))
     assert verdict.weak == {}
 
 
 def test_failed_fit_keeps_its_weak_parameters_in_the_headline():
     verdict = verdict_on(
-        residuals=replace(CLEAN, misfit=0.2, misfit_p=1e-9),
+        residuals=clean(misfit=0.2, misfit_p=1e-9),
         contraction=WELL_INFORMED | {"shape": 0.1},
     )
     assert "NOT TRUSTWORTHY" in verdict.headline()
@@ -333,14 +314,15 @@ def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) 
         values=values,
         contraction=dict(zip(names, 1 - z.var(axis=0), strict=True)),
         convergence=CONVERGED,
+        agreement=AGREED,
         residuals=analyse_residuals(fit.posterior.blocks, THESIS_LAW, values),
         offset_scale=zero_stability,
     )
 
 
-def test_typical_rig_is_trusted():
+def test_typical_rig_is_trusted_as_far_as_it_was_tested():
     verdict = verdict_on_sweep(offset_sd=0.05, zero_stability=0.1)
-    assert verdict.trustworthy, failed(verdict)
+    assert verdict.state is State.AS_TESTED, failed(verdict)
     assert "shape" not in verdict.weak
 
 

@@ -87,7 +87,12 @@ def test_printed_report_has_definition_coefficients_verdict_and_paths(converged)
 def test_slip_toml_says_converged(converged):
     content = tomllib.loads((converged[1] / "slip.toml").read_text())
     assert content["verdict"]["converged"]
-    assert content["verdict"]["trustworthy"]
+    assert content["verdict"]["state"] == "trustworthy as far as tested"
+    assert not content["verdict"]["trustworthy"]
+    assert "repeatability (no slip and load in two runs)" in content["verdict"]["untested"]
+    outcomes = {check["name"]: check["outcome"] for check in content["verdict"]["checks"]}
+    assert outcomes["dependence on load is tested"] == "passed"
+    assert "failed" not in outcomes.values()
     assert content["tested"]["samples"] == 3600
 
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.verdict import Check, Verdict
+from model.bayes.checks.check import Check, Outcome
+from model.bayes.verdict import Verdict
 from support.drawn_figures import figures_saved
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.pictures import draw_calibration
@@ -38,10 +39,18 @@ def test_every_picture_shows_the_fit_and_says_simulated(tmp_path, monkeypatch):
     assert any(name in named for name in calibration.posterior.blocks.run_names)
 
 
-@pytest.mark.parametrize(("passed", "mark"), [(True, ""), (False, ": NOT TRUSTWORTHY")])
-def test_a_fit_that_is_not_trustworthy_says_so_in_every_title(passed, mark, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("outcome", "mark"),
+    [
+        (Outcome.PASSED, ""),
+        (Outcome.FAILED, ": NOT TRUSTWORTHY"),
+        (Outcome.NOT_TESTABLE, ": NOT FULLY TESTED"),
+    ],
+)
+def test_a_fit_that_is_not_trustworthy_says_so_in_every_title(outcome, mark, tmp_path, monkeypatch):
     saved = figures_saved(monkeypatch)
-    verdict = Verdict((Check("sampler", True, ""),), (Check("shape", passed, ""),), {})
+    sampler = Check("sampler", Outcome.PASSED, "")
+    verdict = Verdict((sampler,), (Check("shape", outcome, ""),), {})
     draw_calibration(tmp_path, replace(short_calibration(), verdict=verdict))
     for figure in saved.values():
         assert figure.get_suptitle().endswith(f"(simulated){mark}")

@@ -11,6 +11,7 @@ import pytest
 from model.bayes.advice import TryLaws
 from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
+from model.bayes.estimate import Agreement
 from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell
 from model.bayes.laplace import importance_draws
 from model.bayes.residuals import Residuals, analyse_residuals
@@ -84,6 +85,7 @@ def judged(data: RigData, law: MagicFormula) -> Judged:
         contraction=dict(zip(names, 1 - z.var(axis=0), strict=True)),
         convergence=CONVERGED,
         residuals=residuals,
+        agreement=Agreement(mean=0.0, spread=0.0, pareto_k=weighted.pareto_k),
         offset_scale=cell.zero_stability,
     )
     by_name = {p.name: values[:, i] for i, p in enumerate(posterior.parameters)}

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from model.bayes.advice import ExcludeRuns, MeasureSlips
-from model.bayes.verdict import Check
+from model.bayes.checks.check import Outcome, decided
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import read_rig_data
@@ -56,11 +56,10 @@ def test_the_curve_is_told_at_each_load(printed):
 def test_faults_are_marked_with_their_evidence(printed):
     verdict = short_calibration().verdict
     assert f"verdict: {verdict.headline()}" in printed
-    marks = {True: "ok  ", False: "FAIL", None: "--  "}
-    checks = (*verdict.convergence, *verdict.trust)
-    for check in checks:
-        assert f"  {marks[check.passed]} {check.name}: {check.evidence[:40]}" in printed
-    assert {check.passed for check in checks} == set(marks)
+    marks = {Outcome.PASSED: "ok  ", Outcome.FAILED: "FAIL", Outcome.NOT_TESTABLE: "--  "}
+    for check in verdict.checks:
+        assert f"  {marks[check.outcome]} {check.name}: {check.evidence[:40]}" in printed
+    assert {check.outcome for check in verdict.checks} == set(marks)
     assert "FAIL" in printed
     for step in verdict.next_steps():
         assert f"  next: {advice_text(step).splitlines()[0]}\n" in printed
@@ -69,8 +68,7 @@ def test_faults_are_marked_with_their_evidence(printed):
 def test_lines_of_a_plan_and_commands_are_printed_as_lines_to_copy(tmp_path):
     finished = short_calibration()
     steps = (MeasureSlips("x", (5.0, 10.0), (0.01, 0.2)), ExcludeRuns("y", ("one", "two")))
-    check = Check("sampler", False, "too short")
-    checks = tuple(replace(check, advice=step) for step in steps)
+    checks = tuple(decided("sampler", False, "too short", step) for step in steps)
     verdict = replace(finished.verdict, convergence=checks)
     console = Console(file=io.StringIO(), width=80)
     print_calibration(console, replace(finished, verdict=verdict), tmp_path)

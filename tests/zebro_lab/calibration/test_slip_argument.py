@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from model.bayes.verdict import State
 from model.errors import DefinitionMismatch
 from model.slip import SlipDefinition
 from model.walk.path import WalkPath
@@ -64,6 +65,18 @@ def test_untrustworthy_calibration_is_said_to_be(calibration):
     (note,) = parse_slip(str(calibration)).notes
     assert note == "WARNING: the calibration is not trustworthy: NOT CONVERGED"
     assert parse_slip(str(calibration)).doubts == (note,)
+
+
+def test_what_was_not_tested_is_noted_and_is_no_doubt(calibration):
+    headline = "converged and trustworthy as far as tested; untested: peak"
+    text = SLIP_TOML.format(headline=headline, trustworthy="false").replace(
+        "trustworthy = false", 'trustworthy = false, state = "trustworthy as far as tested"'
+    )
+    (calibration / "slip.toml").write_text(text)
+    found = parse_slip(str(calibration))
+    assert found.notes == (f"slip: {headline}",)
+    assert found.doubts == ()
+    assert str(State.AS_TESTED) in text
 
 
 def test_a_calibration_that_was_edited_by_hand_is_told(calibration):

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: MIT
+"""Checks of the model against the data: run offsets, run means, whiteness, shape of the curve."""
+
+import numpy as np
+
+from model.bayes.advice import (
+    Advice,
+    ExcludeRuns,
+    MeasureAlso,
+    TryLaws,
+    WeighLoadCell,
+    ZeroBeforeEach,
+    try_laws,
+)
+from model.bayes.blocks import SlipBlocks
+from model.bayes.checks.check import Check, decided, not_testable
+from model.bayes.checks.repeats import repeated_share
+from model.bayes.likelihood import predict_blocks
+from model.bayes.residuals import MISFIT_P, Residuals, far_runs
+from model.slip.law import Array, SlipLaw
+
+MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
+FEWEST_PAIRS = 27  # of successive blocks: with fewer the limit is above 0.5, which any noise meets
+INSIDE = 0.9  # expected share of run means inside their intervals
+MOST_NAMED = 3  # runs that evidence names
+MIN_P = 0.01  # p-value of the share of run means inside their intervals
+FEWEST_RUNS = 3  # with fewer, none of them inside has a p-value of 0.01 or more
+MAX_MISFIT = 0.05  # of the peak force
+MAX_OFFSET_SHARE = 0.2  # of the force variance, explained by run offsets
+MAX_OFFSET_RATIO = 3.0  # a half-normal exceeds three scales once in 370
+MIN_REPEATED = 0.25  # share of the runs whose slip and load another run has too
+PASSES = 2  # of each set-point, where none was repeated
+
+
+def offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> Check:
+    """Check that run offsets explain little variance and are within three prior scales [N].
+
+    Their share of the variance, with that of the fitted curve, is at most `MAX_OFFSET_SHARE`. One
+    run cannot tell its offset from the next one's.
+
+    Args:
+        blocks: The block means.
+        law: The slip law, of k parameters.
+        values: Posterior draws of law and measurement parameters, shape (w, k + 8).
+        scale: Scale of the prior on the run offsets' spread [N].
+    """
+    name = "zero offsets between runs are small"
+    if blocks.n_runs == 1:
+        return _one_run(name, "there is one run; their spread is the prior's")
+    tau = float(values[:, -1].mean())
+    # Also what varies within runs, as slip is swept: an offset cannot stand in for that.
+    curve = float(np.std(predict_blocks(blocks, law, values).force.mean(axis=0)))
+    share = tau**2 / (tau**2 + curve**2) if tau > 0 else 0.0
+    return decided(
+        name,
+        share <= MAX_OFFSET_SHARE and tau <= MAX_OFFSET_RATIO * scale,
+        f"they explain {share:.0%} of the force variance, limit {MAX_OFFSET_SHARE:.0%}; their "
+        f"standard deviation is {tau:.3g} N, limit {MAX_OFFSET_RATIO * scale:.3g} N",
+        ZeroBeforeEach("zero offsets between runs are too large to be told from the curve"),
+    )
+
+
+def _one_run(name: str, why: str) -> Check:
+    advice = MeasureAlso("one run does not show what repeats", repeats=PASSES)
+    return not_testable(name, why, untested="repeatability (one run)", advice=advice)
+
+
+def run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
+    """Check that about 90 % of run means lie inside their predictive 90 % intervals.
+
+    Passed if the two-sided binomial p-value is above `MIN_P`: more may fail it as well as fewer.
+    Not testable with so few runs that none inside is no rarer than that.
+    """
+    name = "run means are predicted"
+    why = f"runs: {blocks.n_runs}; expected {FEWEST_RUNS} or more"
+    if blocks.n_runs == 1:
+        return _one_run(name, why)
+    if blocks.n_runs < FEWEST_RUNS:
+        advice = MeasureAlso("two runs do not show how far runs scatter", repeats=PASSES)
+        return not_testable(name, why, untested="repeatability (two runs)", advice=advice)
+    far = [blocks.run_names[run] for run in far_runs(residuals.run_score)]
+    strange = f"; far from all others: {', '.join(far[:MOST_NAMED])}" if far else ""
+    more = f" and {len(far) - MOST_NAMED} more" if len(far) > MOST_NAMED else ""
+    return decided(
+        name,
+        residuals.inside_p > MIN_P and not far,
+        f"{residuals.inside:.0%} of {blocks.n_runs} run means inside their 90 % interval "
+        f"(p = {residuals.inside_p:.2g}, expected above {MIN_P:g}){strange}{more}",
+        _run_advice(residuals, far),
+    )
+
+
+def _run_advice(residuals: Residuals, far: list[str]) -> Advice:
+    """Choose what to do about run means: leave runs out, measure again, or state the load cell."""
+    if far:
+        return ExcludeRuns("these runs do not belong to the others", tuple(far))
+    if residuals.inside < INSIDE:
+        return ZeroBeforeEach("run means scatter more than the model predicts")
+    return WeighLoadCell(
+        "run means scatter less than the model predicts, so that intervals are too wide"
+    )
+
+
+def whiteness(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Check:
+    """Check that whitened residuals of successive blocks are hardly correlated.
+
+    The limit is `MAX_LAG_ONE`, or more for few blocks; not testable with fewer than `FEWEST_PAIRS`
+    pairs of successive blocks.
+    """
+    name = "residuals are white"
+    pairs = len(blocks) - blocks.n_runs
+    if pairs < FEWEST_PAIRS:
+        return not_testable(
+            name,
+            f"pairs of successive blocks: {pairs}; expected {FEWEST_PAIRS} or more; longer runs, "
+            "or a shorter block length, would make them",
+            untested="noise in time (too short)",
+            advice=MeasureAlso("runs are too short to show their noise", times=4.0),
+        )
+    limit = lag_one_limit(pairs)
+    return decided(
+        name,
+        abs(residuals.lag_one) < limit,
+        f"lag-1 correlation of whitened residuals {residuals.lag_one:+.3f}, limit {limit:.2f}",
+        _whiteness_advice(residuals, blocks, law),
+    )
+
+
+def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Advice:
+    """Choose between another law and shorter runs: drift neither alternates nor repeats by slip."""
+    if residuals.lag_one < 0 or residuals.misfit_p < MISFIT_P:
+        return law_advice(blocks, law)
+    return ZeroBeforeEach("forces drift within runs, so that intervals are too narrow")
+
+
+def law_advice(blocks: SlipBlocks, law: SlipLaw) -> TryLaws:
+    """Advise another law; slips of both signs, beyond noise about zero, may need one each."""
+    smaller = min(blocks.slip.max(), -blocks.slip.min())
+    return try_laws(
+        "forces differ from the curve in the same way in all runs", law.name,
+        both_signs=bool(smaller > 0.1 * np.abs(blocks.slip).max()),
+    )  # fmt: skip
+
+
+def lag_one_limit(pairs: int) -> float:
+    """Return the largest lag-1 correlation of a good fit: `MAX_LAG_ONE`, or more for few pairs [-].
+
+    White noise exceeds it once in 100.
+    """
+    return float(max(MAX_LAG_ONE, 2.6 / np.sqrt(pairs)))
+
+
+def shape(residuals: Residuals, law: SlipLaw, blocks: SlipBlocks) -> Check:
+    """Check that the misfit that all runs share is small or not significant, at each load too.
+
+    It fails above `MAX_MISFIT` of the peak force at its load with a p-value below `MISFIT_P`. Not
+    testable if no two runs share a slip and load, or too few do for a misfit of that size to show.
+    """
+    name = "the law fits the shape of the curve"
+    if blocks.n_runs == 1:
+        return _one_run(name, "one run does not show which misfit repeats")
+    again = MeasureAlso("no set-point was measured twice", repeats=PASSES)
+    untested = "repeatability (no slip and load in two runs)"
+    if np.isnan(residuals.misfit_p):
+        why = "no two runs share a slip and load; repeat runs"
+        return not_testable(name, why, untested=untested, advice=again)
+    failed = residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P
+    if not failed and residuals.detectable > MAX_MISFIT:
+        return not_testable(
+            name,
+            "runs scatter so much, or so few share a slip and load, that a misfit of "
+            f"{residuals.detectable:.1%} of the peak force or less is not told from chance, limit "
+            f"{MAX_MISFIT:.0%}; repeat runs",
+            untested="shape of the curve (runs scatter)",
+            advice=MeasureAlso("runs scatter too much to show the curve's shape", repeats=PASSES),
+        )
+    repeated = repeated_share(blocks)
+    if not failed and repeated < MIN_REPEATED:
+        return not_testable(
+            name,
+            f"{repeated:.0%} of the runs have a slip and load that another run has, expected "
+            f"{MIN_REPEATED:.0%} or more; the misfit that neighbouring slips share is "
+            f"{residuals.misfit:.1%} of the peak force",
+            untested=untested,
+            advice=again,
+        )
+    return decided(
+        name,
+        not failed,
+        f"the misfit that all runs share is {residuals.misfit:.1%} of the peak force, limit "
+        f"{MAX_MISFIT:.0%} where p is below {MISFIT_P:g} (p = {residuals.misfit_p:.2g})",
+        law_advice(blocks, law),
+    )

@@ -34,8 +34,8 @@ from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.traction import VelocityCoulomb
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.walk.leg_angles import angles_from
+from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.path_band import offset_sd_deg
-from zebro_lab.walk.request import BandRequest
 
 COUNTS = (0.05, 0.2, 0.5, 1.0, 2.0, 3.6)  # deg
 RATES = (20.0, 50.0, 100.0, 200.0)  # Hz

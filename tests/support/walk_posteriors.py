@@ -10,8 +10,9 @@ from model.gait import tripod_angles, tripod_reference
 from support.watchers import Nobody
 from zebro_lab.calibration.walks_folder import WalksToWrite, read_stored_walks, write_walks
 from zebro_lab.robot.robot_file import RobotFile
+from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
+from zebro_lab.walk.request import ModelRequest, PredictRequest
 from zebro_lab.walk_fit.pictures import draw_walks
 
 STEERING = LINEAR[0]

@@ -14,15 +14,10 @@ from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, option
 from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import (
-    BandRequest,
-    ModelName,
-    ModelRequest,
-    PredictRequest,
-    WalkRequest,
-)
+from zebro_lab.walk.request import ModelName, ModelRequest, PredictRequest, WalkRequest
 from zebro_lab.walk.stage import walk
 from zebro_lab.walk.thesis_argument import parse_thesis
 from zebro_lab.walk.walking import Walked

@@ -26,7 +26,7 @@ from model.slip.law import Array
 from model.walk.footing import GroundFooting
 from model.walk.ground import FLAT, Ground, is_level
 from model.walk.path import WalkPath
-from zebro_lab.walk.request import ContactRequest
+from zebro_lab.walk.output_request import ContactRequest
 
 DETECTED_BY: Final = DETECTIONS[0]
 """The detection that is shown beside the model's own contacts: that of Eq. (3-33)."""

@@ -14,9 +14,10 @@ from zebro_lab.terminal.picture_options import Window
 from zebro_lab.walk.contact_files import write_contacts, write_touchdowns
 from zebro_lab.walk.contacts import WalkContacts
 from zebro_lab.walk.folder import CONTACTS_CSV, THESIS_CSV, TOUCHDOWNS_CSV, walk_folder
+from zebro_lab.walk.output_request import PictureRequest
 from zebro_lab.walk.path_band import band_settings, write_band
 from zebro_lab.walk.pictures import draw_contacts, draw_walk
-from zebro_lab.walk.request import ModelRequest, PictureRequest
+from zebro_lab.walk.request import ModelRequest
 from zebro_lab.walk.walking import Walked
 
 

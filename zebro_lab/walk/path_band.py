@@ -24,7 +24,7 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS, INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs
-from zebro_lab.walk.request import BandRequest
+from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.walking import Walked
 
 SAMPLING = 0.1  # s between the poses kept of each draw

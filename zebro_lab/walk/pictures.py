@@ -14,7 +14,7 @@ from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.walk.contacts import WalkContacts
 from zebro_lab.walk.folder import CONTACTS_PICTURE
-from zebro_lab.walk.request import PictureRequest
+from zebro_lab.walk.output_request import PictureRequest
 from zebro_lab.walk.shown_time import part_in
 
 _Drawers: TypeAlias = dict[str, tuple[str, Callable[..., Any], WalkPath]]

@@ -29,7 +29,8 @@ from zebro_lab.walk.contacts import WalkContacts, contacts_of
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.ground_notes import ground_notes
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
-from zebro_lab.walk.request import DETECTED, ContactRequest, ModelRequest
+from zebro_lab.walk.output_request import ContactRequest
+from zebro_lab.walk.request import DETECTED, ModelRequest
 from zebro_lab.walk.thesis_argument import named_switches
 
 MOST_STEPS: Final = 500_000

@@ -25,7 +25,7 @@ from zebro_lab.main import app
 from zebro_lab.terminal import ending
 from zebro_lab.walk.contacts import RULES, contacts_of
 from zebro_lab.walk.folder import CONTACTS, read_walk
-from zebro_lab.walk.request import ContactRequest
+from zebro_lab.walk.output_request import ContactRequest
 
 TETRAPOD = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
 ASKED = ContactRequest(contacts=True)

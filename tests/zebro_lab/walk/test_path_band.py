@@ -16,6 +16,7 @@ from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.robot.robot_file import RobotFile
+from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.path_band import (
     ASSUMED_OFFSET_DEG,
     DRAWS,
@@ -23,7 +24,6 @@ from zebro_lab.walk.path_band import (
     predict_band,
     read_draws,
 )
-from zebro_lab.walk.request import BandRequest
 from zebro_lab.walk.walking import Walked
 
 

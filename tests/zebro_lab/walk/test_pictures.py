@@ -9,8 +9,8 @@ from model.robot import Robot
 from support.drawn_figures import figures_saved
 from zebro_lab.terminal.picture_options import Instants, Window
 from zebro_lab.walk.folder import FILES, PICTURES
+from zebro_lab.walk.output_request import PictureRequest
 from zebro_lab.walk.pictures import draw_walk
-from zebro_lab.walk.request import PictureRequest
 
 
 def test_folder_gets_every_picture(walked, tmp_path):

@@ -10,8 +10,9 @@ from support.walk_requests import request, write_log
 from support.watchers import Nobody
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.folder import read_walk_manifest
+from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
+from zebro_lab.walk.request import ModelRequest, PredictRequest
 from zebro_lab.walk.stage import walk
 from zebro_lab.walk.summary import summarise
 

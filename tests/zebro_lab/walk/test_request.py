@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Options of walk and predict: names that exist, and a band that can be drawn."""
+"""Options of walk and predict: names that exist, steps short enough."""
 
-from typing import Any, get_args
+from typing import get_args
 
 import pytest
 import typer
@@ -18,7 +18,6 @@ from zebro_lab.walk.request import (
     LONGEST_SLIPPING_STEP,
     LONGEST_STEP,
     AutomatonName,
-    BandRequest,
     ModelName,
     ModelRequest,
     SwitchName,
@@ -80,16 +79,3 @@ def test_a_step_that_skips_contacts_is_refused_with_the_longest_one(model, dt):
     ):
         ModelRequest("thesis", model, dt=dt)
     assert ModelRequest("thesis", model, dt=longest).dt == longest
-
-
-def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
-    assert BandRequest().draws == 0
-    with pytest.raises(SettingsError, match="expected 2 or more, or 0"):
-        BandRequest(1)
-    negative: tuple[dict[str, Any], ...] = (
-        {"offset_sd_deg": -1.0},
-        {"start_sd": (0.0, -1.0, 0.0)},
-    )
-    for options in negative:
-        with pytest.raises(SettingsError, match="deviations of 0 or more"):
-            BandRequest(2, **options)

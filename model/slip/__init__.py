@@ -8,7 +8,7 @@ from model.slip.lateral import lateral_slip, slip_angle
 from model.slip.law import Parameter, SlipLaw
 from model.slip.laws import LAWS, slip_law
 from model.slip.magic_formula import MagicFormula, magic_formula
-from model.slip.read_off import Coefficients, CurveFeatures, curve_features, read_off
+from model.slip.read_off import Coefficients, CurveFeatures, ReadOff, curve_features, read_off
 
 __all__ = [
     "LAWS",
@@ -18,6 +18,7 @@ __all__ = [
     "CurveFeatures",
     "MagicFormula",
     "Parameter",
+    "ReadOff",
     "SlipDefinition",
     "SlipLaw",
     "convert_slip",

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Graphical estimate of the Magic Formula's coefficients from four features of a slip curve."""
+"""Read the Magic Formula's coefficients off a slip curve: from its features, or by least squares."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from model.errors import DomainError
 from model.slip.law import Array
-from model.slip.magic_formula import curvature_from_peak
+from model.slip.magic_formula import curvature_from_peak, magic_formula
+from model.slip.sampled_curve import fitted_coefficients
 
 _UNSETTLED = 0.05  # of the peak: largest drop that may remain at the end of a curve
 _RISE_TERMS = 3  # kappa, kappa³, kappa⁵: the slope is then within 0.1 % up to half the peak
@@ -46,6 +48,23 @@ class Coefficients:
     C: float
     D: float
     E: float
+
+
+@dataclass(frozen=True)
+class ReadOff(Coefficients):
+    """Coefficients read off a slip curve, with how they were found and how well they describe it.
+
+    Attributes:
+        method: "features" for Eq. (4-25) to (4-27), "least squares" where the rise has too few
+            samples for its slope.
+        misfit: Root-mean-square difference of samples and formula [N].
+        errors: Standard errors of B, C, D and E from the scatter about the formula, by least
+            squares; None for features. Infinite where the samples do not determine the coefficient.
+    """
+
+    method: Literal["features", "least squares"]
+    misfit: float
+    errors: tuple[float, float, float, float] | None
 
 
 def shape_factor(y_a: ArrayLike, D: ArrayLike, *, has_peak: bool = True) -> Array:
@@ -152,24 +171,36 @@ def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
     return CurveFeatures(D, x_m, _asymptote(kappa, f, x_m, D), _initial_slope(kappa, f, D))
 
 
-def read_off(slip: ArrayLike, force: ArrayLike) -> Coefficients:
-    """Estimate the Magic Formula's coefficients from the features of a slip curve at one load.
+def read_off(slip: ArrayLike, force: ArrayLike) -> ReadOff:
+    """Read the Magic Formula's coefficients off the samples of a slip curve at one load.
 
-    This is the thesis's method, and a starting point for a fit; it gives no uncertainty. See
-    `curve_features` for the requirements on the curve.
+    The thesis's method, by `curve_features` and Eq. (4-25) to (4-27), where at least three samples
+    beyond zero slip lie below half the peak, which the slope at zero slip needs. A grid that is too
+    coarse for that, such as the thesis's 62 slip ratios from 0 to 1, gets the formula that is
+    closest to all samples by least squares: its slope is then the formula's, extrapolated.
 
     Args:
         slip: Slip ratio, increasing from zero or above, shape (n,) [-].
         force: Traction force, positive, shape (n,) [N].
 
     Returns:
-        B, C, D and E.
+        B, C, D and E, with method, misfit and standard errors.
 
     Raises:
-        DomainError: The curve does not meet the requirements of `curve_features`, or its features
-            give an asymptote outside 0 to the peak or E > 1.
+        DomainError: The curve does not meet the requirements of `curve_features`, for least squares
+            only those on peak and range and six samples; or its features give an asymptote outside
+            0 to the peak or E > 1.
     """
-    return coefficients_from_features(curve_features(slip, force))
+    kappa, f = _as_curve(slip, force)
+    x_m, D = _vertex(kappa, f)
+    if len(_rise(kappa, f, D)) >= _RISE_TERMS:
+        found = coefficients_from_features(curve_features(kappa, f))
+        plain = (found.B, found.C, found.D, found.E)
+        misfit = float(np.sqrt(np.mean((f - magic_formula(kappa, *plain)) ** 2)))
+        return ReadOff(*plain, "features", misfit, None)
+    _tail(kappa, x_m)
+    fitted = fitted_coefficients(kappa, f)
+    return ReadOff(*fitted.values, "least squares", fitted.misfit, fitted.errors)
 
 
 def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
@@ -213,28 +244,32 @@ def _vertex(kappa: Array, f: Array) -> tuple[float, float]:
     return float(kappa[top] + offset), float(f[top] + gradient * offset / 2)
 
 
+def _rise(kappa: Array, f: Array, D: float) -> range:
+    """Return the samples beyond zero slip before the first above half the peak force D [N]."""
+    return range(1 if kappa[0] == 0 else 0, int(np.argmax(f > D / 2)))
+
+
 def _initial_slope(kappa: Array, f: Array, D: float) -> float:
     """Return the slope at zero slip [N], of an odd quintic fitted up to half the peak force D.
 
     Raises `DomainError` for fewer than three samples there, one at zero slip not counted.
     """
-    end = int(np.argmax(f > D / 2))
-    rise = slice(1 if kappa[0] == 0 else 0, end)
-    reach, count = kappa[end], len(kappa[rise])
-    if count < _RISE_TERMS:
+    rise = _rise(kappa, f, D)
+    reach = kappa[rise.stop]
+    if len(rise) < _RISE_TERMS:
         raise DomainError(
-            f"{count} samples between zero slip and {reach:.4g}, where the force passes half its "
-            f"peak; the slope at zero slip needs {_RISE_TERMS}: measure smaller slip ratios"
+            f"{len(rise)} samples between zero slip and {reach:.4g}, where the force passes half "
+            f"its peak; the slope at zero slip needs {_RISE_TERMS}: measure smaller slip ratios"
         )
     odd = (kappa[rise, None] / reach) ** (2 * np.arange(_RISE_TERMS) + 1)
     return float(np.linalg.lstsq(odd, f[rise])[0][0] / reach)
 
 
-def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
-    """Extrapolate the force to infinite slip [N], linearly in 1/slip from the outer half.
+def _tail(kappa: Array, x_m: float) -> NDArray[np.bool_]:
+    """Return which samples lie in the outer half of the slip range, shape (n,).
 
-    Raises `DomainError` if the curve ends before twice the peak's slip `x_m`, has fewer than two
-    samples in that half, or ends more than 5 % of the peak force D away from the result.
+    Raises `DomainError` if the curve ends before twice the peak's slip `x_m`, or has fewer than two
+    samples in that half.
     """
     tail = kappa >= kappa[-1] / 2
     if kappa[-1] < 2 * x_m or np.count_nonzero(tail) < 2:
@@ -242,6 +277,16 @@ def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
             f"the curve ends at slip {kappa[-1]:.4g} with its peak at {x_m:.4g}: too near to see "
             f"what it falls to; measure to twice the peak's slip, two samples in the outer half"
         )
+    return tail
+
+
+def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
+    """Extrapolate the force to infinite slip [N], linearly in 1/slip from the outer half.
+
+    Raises `DomainError` as `_tail` does, or if the curve ends more than 5 % of the peak force D
+    away from the result.
+    """
+    tail = _tail(kappa, x_m)
     y_a = float(np.polyfit(1 / kappa[tail], f[tail], 1)[1])
     if abs(f[-1] - y_a) > _UNSETTLED * D:
         raise DomainError(

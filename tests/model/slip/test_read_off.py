@@ -8,7 +8,9 @@ from model.errors import DomainError
 from model.slip import Brush, CurveFeatures, curve_features, magic_formula, read_off
 from model.slip.magic_formula import peak_slip
 from model.slip.read_off import coefficients_from_features, shape_factor, stiffness_factor
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 
+THESIS_LOADS = (2.13, 6.63, 8.13, 12.75)  # N, Fig. 4-14
 FAR = np.geomspace(1e-4, 1e3, 4000)
 
 
@@ -86,10 +88,41 @@ def test_curve_still_falling_at_its_end_is_refused():
         read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
 
 
-def test_rise_without_samples_is_refused():
+@pytest.mark.parametrize("load", THESIS_LOADS)
+def test_the_grid_of_the_thesis_gives_its_coefficients_at_each_of_its_loads(load):
+    slip = np.linspace(0, 1, 62)
+    B, C, D, E = (float(x) for x in THESIS_LAW.coefficients(load, THESIS_VALUES))
+    read = read_off(slip, magic_formula(slip, B, C, D, E))
+    assert read.method == "least squares"
+    np.testing.assert_allclose((read.B, read.C, read.D, read.E), (B, C, D, E), rtol=1e-6)
+    assert read.misfit < 1e-9
+
+
+def test_standard_errors_of_a_coarse_grid_are_those_of_repeated_measurements():
+    slip, rng = np.linspace(0, 1, 62), np.random.default_rng(8)
+    truth = magic_formula(slip, 34.34, 1.564, 4.84, 0.797)
+    read = [read_off(slip, truth + 0.01 * rng.standard_normal(62)) for _ in range(25)]
+    scatter = np.std([(each.B, each.C, each.D, each.E) for each in read], axis=0)
+    stated = np.mean([each.errors for each in read], axis=0)
+    np.testing.assert_allclose(stated, scatter, rtol=0.5)
+    assert np.mean([each.misfit for each in read]) == pytest.approx(0.01, rel=0.1)
+
+
+def test_features_are_preferred_where_the_rise_has_samples():
+    read = read_off(FAR, magic_formula(FAR, 34.34, 1.564, 2.5, 0.0))
+    assert (read.method, read.errors) == ("features", None)
+
+
+def test_slope_at_zero_slip_needs_samples_of_the_rise():
     slip = np.linspace(0, 1, 40)
     with pytest.raises(DomainError, match="measure smaller slip ratios"):
-        read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+        curve_features(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+
+
+def test_five_samples_are_too_few_for_least_squares():
+    slip = np.array([0.0, 0.1, 0.2, 0.6, 1.0])
+    with pytest.raises(DomainError, match="5 samples of a curve"):
+        read_off(slip, magic_formula(slip, 34.34, 1.564, 4.84, 0.8))
 
 
 @pytest.mark.parametrize("asymptote", [-0.1, 2.6])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Typer applications of `zebro-lab COMMAND`, with all commands, and of `calibrate-slip`."""
 
+from zebro_lab.calibration.read_off import command as read_off
 from zebro_lab.exchange import export_command, import_command, init_command
 from zebro_lab.experiment import command as rig
 from zebro_lab.reach import command as reach
@@ -24,6 +25,7 @@ from zebro_lab.walk_fit import command as calibrate
 
 app = Application(no_args_is_help=True)
 app.command(epilog=calibrate.EPILOG)(calibrate.calibrate)
+app.command("read-off", epilog=read_off.EPILOG)(read_off.read_off)
 app.command()(init_command.init)
 app.command(epilog=walk.EPILOG)(walk.walk)
 app.command(epilog=reach.EPILOG)(reach.reach)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read the Magic Formula's coefficients off a slip curve: from its features, or by least squares."""
+"""Read the Magic Formula's coefficients off a slip curve, from features or by least squares."""
 
 from dataclasses import dataclass
 from typing import Literal

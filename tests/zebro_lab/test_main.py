@@ -8,9 +8,9 @@ from zebro_lab import main
 from zebro_lab.main import app, slip_app
 
 COMMANDS = {
-    "calibrate", "init", "walk", "reach", "predict", "validate", "compare", "report", "record",
-    "import", "runs", "plot", "exclude", "export", "track", "annotate", "doctor", "camera", "rig",
-    "sim", "zebro",
+    "calibrate", "read-off", "init", "walk", "reach", "predict", "validate", "compare", "report",
+    "record", "import", "runs", "plot", "exclude", "export", "track", "annotate", "doctor",
+    "camera", "rig", "sim", "zebro",
 }  # fmt: skip
 
 

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Read the Magic Formula's coefficients off slip curves, as the thesis does."""

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab read-off DATA`: read B, C, D and E off slip curves, as the thesis does."""
+
+from typing import TYPE_CHECKING
+
+from zebro_lab.calibration.read_off.request import ReadOffRequest
+from zebro_lab.files.source_names import is_simulated
+from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.output import TEXT, Output
+from zebro_lab.terminal.request_command import request_command
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from zebro_lab.calibration.read_off.stage import ReadOffResult
+
+EPILOG = """
+Examples:
+
+zebro-lab read-off curve.csv
+
+zebro-lab read-off datasets/rig-sim --out read-off
+
+Section 4-5-1 of the thesis: peak, asymptote, slope at zero slip and slip of the peak give the four
+coefficients at each load. Where a grid of slip ratios is too coarse for the slope, as the thesis's
+62 points are, the formula closest to all points is taken, by least squares, with standard errors.
+It is no fit with a posterior: that is calibrate-slip.
+"""
+
+
+@request_command()
+def read_off(request: ReadOffRequest, output: Output = TEXT) -> None:
+    """Read the Magic Formula's B, C, D and E off slip curves, one set at each load."""
+    from zebro_lab.calibration.read_off import stage
+
+    result = stage.read_off_curves(request)
+    console = output.console()
+    if is_simulated(result.source):
+        console.print(plain(f"SIMULATED data, source '{result.source}'"))
+    for note in result.notes:
+        console.print(plain(note))
+    console.print(_table(result))
+    for each in result.curves:
+        if each.found is None:
+            console.print(plain(f"{each.curve.load:.4g} N, {each.side}: {each.reason}"))
+    console.print(plain(f"written to {request.out}"))
+    content = {
+        "folder": request.out,
+        "simulated": is_simulated(result.source),
+        "slip_definition": str(result.definition),
+        "curves": [each.row() for each in result.curves],
+        "notes": list(result.notes),
+    }
+    output.document("read-off", content)
+
+
+def _table(result: "ReadOffResult") -> "Table":
+    from zebro_lab.terminal.tables import plain_table
+
+    headings = ("Fn [N]", "B [-]", "C [-]", "D [N]", "E [-]", "D/Fn", "peak slip", "misfit [N]")
+    title = f"read off, slip definition {result.definition}; standard errors of least squares"
+    table = plain_table(title, ("side",), headings, no_wrap=True)
+    for each in result.curves:
+        row, found = each.row(), each.found
+        if found is None:
+            continue
+        errors = found.errors or (None,) * 4
+        values = zip((found.B, found.C, found.D, found.E), errors, strict=True)
+        table.add_row(
+            each.side, f"{each.curve.load:.4g}",
+            *(_with_error(value, error) for value, error in values),
+            f"{row['peak_over_load']:.4g}", f"{row['peak_slip']:.4g}", f"{found.misfit:.3g}",
+        )  # fmt: skip
+    return table
+
+
+def _with_error(value: float, error: float | None) -> str:
+    """Format a number with its standard error.
+
+    >>> _with_error(34.3419, 0.152), _with_error(1.564, None)
+    ('34.34 ± 0.15', '1.564')
+    """
+    return f"{value:.4g}" if error is None else f"{value:.4g} ± {error:.2g}"

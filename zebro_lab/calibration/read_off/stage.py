@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""Stage of `zebro-lab read-off`: curves by load, their coefficients, and the folder."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from model.bayes.blocks import block_means
+from model.bayes.residuals import load_levels
+from model.counted import counted
+from model.errors import DomainError
+from model.slip.definition import SlipDefinition, convert_slip
+from model.slip.law import Array
+from model.slip.load_curves import LoadCurve, curves_by_load
+from model.slip.magic_formula import peak_slip
+from model.slip.read_off import ReadOff, read_off
+from zebro_lab.calibration.curve_table import CurveTable, is_curve_table, read_curve_table
+from zebro_lab.calibration.read_off.request import ReadOffRequest
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.picture_format import in_every_format
+from zebro_lab.files.provenance import file_hashes
+from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
+from zebro_lab.files.source_names import is_simulated
+
+TABLE, PICTURE = "read-off.csv", "curves"
+READ_OFF: Final = ResultKind("read-off", "read-off", (TABLE, *in_every_format(PICTURE)))
+_FEWEST = 3  # points of a side of a curve, below which it is no side but noise about zero slip
+
+
+@dataclass(frozen=True)
+class ReadCurve:
+    """A curve at one load, and what was read off it.
+
+    Attributes:
+        curve: The points, at positive slip and force.
+        side: "driving" or "braking".
+        found: Coefficients; None where the curve does not give them.
+        reason: Why not; empty if it does.
+    """
+
+    curve: LoadCurve
+    side: str
+    found: ReadOff | None
+    reason: str = ""
+
+    def row(self) -> dict[str, object]:
+        """Return the row of `read-off.csv`; NaN where nothing was found."""
+        row: dict[str, object] = {
+            "load_n": self.curve.load, "side": self.side, "points": len(self.curve.slip),
+        }  # fmt: skip
+        values = [np.nan] * 4 if self.found is None else list(_coefficients(self.found))
+        errors = [np.nan] * 4 if self.found is None or self.found.errors is None else list(
+            self.found.errors
+        )  # fmt: skip
+        for name, value, error in zip("BCDE", values, errors, strict=True):
+            row |= {name: value, f"{name}_error": error}
+        B, C, _, E = values
+        return row | {
+            "peak_over_load": values[2] / self.curve.load,
+            "peak_slip": float(peak_slip(B, C, E)) if self.found else np.nan,
+            "misfit_n": self.found.misfit if self.found else np.nan,
+            "method": self.found.method if self.found else "",
+            "problem": self.reason,
+        }
+
+
+@dataclass(frozen=True)
+class ReadOffResult:
+    """What was read off all curves.
+
+    Attributes:
+        curves: The curves by load, driving before braking.
+        definition: Slip definition.
+        source: Source of the data.
+        notes: Notes on the data, one line each.
+    """
+
+    curves: tuple[ReadCurve, ...]
+    definition: SlipDefinition
+    source: str
+    notes: tuple[str, ...]
+
+
+def read_off_curves(request: ReadOffRequest) -> ReadOffResult:
+    """Read B, C, D and E off the slip curve at each load, and write the folder.
+
+    Points are the rows of a table of a curve, else the means of runs (the rows, if the data are one
+    run).
+
+    Raises:
+        ZebroLabError: The data cannot be read, have no load, no curve gives coefficients, or the
+            folder cannot be replaced.
+        DomainError: Slip ratios cannot be converted.
+    """
+    require_replaceable(request.out, READ_OFF, inputs=request.data)
+    read = _points(request)
+    points = read.table
+    if points.load is None:
+        raise DataError(
+            "has traction over load and no normal_force; E and the peak are those of one load: add "
+            "a column normal_force [N]",
+            file=points.files[0],
+        )
+    curves = tuple(
+        each
+        for curve in curves_by_load(points.slip, points.load, points.traction, levels=read.levels)
+        for each in _read_sides(curve)
+    )
+    if not any(each.found for each in curves):
+        reasons = [f"at {each.curve.load:.4g} N: {each.reason}" for each in curves]
+        raise DataError(reasons[0] if reasons else "has no curve of 3 points", file=points.files[0])
+    result = ReadOffResult(curves, points.definition, points.source, points.notes)
+    _write(request, result, points.files)
+    return result
+
+
+@dataclass(frozen=True)
+class _Points:
+    """Points of slip, load and traction, (n,) each, and where they come from."""
+
+    table: CurveTable
+    levels: Array | None  # loads that were set, of rig data [N]
+
+
+def _points(request: ReadOffRequest) -> _Points:
+    """Read points of slip, load and traction in the definition that is asked for."""
+    if len(request.data) == 1 and is_curve_table(request.data[0]):
+        table = read_curve_table(request.data[0], columns=request.columns)
+        wanted = SlipDefinition(request.slip_definition or table.definition)
+        slip = convert_slip(table.slip, table.definition, wanted)
+        return _Points(replace(table, slip=slip, definition=wanted), None)
+    data = read_rig_data(
+        request.data, columns=request.columns, slip_definition=request.slip_definition
+    )
+    samples, notes = data.samples, data.notes
+    slip, load, force = samples.slip, samples.normal_force, samples.traction_force
+    levels = load_levels(block_means(samples, max(1, len(samples) // 1000)))
+    if samples.n_runs > 1:
+        slip, load, force = (_run_means(each, samples.slices()) for each in (slip, load, force))
+        notes = (*notes, f"points are the means of {counted(samples.n_runs, 'run')}")
+    table = CurveTable(slip, load, force, samples.definition, data.source, data.files, notes)
+    return _Points(table, levels)
+
+
+def _run_means(values: Array, runs: list[slice]) -> Array:
+    return np.array([float(np.mean(values[run])) for run in runs])
+
+
+def _read_sides(curve: LoadCurve) -> Iterator[ReadCurve]:
+    """Yield what is read off the driving and the braking side, each through the origin."""
+    for side, half in (("driving", curve.driving()), ("braking", curve.braking())):
+        if len(half.slip) < _FEWEST:
+            continue
+        part = half
+        if half.slip[0] > 0:
+            part = LoadCurve(half.load, np.append(0.0, half.slip), np.append(0.0, half.force))
+        try:
+            yield ReadCurve(part, side, read_off(part.slip, part.force))
+        except DomainError as error:
+            yield ReadCurve(part, side, None, str(error))
+
+
+def _coefficients(found: ReadOff) -> tuple[float, float, float, float]:
+    return found.B, found.C, found.D, found.E
+
+
+def _write(request: ReadOffRequest, result: ReadOffResult, files: tuple[Path, ...]) -> None:
+    import pandas as pd
+
+    from zebro_lab.calibration.read_off.pictures import read_curves
+    from zebro_lab.plots import save
+
+    rows = [each.row() for each in result.curves]
+    content = {
+        "source": result.source,
+        "settings": {"slip_definition": str(result.definition)},
+        "notes": list(result.notes),
+        "curves": rows,
+        "inputs": file_hashes(files),
+    }
+    with result_folder(request.out, READ_OFF, content=content) as draft:
+        table = pd.DataFrame(rows)
+        table.to_csv(draft / TABLE, index=False, float_format="%.6g", lineterminator="\n")
+        figure = read_curves(
+            result.curves, definition=str(result.definition), simulated=is_simulated(result.source)
+        )
+        save(figure, draft / f"{PICTURE}.{request.form}")

@@ -3,12 +3,12 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from model.slip.magic_formula import magic_formula, peak_slip
+from zebro_lab.calibration.read_off.values import ReadCurve
 from zebro_lab.plots.sheet import (
     BLUE,
     RED,
@@ -21,12 +21,9 @@ from zebro_lab.plots.sheet import (
     styled,
 )
 
-if TYPE_CHECKING:
-    from zebro_lab.calibration.read_off.stage import ReadCurve
-
 
 @styled
-def read_curves(curves: "Sequence[ReadCurve]", *, definition: str, simulated: bool) -> Figure:
+def read_curves(curves: Sequence[ReadCurve], *, definition: str, simulated: bool) -> Figure:
     """Draw the points of each curve and the Magic Formula that was read off them.
 
     Args:

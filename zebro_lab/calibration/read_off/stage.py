@@ -15,10 +15,10 @@ from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip
 from model.slip.law import Array
 from model.slip.load_curves import LoadCurve, curves_by_load
-from model.slip.magic_formula import peak_slip
-from model.slip.read_off import ReadOff, read_off
+from model.slip.read_off import read_off
 from zebro_lab.calibration.curve_table import CurveTable, is_curve_table, read_curve_table
 from zebro_lab.calibration.read_off.request import ReadOffRequest
+from zebro_lab.calibration.read_off.values import ReadCurve, ReadOffResult
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.picture_format import in_every_format
@@ -29,60 +29,6 @@ from zebro_lab.files.source_names import is_simulated
 TABLE, PICTURE = "read-off.csv", "curves"
 READ_OFF: Final = ResultKind("read-off", "read-off", (TABLE, *in_every_format(PICTURE)))
 _FEWEST = 3  # points of a side of a curve, below which it is no side but noise about zero slip
-
-
-@dataclass(frozen=True)
-class ReadCurve:
-    """A curve at one load, and what was read off it.
-
-    Attributes:
-        curve: The points, at positive slip and force.
-        side: "driving" or "braking".
-        found: Coefficients; None where the curve does not give them.
-        reason: Why not; empty if it does.
-    """
-
-    curve: LoadCurve
-    side: str
-    found: ReadOff | None
-    reason: str = ""
-
-    def row(self) -> dict[str, object]:
-        """Return the row of `read-off.csv`; NaN where nothing was found."""
-        row: dict[str, object] = {
-            "load_n": self.curve.load, "side": self.side, "points": len(self.curve.slip),
-        }  # fmt: skip
-        values = [np.nan] * 4 if self.found is None else list(_coefficients(self.found))
-        errors = [np.nan] * 4 if self.found is None or self.found.errors is None else list(
-            self.found.errors
-        )  # fmt: skip
-        for name, value, error in zip("BCDE", values, errors, strict=True):
-            row |= {name: value, f"{name}_error": error}
-        B, C, _, E = values
-        return row | {
-            "peak_over_load": values[2] / self.curve.load,
-            "peak_slip": float(peak_slip(B, C, E)) if self.found else np.nan,
-            "misfit_n": self.found.misfit if self.found else np.nan,
-            "method": self.found.method if self.found else "",
-            "problem": self.reason,
-        }
-
-
-@dataclass(frozen=True)
-class ReadOffResult:
-    """What was read off all curves.
-
-    Attributes:
-        curves: The curves by load, driving before braking.
-        definition: Slip definition.
-        source: Source of the data.
-        notes: Notes on the data, one line each.
-    """
-
-    curves: tuple[ReadCurve, ...]
-    definition: SlipDefinition
-    source: str
-    notes: tuple[str, ...]
 
 
 def read_off_curves(request: ReadOffRequest) -> ReadOffResult:
@@ -162,10 +108,6 @@ def _read_sides(curve: LoadCurve) -> Iterator[ReadCurve]:
             yield ReadCurve(part, side, read_off(part.slip, part.force))
         except DomainError as error:
             yield ReadCurve(part, side, None, str(error))
-
-
-def _coefficients(found: ReadOff) -> tuple[float, float, float, float]:
-    return found.B, found.C, found.D, found.E
 
 
 def _write(request: ReadOffRequest, result: ReadOffResult, files: tuple[Path, ...]) -> None:

@@ -5,7 +5,7 @@ from model.slip.load_curves import LoadCurve
 from model.slip.magic_formula import magic_formula
 from model.slip.read_off import read_off
 from zebro_lab.calibration.read_off.pictures import read_curves
-from zebro_lab.calibration.read_off.stage import ReadCurve
+from zebro_lab.calibration.read_off.values import ReadCurve
 
 
 def test_each_curve_has_a_panel_with_points_and_the_formula_if_there_is_one():

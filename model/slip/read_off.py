@@ -168,7 +168,7 @@ def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
     """
     kappa, f = _as_curve(slip, force)
     x_m, D = _vertex(kappa, f)
-    return CurveFeatures(D, x_m, _asymptote(kappa, f, x_m, D), _initial_slope(kappa, f, D))
+    return CurveFeatures(D, x_m, _asymptote(kappa, f, x_m, D), _slope_of_rise(kappa, f, D))
 
 
 def read_off(slip: ArrayLike, force: ArrayLike) -> ReadOff:
@@ -201,6 +201,21 @@ def read_off(slip: ArrayLike, force: ArrayLike) -> ReadOff:
     _tail(kappa, x_m)
     fitted = fitted_coefficients(kappa, f)
     return ReadOff(*fitted.values, "least squares", fitted.misfit, fitted.errors)
+
+
+def initial_slope(slip: ArrayLike, force: ArrayLike) -> float:
+    """Estimate the slope at zero slip of a slip curve at one load from its samples [N].
+
+    Args:
+        slip: Slip ratio, increasing from zero or above, shape (n,) [-].
+        force: Traction force, positive, shape (n,) [N].
+
+    Raises:
+        DomainError: The samples are no curve, or fewer than three beyond zero slip lie before half
+            the largest force.
+    """
+    kappa, f = _as_curve(slip, force)
+    return _slope_of_rise(kappa, f, float(f.max()))
 
 
 def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
@@ -249,7 +264,7 @@ def _rise(kappa: Array, f: Array, D: float) -> range:
     return range(1 if kappa[0] == 0 else 0, int(np.argmax(f > D / 2)))
 
 
-def _initial_slope(kappa: Array, f: Array, D: float) -> float:
+def _slope_of_rise(kappa: Array, f: Array, D: float) -> float:
     """Return the slope at zero slip [N], of an odd quintic fitted up to half the peak force D.
 
     Raises `DomainError` for fewer than three samples there, one at zero slip not counted.

@@ -66,6 +66,7 @@ class SlipFile:
             was tested, or if the file does not say.
         caveat: Headline of the verdict if the fit can be trusted as far as it was tested only;
             else None.
+        levels: Loads that were set, as measured, by rising load [N]; empty if it does not say.
     """
 
     curve: SlipCurve
@@ -73,6 +74,7 @@ class SlipFile:
     source: str
     doubt: str | None
     caveat: str | None = None
+    levels: tuple[float, ...] = ()
 
 
 def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[str, str]) -> None:
@@ -115,8 +117,9 @@ def read_slip_file(path: Path) -> SlipFile:
                 f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",
                 file=file,
             )
+        levels = tuple(float(each["normal_force"]) for each in content.get("curve", ()))
         return SlipFile(_curve(content), file, _text(content, "source", "unknown"),
-                        *_reservations(content.get("verdict", {})))  # fmt: skip
+                        *_reservations(content.get("verdict", {})), levels)  # fmt: skip
 
 
 def _reservations(verdict: Mapping[str, Any]) -> tuple[str | None, str | None]:

@@ -7,7 +7,12 @@ from hypothesis import strategies as st
 from model.errors import DomainError
 from model.slip import Brush, CurveFeatures, curve_features, magic_formula, read_off
 from model.slip.magic_formula import peak_slip
-from model.slip.read_off import coefficients_from_features, shape_factor, stiffness_factor
+from model.slip.read_off import (
+    coefficients_from_features,
+    initial_slope,
+    shape_factor,
+    stiffness_factor,
+)
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 
 THESIS_LOADS = (2.13, 6.63, 8.13, 12.75)  # N, Fig. 4-14
@@ -55,6 +60,12 @@ def test_features_are_those_of_the_curve():
     expected = (2.5, peak_slip(34.34, 1.564, 0.0), 2.5 * np.sin(1.564 * np.pi / 2))
     assert (found.peak_force, found.peak_slip, found.asymptote) == pytest.approx(expected, rel=1e-4)
     assert found.slope == pytest.approx(34.34 * 1.564 * 2.5, rel=1e-3)
+
+
+def test_initial_slope_needs_no_peak():
+    slip = np.linspace(0, 0.03, 40)
+    found = initial_slope(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+    assert found == pytest.approx(34.34 * 1.564 * 2.5, rel=1e-3)
 
 
 def test_noise_of_a_filtered_curve_moves_the_coefficients_little():

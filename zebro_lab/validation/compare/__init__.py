@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Compare two calibrations or two runs: differences with intervals."""
+"""Compare calibrations, curves or runs: differences with intervals."""

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab compare A B`: compare two calibrations or two runs."""
+"""`zebro-lab compare A B`: compare calibrations, a calibration and a curve, or runs."""
 
-from typing import TYPE_CHECKING
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
 
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.messages import plain
@@ -21,17 +22,25 @@ zebro-lab compare calibration-tiles calibration-carpet
 
 zebro-lab compare calibration thesis --out against-thesis
 
+zebro-lab compare calibration magic:34.34,1.564,0.3798,0:material
+
+zebro-lab compare calibration published.csv
+
 zebro-lab compare data/RUN1 data/RUN2 --out tiles-carpet
 
 Of calibrations the curve is compared at loads that both were tested at, and legs and floor if both
-were fitted to walks. Of runs speed, yaw rate and curvature, tracked and predicted. Probabilities
-take the two for independent; a track's errors are taken for independent from pose to pose.
+were fitted to walks. A curve is compared at the tested loads, and judged by the band that holds
+90 % of whole curves of the calibration: thesis; coulomb:MU; magic:B,C,D,E with D over load, or with
+@LOAD in newtons, and the slip definition behind a colon; or a table with slip_ratio,
+slip_definition and traction_over_load, or traction_force and normal_force. Of runs speed, yaw rate
+and curvature, tracked and predicted. Probabilities take the two for independent; a track's errors
+are taken for independent from pose to pose.
 """
 
 
 @request_command()
 def compare(request: CompareRequest, output: Output = TEXT) -> None:
-    """Compare two calibrations or two runs: overlay them and list differences with intervals."""
+    """Compare calibrations, a calibration and a curve, or runs: overlay, list differences."""
     from rich.text import Text
 
     from zebro_lab.validation.compare import stage
@@ -45,8 +54,14 @@ def compare(request: CompareRequest, output: Output = TEXT) -> None:
         console.print(plain(note))
     console.print(Text(f"\nwritten to {request.out}"))
     simulated = is_simulated(done.comparison.source)
-    content = {"folder": request.out, "simulated": simulated, "names": done.comparison.names}
+    content: dict[str, Any] = {
+        "folder": request.out,
+        "simulated": simulated,
+        "names": done.comparison.names,
+    }
     notes = list(done.comparison.notes)
+    if done.comparison.place is not None:
+        content["place"] = asdict(done.comparison.place)
     output.document("compare", {**content, "quantities": _quantities(done), "notes": notes})
 
 
@@ -98,4 +113,6 @@ def _table(done: "Compared") -> "Table":
 
 
 def _spelled(median: float, low: float, high: float) -> str:
+    if low == high:  # of a curve without uncertainty
+        return f"{median:.4g}"
     return f"{median:.4g} ({low:.4g} … {high:.4g})"

@@ -11,11 +11,13 @@ from matplotlib.figure import Figure
 from model.metrics.difference import Difference
 from zebro_lab.plots.sheet import (
     BLUE,
+    NARROW,
     RED,
     TRACTION_LABEL,
     legend_below,
     map_axes,
     new_figure,
+    point_alpha,
     slip_label,
     styled,
 )
@@ -44,17 +46,9 @@ def overlay(compared: Comparison, differences: Sequence[Difference], *, simulate
         The figure.
     """
     title = f"{compared.names[0]} and {compared.names[1]}"
-    n = len(compared.quantities)
     if compared.curves:
-        figure = new_figure(title, simulated, width=9.0, height=4.6 + 0.25 * n)
-        columns = len(compared.curves)
-        grid = figure.add_gridspec(2, columns, height_ratios=(3.6, 0.6 + 0.25 * n))
-        panels = [figure.add_subplot(grid[0, i]) for i in range(columns)]
-        for axes, curve in zip(panels, compared.curves, strict=True):
-            _draw_curve(axes, curve, _marked(compared))
-            axes.set_xlabel(slip_label(compared.definition))
-        panels[0].set_ylabel(TRACTION_LABEL)
-        below, letters = figure.add_subplot(grid[1, :]), _TITLE_LETTERS
+        figure, below = _curve_panels(title, compared, simulated=simulated)
+        letters = _TITLE_LETTERS
     else:
         figure = new_figure(title, simulated, width=9.0, height=5.2)
         above, below = figure.subplots(1, 2, width_ratios=(1.4, 1.0))
@@ -73,13 +67,60 @@ def _marked(compared: Comparison) -> list[str]:
     ]
 
 
-def _draw_curve(axes: Axes, curve: Curve, names: Sequence[str]) -> None:
+def _curve_panels(title: str, compared: Comparison, *, simulated: bool) -> tuple[Figure, Axes]:
+    """Draw a panel for each load, and one below it of small slips if a peak lies there.
+
+    Returns the figure and empty axes for the differences below.
+    """
+    n, columns = len(compared.quantities), len(compared.curves)
+    narrow = any(_has_narrow_peak(curve) for curve in compared.curves)
+    below = 0.6 + 0.25 * n
+    heights = (3.6, 3.0, below) if narrow else (3.6, below)
+    figure = new_figure(
+        title, simulated, width=max(9.0, 3.2 * columns), height=1.0 + 0.95 * sum(heights)
+    )
+    grid = figure.add_gridspec(len(heights), columns, height_ratios=heights)
+    for i, curve in enumerate(compared.curves):
+        panels = [figure.add_subplot(grid[0, i])]
+        _draw_curve(panels[0], curve, _marked(compared), compared.band)
+        panels[0].set_title(f"load {curve.load:.3g} N", loc="left")
+        if narrow:
+            panels.append(figure.add_subplot(grid[1, i]))
+            _draw_curve(panels[1], _narrowed(curve), _marked(compared), compared.band)
+        panels[-1].set_xlabel(slip_label(compared.definition))
+        if i == 0:
+            for axes in panels:
+                axes.set_ylabel(TRACTION_LABEL)
+    return figure, figure.add_subplot(grid[-1, :])
+
+
+def _has_narrow_peak(curve: Curve) -> bool:
+    at = np.abs(curve.slip[np.nanargmax(np.abs(curve.bands[:, 1]), axis=1)])
+    return bool(np.any(at < NARROW * np.abs(curve.slip).max()))
+
+
+def _narrowed(curve: Curve) -> Curve:
+    """Return the part of a curve at small slips."""
+    reach = NARROW * np.abs(curve.slip).max()
+    kept, near = np.abs(curve.slip) <= reach, np.abs(curve.points[0]) <= reach
+    return Curve(curve.slip[kept], curve.load, curve.bands[..., kept], curve.points[:, near])
+
+
+def _draw_curve(axes: Axes, curve: Curve, names: Sequence[str], band: str) -> None:
+    """Draw block means and both curves; one without uncertainty is a line without a band."""
+    if curve.points.size:
+        axes.plot(
+            *curve.points, ls="none", marker="o", ms=3, mew=0, color="0.35", zorder=1.5,
+            alpha=point_alpha(curve.points.shape[1]), label="block means, load within 10 %",
+        )  # fmt: skip
     for (low, median, high), colour, name in zip(curve.bands, _COLOURS, names, strict=True):
-        axes.plot(curve.slip, median, color=colour, lw=1.2, label=f"{name}: median")
-        axes.fill_between(
-            curve.slip, low, high, color=colour, alpha=0.25, lw=0, label=f"{name}: 90 % of curves"
-        )
-    axes.set_title(f"load {curve.load:.3g} N", loc="left")
+        is_line = np.array_equal(low, high, equal_nan=True)
+        axes.plot(curve.slip, median, color=colour, lw=1.2, label=name if is_line else
+                  f"{name}: median")  # fmt: skip
+        if not is_line:
+            axes.fill_between(
+                curve.slip, low, high, color=colour, alpha=0.25, lw=0, label=f"{name}: {band}"
+            )
     axes.grid(color="0.92", lw=0.6)
 
 

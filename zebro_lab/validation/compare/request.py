@@ -17,10 +17,14 @@ class CompareRequest:
     first: Annotated[
         Path,
         Argument(
-            metavar="A", help="Calibration folder, thesis for the thesis's curve, or run folder."
+            metavar="A",
+            help="Calibration folder, run folder, or a curve: thesis, coulomb:MU, magic:B,C,D,E or "
+            "a table.",
         ),
     ]
-    second: Annotated[Path, Argument(metavar="B", help="Second folder, of the same kind as A.")]
+    second: Annotated[
+        Path, Argument(metavar="B", help="Second of the same kind; a curve beside a calibration.")
+    ]
     out: Annotated[Path, Option(metavar="DIR", help="Folder to write.")] = Path("comparison")
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
     form: FormatOption = "png"

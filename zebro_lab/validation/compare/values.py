@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Values of a comparison: quantities with draws, and curves and paths to draw."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -46,12 +46,36 @@ class Curve:
     Attributes:
         slip: Slip ratios, shape (n,) [-].
         load: Normal force of both curves [N].
-        bands: Traction [N], shape (2, 3, n): first and second; 5, 50 and 95 % quantile.
+        bands: Traction [N], shape (2, 3, n): first and second; lower edge, middle and upper edge of
+            the band, all the same for a curve without uncertainty.
+        points: Slip ratios [-] and traction forces [N] of block means at this load, shape (2, k).
     """
 
     slip: Array
     load: float
     bands: Array
+    points: Array = field(default_factory=lambda: np.empty((2, 0)))
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a curve lies in the band of a calibration's curves.
+
+    Attributes:
+        inside: Whether it lies inside at all tested slips and loads.
+        share_outside: Share of the tested slips and loads at which it lies outside [-].
+        slip: Slip ratio at which it is farthest, in half widths of the band [-].
+        load_n: Load there [N].
+        half_widths: Its distance from the middle there, in half widths of the band [-].
+        difference_n: Curve minus middle of the band there [N].
+    """
+
+    inside: bool
+    share_outside: float
+    slip: float
+    load_n: float
+    half_widths: float
+    difference_n: float
 
 
 @dataclass(frozen=True)
@@ -69,10 +93,10 @@ class RunPaths:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Comparison of two calibrations or two runs.
+    """Comparison of two calibrations, of a calibration and a curve, or of two runs.
 
     Attributes:
-        kind: "calibrations" or "runs".
+        kind: "calibrations", "calibration and curve" or "runs".
         names: Names to show for the first and the second.
         quantities: Quantities that both have, with draws.
         curves: Bands of both slip curves, one item per load; empty for runs.
@@ -82,6 +106,8 @@ class Comparison:
         source: Sources of both, joined by commas.
         files: Files that were read, without `posterior.nc` and manifests.
         notes: Notes, one line each.
+        band: What the bands of the curves hold.
+        place: Where a curve lies in the band of a calibration; None without a curve.
     """
 
     kind: str
@@ -94,3 +120,5 @@ class Comparison:
     paths: tuple[RunPaths, ...] = ()
     definition: str = ""
     doubted: tuple[bool, bool] = (False, False)
+    band: str = "90 % of curves"
+    place: Place | None = None

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab compare` prints differences with how surely they are."""
 
+import json
+
 import pytest
 
 from support.compared_folders import calibration
@@ -17,6 +19,14 @@ def test_the_command_prints_probabilities_and_says_simulated(tmp_path, run_comma
     assert "SIMULATED" in printed
     assert "P(other is larger)" in printed
     assert "100.0% *" in printed
+
+
+def test_a_curve_is_judged_in_words_and_in_the_document(tmp_path, run_command):
+    fitted = calibration(tmp_path / "fitted")
+    ended = run_command("compare", fitted, "coulomb:0.6", "--out", tmp_path / "out", "--json")
+    place = json.loads(ended.out)["place"]
+    assert (place["inside"], place["half_widths"] > 1) == (False, True)
+    assert "lies outside the band that holds 90 % of whole curves" in " ".join(ended.err.split())
 
 
 def test_a_name_that_looks_like_markup_is_shown_as_it_is(tmp_path, run_command):

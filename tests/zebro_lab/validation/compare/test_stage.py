@@ -30,9 +30,11 @@ def test_the_folder_holds_a_table_a_picture_and_where_it_comes_from(tmp_path):
 def test_a_calibration_is_compared_with_the_thesis_s_curve_by_its_name(tmp_path):
     fitted = calibration(tmp_path / "fitted", friction=0.5)
     done = compare(CompareRequest(fitted, Path("thesis"), tmp_path / "out"))
-    peak = done.comparison.quantities[0]
-    assert peak.quantiles(1) == pytest.approx((0.3798, 0.3798, 0.3798), rel=1e-3)
-    assert done.differences[0].clear
+    names = [each.name for each in done.comparison.quantities]
+    which = names.index("peak force at 7.5 N")
+    peak = done.comparison.quantities[which].quantiles(1)
+    assert peak == pytest.approx((0.3798 * 7.5,) * 3, rel=1e-3)
+    assert done.differences[which].clear
 
 
 def test_what_cannot_be_compared_is_named(tmp_path):

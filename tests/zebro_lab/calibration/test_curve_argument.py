@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from model.slip.definition import SlipDefinition, convert_slip
+from model.slip.magic_formula import magic_formula
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES, thesis_curve
+from support.curve_tables import thesis_table, written_curve
+from zebro_lab.calibration.curve_argument import is_curve, parse_curve
+from zebro_lab.files.errors import SettingsError
+
+SLIP = np.array([-0.2, 0.03, 0.5])
+MATERIAL, TRAVEL = SlipDefinition.MATERIAL, SlipDefinition.TRAVEL
+
+
+def test_the_thesis_s_curve_is_that_of_its_listing_with_slope_and_definition():
+    curve = parse_curve(Path("thesis"))
+    expected = THESIS_LAW.force(SLIP, 6.63, THESIS_VALUES)
+    np.testing.assert_allclose(curve.force(SLIP, 6.63, MATERIAL), expected)
+    assert curve.own_slope(6.63) == pytest.approx(THESIS_VALUES[0] * 6.63)
+    assert curve.said(MATERIAL) == ()
+
+
+def test_slip_ratios_are_converted_to_the_definition_of_the_curve():
+    curve, travel = parse_curve(Path("thesis")), convert_slip(SLIP, "material", "travel")
+    np.testing.assert_allclose(curve.force(travel, 6.63, TRAVEL), curve.force(SLIP, 6.63, MATERIAL))
+    assert "'material' slip is converted to 'travel'" in curve.said(TRAVEL)[0]
+
+
+def test_coulomb_is_friction_times_load_at_any_slip_of_any_definition():
+    curve = parse_curve(Path("coulomb:0.4"))
+    np.testing.assert_allclose(curve.force(SLIP, 10.0, TRAVEL), [-4.0, 4.0, 4.0])
+    assert (curve.own_slope(10.0), curve.said(TRAVEL)) == (np.inf, ())
+
+
+def test_magic_has_its_peak_over_load_or_in_newtons_at_one_load():
+    over, at = (
+        parse_curve(Path("magic:34,1.5,0.4,0:travel")),
+        parse_curve(Path("magic:34,1.5,4,0@10")),
+    )
+    expected = magic_formula(SLIP, 34, 1.5, 4.0, 0)
+    np.testing.assert_allclose(over.force(SLIP, 10.0, TRAVEL), expected)
+    np.testing.assert_allclose(at.force(SLIP, 10.0, MATERIAL), expected)
+    assert (over.loads, at.loads) == (None, (10.0,))
+    assert over.own_slope(10.0) == pytest.approx(34 * 1.5 * 4)
+    assert over.said(TRAVEL) == ()
+    assert "taken as 'material', that of the calibration" in at.said(MATERIAL)[0]
+
+
+def test_a_table_is_interpolated_at_its_loads_and_unknown_beyond_its_slips(tmp_path):
+    path = written_curve(
+        tmp_path / "curve.csv", thesis_table(points=800).query("slip_ratio <= 0.5")
+    )
+    curve, truth = parse_curve(path), thesis_curve()
+    slip = np.array([0.0101, 0.25, 0.49, 0.6])
+    found = curve.force(slip, 6.63, MATERIAL)
+    np.testing.assert_allclose(found[:3], truth.force(slip[:3], 6.63, definition="material"), 2e-3)
+    assert np.isnan(found[3])
+    assert curve.loads == pytest.approx((2.13, 6.63, 8.13, 12.75))
+    assert curve.own_slope(12.75) == pytest.approx(THESIS_VALUES[0] * 12.75, rel=0.02)
+
+
+def test_a_table_over_load_is_the_same_at_every_load(tmp_path):
+    table = thesis_table((6.63,))
+    table["traction_over_load"] = table["traction_force"] / 6.63
+    path = written_curve(tmp_path / "c.csv", table.drop(columns=["traction_force", "normal_force"]))
+    curve = parse_curve(path)
+    assert curve.loads is None
+    np.testing.assert_allclose(
+        curve.force(SLIP, 20.0, MATERIAL), 2 * curve.force(SLIP, 10.0, MATERIAL)
+    )
+    assert np.isnan(curve.own_slope(10.0))  # 62 points have none on the rise
+
+
+def test_what_names_a_curve_is_told_from_folders(tmp_path):
+    assert all(is_curve(Path(text)) for text in ("thesis", "coulomb:0.3", "magic:1"))
+    assert is_curve(written_curve(tmp_path / "curve.csv", thesis_table()))
+    assert not is_curve(tmp_path)
+    assert not is_curve(tmp_path / "lost.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("magic:34,1.5", r"is no curve; expected magic:B,C,D,E with D over load"),
+        ("magic:34,1.5,0.4,x", "is no curve"),
+        ("magic:34,1.5,4.84,0", r"D is 4.84 times the load, .*magic:34,1.5,4.84,0@LOAD"),
+        ("magic:34,1.5,0.4,2", "E at most 1"),
+        ("magic:34,1.5,0.4,nan", "not finite"),
+        ("magic:34,1.5,0.4,0:brake", "unknown slip definition"),
+        ("coulomb:0.4:0.01", "sets in over a velocity"),
+        ("coulomb:38", "did you mean"),
+    ],
+)
+def test_numbers_that_make_no_curve_are_refused(text, message):
+    with pytest.raises(SettingsError, match=message):
+        parse_curve(Path(text))

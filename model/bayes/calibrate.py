@@ -2,7 +2,7 @@
 """Calibrate a slip law from rig samples: choose the law, sample its posterior, check the result."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
+from model.bayes.stated_priors import UNSTATED, StatedPriors
 from model.errors import FitError
 from model.progress import Watcher
 from model.slip.law import SlipLaw
@@ -75,6 +76,7 @@ def calibrate(
     clock: Callable[[], float],
     earlier: Chains | None = None,
     keep: Callable[[Chains], object] = lambda _: None,
+    stated: StatedPriors = UNSTATED,
 ) -> tuple[Calibration, Chains]:
     """Choose a slip law for rig samples, sample its posterior and check the result.
 
@@ -89,6 +91,7 @@ def calibrate(
         clock: Function that returns the time, to measure how long sampling takes [s].
         earlier: Chains of a stopped fit of the same samples and settings, to resume from.
         keep: Called with all chains so far after every `CHUNK` kept steps, to save a checkpoint.
+        stated: Priors that replace default ones.
 
     Returns:
         The calibration, converged or not (see its verdict), and the chains it was computed from.
@@ -96,14 +99,14 @@ def calibrate(
     Raises:
         InsufficientData: There are fewer samples than a law's parameters plus two, traction is
             constant, or no load exceeds the load cell's zero stability.
-        DomainError: A force exceeds `MOST_FORCE` or is NaN.
+        DomainError: A force exceeds `MOST_FORCE` or is NaN, or a stated prior cannot be used.
         FitError: A law has no valid curve or no mode, too few of the sampler's starting points lie
             inside the support, or a numerical routine failed.
         FitStopped: The watcher requested a stop.
     """
     rng = np.random.default_rng(settings.seed)
     require_forces(samples, load_cell)
-    fit, comparison = _choose_law(samples, laws, load_cell, settings, rng, watcher)
+    fit, comparison = _choose_law(samples, laws, load_cell, settings, rng, watcher, stated)
     began = clock()
     judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
     with explain_numerical_errors(samples, fit.posterior.law):
@@ -124,6 +127,7 @@ def _choose_law(
     settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
+    stated: StatedPriors,
 ) -> tuple[PreparedFit, LawComparison | None]:
     """Prepare the fit of each law; return the one that `compare` chooses, and the comparison.
 
@@ -138,7 +142,7 @@ def _choose_law(
             raise FitStopped(None)
         fit = prepare_fit(
             samples, law, load_cell=load_cell, rng=rng, block_choice=choice,
-            threads=settings.threads,
+            threads=settings.threads, stated=stated,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks
         fits.append(fit)
@@ -171,7 +175,8 @@ def _sample(
     watcher.step("sampling", 0.0)
     while True:
         if chains.n_steps >= min(look, most):
-            convergence = assess(chains)
+            own = fit.posterior.own_coordinates(chains.z)
+            convergence = assess(replace(chains, z=own))
             if convergence.converged or chains.n_steps >= most:
                 return chains, convergence
             fraction = max(convergence.fraction_done(), chains.n_steps / most)

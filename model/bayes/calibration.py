@@ -21,6 +21,7 @@ from model.bayes.estimate import (
 from model.bayes.fit import LawComparison, PreparedFit
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import SlipPosterior
+from model.bayes.prior_conflict import PriorShift, prior_shifts
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
 from model.bayes.sampler import Chains
 from model.bayes.samples import SlipSamples
@@ -52,6 +53,7 @@ class Calibration:
             left-out runs; None without cross-validation [-].
         source: Where the data come from: "real", "sim:...", "unknown" and others.
         seconds: Time that sampling took, without that of the chains it resumed from [s].
+        prior_shifts: Comparison of each stated prior with the data.
     """
 
     fit: PreparedFit
@@ -68,6 +70,7 @@ class Calibration:
     r_squared: float | None
     source: str
     seconds: float
+    prior_shifts: tuple[PriorShift, ...] = ()
 
     @property
     def posterior(self) -> SlipPosterior:
@@ -131,7 +134,7 @@ def conclude(
             blocks=posterior.blocks,
             law=posterior.law,
             values=some,
-            contraction=narrowed,
+            contraction={**narrowed, **_known(fit, draws)},
             convergence=convergence,
             residuals=residuals,
             agreement=compared,
@@ -143,7 +146,19 @@ def conclude(
         else r_squared(samples.traction_force, validation.predict(samples, posterior.law)),
         source=source,
         seconds=seconds,
+        prior_shifts=prior_shifts(posterior, fit.stated, draws.z.reshape(-1, draws.z.shape[-1])),
     )
+
+
+def _known(fit: PreparedFit, draws: Draws) -> dict[str, float]:
+    """Compute how far prior and data together narrow the default prior of parameters with another.
+
+    A parameter that somebody knows well beforehand is not weakly identified if the data add little.
+    """
+    names = [p.name for p in fit.posterior.parameters]
+    stated = fit.stated.names([p.name for p in fit.posterior.free])
+    own = (fit.defaults[name].coordinate(draws.flat[:, names.index(name)]) for name in stated)
+    return {name: float(1 - np.var(each)) for name, each in zip(stated, own, strict=True)}
 
 
 def _curves(posterior: SlipPosterior, draws: Draws, levels: np.ndarray) -> list[Sequence[Estimate]]:

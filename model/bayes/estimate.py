@@ -103,7 +103,9 @@ def informed(contraction: float) -> float:
 
 
 def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
-    """Compute the contraction of each parameter: 1 - posterior variance over prior variance of z.
+    """Compute the contraction of each parameter: 1 - posterior over prior variance.
+
+    Both are of the parameter's own standard normal coordinate.
 
     Args:
         posterior: The posterior, with its free parameters in the order of the coordinates z.
@@ -112,7 +114,7 @@ def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
     Returns:
         Contraction by the parameter's name [-].
     """
-    variances = draws.z.reshape(-1, draws.z.shape[-1]).var(axis=0)
+    variances = posterior.own_coordinates(draws.z.reshape(-1, draws.z.shape[-1])).var(axis=0)
     return {p.name: float(1 - v) for p, v in zip(posterior.free, variances, strict=True)}
 
 

@@ -12,7 +12,9 @@ from model.bayes.cross_validation import CrossValidation, cross_validate
 from model.bayes.laplace import Laplace, LaplaceMixture, find_modes
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
+from model.bayes.priors import Prior
 from model.bayes.samples import SlipSamples
+from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
 
@@ -34,6 +36,8 @@ class PreparedFit:
         cross_validation: Prediction of left-out runs; None for one run or without validation.
         block_choice: The block length and the reason for it.
         load_cell: Prior knowledge of the load cell.
+        defaults: Default prior of each parameter by name, beside those of the posterior.
+        stated: Priors that were stated.
     """
 
     posterior: SlipPosterior
@@ -41,6 +45,8 @@ class PreparedFit:
     cross_validation: CrossValidation | None
     block_choice: BlockChoice
     load_cell: LoadCell
+    defaults: Mapping[str, Prior]
+    stated: StatedPriors = UNSTATED
 
     @property
     def laplace(self) -> Laplace:
@@ -77,6 +83,7 @@ def prepare_fit(
     block_choice: BlockChoice | None = None,
     validate: bool = True,
     threads: int = 2,
+    stated: StatedPriors = UNSTATED,
 ) -> PreparedFit:
     """Average the samples, build the posterior, find its modes and cross-validate it.
 
@@ -88,18 +95,19 @@ def prepare_fit(
         block_choice: The block length; chosen from the residuals when None.
         validate: Whether to cross-validate, which a single run never is.
         threads: Folds of the cross-validation fitted at once.
+        stated: Priors that replace default ones; the block length is chosen without them.
 
     Raises:
         InsufficientData: There are fewer samples than the law's parameters plus two, traction is
             constant, or no load exceeds the load cell's zero stability.
-        DomainError: A force exceeds `MOST_FORCE` or is NaN.
+        DomainError: A force exceeds `MOST_FORCE` or is NaN, or a stated prior cannot be used.
         FitError: The priors allow no valid curve, no curve comes near the forces, no start of a
             search for a mode lies inside the support, or a numerical routine failed.
     """
     _require_enough(samples, law)
     require_forces(samples, load_cell)
     with explain_numerical_errors(samples, law):
-        return _prepared(samples, law, load_cell, rng, block_choice, validate, threads)
+        return _prepared(samples, law, load_cell, rng, block_choice, validate, threads, stated)
 
 
 @contextmanager
@@ -138,14 +146,16 @@ def _prepared(
     block_choice: BlockChoice | None,
     validate: bool,
     threads: int,
+    stated: StatedPriors,
 ) -> PreparedFit:
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
-    priors = default_priors(law, everything, load_cell)
-    choice = block_choice or choose_block_length(samples, law, priors=priors, rng=rng)
+    defaults = default_priors(law, everything, load_cell)
+    choice = block_choice or choose_block_length(samples, law, priors=defaults, rng=rng)
     blocks = block_means(samples, choice.length)
     fixed = _not_identified(blocks)
-    posterior = SlipPosterior(blocks, law, priors, fixed)
+    priors, correlation = with_stated(defaults, stated, fixed=fixed)
+    posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
     starts = _starting_points(posterior, rng)
     modes = LaplaceMixture(find_modes(posterior.log_density, starts))
     validation = (
@@ -153,7 +163,7 @@ def _prepared(
         if validate and blocks.n_runs > 1
         else None
     )
-    return PreparedFit(posterior, modes, validation, choice, load_cell)
+    return PreparedFit(posterior, modes, validation, choice, load_cell, defaults, stated)
 
 
 def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:

@@ -2,7 +2,7 @@
 """Posterior density of a slip law's and the measurement's parameters, given block means."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import NUISANCE, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
+from model.bayes.stated_priors import PriorCorrelation
 from model.slip.law import Array, Parameter, SlipLaw
 
 
@@ -87,6 +88,10 @@ def _vague(parameter: Parameter) -> Prior:
 class SlipPosterior:
     """Posterior density in the standard normal coordinates z of the free parameters.
 
+    The coordinates are independent a priori. Each parameter has a coordinate of its own, which its
+    prior maps to the value; it is z, or for parameters that are correlated a priori the mixture of
+    several z that has this correlation.
+
     Shapes: w points, d free parameters, k parameters of the law.
 
     Attributes:
@@ -94,12 +99,14 @@ class SlipPosterior:
         law: The slip law.
         priors: Prior of each parameter by name.
         fixed: Value of each parameter that is not sampled, by name.
+        correlation: Correlation of the parameters' own coordinates a priori; None without one.
     """
 
     blocks: SlipBlocks
     law: SlipLaw
     priors: Mapping[str, Prior]
     fixed: Mapping[str, float] = field(default_factory=dict)
+    correlation: PriorCorrelation | None = None
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -111,6 +118,18 @@ class SlipPosterior:
         """The parameters that are sampled, in the order of z."""
         return tuple(p for p in self.parameters if p.name not in self.fixed)
 
+    def own_coordinates(self, z: Array) -> Array:
+        """Map coordinates z (..., d) to each parameter's own one, standard normal a priori."""
+        return z if self.correlation is None else z @ self._roots[0]
+
+    @cached_property
+    def _roots(self) -> tuple[Array, Array]:
+        """Symmetric matrix that maps z to the own coordinates, and its inverse, (d, d) each."""
+        if self.correlation is None:
+            return np.eye(len(self.free)), np.eye(len(self.free))
+        names = [p.name for p in self.free]
+        return self.correlation.root(names), self.correlation.root(names, inverse=True)
+
     @cached_property
     def _check_loads(self) -> Array:
         """Minimum, quartiles and maximum of the measured loads, shape (5,) [N]."""
@@ -118,7 +137,7 @@ class SlipPosterior:
 
     def values(self, z: Array) -> Array:
         """Map coordinates z (w, d) to values of all parameters, fixed ones included, (w, k + 8)."""
-        columns = iter(np.moveaxis(z, -1, 0))
+        columns = iter(np.moveaxis(self.own_coordinates(z), -1, 0))
         return np.stack(
             [
                 np.full(z.shape[:-1], self.fixed[p.name])
@@ -135,13 +154,17 @@ class SlipPosterior:
         Values of fixed parameters are ignored; a value outside its prior's support gives an
         infinite coordinate or NaN.
         """
-        return np.array(
+        own = np.array(
             [
                 self.priors[p.name].coordinate(values[p.name]) if p.name in values else 0.0
                 for p in self.free
             ],
             dtype=float,
         )
+        if self.correlation is None:
+            return own
+        with np.errstate(invalid="ignore"):  # infinite outside the support
+            return own @ self._roots[1]
 
     def log_prior(self, z: Array) -> Array:
         """Compute the log prior density at z (w, d), shape (w,).
@@ -182,4 +205,4 @@ class SlipPosterior:
             left_out: Whether to leave out each run, shape (n_runs,).
         """
         kept = self.blocks.select_runs(~left_out)
-        return SlipPosterior(kept, self.law, self.priors, self.fixed)
+        return replace(self, blocks=kept)

@@ -147,6 +147,50 @@ class HalfNormal:
 
 
 @dataclass(frozen=True)
+class Truncated:
+    """Gaussian prior that is cut off at two bounds, one of which may be infinite.
+
+    Attributes:
+        mean: Mean before it is cut off, in the parameter's unit.
+        sd: Standard deviation before it is cut off, in the parameter's unit.
+        lower: Lower bound, in the parameter's unit.
+        upper: Upper bound, in the parameter's unit.
+    """
+
+    mean: float
+    sd: float
+    lower: float
+    upper: float
+
+    def value(self, z: ArrayLike) -> Array:
+        """Map standard normal coordinates z to values, the quantiles at Phi(z) between the bounds.
+
+        Both tails keep their digits: each is computed from the probability beyond it.
+        """
+        z = np.asarray(z, dtype=float)
+        below, above, between = self._shares()
+        low, high = below + between * ndtr(z), above + between * ndtr(-z)
+        standard = np.where(low < 0.5, ndtri(low), -ndtri(high))
+        return np.clip(self.mean + self.sd * standard, self.lower, self.upper)
+
+    def coordinate(self, value: ArrayLike) -> Array:
+        """Map values to standard normal coordinates z, the inverse of `value`."""
+        standard = (np.asarray(value, dtype=float) - self.mean) / self.sd
+        below, above, between = self._shares()
+        low, high = (ndtr(standard) - below) / between, (ndtr(-standard) - above) / between
+        return np.where(low < 0.5, ndtri(low), -ndtri(high))
+
+    def _shares(self) -> tuple[float, float, float]:
+        """Return the Gaussian's probability below, above and between the bounds."""
+        a, b = (self.lower - self.mean) / self.sd, (self.upper - self.mean) / self.sd
+        return float(ndtr(a)), float(ndtr(-b)), float(ndtr(b) - ndtr(a))
+
+    def describe(self) -> str:
+        """Format the distribution's family and parameters as text."""
+        return f"normal(mean {self.mean:g}, sd {self.sd:g}) from {self.lower:g} to {self.upper:g}"
+
+
+@dataclass(frozen=True)
 class Uniform:
     """Uniform prior between two bounds.
 

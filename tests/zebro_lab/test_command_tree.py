@@ -21,6 +21,7 @@ FREE_TEXTS = {"TEXT", "NAME", "WORDS", "PHOTO", "PROFILE"}
 """Metavars of text that has no form, or is the name of something that is looked up."""
 GROUPS_OF_LEGS = r"\{[1-6,]+\}(\s*<\s*\{[1-6,]+\})*"
 REFUSED_TEXTS = {
+    "PRIOR": ("friction 0.4", "friction = 0.4 ± 0", "friction ~ beta(1, 2)", "x ~ uniform(2, 1)"),
     "auto|peak|constant|E": ("2", "nan", "-inf", "steep"),
     "NAME|GROUPS": ("trot", "{1,2}", "{1,2,3}{4,5,6}", "{1,2,3} < {4,5,7}", "{}"),
     "INNER[,OUTER]": ("x", "nan", "1,2,3", ","),

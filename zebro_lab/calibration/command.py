@@ -23,11 +23,13 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
     """
     from model.bayes.calibrate import FEWEST_MOVES
     from zebro_lab.calibration.screen import print_calibration, print_data
-    from zebro_lab.calibration.stage import Stopped, calibrate, read
+    from zebro_lab.calibration.stage import Stopped, calibrate, read, stated_notes
 
     with output.progress() as watcher:
         data = read(request, watcher)
     print_data(output.console(), data)  # before the fit, which takes a minute
+    for note in stated_notes(request, data):
+        output.say(note)
     if request.max_steps < FEWEST_MOVES:
         output.say(
             f"--max-steps {request.max_steps} is fewer than the {FEWEST_MOVES} sampler moves "

@@ -77,15 +77,22 @@ class SlipFile:
     levels: tuple[float, ...] = ()
 
 
-def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[str, str]) -> None:
+def write_tables(
+    folder: Path,
+    calibration: "Calibration",
+    *,
+    inputs: Mapping[str, str],
+    priors: Mapping[str, Any] | None = None,
+) -> None:
     """Write `slip.toml`, `summary.csv` and `posterior.nc` of a fit into a folder.
 
     Args:
         folder: Existing folder to write into; files of these names are overwritten.
         calibration: The finished fit.
         inputs: SHA-256 of each file that was read, by path.
+        priors: What was stated beforehand, for the table `priors`; None or empty for nothing.
     """
-    (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs))
+    (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs, priors or {}))
     (folder / "summary.csv").write_text(summary_csv(calibration))
     inference_data(calibration).to_netcdf(str(folder / POSTERIOR), engine="h5netcdf")
 
@@ -163,7 +170,9 @@ def _numbers(key: str, found: object, shape: tuple[int, ...]) -> np.ndarray:
     return numbers
 
 
-def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
+def _slip_toml(
+    calibration: "Calibration", inputs: Mapping[str, str], priors: Mapping[str, Any]
+) -> str:
     import tomlkit
 
     document = tomlkit.document()
@@ -177,6 +186,7 @@ def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
         "verdict": _verdict_content(calibration),
         **_law_content(calibration),
         "tested": _tested_content(calibration),
+        **({"priors": dict(priors)} if priors else {}),
         "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
     })  # fmt: skip
     return tomlkit.dumps(document)

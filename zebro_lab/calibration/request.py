@@ -67,6 +67,30 @@ class CalibrationRequest:
         ),
         Limits(above=0.0, most=0.2, advice="1 % is 0.01"),
     ] = None
+    prior: Annotated[
+        tuple[str, ...],
+        Option(
+            metavar="PRIOR",
+            help='What is known of a parameter: "friction = 0.40 ± 0.05" (or +/-), "NAME ~ '
+            'lognormal(MEDIAN, SPREAD)", "NAME ~ uniform(LOW, HIGH)"; SI, or with a unit behind. '
+            "Replaces that of [priors] in columns.toml.",
+        ),
+    ] = ()
+    prior_from: Annotated[
+        Path | None,
+        Option(metavar="DIR", help="Calibration whose posterior is the prior of this fit."),
+    ] = None
+    widen: Annotated[
+        float,
+        Option(metavar="FACTOR", help="Factor on the standard deviations of --prior-from."),
+        Limits(least=1.0),
+    ] = 1.0
+    carry: Annotated[
+        Literal["all", "law"],
+        Option(
+            help="What --prior-from carries over: all, for the same load cell, or law, for another."
+        ),
+    ] = "all"
     ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
     max_steps: Annotated[
         int,
@@ -82,13 +106,26 @@ class CalibrationRequest:
     form: FormatOption = "png"
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for a curvature, or a choice with it, that no law has."""
+        """Raise `SettingsError` for options that have no meaning or none beside the others."""
         require_curvature(self.curvature)
+        self._require_priors()
         if self.law != "magic-formula" and (self.curvature != "auto" or self.load_sensitivity):
             raise SettingsError(
                 f"--curvature and --load-sensitivity belong to the Magic Formula, not to "
                 f"'{self.law}'; leave them out",
                 key="--law",
+            )
+
+    def _require_priors(self) -> None:
+        if self.prior:
+            from zebro_lab.calibration.prior_argument import parse_prior
+
+            for text in self.prior:
+                parse_prior(text, key="--prior")
+        if self.prior_from is None and (self.widen != 1 or self.carry != "all"):
+            raise SettingsError(
+                "--widen and --carry belong to --prior-from; name a calibration, or leave them out",
+                key="--widen" if self.widen != 1 else "--carry",
             )
 
     @property
@@ -99,8 +136,8 @@ class CalibrationRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Paths given as data, and the given `columns.toml` if there is one, as written."""
-        return (*self.data, *((self.columns,) if self.columns is not None else ()))
+        """Paths given as data, `columns.toml` and earlier calibration, as written."""
+        return (*self.data, *(each for each in (self.columns, self.prior_from) if each is not None))
 
     def decisive(self) -> dict[str, object]:
         """Return the options that a resumed fit must share with the stopped one, JSON-serialisable.
@@ -115,6 +152,10 @@ class CalibrationRequest:
             "load_sensitivity": self.load_sensitivity,
             "block_length": self.block_length,
             "load_cell": self.load_cell,
+            "prior": list(self.prior),
+            "prior_from": None if self.prior_from is None else str(self.prior_from),
+            "widen": self.widen,
+            "carry": self.carry,
             "ensembles": self.ensembles,
             "seed": self.seed,
         }

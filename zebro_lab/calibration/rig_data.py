@@ -50,6 +50,8 @@ class RigData:
         load_cell: Standard deviations from `[load_cell]` of `columns.toml` by name, SI; only those
             given.
         repeated: The notes on duplicate data, which `notes` has too.
+        priors: Priors from `[priors]` of `columns.toml`, as texts such as "friction = 0.4 ± 0.05".
+        priors_file: The `columns.toml` that they are in; None without.
     """
 
     samples: SlipSamples
@@ -58,6 +60,8 @@ class RigData:
     notes: tuple[str, ...]
     load_cell: Mapping[str, float]
     repeated: tuple[str, ...] = ()
+    priors: tuple[str, ...] = ()
+    priors_file: Path | None = None
 
 
 def read_rig_data(
@@ -99,6 +103,7 @@ def read_rig_data(
         raise DataError(f"every run is left out: {'; '.join((*skipped, *duplicates))}")
     samples = _joined(parts)
     _require_informative(samples, parts)
+    priors, priors_file = _joined_priors(parts)
     return RigData(
         samples=samples,
         files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
@@ -112,6 +117,8 @@ def read_rig_data(
         ),
         load_cell=_joined_load_cell(parts),
         repeated=duplicates,
+        priors=priors,
+        priors_file=priors_file,
     )
 
 
@@ -320,6 +327,19 @@ def _joined_load_cell(parts: Sequence[RigPart]) -> dict[str, float]:
                 )  # fmt: skip
             origin.setdefault(name, part.columns.file)
     return joined
+
+
+def _joined_priors(parts: Sequence[RigPart]) -> tuple[tuple[str, ...], Path | None]:
+    """Return the priors of the parts' column maps and their file; raise where two maps differ."""
+    stated = {part.columns.file: part.columns.priors for part in parts if part.columns.priors}
+    maps = list(stated.items())
+    for file, priors in maps[1:]:
+        if set(priors) != set(maps[0][1]):
+            raise SettingsError(
+                f"differs from that of {maps[0][0]}; state priors in one of them, or with --prior",
+                file=file, key="priors",
+            )  # fmt: skip
+    return (maps[0][1], maps[0][0]) if maps else ((), None)
 
 
 def _notes(parts: Sequence[RigPart]) -> list[str]:

@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -10,6 +11,7 @@ from rich.text import Text
 from model.bayes.calibration import Calibration
 from model.bayes.checks.check import Outcome
 from model.bayes.estimate import Estimate, informed
+from model.bayes.prior_conflict import PriorShift
 from model.bayes.verdict import State
 from model.counted import counted
 from zebro_lab.calibration.advice import advice_text
@@ -49,6 +51,7 @@ def print_calibration(console: Console, calibration: Calibration, out: Path) -> 
     """
     _print_blocks(console, calibration)
     console.print(_parameter_table(calibration))
+    _print_priors(console, calibration)
     console.print(_curve_table(calibration))
     _print_quality(console, calibration)
     _print_verdict(console, calibration)
@@ -108,6 +111,45 @@ def _parameter_table(calibration: Calibration) -> Table:
             f"{calibration.convergence.ess_bulk[i]:.0f}",
         )
     return table
+
+
+def _print_priors(console: Console, calibration: Calibration) -> None:
+    """Print priors that were stated beside the posterior, and whether prior and data agree."""
+    if not calibration.prior_shifts:
+        return
+    numbers = ("posterior", "unit", "shift [prior sd]")
+    table = plain_table("priors that were stated", ("parameter", "prior"), numbers, fold=True)
+    found = {e.parameter.name: e for e in calibration.parameters}
+    for shift in calibration.prior_shifts:
+        for name, moved in zip(shift.names, shift.shift, strict=True):
+            e, prior = found[name], calibration.posterior.priors[name]
+            posterior = f"{e.mean:.4g} ± {e.sd:.2g}"
+            table.add_row(name, plain(prior.describe()), posterior, _unit(e), f"{moved:+.2f}")
+    console.print(table)
+    for shift in calibration.prior_shifts:
+        console.print(plain(prior_words(shift)))
+
+
+def prior_words(shift: PriorShift) -> str:
+    """Say in a sentence whether a stated prior and the data agree.
+
+    Args:
+        shift: Comparison of the prior with the data.
+    """
+    single = len(shift.names) == 1
+    what = f"prior of {shift.names[0]}" if single else "prior of the earlier calibration"
+    if shift.conflict is None:
+        return f"{what}: not testable, the data say almost nothing of it"
+    tested = f"chi² {shift.statistic:.1f}, {counted(shift.freedom, 'degree')} of freedom"
+    if not shift.conflict:
+        return f"{what}: agrees with the data (p = {shift.p:.2g}; {tested})"
+    farthest = shift.names[int(np.argmax(np.abs(shift.shift)))]
+    largest = float(np.max(np.abs(shift.shift)))
+    return (
+        f"CONFLICT, {what}: the data move {farthest} by {largest:.1f} standard deviations of its "
+        f"prior; so far they would in {shift.p:.1g} of experiments if the prior held ({tested}): "
+        "check the prior and its unit, or the data; the posterior is a compromise between both"
+    )
 
 
 def _unit(e: Estimate) -> str:

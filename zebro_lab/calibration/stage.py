@@ -26,6 +26,7 @@ from zebro_lab.calibration.folder import CALIBRATION, write_tables
 from zebro_lab.calibration.pictures import draw_calibration
 from zebro_lab.calibration.request import CalibrationRequest, require_curvature
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
+from zebro_lab.calibration.stated import Stated, priors_content, state_priors
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes, fingerprint
 from zebro_lab.files.result_folder import require_replaceable, result_folder
@@ -87,24 +88,26 @@ def calibrate(
             was written if sampling had begun.
     """
     data = read(request, watcher) if data is None else data
-    inputs = file_hashes(data.files)
+    stated, laws = state_priors(request, data, _candidates(request, data.samples))
+    inputs = file_hashes((*data.files, *stated.files))
     mark = fingerprint(inputs, request.decisive())
     earlier = load_checkpoint(request.out, fingerprint=mark) if request.resume else None
     checkpoint = _Checkpoint(request.out, mark)
     try:
         calibration, chains = fit_slip_law(
             data.samples,
-            _candidates(request, data.samples),
+            laws,
             load_cell=scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell}),
-            settings=_sampler(request),
+            settings=_sampler(request, stated),
             source=data.source,
             watcher=watcher,
             clock=time.monotonic,
             earlier=earlier,
             keep=checkpoint.keep,
+            stated=stated.priors,
         )
         watcher.step("drawing", None)
-        _write(request, calibration, inputs)
+        _write(request, calibration, inputs, stated)
     except FitStopped as stopped:
         raise Stopped(checkpoint.save(stopped.chains)) from stopped
     except StoppedBySignal as stopped:  # at once, in a step that hears no wish to stop
@@ -144,11 +147,20 @@ class _Checkpoint:
         return file
 
 
-def _sampler(request: CalibrationRequest) -> SamplerSettings:
+def stated_notes(request: CalibrationRequest, data: RigData) -> tuple[str, ...]:
+    """Return notes on the priors that request and data state, one line each.
+
+    Raises:
+        ZebroLabError: A prior cannot be used, or an earlier calibration cannot be read.
+    """
+    return state_priors(request, data, _candidates(request, data.samples))[0].notes
+
+
+def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
     return SamplerSettings(
         ensembles=request.ensembles,
         max_steps=request.max_steps,
-        block_length=request.block_length,
+        block_length=stated.block_length,
         threads=request.threads,
         seed=request.seed,
     )
@@ -175,9 +187,14 @@ def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, 
     return laws
 
 
-def _write(request: CalibrationRequest, calibration: Calibration, inputs: dict[str, str]) -> None:
-    settings = {**request.decisive(), "load_cell": asdict(calibration.fit.load_cell)}
+def _write(
+    request: CalibrationRequest, calibration: Calibration, inputs: dict[str, str], stated: Stated
+) -> None:
+    priors = priors_content(stated, calibration)
+    settings = {
+        **request.decisive(), "load_cell": asdict(calibration.fit.load_cell), "priors": priors,
+    }  # fmt: skip
     content = {"source": calibration.source, "settings": settings, "inputs": inputs}
     with result_folder(request.out, CALIBRATION, content=content) as folder:
-        write_tables(folder, calibration, inputs=inputs)
+        write_tables(folder, calibration, inputs=inputs, priors=priors)
         draw_calibration(folder, calibration, request.form)

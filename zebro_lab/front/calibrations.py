@@ -2,6 +2,7 @@
 """Read rig data and fit slip laws, for notebooks."""
 
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -88,6 +89,9 @@ def calibrate(
     columns: PathLike | None = None,
     slip_definition: DefinitionName | None = None,
     law: LawName = "magic-formula",
+    prior: Sequence[str] = (),
+    prior_from: PathLike | None = None,
+    widen: float = 1.0,
     ensembles: int = 4,
     max_steps: int = 30_000,
     seed: int = 1,
@@ -101,6 +105,9 @@ def calibrate(
         columns: A `columns.toml` for all data, instead of those beside the tables.
         slip_definition: Definition of the slip ratio to fit in; None for that of the data.
         law: "magic-formula", "brush" or "coulomb-stribeck".
+        prior: What is known of parameters beforehand, such as "friction = 0.40 ± 0.05".
+        prior_from: Calibration whose posterior is the prior; its law is fitted.
+        widen: Factor on the standard deviations of that prior.
         ensembles: Number of independent ensembles of walkers.
         max_steps: Largest number of sampler moves; a fit that has not converged ends then.
         seed: Seed of all random numbers.
@@ -118,6 +125,9 @@ def calibrate(
             columns=optional(columns),
             slip_definition=slip_definition,
             law=law,
+            prior=tuple(prior),
+            prior_from=optional(prior_from),
+            widen=widen,
             ensembles=ensembles,
             max_steps=max_steps,
             seed=seed,

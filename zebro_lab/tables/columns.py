@@ -173,6 +173,7 @@ class Columns:
         keep: Conditions that every kept row must meet, all of them.
         load_cell: Given standard deviations from the load cell's certificate by name, SI:
             `zero_stability`, `gain_sd`, `bias_sd`, `crosstalk_sd`.
+        priors: What is known of parameters beforehand, as texts such as "friction = 0.4 ± 0.05".
     """
 
     file: Path | None = None
@@ -183,6 +184,7 @@ class Columns:
     runs: RunRule = RunRule()
     keep: tuple[RowCondition, ...] = ()
     load_cell: Mapping[str, float] = field(default_factory=dict)
+    priors: tuple[str, ...] = ()
 
     @property
     def stated_in(self) -> str:

@@ -79,6 +79,7 @@ def parse_columns(table: SettingsTable) -> Columns:
         runs=_runs(table),
         keep=read_row_conditions(table.table("rows")),
         load_cell=_load_cell(table.table("load_cell")),
+        priors=_priors(table.table("priors")),
     )
     table.finish()
     return columns_file
@@ -337,6 +338,14 @@ def _load_cell(table: SettingsTable) -> dict[str, float]:
         for key, unit in _LOAD_CELL.items()
         if key in table
     }
+
+
+def _priors(table: SettingsTable) -> tuple[str, ...]:
+    """Return each prior as one text: a Gaussian `NAME = MEAN ± SD`, a family `NAME ~ FAMILY(…)`."""
+    texts = {key: table.text(key, least=1) for key in table.left}
+    return tuple(
+        f"{key} {'~' if '(' in text else '='} {text.lstrip('~= ')}" for key, text in texts.items()
+    )
 
 
 def _texts(value: Any, key: str) -> list[tuple[str, str]]:

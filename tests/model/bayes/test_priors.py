@@ -5,13 +5,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Uniform
+from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Truncated, Uniform
 
 NAMED = (
     (Normal(0.3, 2.0), stats.norm(0.3, 2.0)),
     (LogNormal(10.0, 1.5), stats.lognorm(s=1.5, scale=10.0)),
     (HalfNormal(0.15), stats.halfnorm(scale=0.15)),
     (Uniform(-0.5, 0.99), stats.uniform(-0.5, 1.49)),
+    (Truncated(1.6, 0.3, 1.0, 2.0), stats.truncnorm(-2.0, 4 / 3, loc=1.6, scale=0.3)),
+    (Truncated(0.1, 0.1, 0.0, np.inf), stats.truncnorm(-1.0, np.inf, loc=0.1, scale=0.1)),
 )
 PRIORS = (*(prior for prior, _ in NAMED), Below(1.0, 1.0, 1.0), Below(1.0, 0.2, 0.5))
 SUPPORTS = {
@@ -20,6 +22,7 @@ SUPPORTS = {
     HalfNormal: (0.0, np.inf),
     Uniform: (-0.5, 0.99),
     Below: (-np.inf, 1.0),
+    Truncated: (0.0, np.inf),
 }
 every_prior = pytest.mark.parametrize("prior", PRIORS, ids=lambda prior: prior.describe())
 Z = st.floats(-5.0, 5.0)

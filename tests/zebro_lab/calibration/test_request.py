@@ -4,8 +4,11 @@
 from pathlib import Path
 from typing import get_type_hints
 
+import pytest
+
 from model.bayes.calibrate import FEWEST_MOVES
 from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.files.errors import SettingsError
 
 
 def test_only_properties_of_the_load_cell_that_are_given_replace_those_of_the_data():
@@ -22,3 +25,13 @@ def test_what_is_read_are_the_data_and_the_column_map():
 def test_the_help_states_the_fewest_moves_of_a_fit():
     option = get_type_hints(CalibrationRequest, include_extras=True)["max_steps"].__metadata__[0]
     assert f"first look at {FEWEST_MOVES} moves" in option.help
+
+
+def test_the_earlier_calibration_is_read_and_its_options_need_it():
+    earlier = Path("last-year")
+    assert CalibrationRequest(prior_from=earlier, widen=2.0).inputs == (earlier,)
+    for wrong in ({"widen": 2.0}, {"carry": "law"}):
+        with pytest.raises(SettingsError, match="belong to --prior-from"):
+            CalibrationRequest(**wrong)
+    with pytest.raises(SettingsError, match="is no prior"):
+        CalibrationRequest(prior=("friction 0.4",))

@@ -4,15 +4,17 @@
 import io
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 from model.bayes.advice import ExcludeRuns, MeasureSlips
 from model.bayes.checks.check import Outcome, decided
+from model.bayes.prior_conflict import PriorShift
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.calibration.screen import print_calibration, print_data
+from zebro_lab.calibration.screen import print_calibration, print_data, prior_words
 
 
 @pytest.fixture(scope="module")
@@ -83,3 +85,23 @@ def test_lines_of_a_plan_and_commands_are_printed_as_lines_to_copy(tmp_path):
 def test_data_source_and_files_are_told_and_names_are_no_markup(printed):
     assert "SIMULATED data, source 'sim:rig-sweep': 3600 samples in " in printed
     assert "[bold]slip.toml" in printed
+
+
+def test_priors_that_were_stated_stand_beside_the_posterior_with_words(tmp_path):
+    shift = PriorShift(("friction",), np.array([-4.2]), 18.1, 1, 2e-5)
+    console = Console(file=io.StringIO(), width=160)
+    print_calibration(console, replace(short_calibration(), prior_shifts=(shift,)), tmp_path)
+    text = console.file.getvalue()
+    assert "priors that were stated" in text
+    assert "lognormal(median 0.6, spread 0.7)" in text
+    assert "-4.20" in text
+    assert "CONFLICT, prior of friction: the data move friction by 4.2 standard deviations" in text
+
+
+def test_words_tell_agreement_conflict_and_what_cannot_be_tested():
+    agrees = PriorShift(("shape",), np.array([0.3]), 0.1, 1, 0.75)
+    assert prior_words(agrees).startswith("prior of shape: agrees with the data (p = 0.75")
+    silent = PriorShift(("gain_normal",), np.array([0.0]), 0.0, 0, float("nan"))
+    assert "not testable, the data say almost nothing" in prior_words(silent)
+    joint = PriorShift(("shape", "friction"), np.array([0.3, 5.0]), 30.0, 2, 3e-7)
+    assert "the earlier calibration: the data move friction by 5.0" in prior_words(joint)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The stage without the command: the same numbers again, after a stop, beside foreign files."""
 
+import json
 import signal
 import tomllib
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.errors import DefinitionMismatch
+from model.errors import DefinitionMismatch, DomainError
 from zebro_lab.calibration import stage
 from zebro_lab.calibration.folder import read_slip
 from zebro_lab.calibration.request import CalibrationRequest
@@ -335,3 +336,26 @@ def test_data_are_not_calibrated_into_their_own_folder(request_for, sweep, tmp_p
     with pytest.raises(AlreadyExists, match="--out"):
         calibrate(request_for(data, data=(data,), max_steps=1), Watcher())
     assert {path.name for path in data.iterdir()} == {path.name for path in sweep.iterdir()}
+
+
+def test_an_earlier_calibration_is_recorded_with_how_the_data_agree(
+    tmp_path, request_for, uninterrupted
+):
+    changes = {"prior": ("offset_spread = 0.05 ± 0.02 N",)}
+    with pytest.raises(DomainError, match="offset_spread: a prior of its own, and one from"):
+        calibrate(request_for(tmp_path / "x", prior_from=uninterrupted, **changes), Watcher())
+    out = tmp_path / "calibration"
+    request = request_for(out, prior_from=uninterrupted, widen=1.5)
+    calibration, _ = calibrate(request, Watcher())
+    slip = tomllib.loads((out / "slip.toml").read_text())
+    assert slip["priors"]["from"]["widen"] == 1.5
+    assert "gain_normal" in slip["priors"]["from"]["parameters"]
+    (agreement,) = slip["priors"]["agreement"]
+    assert agreement["degrees_of_freedom"] > 0
+    assert agreement["conflict"] in (True, False)
+    summary = pd.read_csv(out / "summary.csv", index_col="parameter")
+    assert "widened 1.5 times" in summary.loc["friction", "prior"]
+    assert calibration.posterior.correlation is not None
+    manifest = json.loads((out / "manifest.json").read_text())
+    assert manifest["settings"]["widen"] == 1.5
+    assert str(uninterrupted / "posterior.nc") in manifest["inputs"]

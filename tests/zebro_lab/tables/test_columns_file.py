@@ -292,3 +292,12 @@ def test_a_result_of_a_command_takes_no_columns_from_above(tmp_path):
     assert nearest_columns("legs", result) == tmp_path / "columns.toml"
     (result / "manifest.json").write_text('{"kind": "walk", "schema": 1, "outputs": {}}')
     assert nearest_columns("legs", result) is None
+
+
+def test_priors_are_texts_of_the_parameter_and_what_is_known(tmp_path):
+    text = '[priors]\nfriction = "0.4 ± 0.05"\nshape = "uniform(1.4, 1.7)"\nmu = "~ normal(1, 2)"\n'
+    assert read(tmp_path, text).priors == (
+        "friction = 0.4 ± 0.05", "shape ~ uniform(1.4, 1.7)", "mu ~ normal(1, 2)"
+    )  # fmt: skip
+    with pytest.raises(SettingsError, match=r"priors\.friction"):
+        read(tmp_path, "[priors]\nfriction = 0.4\n")

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""Priors stated by options, `columns.toml` and an earlier calibration, as the fit takes them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from model.bayes.calibration import Calibration
+from model.bayes.likelihood import NUISANCE
+from model.bayes.prior_conflict import PriorShift
+from model.bayes.priors import Prior
+from model.bayes.stated_priors import EarlierPosterior, StatedPriors
+from model.slip.law import Parameter, SlipLaw
+from model.slip.magic_formula import MagicFormula
+from zebro_lab.calibration.earlier import NOISE, EarlierCalibration, read_earlier
+from zebro_lab.calibration.prior_argument import named_priors, parse_prior
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.rig_data import RigData
+from zebro_lab.files.errors import SettingsError
+
+_OPTION: Final = "--prior"
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What is known beforehand, with the texts and files that said so.
+
+    Attributes:
+        priors: The priors.
+        texts: Text of each single prior by the parameter's name.
+        earlier: Earlier calibration; None without one.
+        block_length: Samples in a block mean; None for that which the data suggest.
+        notes: Notes, one line each.
+    """
+
+    priors: StatedPriors
+    texts: Mapping[str, str] = field(default_factory=dict)
+    earlier: EarlierCalibration | None = None
+    block_length: int | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """Files of the earlier calibration that were read."""
+        return () if self.earlier is None else self.earlier.files
+
+
+def state_priors(
+    request: CalibrationRequest, data: RigData, laws: Mapping[str, SlipLaw]
+) -> tuple[Stated, Mapping[str, SlipLaw]]:
+    """Read the priors that a request and its data state, and which laws they leave.
+
+    Args:
+        request: Options: single priors and an earlier calibration.
+        data: Rig data, with the priors of their `columns.toml`.
+        laws: Laws to choose from, by name.
+
+    Returns:
+        The priors, and the laws: that of the earlier calibration alone if there is one.
+
+    Raises:
+        ZebroLabError: A prior cannot be used, or the earlier calibration cannot be read, or is of
+            another law or slip definition.
+    """
+    earlier = None if request.prior_from is None else read_earlier(request.prior_from)
+    if earlier is not None:
+        laws = _laws_of(earlier, request, data)
+    parameters = [p for law in laws.values() for p in (*law.parameters, *NUISANCE)]
+    found = _singles(request, data, parameters)
+    single = StatedPriors({name: prior for name, (prior, _) in found.items()})
+    texts = {name: text for name, (_, text) in found.items()}
+    if earlier is None:
+        return Stated(single, texts, block_length=request.block_length), laws
+    length = request.block_length or earlier.block_length
+    carried = _carried(earlier, request, length)
+    posterior = EarlierPosterior(
+        {name: draws for name, draws in earlier.draws.items() if name in carried},
+        request.widen,
+        earlier.title,
+    )
+    priors = StatedPriors(single.single, posterior)
+    notes = (*earlier.notes, _said(posterior, carried))
+    return Stated(priors, texts, earlier, length, notes), laws
+
+
+def _singles(
+    request: CalibrationRequest, data: RigData, parameters: list[Parameter]
+) -> dict[str, tuple[Prior, str]]:
+    """Return prior and text by parameter's name: of the options, else of `columns.toml`."""
+    file = data.priors_file
+    stated = [parse_prior(text, key="[priors]", file=file) for text in data.priors]
+    of_file = named_priors(stated, parameters, key="[priors]", file=file)
+    options = [parse_prior(text, key=_OPTION) for text in request.prior]
+    return {**of_file, **named_priors(options, parameters, key=_OPTION)}
+
+
+def _laws_of(
+    earlier: EarlierCalibration, request: CalibrationRequest, data: RigData
+) -> dict[str, SlipLaw]:
+    """Return the law of an earlier calibration; raise where the request or the data differ."""
+    law, definition = earlier.curve.law, earlier.curve.definition
+    asked_default = request.law == MagicFormula.name and request.curvature == "auto"
+    curvature = getattr(law, "curvature", None)
+    fits = request.law == law.name and request.curvature in ("auto", str(curvature))
+    if not (fits or (asked_default and not request.load_sensitivity)):
+        raise SettingsError(
+            f"{earlier.title} was fitted with the law '{law.name}'"
+            f"{'' if curvature is None else f', curvature {curvature}'}; leave out --law, "
+            "--curvature and --load-sensitivity, which are those of the prior",
+            key="--prior-from",
+        )
+    if definition is not data.samples.definition:
+        raise SettingsError(
+            f"{earlier.title} was fitted to '{definition}' slip and these data have "
+            f"'{data.samples.definition}'; add --slip-definition {definition}",
+            key="--prior-from",
+        )
+    return {law.name: law}
+
+
+def _carried(
+    earlier: EarlierCalibration, request: CalibrationRequest, length: int | None
+) -> tuple[str, ...]:
+    """Return the parameters whose posterior is carried over.
+
+    With `--carry law` those of the law alone, for another load cell; else also the measurement's,
+    the noise of block means only for blocks of the same length.
+    """
+    law = {p.name for p in earlier.curve.law.parameters}
+    same_blocks = length is not None and length == earlier.block_length
+    return tuple(
+        name
+        for name in earlier.draws
+        if name in law or (request.carry == "all" and (same_blocks or name not in NOISE))
+    )
+
+
+def _said(posterior: EarlierPosterior, carried: tuple[str, ...]) -> str:
+    widened = "not widened" if posterior.widen == 1 else f"widened {posterior.widen:g} times"
+    return (
+        f"prior: the posterior of {posterior.origin}, {widened}, with the correlations of "
+        f"{', '.join(carried)}"
+    )
+
+
+def priors_content(stated: Stated, calibration: Calibration) -> dict[str, Any]:
+    """Return what was stated beforehand and how the data agree, for `slip.toml` and the manifest.
+
+    Args:
+        stated: The priors.
+        calibration: The finished fit.
+
+    Returns:
+        Keys `stated` (texts by parameter) and `from` (earlier calibration, widening and what it
+        carried), those that apply, and `agreement`, one entry each; empty if nothing was stated.
+    """
+    if not calibration.prior_shifts:
+        return {}
+    content: dict[str, Any] = {}
+    if stated.texts:
+        content["stated"] = dict(stated.texts)
+    posterior = stated.priors.earlier
+    if posterior is not None:
+        content["from"] = {
+            "calibration": posterior.origin,
+            "widen": posterior.widen,
+            "parameters": list(posterior.draws),
+        }
+    content["agreement"] = [_agreement(shift) for shift in calibration.prior_shifts]
+    return content
+
+
+def _agreement(shift: PriorShift) -> dict[str, Any]:
+    content: dict[str, Any] = {
+        "parameters": list(shift.names),
+        "shift_in_prior_sd": [float(x) for x in shift.shift],
+        "chi_squared": shift.statistic,
+        "degrees_of_freedom": shift.freedom,
+    }
+    if shift.conflict is not None:
+        content |= {"p": shift.p, "conflict": shift.conflict}
+    return content

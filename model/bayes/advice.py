@@ -101,6 +101,22 @@ class TryLaws(Advice):
 
 
 @dataclass(frozen=True)
+class CorrectData(Advice):
+    """Advice to find out what is wrong with the rig or its table, to correct it and to fit again.
+
+    Attributes:
+        step: What to do, as text.
+    """
+
+    step: str
+
+
+@dataclass(frozen=True)
+class TryDefinition(Advice):
+    """Advice to fit the same data with the other slip definitions."""
+
+
+@dataclass(frozen=True)
 class ExcludeRuns(Advice):
     """Advice to leave out runs that do not belong to the others, and to fit again.
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.bayes.checks.inspection import inspect
+from model.bayes.checks.linear import linearise
 from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
 from model.bayes.estimate import (
@@ -117,6 +119,7 @@ def conclude(
     levels = middle_loads(posterior.blocks)
     validation = fit.cross_validation
     compared = agreement(draws, weighted, convergence)
+    centred = linearise(posterior, draws.z.reshape(-1, draws.z.shape[-1]))
     return Calibration(
         fit=fit,
         comparison=comparison,
@@ -138,6 +141,7 @@ def conclude(
             convergence=convergence,
             residuals=residuals,
             agreement=compared,
+            inspection=inspect(posterior, centred, samples, fit.block_choice.correlation),
             offset_scale=fit.load_cell.zero_stability,
         ),
         contraction=narrowed,

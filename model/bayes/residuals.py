@@ -75,7 +75,9 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
 
     predicted = predict_blocks(blocks, law, values)
     residual = blocks.traction_force - predicted.force.mean(axis=0)
-    factors = _covariance_factors(blocks, predicted, values)
+    factors = covariance_factors(
+        blocks, predicted.slope.mean(axis=0), predicted.noise.mean(axis=0), values.mean(axis=0)
+    )
     score = _run_scores(blocks, residual, factors, blocks.run_mean(predicted.force).std(axis=0))
     inside = int(np.sum(np.abs(score) <= ndtri(0.95)))
     whitened = _whiten(blocks, residual, factors)
@@ -96,19 +98,24 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     )
 
 
-def _covariance_factors(
-    blocks: SlipBlocks, predicted: PredictedForces, values: Array
+def covariance_factors(
+    blocks: SlipBlocks, slope: Array, noise: Array, values: Array
 ) -> list[Array]:
     """Return the lower Cholesky factor of each run's covariance, shape (blocks, blocks) [N].
 
-    It is the covariance of noise, run offset and slip errors, at the posterior means of the noise's
-    standard deviation and correlation, the offset's standard deviation, and the slope.
+    It is the covariance of noise, run offset and slip errors.
 
     The matrix is built densely from its definition and not by the likelihood's filter, as a check
     of the filter.
+
+    Args:
+        blocks: The block means, n of them.
+        slope: Slope of force over slip of each block, shape (n,) [N].
+        noise: Standard deviation of the noise of each block, shape (n,) [N].
+        values: Law and measurement parameters, of which the last two are used, the noise's
+            correlation and the offset's standard deviation, shape (k + 8,).
     """
-    rho, tau = values[:, -2].mean(), values[:, -1].mean()
-    noise, slope = predicted.noise.mean(axis=0), predicted.slope.mean(axis=0)
+    rho, tau = values[-2:]
     starts = blocks.run_starts()
     factors = []
     for index in range(blocks.n_runs):

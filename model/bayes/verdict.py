@@ -9,12 +9,15 @@ from model.bayes.advice import Advice
 from model.bayes.blocks import SlipBlocks
 from model.bayes.checks.check import Check, Outcome
 from model.bayes.checks.fit import offsets, run_means, shape, whiteness
+from model.bayes.checks.inspection import TERMS, Inspection
 from model.bayes.checks.reach import RISE, loads, peak, rise, weak_parameters
 from model.bayes.checks.sampling import convergence_checks, engines
 from model.bayes.convergence import Convergence
 from model.bayes.estimate import Agreement
 from model.bayes.residuals import Residuals
 from model.slip.law import Array, SlipLaw
+
+MOST_CAUSES = 3  # that a headline names
 
 
 class State(StrEnum):
@@ -34,11 +37,14 @@ class Verdict:
         convergence: Checks of the sampler's convergence.
         trust: Checks of the model against the data, and of what the data show of the curve.
         weak: Reason and advice for each weakly identified parameter, by the parameter's name.
+        suspected: What may be wrong with the data, the most likely first; more than one where
+            these cannot be told apart.
     """
 
     convergence: tuple[Check, ...]
     trust: tuple[Check, ...]
     weak: Mapping[str, Advice]
+    suspected: tuple[str, ...] = ()
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -79,6 +85,18 @@ class Verdict:
         """What the headline says of these claims, without repetition."""
         return tuple(dict.fromkeys(check.untested for check in self.trust if check.untested))
 
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """What is probably wrong with the data of a fit that failed a check, or nothing.
+
+        Faults of single samples and runs come first; then the terms that explain most, which may
+        be two that cannot be told apart.
+        """
+        if not any(check.failed for check in self.trust):
+            return ()
+        faults = [c.cause for c in self.trust if c.cause and c.name not in TERMS]
+        return tuple(dict.fromkeys([*faults, *self.suspected]))[:MOST_CAUSES]
+
     def headline(self) -> str:
         """Format the verdict as one line of text.
 
@@ -91,6 +109,8 @@ class Verdict:
             result = "converged, but NOT TRUSTWORTHY: too few slips where the curve rises"
         elif failed:
             result = "converged, but NOT TRUSTWORTHY: the model does not describe these data"
+            if self.causes:
+                result += f"; probable cause: {', or '.join(self.causes)}"
         else:
             result = f"converged and {self.state}"
         if self.untested:
@@ -113,9 +133,10 @@ def judge(
     convergence: Convergence,
     residuals: Residuals,
     agreement: Agreement,
+    inspection: Inspection,
     offset_scale: float,
 ) -> Verdict:
-    """Check convergence, offsets, run means, residuals, curve shape, slips and identification.
+    """Check convergence, offsets, run means, residuals, curve, slips and what else may be wrong.
 
     Args:
         blocks: The block means.
@@ -126,6 +147,7 @@ def judge(
         convergence: Convergence diagnostics of the sampler.
         residuals: Analysis of the residuals.
         agreement: Comparison of the sampler with importance sampling.
+        inspection: What was looked for in the data.
         offset_scale: Scale of the prior on the run offsets' spread [N].
     """
     return Verdict(
@@ -139,6 +161,8 @@ def judge(
             rise(blocks, law, values),
             peak(blocks, law, values),
             loads(blocks),
+            *inspection.checks,
         ),
         weak=weak_parameters(blocks, law, values, contraction),
+        suspected=tuple(found.text for found in inspection.suspected),
     )

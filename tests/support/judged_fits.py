@@ -7,6 +7,7 @@ import numpy as np
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.checks.check import Check, Outcome
+from model.bayes.checks.inspection import Inspection
 from model.bayes.convergence import Convergence
 from model.bayes.estimate import Agreement
 from model.bayes.residuals import Residuals
@@ -61,7 +62,7 @@ def verdict_on(**changes) -> Verdict:
     case = {
         "blocks": two_sided(0.4), "law": LAW, "values": draws(RIG_VALUES),
         "contraction": WELL_INFORMED, "convergence": CONVERGED, "residuals": CLEAN,
-        "agreement": AGREED, "offset_scale": 0.1,
+        "agreement": AGREED, "inspection": Inspection((), ()), "offset_scale": 0.1,
     }  # fmt: skip
     return judge(**(case | changes))
 

@@ -6,11 +6,13 @@ from typing import Final
 
 from model.bayes.advice import (
     Advice,
+    CorrectData,
     ExcludeRuns,
     MeasureAlso,
     MeasureSlips,
     SampleAgain,
     SampleLonger,
+    TryDefinition,
     TryLaws,
     WeighLoadCell,
     ZeroBeforeEach,
@@ -120,6 +122,19 @@ def _try_laws(advice: TryLaws) -> str:
         f"{advice.reason}: give the same command with {', with '.join(options)}, each with an "
         f"--out of its own, and use the result that is trustworthy{apart * advice.both_signs}; if "
         "none is, check the slip definition (--slip-definition) and see residuals.png"
+    )
+
+
+@advice_text.register
+def _correct_data(advice: CorrectData) -> str:
+    return f"{advice.reason}: {advice.step}"
+
+
+@advice_text.register
+def _try_definition(advice: TryDefinition) -> str:
+    return (
+        f"{advice.reason}: give the same command with each --slip-definition, each with an --out "
+        "of its own, and use the one whose check passes; else check the speeds that slip is made of"
     )
 
 

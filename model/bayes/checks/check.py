@@ -26,6 +26,7 @@ class Check:
         advice: What to do when the claim does not hold, or to test it; None if there is nothing.
         untested: What a headline calls that which cannot be tested, with the reason in brackets;
             empty unless `outcome` is not testable.
+        cause: What a failed check has found to be wrong, as text; empty where it has not.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Check:
     evidence: str
     advice: Advice | None = None
     untested: str = ""
+    cause: str = ""
 
     @property
     def passed(self) -> bool:

@@ -15,6 +15,8 @@ from model.bayes.advice import (
     ZeroBeforeEach,
 )
 from model.bayes.checks.check import Outcome
+from model.bayes.checks.inspection import Inspection, inspect
+from model.bayes.checks.linear import linearise
 from model.bayes.checks.reach import slip_reach
 from model.bayes.fit import prepare_fit
 from model.bayes.laplace import importance_draws
@@ -39,6 +41,7 @@ from support.judged_fits import (
     two_sided,
     verdict_on,
 )
+from support.linearised_fits import linearised
 
 TYRE_VALUES = (20.0, 1.4, 1.2, 0.2)  # its peak lies at slip 0.16
 EVENLY = np.linspace(0.09, 1.0, 6)
@@ -234,6 +237,22 @@ def test_three_runs_are_enough_to_test_whether_run_means_are_predicted():
     assert "run means are predicted" in [check.name for check in failed(verdict)]
 
 
+def test_causes_are_named_only_where_a_check_failed_and_faults_before_terms():
+    posterior, fit, samples = linearised(
+        lambda s: replace(
+            s,
+            slip=s.slip - 0.004 * (1 - s.slip),
+            traction_force=s.traction_force + 4 * (np.arange(len(s)) % 97 == 50),
+        )
+    )
+    found = inspect(posterior, fit, samples, None)
+    headline = verdict_on(inspection=found).headline()
+    assert "; probable cause: outliers: " in headline
+    assert "or true slip is larger by +0.00" in headline
+    assert headline.index("outliers") < headline.index("true slip")
+    assert verdict_on(inspection=Inspection((), found.suspected)).causes == ()
+
+
 def test_a_fit_that_has_not_converged_says_nothing_else():
     bad = replace(CONVERGED, length=400)
     verdict = verdict_on(convergence=bad, **NOT_TESTABLE["the rise of the curve is tested"])
@@ -315,6 +334,12 @@ def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) 
         contraction=dict(zip(names, 1 - z.var(axis=0), strict=True)),
         convergence=CONVERGED,
         agreement=AGREED,
+        inspection=inspect(
+            fit.posterior,
+            linearise(fit.posterior, z),
+            sweep.samples,
+            fit.block_choice.correlation,
+        ),
         residuals=analyse_residuals(fit.posterior.blocks, THESIS_LAW, values),
         offset_scale=zero_stability,
     )

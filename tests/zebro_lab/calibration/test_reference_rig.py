@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from model.bayes.advice import TryLaws
+from model.bayes.checks.inspection import inspect
+from model.bayes.checks.linear import linearise
 from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
 from model.bayes.estimate import Agreement
@@ -86,6 +88,9 @@ def judged(data: RigData, law: MagicFormula) -> Judged:
         convergence=CONVERGED,
         residuals=residuals,
         agreement=Agreement(mean=0.0, spread=0.0, pareto_k=weighted.pareto_k),
+        inspection=inspect(
+            posterior, linearise(posterior, z), data.samples, fit.block_choice.correlation
+        ),
         offset_scale=cell.zero_stability,
     )
     by_name = {p.name: values[:, i] for i, p in enumerate(posterior.parameters)}

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: MIT
+r"""Score tests: would one more term in the model of the data explain what the fit leaves?
+
+Around the posterior's centre the model is linear: with L the Cholesky factor of the covariance of
+the block means, J the derivative of their prediction by the d fitted coordinates z, and
+z ~ N(0, 1) a priori,
+
+.. math::
+    r = \begin{pmatrix} L^{-1}(y - f) \\ -\hat z \end{pmatrix}, \qquad
+    A = \begin{pmatrix} L^{-1} J \\ 1 \end{pmatrix}, \qquad
+    D = \begin{pmatrix} L^{-1} t \\ 0 \end{pmatrix}
+
+of a further term a·t, t one force a block. What the fit could absorb is projected out of r and D,
+and a = D·r/|D|^2 with the variance 1/|D|^2. That is the estimate a full fit with the term would
+give, at the cost of a few predictions.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.special import stdtr
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.likelihood import PredictedForces, predict_blocks
+from model.bayes.posterior import SlipPosterior
+from model.bayes.residuals import covariance_factors
+from model.slip.law import Array
+
+STEP = 1e-3  # of a coordinate, whose prior has unit scale
+
+
+@dataclass(frozen=True)
+class Term:
+    """Estimate of a term that the model lacks.
+
+    Attributes:
+        size: Estimated multiple of the term.
+        sd: Its standard deviation: that of the model, or from the scatter between runs if larger.
+        p: Two-sided p-value of a multiple of zero, by Student's t of the number of runs [-].
+    """
+
+    size: float
+    sd: float
+    p: float
+
+    @property
+    def t(self) -> float:
+        """Size over standard deviation [-]."""
+        return self.size / self.sd
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """A fit around its centre, with all that it can absorb projected out.
+
+    Attributes:
+        blocks: The block means, n of them.
+        predicted: Predictions at the centre, arrays of shape (n,).
+        residual: Measured minus predicted traction, shape (n,) [N].
+        factors: Lower Cholesky factor of each run's covariance [N].
+        basis: Orthonormal basis of the columns of A, shape (n + d, d) [-].
+        rest: r without what the fit could absorb, shape (n + d,) [-].
+        values: Law and measurement parameters at the centre, shape (k + 8,).
+        z: Coordinates of the centre, shape (d,).
+    """
+
+    blocks: SlipBlocks
+    predicted: PredictedForces
+    residual: Array
+    factors: list[Array]
+    basis: Array
+    rest: Array
+    values: Array
+    z: Array
+
+    def project(self, terms: Array) -> Array:
+        """Whiten terms, shape (n, m) [N], and take out what the fit absorbs, (n + d, m) [-]."""
+        white = whiten(self.blocks, terms, self.factors)
+        padded = np.vstack([white, np.zeros((self.basis.shape[1], terms.shape[1]))])
+        return padded - self.basis @ (self.basis.T @ padded)
+
+    def test(self, term: Array) -> Term:
+        """Estimate the multiple of a term, shape (n,) [N], that the data ask for beside the fit.
+
+        A term that the fit absorbs to one part in a thousand has the size 0 and the p-value 1.
+        """
+        white = whiten(self.blocks, term[:, None], self.factors)[:, 0]
+        left = self.project(term[:, None])[:, 0]
+        information = float(left @ left)
+        if information <= 1e-6 * float(white @ white):
+            return Term(0.0, float("inf"), 1.0)
+        size = float(left @ self.rest) / information
+        sd = 1 / np.sqrt(information)
+        n_runs = self.blocks.n_runs
+        if n_runs > 1:
+            own = left * (self.rest - size * left)
+            by_run = np.bincount(self.blocks.run, own[: len(self.blocks)], minlength=n_runs)
+            scatter = np.sqrt(np.sum(by_run**2) * n_runs / (n_runs - 1)) / information
+            sd = max(sd, float(scatter))
+        freedom = max(n_runs - 1, 1) if n_runs > 1 else len(self.blocks)
+        return Term(size, sd, float(2 * stdtr(freedom, -abs(size / sd))))
+
+
+def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
+    """Linearise a fit around the mean of posterior draws.
+
+    Args:
+        posterior: The posterior density, with blocks, law and priors.
+        z: Draws of its coordinates, shape (w, d).
+    """
+    centre = z.mean(axis=0)
+    step = STEP * np.eye(len(centre))
+    around = np.concatenate([centre[None], centre + step, centre - step])
+    values = posterior.values(around)
+    blocks, law = posterior.blocks, posterior.law
+    every = predict_blocks(blocks, law, values)
+    predicted = PredictedForces(every.force[0], every.slope[0], every.noise[0])
+    d = len(centre)
+    jacobian = (every.force[1 : d + 1] - every.force[d + 1 :]).T / (2 * STEP)
+    factors = covariance_factors(blocks, every.slope[0], every.noise[0], values[0])
+    residual = blocks.traction_force - predicted.force
+    white = whiten(blocks, np.column_stack([residual, jacobian]), factors)
+    basis = np.linalg.qr(np.vstack([white[:, 1:], np.eye(d)]))[0]
+    right = np.append(white[:, 0], -centre)
+    return Linearised(
+        blocks,
+        predicted,
+        residual,
+        factors,
+        basis,
+        right - basis @ (basis.T @ right),
+        values[0],
+        centre,
+    )
+
+
+def whiten(blocks: SlipBlocks, columns: Array, factors: list[Array]) -> Array:
+    """Solve L x = c for each run's part of each column c, shape (n, m), by its factor L."""
+    parts = np.split(columns, blocks.run_starts()[1:-1])
+    return np.concatenate(
+        [solve_triangular(L, part, lower=True) for L, part in zip(factors, parts, strict=True)]
+    )

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: MIT
+"""Terms that a rig may have and the model has not: shifts of slip and force, drift, two curves.
+
+Each is a force at every block, of unit size; `Linearised.test` says how much of it there is.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.bayes.advice import Advice, CorrectData, TryDefinition, ZeroBeforeEach
+from model.bayes.checks.linear import Linearised, Term
+from model.slip.definition import SlipDefinition
+from model.slip.law import Array
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A term that could be in the data, with what to say of it.
+
+    Attributes:
+        force: Function of a linearised fit to the force of a unit of the term, shape (n,) [N].
+        say: Function of size and standard deviation to what was found, as text.
+        advice: Function of that text and the size to what to do.
+    """
+
+    force: Callable[[Linearised], Array]
+    say: Callable[[float, float], str]
+    advice: Callable[[str, float], Advice]
+
+
+@dataclass(frozen=True)
+class Found:
+    """A suspect with its estimate.
+
+    Attributes:
+        name: Name of the suspect.
+        term: Estimate of its size.
+        gain: Twice the log density that the fit would gain by it, by the model's variances [-].
+        text: What was found.
+        advice: What to do.
+    """
+
+    name: str
+    term: Term
+    gain: float
+    text: str
+    advice: Advice
+
+
+def slip_of_a_wrong_radius(slip: Array, definition: SlipDefinition) -> Array:
+    """Compute the change of slip by a relative error of the radius ratio, shape (n,) [-].
+
+    With the ground disc's speed wrong by the factor 1 - e, material slip 1 - v_g/v_l changes by
+    e·(1 - slip), travel slip v_l/v_g - 1 by e·(1 + slip).
+    """
+    driving = (definition is SlipDefinition.MATERIAL) | (
+        (definition is SlipDefinition.LARGER) & (slip > 0)
+    )
+    return np.where(driving, 1 - slip, 1 + slip)
+
+
+def run_times(fit: Linearised) -> Array:
+    """Return the place of each block's run in the experiment, from -1 to 1, shape (n,) [-]."""
+    blocks = fit.blocks
+    return np.linspace(-1, 1, blocks.n_runs)[blocks.run] if blocks.n_runs > 1 else 0 * blocks.slip
+
+
+def _within(fit: Linearised) -> Array:
+    """Return the place of each block in its run, from about -1/2 to 1/2, shape (n,) [-]."""
+    blocks = fit.blocks
+    starts = blocks.run_starts()
+    size = np.diff(starts)[blocks.run]
+    return (np.arange(len(blocks)) - starts[blocks.run] - (size - 1) / 2) / np.maximum(size, 1)
+
+
+def _log_load(fit: Linearised) -> Array:
+    load = np.maximum(fit.blocks.normal_force, 1e-9)
+    return np.log(load / np.median(load))
+
+
+def _definition_change(fit: Linearised) -> Array:
+    """Return the change of force where slip is in another definition, to first order, (n,) [N]."""
+    return fit.predicted.slope * fit.blocks.slip**2
+
+
+def _radius_advice(found: str, size: float) -> Advice:
+    return CorrectData(
+        found,
+        f"measure the radii of both discs under load; if they confirm it, multiply radius_ground "
+        f"by {1 - size:.4f} and fit again; a slip ratio that was measured gets its zero corrected",
+    )
+
+
+def _force_advice(found: str, size: float) -> Advice:
+    del size
+    return CorrectData(
+        found,
+        "measure the traction at zero slip under each load, both ways round, subtract it from the "
+        "traction forces, and fit again; zero the load cell with the discs apart",
+    )
+
+
+def _sides_advice(found: str, size: float) -> Advice:
+    del size
+    return CorrectData(
+        found,
+        "weigh the load cell in both directions; if its gain is the same, fit driving and braking "
+        "apart ([rows] keep in columns.toml)",
+    )
+
+
+def _load_advice(found: str, size: float) -> Advice:
+    del size
+    return CorrectData(found, "give the same command with --load-sensitivity")
+
+
+def _change_advice(found: str, size: float) -> Advice:
+    del size
+    return CorrectData(
+        found,
+        "clean both discs, let them warm up, and measure again with the loads in another order; "
+        "fit the new runs alone",
+    )
+
+
+def _zero_advice(found: str, size: float) -> Advice:
+    del size
+    return ZeroBeforeEach(found)
+
+
+def _definition_advice(found: str, size: float) -> Advice:
+    del size
+    return TryDefinition(found)
+
+
+ZERO: Mapping[str, Suspect] = {
+    "constant force": Suspect(
+        lambda fit: np.ones(len(fit.blocks)),
+        lambda a, s: f"a constant traction of {a:+.3g} ± {s:.2g} N (zero of the load cell)",
+        _force_advice,
+    ),
+    "force in proportion to load": Suspect(
+        lambda fit: fit.blocks.normal_force,
+        lambda a, s: (
+            f"a traction of {a:+.3g} ± {s:.2g} times the load at any slip (rolling resistance, or "
+            "crosstalk of load into traction)"
+        ),
+        _force_advice,
+    ),
+    "shift of slip": Suspect(
+        lambda fit: (
+            fit.predicted.slope * slip_of_a_wrong_radius(fit.blocks.slip, fit.blocks.definition)
+        ),
+        lambda a, s: (
+            f"true slip is larger by {a:+.2g} ± {s:.1g} at zero slip (a ratio of radii wrong by "
+            f"{abs(a):.2%}, or a wrong zero of slip)"
+        ),
+        _radius_advice,
+    ),
+}
+"""What moves the zero crossing of force."""
+SIDES: Mapping[str, Suspect] = {
+    "driving and braking": Suspect(
+        lambda fit: np.abs(fit.predicted.force),
+        lambda a, s: (
+            f"driving forces are {2 * a:+.2%} ± {2 * s:.2%} larger than braking forces (gain of "
+            "the load cell by direction, or two curves)"
+        ),
+        _sides_advice,
+    ),
+    "slip definition": Suspect(
+        _definition_change,
+        lambda a, s: (
+            f"the curve is bent {a:+.2g} ± {s:.1g} times as another slip definition would bend it "
+            "(wrong slip definition, or a wrong speed)"
+        ),
+        _definition_advice,
+    ),
+}
+"""What makes driving and braking unlike."""
+LOAD: Mapping[str, Suspect] = {
+    "friction over load": Suspect(
+        lambda fit: fit.predicted.force * _log_load(fit),
+        lambda a, s: (
+            f"forces grow with load to the power of {1 + a:.3f} ± {s:.2g}, not of the law's"
+        ),
+        _load_advice,
+    ),
+    "stiffness over load": Suspect(
+        lambda fit: fit.predicted.slope * fit.blocks.slip * _log_load(fit),
+        lambda a, s: f"stiffness over load changes with load to the power of {a:+.3f} ± {s:.2g}",
+        _load_advice,
+    ),
+}
+"""What makes loads unlike."""
+TIME: Mapping[str, Suspect] = {
+    "drifting zero": Suspect(
+        lambda fit: run_times(fit),
+        lambda a, s: (
+            f"the zero of traction drifts by {2 * a:+.3g} ± {2 * s:.2g} N from the first run to "
+            "the last"
+        ),
+        _zero_advice,
+    ),
+    "zero lost with time": Suspect(
+        lambda fit: 1 + run_times(fit),
+        lambda a, s: (
+            f"the zero of traction drifts by {2 * a:+.3g} ± {2 * s:.2g} N since the first run"
+        ),
+        _zero_advice,
+    ),
+    "changing friction": Suspect(
+        lambda fit: fit.predicted.force * run_times(fit),
+        lambda a, s: (
+            f"forces change by {2 * a:+.2%} ± {2 * s:.2%} from the first run to the last (another "
+            "material, warming, wear, or a drifting gain)"
+        ),
+        _change_advice,
+    ),
+    "drift within runs": Suspect(
+        _within,
+        lambda a, s: f"forces drift by {a:+.3g} ± {s:.2g} N within each run",
+        _zero_advice,
+    ),
+}
+"""What changes with time."""
+
+
+def find(fit: Linearised, suspects: Mapping[str, Suspect]) -> list[Found]:
+    """Estimate the size of each suspect, the one that explains most first.
+
+    Args:
+        fit: The linearised fit.
+        suspects: The suspects, by name.
+    """
+    found = []
+    for name, suspect in suspects.items():
+        force = suspect.force(fit)
+        term = fit.test(force)
+        left = fit.project(force[:, None])[:, 0]
+        information = float(left @ left)
+        gain = 0.0 if term.p == 1.0 else float(left @ fit.rest) ** 2 / information
+        text = suspect.say(term.size, term.sd)
+        found.append(Found(name, term, gain, text, suspect.advice(text, term.size)))
+    return sorted(found, key=lambda each: -each.gain)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""Simulated rigs with one fault, linearised around the truth: no fit is needed to look for it."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from model.bayes.blocks import block_means
+from model.bayes.checks.linear import Linearised, linearise
+from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
+from model.bayes.samples import SlipSamples
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, simulate_sweep
+
+HALF = (0.01, 0.02, 0.035, 0.06, 0.15, 0.4)
+SLIPS = (*(-s for s in HALF[::-1]), *HALF)
+MEASURED = {
+    "noise_floor": 0.03,
+    "noise_slope": 0.01,
+    "noise_correlation": 0.1,
+    "offset_spread": 0.05,
+}
+Change = Callable[[SlipSamples], SlipSamples]
+
+
+@cache
+def sound_sweep() -> SimulatedSweep:
+    """Simulate a rig at two loads, each of twelve slips measured twice."""
+    plan = SweepPlan(slips=SLIPS * 2, loads=(4.0, 12.0), rate=100.0)
+    return simulate_sweep(
+        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=TYPICAL_RIG,
+        rng=np.random.default_rng(7),
+    )  # fmt: skip
+
+
+def unchanged(samples: SlipSamples) -> SlipSamples:
+    """Return the samples as they are."""
+    return samples
+
+
+def linearised(change: Change = unchanged) -> tuple[SlipPosterior, Linearised, SlipSamples]:
+    """Linearise around the truth the fit of a sound rig's samples, changed."""
+    samples = change(sound_sweep().samples)
+    blocks = block_means(samples, 12)
+    posterior = SlipPosterior(
+        blocks, THESIS_LAW, default_priors(THESIS_LAW, blocks, LoadCell(zero_stability=0.1))
+    )
+    names = [parameter.name for parameter in THESIS_LAW.parameters]
+    truth = dict(zip(names, map(float, THESIS_VALUES), strict=True))
+    z = posterior.coordinates({**truth, **MEASURED})
+    return posterior, linearise(posterior, z[None]), samples
+
+
+def with_force(change: Callable[[SlipSamples], np.ndarray]) -> Change:
+    """Return a change that adds a force to the traction of each sample [N]."""
+    return lambda s: replace(s, traction_force=s.traction_force + change(s))

@@ -31,6 +31,7 @@ class EarlierCalibration:
         source: Source of its data.
         files: Files that were read.
         notes: Warnings about it, one line each.
+        data: SHA-256 of the files that it was fitted to.
     """
 
     title: str
@@ -40,6 +41,7 @@ class EarlierCalibration:
     source: str
     files: tuple[Path, ...]
     notes: tuple[str, ...]
+    data: frozenset[str] = frozenset()
 
 
 def read_earlier(path: Path) -> EarlierCalibration:
@@ -64,8 +66,8 @@ def read_earlier(path: Path) -> EarlierCalibration:
     missing = [p.name for p in found.curve.law.parameters if p.name not in draws]
     if missing:
         raise DataError(f"has no draws of {', '.join(missing)}; calibrate again", file=posterior)
-    tested = read_toml_document(found.file).get("tested", {})
-    length = tested.get("block_length")
+    content = read_toml_document(found.file)
+    length = content.get("tested", {}).get("block_length")
     title = found.file.absolute().parent.name
     notes = []
     if found.doubt is not None:
@@ -80,4 +82,5 @@ def read_earlier(path: Path) -> EarlierCalibration:
         source=found.source,
         files=(found.file, posterior),
         notes=tuple(notes),
+        data=frozenset(map(str, content.get("data", {}).values())),
     )

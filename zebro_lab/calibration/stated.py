@@ -18,6 +18,7 @@ from zebro_lab.calibration.prior_argument import named_priors, parse_prior
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.provenance import file_hash
 
 _OPTION: Final = "--prior"
 
@@ -65,6 +66,7 @@ def state_priors(
     """
     earlier = None if request.prior_from is None else read_earlier(request.prior_from)
     if earlier is not None:
+        _require_new_data(earlier, data)
         laws = _laws_of(earlier, request, data)
     parameters = [p for law in laws.values() for p in (*law.parameters, *NUISANCE)]
     found = _singles(request, data, parameters)
@@ -93,6 +95,18 @@ def _singles(
     of_file = named_priors(stated, parameters, key="[priors]", file=file)
     options = [parse_prior(text, key=_OPTION) for text in request.prior]
     return {**of_file, **named_priors(options, parameters, key=_OPTION)}
+
+
+def _require_new_data(earlier: EarlierCalibration, data: RigData) -> None:
+    """Raise `SettingsError` for data that the earlier calibration was fitted to as well."""
+    tables = [file for file in data.files if file.suffix != ".toml"]
+    twice = [file.name for file in tables if file_hash(file) in earlier.data]
+    if twice:
+        raise SettingsError(
+            f"{', '.join(twice[:3])}{' and others' if len(twice) > 3 else ''}: already in the data "
+            f"of {earlier.title}, and would count twice; fit new data alone",
+            key="--prior-from",
+        )
 
 
 def _laws_of(

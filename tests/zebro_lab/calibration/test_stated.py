@@ -18,6 +18,7 @@ from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.calibration.stated import Stated, priors_content, state_priors
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.provenance import file_hash
 
 LAWS = {"constant": MagicFormula("constant"), "peak": THESIS_LAW}
 
@@ -83,6 +84,20 @@ def test_another_load_cell_or_block_length_leaves_out_what_they_change(tmp_path,
     assert "gain_normal" in carried
     assert not carried & {"noise_floor", "noise_slope", "noise_correlation"}
     assert other_blocks.block_length == 7
+
+
+def test_data_of_the_earlier_calibration_are_not_counted_twice(tmp_path):
+    found, folder = data(tmp_path / "data"), tmp_path / "last-year"
+    folder.mkdir()
+    table = next(file for file in found.files if file.suffix == ".csv")
+    for file in (table, found.priors_file or table.with_name("columns.toml")):
+        write_tables(folder, short_calibration(), inputs={str(file): file_hash(file)})
+        request = CalibrationRequest((tmp_path,), prior_from=folder)
+        if file == table:
+            with pytest.raises(SettingsError, match=r"rig\.csv: already in the data of last-year"):
+                state_priors(request, found, LAWS)
+        else:  # the same column map is no reason
+            state_priors(request, found, LAWS)
 
 
 @pytest.mark.parametrize(

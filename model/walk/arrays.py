@@ -89,6 +89,7 @@ class Work(NamedTuple):
         P: Decrease of one contact's force per velocity of the body there, shape (3, 3) [N s/m].
         inertia: Inertia in the world frame, shape (3, 3) [kg m2].
         gyro: Gyroscopic moment, shape (3,) [N m].
+        gain: Change of v and w over the step before, by its length, shape (6,) [m/s2, rad/s2].
     """
 
     place: Array
@@ -109,6 +110,7 @@ class Work(NamedTuple):
     P: Array
     inertia: Array
     gyro: Array
+    gain: Array
 
 
 def body_arrays(robot: Robot) -> Body:
@@ -122,13 +124,13 @@ def body_arrays(robot: Robot) -> Body:
 
 @compiled
 def new_work():
-    """Allocate the work arrays of a step, loads, secants and kinds zero, others uninitialised."""
+    """Allocate the work arrays of a step; loads, secants, kinds and gains are zero."""
     n = N_CONTACTS
     return Work(
         np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
         np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n), np.empty((3, 3)),
         np.empty((6, 6)), np.empty(6), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
-        np.empty((3, 3)), np.empty((3, 3)), np.empty(3),
+        np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.zeros(6),
     )  # fmt: skip
 
 

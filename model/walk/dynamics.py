@@ -39,9 +39,9 @@ class DynamicsOptions:
     Attributes:
         dt: Length of a step [s].
         stiffness: Normal force for each metre of sinkage; a leg sinks micrometres [N/m].
-        damping: Normal force for each metre a second of sinking; a quarter of critical for a
-            third of the body's mass, to which the implicit step adds stiffness times its length,
-            so that legs do not bounce [N s/m].
+        damping: Normal force for each metre a second of sinking; a third of critical for a third
+            of the body's mass. Steps longer than damping over stiffness damp more, by stiffness
+            times their length [N s/m].
 
     Raises:
         DomainError: A value is not positive and finite.
@@ -49,7 +49,7 @@ class DynamicsOptions:
 
     dt: float = 0.002
     stiffness: float = 2e5
-    damping: float = 200.0
+    damping: float = 300.0
 
     def __post_init__(self) -> None:
         """Check that step, stiffness and damping are positive and finite."""

@@ -39,6 +39,7 @@ class Spare(NamedTuple):
         speed: Leg speeds in a step, shape (6,) [rad/s].
         angles: Leg angles at the end of a finer step, shape (6,) [rad].
         loaded: Loads before a step, shape (14,) [N].
+        gain: Accelerations before a step, shape (6,).
         energy: Energies of a step, see `add_work`, shape (4,) [J].
     """
 
@@ -47,6 +48,7 @@ class Spare(NamedTuple):
     speed: Array
     angles: Array
     loaded: Array
+    gain: Array
     energy: Array
 
 
@@ -87,7 +89,7 @@ def run_steps(
     """
     spare = Spare(
         new_work(), new_state(), np.empty(N_LEGS), np.empty(N_LEGS), np.zeros(N_CONTACTS),
-        np.empty(4),
+        np.empty(6), np.empty(4),
     )  # fmt: skip
     return _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare)
 
@@ -95,7 +97,7 @@ def run_steps(
 @borrowing
 def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
     """Integrate a walk; arguments and result are those of `run_steps`, `spare` its work arrays."""
-    work, before, speed, angles, loaded, energy = spare
+    work, before, speed, angles, loaded, gain, energy = spare
     keep = len(legs) > 0
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt))
@@ -105,12 +107,14 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
             speed[i] = (theta[step + 1, i] - theta[step, i]) / dt
         copy_state(state, before)
         _copy(work.load, loaded)
+        _copy(work.gain, gain)
         energy[:] = 0.0
         if fine_left == 0 or parts == 1:
             one_step(body, table, ground, contacts, state, work, theta[step + 1], speed, dt)
             if parts > 1 and _contacts_changed(work.load, loaded):
                 copy_state(before, state)
                 _copy(loaded, work.load)
+                _copy(gain, work.gain)
                 fine_left = fine_steps
             elif keep:
                 add_work(contacts, state, work, dt, energy)

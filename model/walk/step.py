@@ -5,16 +5,21 @@ Unknowns of a step are the velocity v and angular velocity w of the body at its 
 and traction of every contact are taken there, linear in them,
 
 .. math::
-    N_i' = -k (g_i + \Delta t\, n_i \cdot J_i v') - c\, n_i \cdot (J_i v' + u_i), \qquad
+    N_i' = -k (g_i + \Delta t\, n_i \cdot J_i v') - c'\, n_i \cdot (J_i v' + u_i), \qquad
     T_i' = -G_i (J_i v' + u_i)_t,
 
-with stiffness k and damping c of contact i, gap g, normal n, contact Jacobian J, the leg's own
-velocity u at its contact, and the secant G of the slip law. A prime marks the step's end, v' stands
-for v and w there, and the index t for the part along the ground. This gives a symmetric positive
-definite 6x6 system. A few iterations determine which contacts press and what G is: two, and more
-until the velocities settle where feet that slid take hold or let go, since G then changes by orders
-of magnitude within a step. No contact pulls, and traction opposes slip whatever the step. The step
-is therefore stable at any length, unlike the explicit step of the thesis.
+with stiffness k of contact i, gap g, normal n, contact Jacobian J, the leg's own velocity u at its
+contact, and the secant G of the slip law. A prime marks the step's end, v' stands for v and w
+there, and the index t for the part along the ground. Taking the gap at the step's end damps as a
+damping of k dt does; c' is what the contact's damping c leaves beyond that, or zero. A step of up
+to c/k therefore damps as much as any shorter one.
+
+This gives a symmetric positive definite 6x6 system. Iterations determine which contacts press and
+what G is, from the velocities that the step before leads to. One is enough where motion is even.
+Where feet that slid take hold or let go, G changes by orders of magnitude within a step, and each
+iteration comes nearer by only a part of the way that is left: see `settling_error`. No contact
+pulls, and traction opposes slip whatever the step. The step is therefore stable at any length,
+unlike the explicit step of the thesis.
 """
 
 import numpy as np
@@ -29,9 +34,8 @@ from model.walk.linear_system import add_contact, solve_positive, start_system
 from model.walk.quaternion import rotate, rotation_matrix
 from model.walk.traction_lookup import toe_traction, traction_secant
 
-ROUNDS = 2  # solves a step: one for the contacts that press and their loads, one to use them
-MOST_ROUNDS = 8  # largest number of solves until contacts press as assumed and velocities settle
-SETTLED = 1e-3  # m/s; velocities have settled when a solve moves no foot by more
+MOST_ROUNDS = 20  # largest number of solves until contacts press as assumed and velocities settle
+SETTLED = 3e-4  # m/s; the last guess of the velocities was no further from where they settle
 FOOT = 0.15  # m, distance of the feet from the body's centre, to compare its turning with that
 BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of a millimetre
 
@@ -48,7 +52,8 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
         ground: The ground.
         contacts: Stiffness and damping of contacts.
         state: State at the start, overwritten with the state at the end.
-        work: Filled with the contacts of the step; `load` must hold the loads of the step before.
+        work: Filled with the contacts of the step; `load` must hold the loads and `gain` the
+            accelerations of the step before.
         theta: Leg angles at the end, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
@@ -64,20 +69,23 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
         if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # no bristle there
             state.stretch[i, 0] = state.stretch[i, 1] = state.stretch[i, 2] = 0.0
     for i in range(3):
-        work.b[i], work.b[3 + i] = state.v[i], state.w[i]
+        work.b[i] = state.v[i] + dt * work.gain[i]
+        work.b[3 + i] = state.w[i] + dt * work.gain[3 + i]
     v, w, inertia, gyro = work.v, work.w, work.inertia, work.gyro
     _world_inertia(work.R, body.inertia, inertia)
     _gyroscopic(inertia, state.w, gyro)
-    for solved in range(1, MOST_ROUNDS + 1):
+    for _ in range(MOST_ROUNDS):
         for i in range(3):
             v[i], w[i] = work.b[i], work.b[3 + i]
         start_system(body.mass, inertia, gyro, state, dt, work.A, work.b)
-        add_contact_forces(table, contacts, state, work, n, speed, dt)
+        held = add_contact_forces(table, contacts, state, work, n, speed, dt)
         solve_positive(work.A, work.b, 6)
         agree = contacts_agree(contacts, work, n, dt)
-        if agree and solved >= ROUNDS and velocity_change(work) < SETTLED:
+        if agree and settling_error(velocity_change(work), held, body.mass, dt) < SETTLED:
             break
     for i in range(3):
+        work.gain[i] = (work.b[i] - state.v[i]) / dt
+        work.gain[3 + i] = (work.b[3 + i] - state.w[i]) / dt
         state.v[i], state.w[i] = work.b[i], work.b[3 + i]
         state.p[i] += dt * state.v[i]
     rotate(state.q, state.w, dt)
@@ -102,6 +110,38 @@ def velocity_change(work):
 
 
 @inlined
+def settling_error(moved, held, mass, dt):
+    r"""Estimate how far a guess of the velocities is from those at which iterations settle [m/s].
+
+    A solve with traction as secant G times slip, where traction hardly changes with slip any more,
+    takes the guess's error times
+
+    .. math:: \rho = \frac{G\, \Delta t}{m + G\, \Delta t} .
+
+    The guess was therefore off by what the solve moved it, over :math:`1 - \rho`. Near the peak of
+    a slip curve that is many times as much in a long step.
+
+    Args:
+        moved: Change of the velocities by a solve [m/s].
+        held: Sum of the secants of all contacts [N s/m].
+        mass: Mass of the body [kg].
+        dt: Length of the step [s].
+    """
+    return moved * (mass + dt * held) / mass
+
+
+@inlined
+def contact_damping(contacts, dt):
+    """Return the damping of a contact beyond k dt, by which a step damps already [N s/m].
+
+    Args:
+        contacts: Stiffness k and damping of contacts.
+        dt: Length of the step [s].
+    """
+    return max(contacts.damping - contacts.stiffness * dt, 0.0)
+
+
+@inlined
 def add_contact_forces(table, contacts, state, work, n, speed, dt):
     """Add the contact forces, linearised in the final velocities about a guess, to a step's system.
 
@@ -114,8 +154,11 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         n: Number of contacts.
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
+
+    Returns:
+        Sum over contacts of traction over slip velocity, bristles included [N s/m].
     """
-    k, c = contacts.stiffness, contacts.damping
+    k, c, held = contacts.stiffness, contact_damping(contacts, dt), 0.0
     v, w, P, force, point = work.v, work.w, work.P, work.force, work.point
     for i in range(n):
         point_velocity(v, w, work.place[i], work.velocity[i], point)
@@ -138,6 +181,7 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
             flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
             G, pull = traction_secant(law, work.kind[i], load, slip, flow), 0.0
             work.secant[i] = G
+        held += G
         push = -k * work.gap[i] - c * u_n
         for a in range(3):
             m_a = work.normal[i, a]
@@ -147,6 +191,7 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
                 P[a, d] = (k * dt + c - G) * m_a * work.normal[i, d]
             P[a, a] += G
         add_contact(work.A, work.b, dt, work.place[i], P, force)
+    return held
 
 
 @inlined
@@ -185,7 +230,7 @@ def contacts_agree(contacts, work, n, dt):
         n: Number of contacts.
         dt: Length of the step [s].
     """
-    k, c = contacts.stiffness, contacts.damping
+    k, c = contacts.stiffness, contact_damping(contacts, dt)
     v, w, point = work.b[:3], work.b[3:], work.point
     agree = True
     for i in range(n):

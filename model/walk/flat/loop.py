@@ -18,7 +18,6 @@ from model.walk.leg_work import add_powers
 from model.walk.loop import FINE_STEP, FINE_TIME
 
 ENDED = -1  # in place of the number of fine steps left
-N_SAVED = rows.N_STATE + N_CONTACTS
 
 
 @borrowing
@@ -100,7 +99,7 @@ def begin_step(each, theta, dt, step, walk, fine, parts):
 @inlined
 def restart(each, walk, parts):
     """Return one walk to the start of its long step, to be made in `parts` fine steps."""
-    for i in range(N_SAVED):
+    for i in range(rows.N_SAVED):
         each[rows.STATE + i, walk] = each[rows.BEFORE + i, walk]
     each[rows.PARTS, walk] = parts
     each[rows.PART, walk] = 0.0
@@ -115,7 +114,7 @@ def prepare(A):
     """
     fresh, whole, parts = row(A, rows.FRESH) == 1.0, row(A, rows.LONG_STEP), row(A, rows.PARTS)
     per_whole, once = 1.0 / whole, parts == 1.0
-    for i in range(N_SAVED):
+    for i in range(rows.N_SAVED):
         put(A, rows.BEFORE + i, select(fresh, row(A, rows.STATE + i), row(A, rows.BEFORE + i)))
     put(A, rows.DT, whole / parts)
     done = (row(A, rows.PART) + 1.0) / parts * whole

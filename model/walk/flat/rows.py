@@ -33,10 +33,13 @@ GIVEN = _next
 # State: position, quaternion, velocity, angular velocity; in world axes
 P, Q, V, OMEGA = _rows(3), _rows(4), _rows(3), _rows(3)
 STATE, N_STATE = P, 13
-LOAD = _rows(N_CONTACTS)  # directly after the state, saved with it
-BEFORE = _rows(N_STATE + N_CONTACTS)  # state and loads at a step's start
+# Directly after the state, saved with it: loads, and accelerations of the step before
+LOAD, GAIN = _rows(N_CONTACTS), _rows(6)
+N_SAVED = N_STATE + N_CONTACTS + 6
+BEFORE = _rows(N_SAVED)  # at a step's start
 # Of a step
 DT = _rows(1)
+DAMPING_LEFT = _rows(1)  # beyond that of the step itself
 ANGLE, SPEED = _rows(N_LEGS), _rows(N_LEGS)  # of the legs, angle at the step's end
 PLACE, VELOCITY = _rows(3 * N_CONTACTS), _rows(3 * N_CONTACTS)
 GAP, SECANT = _rows(N_CONTACTS), _rows(N_CONTACTS)

@@ -20,7 +20,7 @@ from model.walk.arrays import N_CONTACTS
 from model.walk.contact_points import NEAR
 from model.walk.flat import rows
 from model.walk.flat.law import secant
-from model.walk.step import FOOT, MOST_ROUNDS, ROUNDS, SETTLED
+from model.walk.step import FOOT, MOST_ROUNDS, SETTLED, settling_error
 
 
 @inlined
@@ -28,8 +28,8 @@ def flat_step(A, laws):
     """Advance every walk by one linearly implicit step of its own length.
 
     Args:
-        A: The walks' rows: of the state, which is overwritten, `DT`, and leg angles at the end and
-            leg speeds. `LOAD` is filled with the contacts' normal forces.
+        A: The walks' rows: of the state and `GAIN`, which are overwritten, `DT`, and leg angles at
+            the end and leg speeds. `LOAD` is filled with the contacts' normal forces.
         laws: The slip laws.
     """
     put_rotation(A)
@@ -47,19 +47,22 @@ def flat_step(A, laws):
         L0 - dt * (w1 * L2 - w2 * L1), L1 - dt * (w2 * L0 - w0 * L2),
         L2 - dt * (w0 * L1 - w1 * L0),
     )  # fmt: skip
-    done = dt < 0.0
-    for solved in range(1, MOST_ROUNDS + 1):
+    left = row(A, rows.DAMPING) - dt * row(A, rows.STIFFNESS)
+    put(A, rows.DAMPING_LEFT, select(left > 0.0, left, 0.0))
+    g, done = rows.GAIN, dt < 0.0
+    v0, v1, v2 = v0 + dt * row(A, g), v1 + dt * row(A, g + 1), v2 + dt * row(A, g + 2)
+    w0, w1, w2 = w0 + dt * row(A, g + 3), w1 + dt * row(A, g + 4), w2 + dt * row(A, g + 5)
+    for _ in range(MOST_ROUNDS):
         x = solved_velocities(A, laws, n, (v0, v1, v2, w0, w1, w2), I, start, done)
         d0, d1, d2, d3, d4, d5 = x[0] - v0, x[1] - v1, x[2] - v2, x[3] - w0, x[4] - w1, x[5] - w2
         turned = d3 * d3 + d4 * d4 + d5 * d5
-        moved = d0 * d0 + d1 * d1 + d2 * d2 + FOOT * FOOT * turned
+        moved = root(d0 * d0 + d1 * d1 + d2 * d2 + FOOT * FOOT * turned)
         v0, v1, v2 = select(done, v0, x[0]), select(done, v1, x[1]), select(done, v2, x[2])
         w0, w1, w2 = select(done, w0, x[3]), select(done, w1, x[4]), select(done, w2, x[5])
         agree = contacts_agree(A, n, (v0, v1, v2, w0, w1, w2), done)
-        if solved >= ROUNDS:
-            done = done | (agree & (moved < SETTLED * SETTLED))
-            if not any_of(negated(done)):
-                break
+        done = done | (agree & (settling_error(moved, x[6], mass, dt) < SETTLED))
+        if not any_of(negated(done)):
+            break
     advance(A, (v0, v1, v2, w0, w1, w2))
 
 
@@ -176,7 +179,7 @@ def load_of(A, i, rise):
     """
     by_body = rise - row(A, rows.VELOCITY + 3 * i + 2)
     sunk = row(A, rows.GAP + i) + row(A, rows.DT) * by_body
-    return -(row(A, rows.STIFFNESS) * sunk + row(A, rows.DAMPING) * rise)
+    return -(row(A, rows.STIFFNESS) * sunk + row(A, rows.DAMPING_LEFT) * rise)
 
 
 @inlined
@@ -193,15 +196,16 @@ def solved_velocities(A, laws, n, guess, I, start, done):  # noqa: E741 as in th
         done: Walks that keep their loads and secants.
 
     Returns:
-        Velocity and angular velocity of the body at the step's end, six numbers.
+        Velocity and angular velocity of the body at the step's end, six numbers, and the sum of
+        the contacts' secants [N s/m].
     """
     v0, v1, v2, w0, w1, w2 = guess
     b0, b1, b2, b3, b4, b5 = start
     I00, I10, I11, I20, I21, I22 = I
-    dt, k, c = row(A, rows.DT), row(A, rows.STIFFNESS), row(A, rows.DAMPING)
+    dt, k, c = row(A, rows.DT), row(A, rows.STIFFNESS), row(A, rows.DAMPING_LEFT)
     turn = row(A, rows.R + 1) * w0 + row(A, rows.R + 4) * w1 + row(A, rows.R + 7) * w2
     d = row(A, rows.MASS)
-    e, xg, yg, zg, xq, yq = d, d * 0.0, d * 0.0, d * 0.0, d * 0.0, d * 0.0
+    held, e, xg, yg, zg, xq, yq = d * 0.0, d, d * 0.0, d * 0.0, d * 0.0, d * 0.0, d * 0.0
     for i in range(n):
         place, velocity = rows.PLACE + 3 * i, rows.VELOCITY + 3 * i
         x, y, z = row(A, place), row(A, place + 1), row(A, place + 2)
@@ -222,6 +226,7 @@ def solved_velocities(A, laws, n, guess, I, start, done):  # noqa: E741 as in th
         put(A, rows.SECANT + i, select(done, row(A, rows.SECANT + i), G))
         push = select(pressed, -dt * (k * row(A, rows.GAP + i) + c * u2), 0.0)
         q, g = select(pressed, dt * (k * dt + c), 0.0), dt * G
+        held = held + G
         f0, f1 = -g * u0, -g * u1
         b0, b1, b2 = b0 + f0, b1 + f1, b2 + push
         b3, b4, b5 = b3 + y * push - z * f1, b4 + z * f0 - x * push, b5 + x * f1 - y * f0
@@ -239,7 +244,7 @@ def solved_velocities(A, laws, n, guess, I, start, done):  # noqa: E741 as in th
     )  # fmt: skip
     return (
         b0 * d - zd * w1 + yd * w2, b1 * d + zd * w0 - xd * w2, b2 * e - ye * w0 + xe * w1,
-        w0, w1, w2,
+        w0, w1, w2, held,
     )  # fmt: skip
 
 
@@ -287,9 +292,11 @@ def contacts_agree(A, n, motion, done):
 
 @inlined
 def advance(A, motion):
-    """Store the final velocities, and move and turn the body by them for the step."""
+    """Store the final velocities and accelerations; move and turn the body for the step."""
     dt = row(A, rows.DT)
     for a in range(3):
+        put(A, rows.GAIN + a, (motion[a] - row(A, rows.V + a)) / dt)
+        put(A, rows.GAIN + 3 + a, (motion[3 + a] - row(A, rows.OMEGA + a)) / dt)
         put(A, rows.V + a, motion[a])
         put(A, rows.OMEGA + a, motion[3 + a])
         put(A, rows.P + a, row(A, rows.P + a) + dt * motion[a])

@@ -106,4 +106,4 @@ def test_an_area_with_the_same_law_changes_no_draw():
         planar_walk(WalkDraw(ROBOT, TURN, SLIP, areas=areas), duration=4.0, options=OPTIONS).poses
         for areas in ((), (everywhere,))
     )
-    np.testing.assert_allclose(one.position, other.position, atol=1e-9)
+    np.testing.assert_allclose(one.position, other.position, atol=1e-6)  # by strides, by steps

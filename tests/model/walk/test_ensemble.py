@@ -7,6 +7,7 @@ import pytest
 from model.errors import DomainError, WalkError
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
+from model.gait.tetrapod import tetrapod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import MagicFormula
 from model.walk.areas import Area
@@ -56,6 +57,20 @@ def test_a_log_is_walked_whole_and_like_its_gait():
         [WalkDraw(ROBOT, log, SLIP), WalkDraw(ROBOT, TURN, SLIP)], times, options=OPTIONS
     ).poses
     np.testing.assert_allclose(ensemble.position[0], ensemble.position[1], atol=0.003)
+
+
+def test_rocking_tetrapods_end_after_long_steps_where_they_do_after_short_ones():
+    t, rng = np.arange(0.0, 10.01, 0.01), np.random.default_rng(3)
+    gait = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=2.0)
+    log = SampledReference(t, gait.angles(t))
+    legs = np.radians(1.0) * rng.standard_normal((32, 6))
+    several = [WalkDraw(replace(ROBOT, leg_offset=offset), log, SLIP) for offset in legs]
+    long, short = (
+        walk_ensemble(several, t[::10], options=DynamicsOptions(dt=dt)).poses.position
+        for dt in (0.005, 0.00025)
+    )
+    length = np.linalg.norm(np.diff(short, axis=1), axis=2).sum(axis=1).mean()
+    assert np.linalg.norm((long - short)[:, -1].mean(axis=0)) < 0.003 * length
 
 
 def test_progress_is_told_to_the_end():

@@ -8,7 +8,15 @@ from model.robot import GRAVITY, Robot
 from model.walk.arrays import Contacts, body_arrays, new_work
 from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.ground import FLAT
-from model.walk.step import BRISTLE_STIFFNESS, SETTLED, bristle_pull, leg_turn, one_step
+from model.walk.step import (
+    BRISTLE_STIFFNESS,
+    SETTLED,
+    bristle_pull,
+    contact_damping,
+    leg_turn,
+    one_step,
+    settling_error,
+)
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()
@@ -62,3 +70,19 @@ def test_a_bristle_holds_like_a_spring_and_slides_at_the_largest_traction():
 def test_a_legs_turn_over_the_ground_includes_the_pitch_rate_of_the_body():
     w = np.array([0.1, 0.2, 0.3])
     assert leg_turn(np.eye(3), np.full(6, 2.0), w, 0) == pytest.approx(2.2)
+
+
+@pytest.mark.parametrize("dt", [1e-5, 0.0005, 0.0015, 0.005])
+def test_steps_up_to_damping_over_stiffness_damp_alike(dt):
+    in_all = contact_damping(CONTACTS, dt) + CONTACTS.stiffness * dt
+    assert in_all == pytest.approx(max(CONTACTS.damping, CONTACTS.stiffness * dt))
+
+
+@pytest.mark.parametrize("dt", [0.0005, 0.005])
+def test_where_traction_does_not_grow_with_slip_a_guess_is_off_by_the_settling_error(dt):
+    mass, traction, before, off = ROBOT.mass, 12.0, 0.03, 1e-5
+    end = before - dt * traction / mass
+    guess = end + off
+    secant = traction / guess
+    solved = mass * before / (mass + dt * secant)
+    assert settling_error(abs(solved - guess), secant, mass, dt) == pytest.approx(off, rel=0.01)

@@ -53,7 +53,7 @@ def test_legs_on_ice_have_the_traction_of_ice_and_others_that_of_the_ground():
 
 
 def test_single_steps_exceed_friction_by_next_to_no_impulse():
-    # velocities that have settled to 1 mm/s leave traction open where the law rises over 1 mm/s
+    # velocities settle within 0.3 mm/s, and the law rises over 1 mm/s
     path = walked(
         with_areas(COULOMB, [Area(EVERYWHERE, VelocityCoulomb(0.1).table(weight=WEIGHT))])
     )

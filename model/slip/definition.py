@@ -9,7 +9,7 @@ without slip and positive when the leg's surface outruns the ground.
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from model.errors import DefinitionMismatch, DomainError
 from model.slip.law import Array
@@ -148,9 +148,25 @@ _LOWER = {
 _UPPER = {SlipDefinition.MATERIAL: 1.0, SlipDefinition.TRAVEL: np.inf, SlipDefinition.LARGER: 1.0}
 
 
+def is_possible(slip: ArrayLike, definition: SlipDefinition) -> NDArray[np.bool_]:
+    """Return where a slip ratio is within its definition's range: both discs turn forward.
+
+    NaN is within it. Noise may put a measured slip ratio outside.
+
+    Args:
+        slip: Slip ratio [-].
+        definition: Its definition.
+
+    >>> is_possible([0.5, 1.002], SlipDefinition.MATERIAL)
+    array([ True, False])
+    """
+    kappa = np.asarray(slip, dtype=float)
+    return ~((kappa < _LOWER[definition]) | (kappa > _UPPER[definition]))
+
+
 def _require_possible(kappa: Array, definition: SlipDefinition) -> None:
     """Raise `DomainError` if a slip ratio lies outside its definition's range, NaN excepted."""
-    impossible = (kappa < _LOWER[definition]) | (kappa > _UPPER[definition])
+    impossible = ~is_possible(kappa, definition)
     if np.any(impossible):
         raise DomainError(
             f"slip ratio {kappa[impossible].flat[0]:.4g} is outside "

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from model.errors import DomainError
-from model.slip.definition import SlipDefinition, convert_slip
+from model.slip.definition import SlipDefinition, convert_slip, is_possible
 from model.slip.law import Array
 from model.slip.load_curves import curves_by_load
 from model.slip.magic_formula import magic_formula
@@ -61,17 +61,22 @@ class GivenCurve:
     def force(self, slip: Array, load: float, definition: SlipDefinition) -> Array:
         """Compute the force [N] at slip ratios in any definition, NaN where it is unknown.
 
+        It is unknown too where the slip ratio has no finite counterpart in the curve's definition:
+        at and beyond the limit of a leg that spins on the spot, where noise may put a measured one.
+
         Args:
             slip: Slip ratios, shape (n,) [-].
             load: Normal force [N].
             definition: Definition of `slip`.
-
-        Raises:
-            DomainError: A slip ratio is impossible in `definition`.
         """
-        own = slip if self.definition is None else convert_slip(slip, definition, self.definition)
-        with np.errstate(invalid="ignore"):  # a leg that spins on the spot has infinite travel slip
-            return np.asarray(self.own_force(own, load), dtype=float)
+        own = slip
+        if self.definition not in (None, definition):
+            own = np.where(is_possible(slip, definition), slip, np.nan)
+            own = convert_slip(own, definition, self.definition)
+        known = np.isfinite(own)
+        force = np.full(len(slip), np.nan)
+        force[known] = self.own_force(own[known], load)
+        return force
 
     def said(self, definition: SlipDefinition) -> tuple[str, ...]:
         """Return notes on the slip definition, beside that of the calibration."""

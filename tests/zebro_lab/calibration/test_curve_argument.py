@@ -29,6 +29,13 @@ def test_slip_ratios_are_converted_to_the_definition_of_the_curve():
     assert "'material' slip is converted to 'travel'" in curve.said(TRAVEL)[0]
 
 
+def test_slips_that_noise_puts_beyond_the_limit_have_no_counterpart_and_are_left_out():
+    curve, slip = parse_curve(Path("magic:34,1.5,0.4,0:travel")), np.array([0.5, 1.0, 1.002])
+    np.testing.assert_array_equal(np.isnan(curve.force(slip, 5.0, MATERIAL)), [False, True, True])
+    same = parse_curve(Path("magic:34,1.5,0.4,0:material")).force(slip, 5.0, MATERIAL)
+    assert np.isfinite(same).all()
+
+
 def test_coulomb_is_friction_times_load_at_any_slip_of_any_definition():
     curve = parse_curve(Path("coulomb:0.4"))
     np.testing.assert_allclose(curve.force(SLIP, 10.0, TRAVEL), [-4.0, 4.0, 4.0])

@@ -73,7 +73,6 @@ def compare_with_curve(
     Raises:
         ZebroLabError: The calibration or the curve cannot be read, neither is a calibration, or
             they have no load or slip in common.
-        DomainError: A tested slip ratio is impossible in the curve's definition.
     """
     curve_first = is_curve(first)
     if curve_first and is_curve(second):

@@ -113,7 +113,7 @@ class CorrectData(Advice):
 
 @dataclass(frozen=True)
 class TryDefinition(Advice):
-    """Advice to fit the same data with the other slip definitions."""
+    """Advice to find out by which speed slip was divided, to convert it and to fit again."""
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from model.bayes.blocks import SlipBlocks, block_means
+from model.bayes.checks.raw import opposed_runs
 from model.bayes.cross_validation import CrossValidation, cross_validate
 from model.bayes.laplace import Laplace, LaplaceMixture, find_modes
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
@@ -21,6 +22,7 @@ from model.slip.law import SlipLaw
 FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 UNSTATED_GAIN_SD = 0.01  # of a load cell that nobody has weighed: cells, mounts and wiring differ
+MOST_OPPOSED = 0.9  # share of the runs that slip, from which it is the data's sign that is wrong
 PRIOR_DRAWS = 400
 PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
 CLEAR_WIN = 2.0  # standard errors by which a later law must predict better to be preferred
@@ -177,7 +179,7 @@ def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
 
 
 def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
-    """Check that forces are in range, that traction varies and that loads exceed the zero error.
+    """Check range and sign of forces, that traction varies and that loads exceed the zero error.
 
     Args:
         samples: The samples, at least one.
@@ -185,7 +187,8 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
 
     Raises:
         InsufficientData: Traction is constant, or no load exceeds the cell's zero stability.
-        DomainError: The absolute value of a force exceeds `MOST_FORCE`, or a force is NaN.
+        DomainError: The absolute value of a force exceeds `MOST_FORCE`, or a force is NaN; or
+            traction opposes the slip in nine of ten runs.
     """
     loads, traction = samples.normal_force, samples.traction_force
     for name, force in (("normal", loads), ("traction", traction)):
@@ -200,11 +203,24 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
             f"traction force is {traction[0]:g} N in all {len(samples)} samples; a curve needs "
             "forces that follow the slip: check the column and the load cell"
         )
+    _require_sign(samples)
     if loads.max() <= cell.zero_stability:
         raise InsufficientData(
             f"the largest normal force is {loads.max():.3g} N, no more than the load cell's own "
             f"zero stability of {cell.zero_stability:.3g} N; "
             f"{_implausible(float(loads.max()), float(np.abs(traction).max()))}"
+        )
+
+
+def _require_sign(samples: SlipSamples) -> None:
+    """Raise `DomainError` if traction opposes the slip in `MOST_OPPOSED` of the runs that slip."""
+    opposed, prompt = opposed_runs(samples), opposed_runs(replace(samples, slip=-samples.slip))
+    told = int(opposed.sum()) + int(prompt.sum())
+    if told and opposed.sum() >= MOST_OPPOSED * told:
+        raise DomainError(
+            f"traction opposes the slip in {opposed.sum()} of {told} runs that slip; expected both "
+            "of one sign, positive where the leg drives: turn the sign of the traction or of the "
+            "slip ratio, or exchange the two speeds if they were swapped"
         )
 
 

@@ -133,8 +133,9 @@ def _correct_data(advice: CorrectData) -> str:
 @advice_text.register
 def _try_definition(advice: TryDefinition) -> str:
     return (
-        f"{advice.reason}: give the same command with each --slip-definition, each with an --out "
-        "of its own, and use the one whose check passes; else check the speeds that slip is made of"
+        f"{advice.reason}: find out by which speed the slip ratio was divided; if by that of "
+        "travel, replace it by slip/(1 + slip), which is divided by the leg's, and fit again; else "
+        "check the speeds that slip is made of"
     )
 
 

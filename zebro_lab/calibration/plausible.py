@@ -158,6 +158,7 @@ def _require_one_sign(table: RigTable, ratio: Array, traction_force: Array) -> N
     raise table.raw.fault(
         f"the traction force opposes the slip in {np.mean(opposed):.0%} of the rows that slip; "
         "expected both positive where the leg drives: set [columns.traction_force] sign = "
-        f"{-1 if source.factor > 0 else 1} in {table.columns.stated_in}, or the sign of slip_ratio",
+        f"{-1 if source.factor > 0 else 1} in {table.columns.stated_in}, or that of slip_ratio; "
+        "or exchange the columns of the two speeds, if they are swapped",
         source.name,
     )

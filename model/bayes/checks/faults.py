@@ -15,7 +15,7 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
 
-SCATTER_P = 1e-4
+SCATTER_P = 1e-5
 SWING_P = 1e-4
 MEMORIES = 6.0  # correlation times of the noise that a run holds
 FEWEST_SAMPLES = 8  # of a run, that a noise can show in

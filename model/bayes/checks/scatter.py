@@ -10,7 +10,7 @@ from model.bayes.checks.linear import Linearised
 from model.slip.law import Array
 
 FEWEST_RUNS = 6
-MEMORY = 1.5  # of block noise: the variance of a run's mean over that of white blocks
+MEMORY = 2.0  # of block noise: the variance of a run's mean over that of white blocks
 GRID = np.geomspace(1e-3, 0.5, 60)  # standard deviations of friction between runs that are tried
 
 

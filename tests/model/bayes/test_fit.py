@@ -359,3 +359,11 @@ def test_kilonewtons_taken_for_newtons_are_refused():
 def test_forces_beyond_every_rig_are_refused():
     with pytest.raises(DomainError, match="unit"):
         prepared(scaled(simulated(), normal=1e200, traction=1e200))
+
+
+def test_a_wrong_sign_is_said_before_a_fit_is_wasted():
+    samples = simulated()
+    turned = replace(samples, traction_force=-samples.traction_force)
+    with pytest.raises(DomainError, match=r"opposes the slip in \d+ of \d+ runs that slip.*sign"):
+        require_forces(turned, LoadCell())
+    require_forces(samples, LoadCell())

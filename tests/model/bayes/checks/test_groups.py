@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Mean residuals by load and side are judged together."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from model.bayes.advice import Advice
@@ -24,6 +26,19 @@ def test_what_one_load_and_side_has_and_the_others_have_not_fails():
     check = groups(fit, Advice("do"))
     assert check.failed
     assert "braking" in check.evidence
+
+
+def test_one_run_does_not_show_how_runs_scatter():
+    def first(s):
+        chosen = s.run == 0
+        return replace(
+            s, slip=s.slip[chosen], normal_force=s.normal_force[chosen], run=s.run[chosen],
+            traction_force=s.traction_force[chosen], run_names=s.run_names[:1],
+            time=s.time[chosen],
+        )  # fmt: skip
+
+    check = groups(linearised(first)[1], Advice("do"))
+    assert check.untested == "repeatability (one run)"
 
 
 def test_large_slips_are_judged_on_their_own():

@@ -77,7 +77,7 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
         return (B * x_m - jnp.tan(jnp.pi / (2 * C))) / (B * x_m - jnp.arctan(B * x_m))
 
     def log_density(z: Any) -> Any:
-        K, C, mu, x, g_t, g_n, b_n, c, s_0, s_1, rho, tau = (
+        K, C, mu, x, g_t, g_n, b_n, c, epsilon, c_r, s_0, s_1, rho, tau = (
             jax_value(prior, z[i]) for i, prior in enumerate(priors)
         )
         B = K / (C * mu)
@@ -85,9 +85,9 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
         def force(kappa: Any, measured_load: Any) -> Any:
             true_load = jnp.maximum((1 + g_n) * measured_load - b_n, 1e-9)
             E = curvature(B, C, x * true_load)
-            Bk = B * kappa
+            Bk = B * (kappa - epsilon * (1 - slip))
             f = mu * true_load * jnp.sin(C * jnp.arctan(Bk - E * (Bk - jnp.arctan(Bk))))
-            return (1 + g_t) * f
+            return (1 + g_t) * (f - c_r * true_load)
 
         above, centre, below = (force(slip + s * spread, load) for s in (1, 0, -1))
         at_light, at_heavy = force(slip_light, light), force(slip_heavy, heavy)

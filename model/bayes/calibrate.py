@@ -18,6 +18,7 @@ from model.bayes.fit import (
 )
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
+from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
@@ -74,6 +75,7 @@ def calibrate(
     source: str,
     watcher: Watcher,
     clock: Callable[[], float],
+    rig_errors: RigErrors = USUAL,
     earlier: Chains | None = None,
     keep: Callable[[Chains], object] = lambda _: None,
     stated: StatedPriors = UNSTATED,
@@ -89,6 +91,7 @@ def calibrate(
         source: Source of the samples, stored in the result.
         watcher: Receives progress, and can stop the fit.
         clock: Function that returns the time, to measure how long sampling takes [s].
+        rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
         earlier: Chains of a stopped fit of the same samples and settings, to resume from.
         keep: Called with all chains so far after every `CHUNK` kept steps, to save a checkpoint.
         stated: Priors that replace default ones.
@@ -106,7 +109,8 @@ def calibrate(
     """
     rng = np.random.default_rng(settings.seed)
     require_forces(samples, load_cell)
-    fit, comparison = _choose_law(samples, laws, load_cell, settings, rng, watcher, stated)
+    known = load_cell, rig_errors, stated
+    fit, comparison = _choose_law(samples, laws, known, settings, rng, watcher)
     began = clock()
     judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
     with explain_numerical_errors(samples, fit.posterior.law):
@@ -123,7 +127,7 @@ def calibrate(
 def _choose_law(
     samples: SlipSamples,
     laws: Mapping[str, SlipLaw],
-    load_cell: LoadCell,
+    known: tuple[LoadCell, RigErrors],
     settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
@@ -141,8 +145,8 @@ def _choose_law(
         if watcher.stop_requested():
             raise FitStopped(None)
         fit = prepare_fit(
-            samples, law, load_cell=load_cell, rng=rng, block_choice=choice,
-            threads=settings.threads, stated=stated,
+            samples, law, load_cell=known[0], rig_errors=known[1], stated=known[2], rng=rng,
+            block_choice=choice, threads=settings.threads,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks
         fits.append(fit)

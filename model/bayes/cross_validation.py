@@ -14,6 +14,7 @@ from model.bayes.laplace import climb
 from model.bayes.likelihood import run_log_likelihood
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
+from model.slip.definition import SlipDefinition, slip_per_radius_error
 from model.slip.law import Array, SlipLaw
 
 MAX_SINGLE_FOLDS = 20  # runs up to which each is left out alone
@@ -27,7 +28,7 @@ class CrossValidation:
     Attributes:
         fold: Index of the fold in which each run was left out, shape (n_runs,).
         values: Law and measurement parameters at the posterior mode without each fold's runs,
-            shape (n_folds, k + 8).
+            shape (n_folds, k + 10).
         log_density: Log density of each run's blocks at the mode without the run, (n_runs,) [-].
     """
 
@@ -55,13 +56,14 @@ class CrossValidation:
         predicted = np.empty(len(samples))
         for index, part in enumerate(samples.slices()):
             values = self.values[self.fold[index]]
-            predicted[part] = measured_force(
-                law, values, samples.slip[part], samples.normal_force[part]
-            )
+            slip, load = samples.slip[part], samples.normal_force[part]
+            predicted[part] = measured_force(law, values, slip, load, samples.definition)
         return predicted
 
 
-def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array) -> Array:
+def measured_force(
+    law: SlipLaw, values: Array, slip: Array, normal_force: Array, definition: SlipDefinition
+) -> Array:
     """Predict measured traction from measured slip and load, without run offset [N].
 
     As in `model.bayes.likelihood`, crosstalk counts to first order: the predicted traction, not the
@@ -71,16 +73,21 @@ def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array
 
     Args:
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, of which gains, load bias and crosstalk are used,
-            shape (k + 8,).
+        values: Law and measurement parameters, of which gains, load bias, crosstalk, the error of
+            the radii and rolling resistance are used, shape (k + 10,).
         slip: Slip ratio, shape (n,) [-].
         normal_force: Measured normal force, shape (n,) [N].
+        definition: Definition of the slip ratios.
     """
     k = len(law.parameters)
-    g_t, g_n, b_n, c = values[k : k + 4]
+    g_t, g_n, b_n, c, epsilon, c_r = values[k : k + 6]
+    slip = slip - epsilon * slip_per_radius_error(slip, definition)
+
+    def force(load: Array) -> Array:
+        return (1 + g_t) * (law.force(slip, load, values[:k]) - c_r * load)
+
     load = np.maximum((1 + g_n) * normal_force - b_n, 1e-9)
-    load = np.maximum(load + c * (1 + g_t) * law.force(slip, load, values[:k]), 1e-9)
-    return (1 + g_t) * law.force(slip, load, values[:k])
+    return force(np.maximum(load + c * force(load), 1e-9))
 
 
 def r_squared(measured: Array, predicted: Array) -> float:

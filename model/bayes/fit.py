@@ -14,6 +14,7 @@ from model.bayes.laplace import Laplace, LaplaceMixture, find_modes
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
 from model.bayes.priors import Prior
+from model.bayes.rig_errors import USUAL, RigErrors, tested_on_both_sides
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.errors import DomainError, FitError, InsufficientData
@@ -38,6 +39,7 @@ class PreparedFit:
         cross_validation: Prediction of left-out runs; None for one run or without validation.
         block_choice: The block length and the reason for it.
         load_cell: Prior knowledge of the load cell.
+        rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
         defaults: Default prior of each parameter by name, beside those of the posterior.
         stated: Priors that were stated.
     """
@@ -47,6 +49,7 @@ class PreparedFit:
     cross_validation: CrossValidation | None
     block_choice: BlockChoice
     load_cell: LoadCell
+    rig_errors: RigErrors
     defaults: Mapping[str, Prior]
     stated: StatedPriors = UNSTATED
 
@@ -82,6 +85,7 @@ def prepare_fit(
     *,
     load_cell: LoadCell,
     rng: np.random.Generator,
+    rig_errors: RigErrors = USUAL,
     block_choice: BlockChoice | None = None,
     validate: bool = True,
     threads: int = 2,
@@ -94,6 +98,7 @@ def prepare_fit(
         law: The slip law.
         load_cell: Prior knowledge of the load cell.
         rng: Source of randomness of the starting points.
+        rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
         block_choice: The block length; chosen from the residuals when None.
         validate: Whether to cross-validate, which a single run never is.
         threads: Folds of the cross-validation fitted at once.
@@ -109,7 +114,9 @@ def prepare_fit(
     _require_enough(samples, law)
     require_forces(samples, load_cell)
     with explain_numerical_errors(samples, law):
-        return _prepared(samples, law, load_cell, rng, block_choice, validate, threads, stated)
+        return _prepared(
+            samples, law, load_cell, rig_errors, rng, block_choice, validate, threads, stated
+        )
 
 
 @contextmanager
@@ -144,6 +151,7 @@ def _prepared(
     samples: SlipSamples,
     law: SlipLaw,
     load_cell: LoadCell,
+    rig_errors: RigErrors,
     rng: np.random.Generator,
     block_choice: BlockChoice | None,
     validate: bool,
@@ -152,7 +160,7 @@ def _prepared(
 ) -> PreparedFit:
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
-    defaults = default_priors(law, everything, load_cell)
+    defaults = default_priors(law, everything, load_cell, rig_errors)
     choice = block_choice or choose_block_length(samples, law, priors=defaults, rng=rng)
     blocks = block_means(samples, choice.length)
     fixed = _not_identified(blocks)
@@ -165,7 +173,9 @@ def _prepared(
         if validate and blocks.n_runs > 1
         else None
     )
-    return PreparedFit(posterior, modes, validation, choice, load_cell, defaults, stated)
+    return PreparedFit(
+        posterior, modes, validation, choice, load_cell, rig_errors, defaults, stated
+    )
 
 
 def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
@@ -241,13 +251,17 @@ def _implausible(load: float, traction: float) -> str:
 
 
 def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
-    """Return fixed values by name: run offsets and noise correlation zero if no run has two blocks.
+    """Return values of parameters that the data cannot tell, all zero, by name.
 
-    Empty otherwise: all parameters are then sampled.
+    Run offsets and noise correlation if no run has two blocks; errors of the radii and rolling
+    resistance if slip was not tested on both sides of zero. All others are sampled.
     """
-    if len(blocks) > blocks.n_runs:
-        return {}
-    return {"noise_correlation": 0.0, "offset_spread": 0.0}
+    names: list[str] = []
+    if len(blocks) <= blocks.n_runs:
+        names += ["noise_correlation", "offset_spread"]
+    if not tested_on_both_sides(blocks):
+        names += ["radius_error", "rolling_resistance"]
+    return dict.fromkeys(names, 0.0)
 
 
 def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:

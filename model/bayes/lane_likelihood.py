@@ -15,24 +15,28 @@ from model.bayes.load_rule import load_rule
 from model.compiled import borrowing, inlined
 from model.elementary import log_of
 from model.lanes import LANES, put, row, select, size
+from model.slip.definition import slip_per_radius_error
 from model.slip.lane_force import ROWS, LaneLaw, law_at_load, law_at_slip
 from model.slip.law import Array
 
-GAIN_T, GAIN_N, BIAS, CROSSTALK, FLOOR, GROWTH, RHO, TAU = range(ROWS, ROWS + 8)
+(
+    GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, FLOOR, GROWTH, RHO, TAU,
+) = range(ROWS, ROWS + 10)  # fmt: skip
 (
     LOAD, CENTRE, ABOVE, BELOW, LIGHT_LOAD, LIGHT, HEAVY_LOAD, HEAVY, HALF_WIDTH, HEAVY_SHARE,
-    LOAD_STEP, SLIP_PER_LOAD, FORCE, OWN_ERROR,
-) = range(14)  # fmt: skip
+    LOAD_STEP, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
+) = range(15)  # fmt: skip
 """Columns of `block_table`."""
 LOG_2PI = math.log(2 * math.pi)
 
 
 def block_table(blocks: SlipBlocks) -> Array:
-    """Compute what the likelihood needs of each block, shape (n, 14).
+    """Compute what the likelihood needs of each block, shape (n, 15).
 
     Load with its slip and that above and below it by sqrt(3) standard deviations, light load with
     slip, heavy load with slip, half the distance of the outer slips, the share of the heavy load,
-    the difference of the two loads, slip over load, traction and the variance of slip's own error.
+    the difference of the two loads, slip over load, slip over radius error, traction and the
+    variance of slip's own error.
     """
     rule, slip = load_rule(blocks), blocks.slip
     half = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
@@ -41,6 +45,7 @@ def block_table(blocks: SlipBlocks) -> Array:
             blocks.normal_force, slip, slip + half, slip - half,
             rule.light, rule.slip_light, rule.heavy, rule.slip_heavy,
             half, rule.heavy_share, rule.heavy - rule.light, rule.slip_per_load,
+            slip_per_radius_error(slip, blocks.definition),
             blocks.traction_force, blocks.slip_error,
         ]
     )  # fmt: skip
@@ -52,7 +57,7 @@ def lane_log_likelihood(blocks: SlipBlocks, law: LaneLaw, measurement: Array) ->
     Args:
         blocks: The block means.
         law: Coefficients of the law for w parameter vectors.
-        measurement: The 8 parameters of the measurement, shape (w, 8).
+        measurement: The 10 parameters of the measurement, shape (w, 10).
 
     Returns:
         Log density of each run, shape (w, n_runs).
@@ -75,7 +80,7 @@ def _fill(kind, sensitive, reference, rows, table, starts, run_slip_error, zero,
     """Fill the log densities `found`, shape (groups, n_runs, LANES); see `lane_log_likelihood`.
 
     The filter is that of `model.bayes.likelihood.filter_runs`. `rows` has shape (groups, values,
-    LANES), `table` (n, 14), `starts` (n_runs + 1,), `run_slip_error` (n_runs,), `zero` (1, LANES).
+    LANES), `table` (n, 15), `starts` (n_runs + 1,), `run_slip_error` (n_runs,), `zero` (1, LANES).
     """
     for group in range(len(rows)):
         A, result = rows[group], found[group]
@@ -122,17 +127,18 @@ def _positive(variance):
 def _predicted(kind, sensitive, reference, A, block):
     """Compute a block's expected traction, slope in slip and noise; see `predict_blocks`."""
     g_t, g_n, b_n = 1.0 + row(A, GAIN_T), 1.0 + row(A, GAIN_N), row(A, BIAS)
+    shift, c_r = row(A, RADIUS) * block[SHIFT], row(A, ROLLING)
     load = _true_load(g_n, b_n, block[LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    centre = g_t * law_at_slip(kind, at_load, block[CENTRE], load)
-    above = g_t * law_at_slip(kind, at_load, block[ABOVE], load)
-    below = g_t * law_at_slip(kind, at_load, block[BELOW], load)
+    centre = g_t * (law_at_slip(kind, at_load, block[CENTRE] - shift, load) - c_r * load)
+    above = g_t * (law_at_slip(kind, at_load, block[ABOVE] - shift, load) - c_r * load)
+    below = g_t * (law_at_slip(kind, at_load, block[BELOW] - shift, load) - c_r * load)
     load = _true_load(g_n, b_n, block[LIGHT_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    light = g_t * law_at_slip(kind, at_load, block[LIGHT], load)
+    light = g_t * (law_at_slip(kind, at_load, block[LIGHT] - shift, load) - c_r * load)
     load = _true_load(g_n, b_n, block[HEAVY_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    heavy = g_t * law_at_slip(kind, at_load, block[HEAVY], load)
+    heavy = g_t * (law_at_slip(kind, at_load, block[HEAVY] - shift, load) - c_r * load)
     across = heavy - light
     mean = light + block[HEAVY_SHARE] * across + (above - 2.0 * centre + below) * (1.0 / 6.0)
     slope = (above - below) * (0.5 / block[HALF_WIDTH])

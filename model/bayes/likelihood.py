@@ -4,9 +4,13 @@ r"""Likelihood of block means: one slip law measured by a load cell and two spee
 For block j of run i
 
 .. math::
-    F_{ij} = (1+g_t)\,\bar f\bigl(\kappa_{ij}, (1+g_n) F_n - b_n + c (1+g_t) f\bigr) + b_i + e_{ij},
+    F_{ij} = (1+g_t)\bigl[\bar f(\kappa_{ij} - \varepsilon\,\partial\kappa, N_{ij})
+             - c_r N_{ij}\bigr] + b_i + e_{ij}, \qquad N_{ij} = (1+g_n) F_n - b_n + c\,F_{ij},
 
-with the law averaged over the spread of the true slip, a run offset
+with the law averaged over the spread of the true slip, which a wrong ratio of the radii shifts by
+its relative error :math:`\varepsilon` times :math:`\partial\kappa`, `slip_per_radius_error`; a
+rolling resistance of :math:`c_r` times the load, which acts against the driving direction whatever
+the slip (Pacejka's vertical shift); a run offset
 :math:`b_i \sim N(0, \tau^2)`, noise e of marginal standard deviation :math:`s_0 + s_1 |f|` that is
 AR(1) after standardising, and the slip errors of `SlipBlocks` entering through the law's slope.
 Offset, shared slip error and noise are integrated out exactly by a Kalman filter of each run.
@@ -20,6 +24,7 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.lane_likelihood import lane_log_likelihood
 from model.bayes.load_rule import load_rule
 from model.compiled import compiled
+from model.slip.definition import slip_per_radius_error
 from model.slip.lane_force import lane_law
 from model.slip.law import Array, Parameter, SlipLaw
 
@@ -32,6 +37,10 @@ NUISANCE = (
               "zero error of the normal-force channel"),
     Parameter("crosstalk", "c", "dimensionless", -1.0, 1.0,
               "normal force missed for each newton of traction"),
+    Parameter("radius_error", "epsilon", "dimensionless", -1.0, np.inf,
+              "relative error of the ratio of radii, ground disc over leg"),
+    Parameter("rolling_resistance", "c_r", "dimensionless", -np.inf, np.inf,
+              "force against driving at any slip, for each newton of load"),
     Parameter("noise_floor", "s_0", "newton", 0.0, np.inf,
               "noise of a block mean at zero force"),
     Parameter("noise_slope", "s_1", "dimensionless", 0.0, np.inf,
@@ -41,7 +50,7 @@ NUISANCE = (
     Parameter("offset_spread", "tau", "newton", 0.0, np.inf,
               "standard deviation of the force offset between runs"),
 )  # fmt: skip
-"""The 8 parameters of the measurement, in their order behind the law's in parameter vectors."""
+"""The 10 parameters of the measurement, in their order behind the law's in parameter vectors."""
 
 
 @dataclass(frozen=True)
@@ -77,17 +86,19 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
     Args:
         blocks: The block means, n of them.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 8).
+        values: Law and measurement parameters, shape (w, k + 10).
     """
     k = len(law.parameters)
     law_values = values[:, :k].T[:, :, None]
-    g_t, g_n, b_n, c, s_0, s_1 = values[:, k : k + 6].T[:, :, None]
+    g_t, g_n, b_n, c, epsilon, c_r, s_0, s_1 = values[:, k : k + 8].T[:, :, None]
     rule = load_rule(blocks)
+    shift = epsilon * slip_per_radius_error(blocks.slip, blocks.definition)
 
     def force_at(slip: Array, load: Array) -> Array:
         # A load cell bias can push the lightest loads through zero; no law is defined there.
         true_load = np.maximum((1 + g_n) * load - b_n, 1e-9)
-        return (1 + g_t) * law.force(slip, true_load, law_values)
+        force = law.force(slip - shift, true_load, law_values)
+        return (1 + g_t) * (force - c_r * true_load)
 
     half_width = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
     offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: loads are computed once
@@ -109,7 +120,7 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 8).
+        values: Law and measurement parameters, shape (w, k + 10).
 
     Returns:
         Log density of each run, shape (w, n_runs).
@@ -132,7 +143,7 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 8).
+        values: Law and measurement parameters, shape (w, k + 10).
 
     Returns:
         Log likelihood of each parameter vector, shape (w,).

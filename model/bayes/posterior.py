@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import NUISANCE, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
+from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.stated_priors import PriorCorrelation
 from model.slip.law import Array, Parameter, SlipLaw
 
@@ -34,17 +35,24 @@ class LoadCell:
     crosstalk_sd: float = 0.005
 
 
-def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dict[str, Prior]:
+def default_priors(
+    law: SlipLaw,
+    blocks: SlipBlocks,
+    load_cell: LoadCell,
+    rig_errors: RigErrors = USUAL,
+) -> dict[str, Prior]:
     """Choose the prior of every parameter of a law and of the measurement, by name.
 
     Priors of the law are broad. Only scales come from the data: the median load (for the peak slip)
     and the largest traction (for the noise). Priors of the load cell's errors are as narrow as
-    `load_cell` says. Any other parameter of a law has a broad prior over its support, by `_vague`.
+    `load_cell` says, those of the rig's errors as `rig_errors` says. Any other parameter of a law
+    has a broad prior over its support, by `_vague`.
 
     Args:
         law: The slip law.
         blocks: The block means.
         load_cell: Prior knowledge of the load cell.
+        rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
     """
     load_scale = float(np.median(blocks.normal_force))
     force_scale = float(np.abs(blocks.traction_force).max())
@@ -61,6 +69,8 @@ def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dic
         "gain_normal": Normal(0.0, load_cell.gain_sd),
         "bias_normal": Normal(0.0, load_cell.bias_sd),
         "crosstalk": Normal(0.0, load_cell.crosstalk_sd),
+        "radius_error": Normal(0.0, rig_errors.radius_ratio),
+        "rolling_resistance": Normal(0.0, rig_errors.rolling_resistance),
         "noise_floor": LogNormal(0.02 * force_scale, 1.5),
         "noise_slope": HalfNormal(0.05),
         "noise_correlation": Uniform(-0.5, 0.99),
@@ -136,7 +146,7 @@ class SlipPosterior:
         return np.quantile(self.blocks.normal_force, [0.0, 0.25, 0.5, 0.75, 1.0])
 
     def values(self, z: Array) -> Array:
-        """Map coordinates z (w, d) to values of all parameters, fixed ones included, (w, k + 8)."""
+        """Map coordinates z (w, d) to values of all parameters, fixed ones too, (w, k + 10)."""
         columns = iter(np.moveaxis(self.own_coordinates(z), -1, 0))
         return np.stack(
             [

@@ -66,7 +66,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 8).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 10).
 
     Raises:
         LinAlgError: The covariance of a run's blocks is singular.

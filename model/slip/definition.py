@@ -104,6 +104,24 @@ def convert_slip(
     return s
 
 
+def slip_per_radius_error(slip: ArrayLike, definition: SlipDefinition | str) -> Array:
+    r"""Compute by how much a slip ratio is too large for each relative error of the ratio of radii.
+
+    With :math:`v_g/v_l` taken too small by a factor :math:`1 + \varepsilon`, the true slip is the
+    computed one less :math:`\varepsilon` times this, to first order: 1 - slip for material slip,
+    1 + slip for travel slip, 1 - abs(slip) for the slip over the larger speed.
+
+    Args:
+        slip: Slip ratio in `definition` [-].
+        definition: Slip definition.
+    """
+    kappa = np.asarray(slip, dtype=float)
+    definition = SlipDefinition(definition)
+    if definition is SlipDefinition.MATERIAL:
+        return 1 - kappa
+    return 1 + kappa if definition is SlipDefinition.TRAVEL else 1 - np.abs(kappa)
+
+
 def walk_slip_from_material(slip: ArrayLike, leg_angle: ArrayLike) -> Array:
     r"""Convert the rig's slip ratio, Eq. (4-44), to the walk's, Eq. (4-31), for a rolling leg.
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from model.bayes.blocks import slip_noise_variance
+from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
 from model.counted import counted
 from model.errors import ModelError
@@ -49,6 +50,7 @@ class RigData:
             and why, times not used, how files were read, units converted, runs left out, copies.
         load_cell: Standard deviations from `[load_cell]` of `columns.toml` by name, SI; only those
             given.
+        rig_errors: Prior standard deviations of the rig's errors; of several tables the largest.
         repeated: The notes on duplicate data, which `notes` has too.
         priors: Priors from `[priors]` of `columns.toml`, as texts such as "friction = 0.4 ± 0.05".
         priors_file: The `columns.toml` that they are in; None without.
@@ -59,6 +61,7 @@ class RigData:
     source: str
     notes: tuple[str, ...]
     load_cell: Mapping[str, float]
+    rig_errors: RigErrors = USUAL
     repeated: tuple[str, ...] = ()
     priors: tuple[str, ...] = ()
     priors_file: Path | None = None
@@ -116,6 +119,7 @@ def read_rig_data(
             *columns_above_roots(sources, columns),
         ),
         load_cell=_joined_load_cell(parts),
+        rig_errors=_joined_rig_errors(parts),
         repeated=duplicates,
         priors=priors,
         priors_file=priors_file,
@@ -340,6 +344,15 @@ def _joined_priors(parts: Sequence[RigPart]) -> tuple[tuple[str, ...], Path | No
                 file=file, key="priors",
             )  # fmt: skip
     return (maps[0][1], maps[0][0]) if maps else ((), None)
+
+
+def _joined_rig_errors(parts: Sequence[RigPart]) -> RigErrors:
+    """Return the larger standard deviations of all parts' rigs."""
+    each = [part.columns.rig_errors.resolved(part.columns.constants) for part in parts]
+    return RigErrors(
+        max(errors.radius_ratio for errors in each),
+        max(errors.rolling_resistance for errors in each),
+    )
 
 
 def _notes(parts: Sequence[RigPart]) -> list[str]:

@@ -98,6 +98,7 @@ def calibrate(
             data.samples,
             laws,
             load_cell=scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell}),
+            rig_errors=data.rig_errors,
             settings=_sampler(request, stated),
             source=data.source,
             watcher=watcher,
@@ -190,10 +191,9 @@ def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, 
 def _write(
     request: CalibrationRequest, calibration: Calibration, inputs: dict[str, str], stated: Stated
 ) -> None:
-    priors = priors_content(stated, calibration)
-    settings = {
-        **request.decisive(), "load_cell": asdict(calibration.fit.load_cell), "priors": priors,
-    }  # fmt: skip
+    priors, fit = priors_content(stated, calibration), calibration.fit
+    known = {"load_cell": asdict(fit.load_cell), "rig_errors": asdict(fit.rig_errors)}
+    settings = {**request.decisive(), **known, "priors": priors}
     content = {"source": calibration.source, "settings": settings, "inputs": inputs}
     with result_folder(request.out, CALIBRATION, content=content) as folder:
         write_tables(folder, calibration, inputs=inputs, priors=priors)

@@ -47,6 +47,10 @@ _LOAD_CELL: Final = """
 # gain_sd = 0.005
 # bias_sd = "0.05 N"
 # crosstalk_sd = 0.005
+
+[{at}rig_errors]  # standard deviations, of what a fit of both sides of zero slip estimates
+# radius = "0.1 mm"  # of each disc
+# rolling_resistance = 0.02  # over the load
 """
 _MEANINGS: Final = {
     "t": "time, increasing", "t_s": "time, increasing", "x_m": "position in the floor frame",

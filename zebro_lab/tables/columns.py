@@ -10,6 +10,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from model.bayes.rig_errors import (
+    RADIUS_TOLERANCE,
+    ROLLING_RESISTANCE,
+    UNKNOWN_RATIO,
+    RigErrors,
+    radius_ratio_sd,
+)
 from model.slip.definition import SlipDefinition
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError, UnitError
@@ -160,6 +167,34 @@ class RunRule:
 
 
 @dataclass(frozen=True)
+class RigErrorsStated:
+    """Standard deviations of errors of the rig, as a `columns.toml` states them.
+
+    Attributes:
+        radius: Of each disc's radius [m].
+        radius_ratio: Of the relative error of the ratio of the radii, instead of `radius` [-]; None
+            if not given.
+        rolling_resistance: Of the rolling resistance over the load [-].
+    """
+
+    radius: float = RADIUS_TOLERANCE
+    radius_ratio: float | None = None
+    rolling_resistance: float = ROLLING_RESISTANCE
+
+    def resolved(self, radii: Mapping[str, float]) -> RigErrors:
+        """Return the standard deviations that a fit takes.
+
+        Args:
+            radii: `radius_leg` and `radius_ground` [m]; without both, the ratio's standard
+                deviation is `UNKNOWN_RATIO` if it is not given.
+        """
+        ratio = self.radius_ratio
+        if ratio is None and {"radius_leg", "radius_ground"} <= radii.keys():
+            ratio = radius_ratio_sd(radii["radius_leg"], radii["radius_ground"], self.radius)
+        return RigErrors(UNKNOWN_RATIO if ratio is None else ratio, self.rolling_resistance)
+
+
+@dataclass(frozen=True)
 class Columns:
     """Content of a `columns.toml`.
 
@@ -174,6 +209,7 @@ class Columns:
         load_cell: Given standard deviations from the load cell's certificate by name, SI:
             `zero_stability`, `gain_sd`, `bias_sd`, `crosstalk_sd`.
         priors: What is known of parameters beforehand, as texts such as "friction = 0.4 ± 0.05".
+        rig_errors: Standard deviations of errors of the rig.
     """
 
     file: Path | None = None
@@ -185,6 +221,7 @@ class Columns:
     keep: tuple[RowCondition, ...] = ()
     load_cell: Mapping[str, float] = field(default_factory=dict)
     priors: tuple[str, ...] = ()
+    rig_errors: RigErrorsStated = field(default_factory=lambda: RigErrorsStated())
 
     @property
     def stated_in(self) -> str:

@@ -20,6 +20,7 @@ from zebro_lab.tables.columns import (
     COLUMNS_FILE,
     Columns,
     MappedColumn,
+    RigErrorsStated,
     RunRule,
     parse_definition,
     scaled,
@@ -40,6 +41,13 @@ _LOAD_CELL = {
     "gain_sd": "dimensionless",
     "bias_sd": "N",
     "crosstalk_sd": "dimensionless",
+}
+LARGEST_RIG_ERROR = {"m": 0.005, "dimensionless": 0.2}
+"""Largest standard deviation of a rig's error that a number without a unit can state, by unit."""
+_RIG_ERRORS = {
+    "radius": "m",
+    "radius_ratio": "dimensionless",
+    "rolling_resistance": "dimensionless",
 }
 _SOURCES = ("real", "sim", "replay", "import", "mixed", "unknown")
 """Kinds of source; `import` and `mixed` only stand beside exported tables."""
@@ -80,6 +88,7 @@ def parse_columns(table: SettingsTable) -> Columns:
         keep=read_row_conditions(table.table("rows")),
         load_cell=_load_cell(table.table("load_cell")),
         priors=_priors(table.table("priors")),
+        rig_errors=_rig_errors(table.table("rig_errors")),
     )
     table.finish()
     return columns_file
@@ -346,6 +355,15 @@ def _priors(table: SettingsTable) -> tuple[str, ...]:
     return tuple(
         f"{key} {'~' if '(' in text else '='} {text.lstrip('~= ')}" for key, text in texts.items()
     )
+
+
+def _rig_errors(table: SettingsTable) -> RigErrorsStated:
+    stated = {
+        key: table.quantity(key, unit, above=0.0, usual=LARGEST_RIG_ERROR[unit])
+        for key, unit in _RIG_ERRORS.items()
+        if key in table
+    }
+    return RigErrorsStated(**stated)
 
 
 def _texts(value: Any, key: str) -> list[tuple[str, str]]:

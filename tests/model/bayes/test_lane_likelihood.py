@@ -19,7 +19,8 @@ TYPICAL = {
     "slip_stiffness": 20.0, "shape": 1.5, "friction": 0.4, "peak_slip_per_load": 0.0066,
     "curvature": -0.5, "friction_load_exponent": -0.1, "stiffness_load_exponent": 0.2,
     "kinetic_ratio": 0.8, "stribeck_slip": 0.1, "gain_traction": 0.01, "gain_normal": -0.01,
-    "bias_normal": 0.1, "crosstalk": 0.02, "noise_floor": 0.1, "noise_slope": 0.03,
+    "bias_normal": 0.1, "crosstalk": 0.02, "radius_error": 0.004, "rolling_resistance": 0.02,
+    "noise_floor": 0.1, "noise_slope": 0.03,
     "noise_correlation": 0.4, "offset_spread": 0.1,
 }  # fmt: skip
 
@@ -45,7 +46,7 @@ def blocks(seed=0, sizes=(1, 4, 9, 2)):
 
 
 def vectors(law, count, seed=1):
-    """Return parameter vectors near typical ones, shape (count, k + 8)."""
+    """Return parameter vectors near typical ones, shape (count, k + 10)."""
     middle = np.array([TYPICAL[p.name] for p in (*law.parameters, *NUISANCE)])
     return middle * np.random.default_rng(seed).uniform(0.9, 1.1, (count, len(middle)))
 
@@ -90,7 +91,9 @@ def test_parameters_beyond_any_number_give_no_density_above_that_of_the_definiti
     values = middle * np.exp(rng.normal(0.0, 60.0, middle.shape))
     values[:, -2] = rng.uniform(-1.0, 1.0, len(values))
     with np.errstate(all="ignore"):
-        found = lane_log_likelihood(data, lane_law(law, values[:, :-8]), values[:, -8:]).sum(axis=1)
+        found = lane_log_likelihood(data, lane_law(law, values[:, :-10]), values[:, -10:]).sum(
+            axis=1
+        )
         exact = by_definition(data, law, values).sum(axis=1)
     finite = np.isfinite(exact)
     assert finite.any()

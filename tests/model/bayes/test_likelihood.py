@@ -25,7 +25,7 @@ SIZES = (1, 4, 9, 1, 6)
 
 
 def parameters(**nuisance):
-    """Return one parameter vector, shape (1, k + 8); noise 0.1 N, the rest 0 unless named."""
+    """Return one parameter vector, shape (1, k + 10); noise 0.1 N, the rest 0 unless named."""
     known = {"noise_floor": 0.1, **nuisance}
     return np.array([[*LAW_VALUES, *(known.get(p.name, 0.0) for p in NUISANCE)]])
 

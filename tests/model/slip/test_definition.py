@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from model.errors import DefinitionMismatch, DomainError, ModelError
 from model.slip import MagicFormula, SlipDefinition, convert_slip, require_definition, slip_ratio
-from model.slip.definition import walk_slip_from_material
+from model.slip.definition import slip_per_radius_error, walk_slip_from_material
 
 PAIRS = tuple(permutations(SlipDefinition, 2))
 DEFINITIONS = st.sampled_from(SlipDefinition)
@@ -116,3 +116,15 @@ def test_walk_slip_is_eq_4_31_of_the_same_contact(leg_angle, hip_speed, leg_rate
     material = (leg_rate * hip_height - hip_speed) / (radius * leg_rate)
     expected = (v_R - v_C) / v_C  # Eq. (4-31)
     assert walk_slip_from_material(material, leg_angle) == pytest.approx(expected, abs=1e-9)
+
+
+@given(SPEEDS, SPEEDS, DEFINITIONS, st.floats(-1e-4, 1e-4))
+def test_a_wrong_ratio_of_radii_shifts_slip_by_its_error_times_the_derivative(
+    v_l, v_g, kind, error
+):
+    true = slip_ratio(v_l, v_g, kind)
+    computed = slip_ratio(v_l, v_g / (1 + error), kind)
+    shift = error * slip_per_radius_error(computed, kind)
+    # The smaller speed decides how far the ratio goes; the larger's branch may change at equality.
+    size = max(v_l / v_g, v_g / v_l)
+    assert computed - shift == pytest.approx(true, abs=1e-8 * size + 1e-12)

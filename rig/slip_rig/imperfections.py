@@ -40,10 +40,14 @@ class RigImperfections:
             white [s].
         bump_height: Relative rise of the load at the top of the ground disc's bump [-].
         bump_width: Angle of the ground disc under the whole bump [rad].
+        radius_error: Relative error of the stated ratio of radii, ground disc over leg disc: the
+            true ratio is the stated one times 1 + this [-].
+        rolling_resistance: Resistance of rolling over the load, a force against driving at any slip
+            while the leg disc turns [-].
 
     Raises:
-        DomainError: A standard deviation, time, height or width is negative or NaN, or a gain
-            error is not above -1.
+        DomainError: A standard deviation, time, height or width is negative or NaN, or an error of
+            a gain or of the radii is not above -1.
     """
 
     gain_traction: float = 0.0
@@ -59,9 +63,11 @@ class RigImperfections:
     slip_wander_time: float = 0.0
     bump_height: float = 0.0
     bump_width: float = 1.0
+    radius_error: float = 0.0
+    rolling_resistance: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("gain_traction", "gain_normal"):
+        for name in ("gain_traction", "gain_normal", "radius_error"):
             if not getattr(self, name) > -1:
                 raise DomainError(f"{name} is {getattr(self, name):g}; expected above -1")
         for name in _NOT_NEGATIVE:
@@ -69,7 +75,8 @@ class RigImperfections:
                 raise DomainError(f"{name} is {getattr(self, name):g}; expected 0 or more")
 
 
-_SIGNED = {"gain_traction", "gain_normal", "bias_normal", "crosstalk"}
+_SIGNED = {"gain_traction", "gain_normal", "bias_normal", "crosstalk", "radius_error",
+           "rolling_resistance"}  # fmt: skip
 _NOT_NEGATIVE = tuple(f.name for f in fields(RigImperfections) if f.name not in _SIGNED)
 
 TYPICAL_RIG = RigImperfections(

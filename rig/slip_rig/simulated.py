@@ -294,7 +294,8 @@ class SimulatedRig:
 
     def _contact(self, leg: Array, ground: Array, n: int) -> tuple[Array, Array, Array]:
         speed_leg = leg * self._plan.radius_leg
-        speed_ground = ground * self._plan.radius_ground
+        true_radius = self._plan.radius_ground * (1 + self._imperfections.radius_error)
+        speed_ground = ground * true_radius
         moving = np.abs(speed_leg) > SLOWEST
         slip = np.zeros(n)
         slip[moving] = slip_ratio(
@@ -305,7 +306,9 @@ class SimulatedRig:
             angle, height=self._imperfections.bump_height, width=self._imperfections.bump_width
         )
         load = self.load * (1 + rise)
-        return slip, load, np.where(moving, self._law.force(slip, load, self._values), 0.0)
+        resistance = self._imperfections.rolling_resistance * load * np.sign(speed_leg)
+        force = self._law.force(slip, load, self._values) - resistance
+        return slip, load, np.where(moving, force, 0.0)
 
     def _noisy(self, force: Array, n: int) -> Array:
         size = self._imperfections.noise_sd0 + self._imperfections.noise_sd1 * np.abs(force)

@@ -144,12 +144,13 @@ def simulate_sweep(
     r"""Simulate the log of a sweep.
 
     .. math::
-        F_t = (1 + g_t)\,f(\kappa, F_n) + b_{run} + e, \qquad
+        F_t = (1 + g_t)\,[f(\kappa, F_n) - c_r F_n] + b_{run} + e, \qquad
         F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
 
     with F_t the measured traction, f the law at the true slip kappa and load F_n, b_run ~
-    N(0, tau²), and e an AR(1) process of marginal standard deviation s0 + s1·|(1 + g_t)·f|,
-    stationary and independent in each run; g_t, g_n, b_n, c, tau, s0, s1 as in `RigImperfections`.
+    N(0, tau²), and e an AR(1) process, stationary and independent in each run, whose marginal
+    standard deviation is s0 + s1 times the size of the first term; g_t, g_n, b_n, c, c_r, tau, s0
+    and s1 as in `RigImperfections`.
 
     Args:
         law: The true slip law, in the material slip ratio.
@@ -162,10 +163,12 @@ def simulate_sweep(
         The log and the true values.
     """
     slip = _wander_slip(plan, imperfections, rng)
-    omega_ground = plan.speed_leg * (1 - slip) / plan.radius_ground
+    true_radius = plan.radius_ground * (1 + imperfections.radius_error)
+    omega_ground = plan.speed_leg * (1 - slip) / true_radius
     load = _ride_bump(omega_ground, plan, imperfections, rng)
     offset = rng.normal(0.0, imperfections.offset_sd, plan.n_runs)
-    force = (1 + imperfections.gain_traction) * law.force(slip, load, values)
+    pulled = law.force(slip, load, values) - imperfections.rolling_resistance * load
+    force = (1 + imperfections.gain_traction) * pulled
     traction_force = force + offset[:, None] + _force_noise(force, plan, imperfections, rng)
     normal_force = measured_load(load, traction_force, imperfections=imperfections)
     table: dict[str, Column] = {

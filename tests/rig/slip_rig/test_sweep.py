@@ -145,6 +145,22 @@ def test_gain_error_scales_the_traction_and_nothing_else():
     np.testing.assert_array_equal(scaled.table["normal_force"], plain.table["normal_force"])
 
 
+# --- radii and rolling
+
+
+def test_a_wrong_radius_shifts_measured_slip_by_its_error_times_one_less_slip():
+    exact, wrong = sweep(), sweep(RigImperfections(radius_error=0.003))
+    np.testing.assert_array_equal(wrong.slip_true, exact.slip_true)
+    measured = 1 - (1 - exact.slip_true) / 1.003
+    np.testing.assert_allclose(wrong.samples.slip, measured, atol=1e-12)
+
+
+def test_rolling_resistance_pulls_against_driving_by_its_share_of_the_load():
+    free, held = sweep(), sweep(RigImperfections(rolling_resistance=0.03))
+    lost = free.table["traction_force"] - held.table["traction_force"]
+    np.testing.assert_allclose(lost, 0.03 * free.load_true, rtol=1e-9)
+
+
 # --- run offsets and noise
 
 

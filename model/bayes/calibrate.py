@@ -127,11 +127,10 @@ def calibrate(
 def _choose_law(
     samples: SlipSamples,
     laws: Mapping[str, SlipLaw],
-    known: tuple[LoadCell, RigErrors],
+    known: tuple[LoadCell, RigErrors, StatedPriors],
     settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
-    stated: StatedPriors,
 ) -> tuple[PreparedFit, LawComparison | None]:
     """Prepare the fit of each law; return the one that `compare` chooses, and the comparison.
 

@@ -14,7 +14,7 @@ from model.bayes.laplace import Laplace, LaplaceMixture, find_modes
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
 from model.bayes.priors import Prior
-from model.bayes.rig_errors import USUAL, RigErrors, tested_on_both_sides
+from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.errors import DomainError, FitError, InsufficientData
@@ -251,17 +251,13 @@ def _implausible(load: float, traction: float) -> str:
 
 
 def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
-    """Return values of parameters that the data cannot tell, all zero, by name.
+    """Return fixed values by name: run offsets and noise correlation zero if no run has two blocks.
 
-    Run offsets and noise correlation if no run has two blocks; errors of the radii and rolling
-    resistance if slip was not tested on both sides of zero. All others are sampled.
+    Empty otherwise: all parameters are then sampled.
     """
-    names: list[str] = []
-    if len(blocks) <= blocks.n_runs:
-        names += ["noise_correlation", "offset_spread"]
-    if not tested_on_both_sides(blocks):
-        names += ["radius_error", "rolling_resistance"]
-    return dict.fromkeys(names, 0.0)
+    if len(blocks) > blocks.n_runs:
+        return {}
+    return {"noise_correlation": 0.0, "offset_spread": 0.0}
 
 
 def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""Coverage of fits of simulated sweeps whose radii are wrong and whose discs resist rolling.
+
+python -m benchmarks.accuracy.rig_errors [SEEDS] [--one-sided]
+
+Each seed is a rig of its own: load cell, radii and rolling resistance are drawn from the priors.
+Slips go from -0.5 to 0.5, or with --one-sided from 0 to 1 as in the bundled sweep. Each sweep is
+fitted, by importance weighted draws of the Laplace approximation, with the two terms and without.
+Prints for each parameter how many 90 % intervals hold the truth, with the exact binomial 99 %
+interval of that count, the mean error in posterior standard deviations and the interval's half
+width.
+"""
+
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from scipy.stats import binom
+
+from model.bayes.fit import prepare_fit
+from model.bayes.laplace import LaplaceMixture, find_mode, importance_draws
+from model.bayes.posterior import LoadCell, SlipPosterior
+from model.bayes.rig_errors import (
+    RADIUS_TOLERANCE,
+    ROLLING_RESISTANCE,
+    RigErrors,
+    radius_ratio_sd,
+)
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.imperfections import BIAS_SD, CROSSTALK_SD, GAIN_SD, draw_imperfections
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+
+CELL = LoadCell(zero_stability=0.1, gain_sd=GAIN_SD, bias_sd=BIAS_SD, crosstalk_sd=CROSSTALK_SD)
+LAW_NAMES = tuple(parameter.name for parameter in THESIS_LAW.parameters)
+TERMS = ("radius_error", "rolling_resistance")
+SLIPS = {True: np.linspace(0.0, 1.0, 62), False: np.linspace(-0.5, 0.5, 62)}
+N_DRAWS = 2000
+RESAMPLED = 8000
+
+
+@dataclass(frozen=True)
+class Intervals:
+    """90 % intervals of one fit, by the parameter's name.
+
+    Attributes:
+        held: Whether the interval holds the truth.
+        score: Posterior mean less the truth over the posterior standard deviation [-].
+        half: Half width, in the parameter's unit.
+    """
+
+    held: dict[str, bool]
+    score: dict[str, float]
+    half: dict[str, float]
+
+
+def fit_seed(seed: int, *, one_sided: bool) -> tuple[Intervals, Intervals]:
+    """Simulate one rig's sweep; return the intervals of the fit with the terms, and without."""
+    plan = SweepPlan(slips=tuple(SLIPS[one_sided].tolist()))
+    rng = np.random.default_rng([17, seed])
+    errors = RigErrors(
+        radius_ratio_sd(plan.radius_leg, plan.radius_ground, RADIUS_TOLERANCE), ROLLING_RESISTANCE
+    )
+    rig = replace(
+        draw_imperfections(rng),
+        radius_error=rng.normal(0.0, errors.radius_ratio),
+        rolling_resistance=rng.normal(0.0, errors.rolling_resistance),
+    )
+    sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
+    fit = prepare_fit(
+        sweep.samples, THESIS_LAW, load_cell=CELL, rig_errors=errors, rng=rng, validate=False
+    )
+    posterior = fit.posterior
+    truth = dict(zip(LAW_NAMES, map(float, THESIS_VALUES), strict=True))
+    truth |= {name: getattr(rig, name) for name in TERMS}
+    whole = _intervals(posterior, fit.approximation, truth, rng)
+    values = posterior.values(fit.laplace.mode[None])[0]
+    start = dict(zip((p.name for p in posterior.parameters), map(float, values), strict=True))
+    plain = replace(posterior, fixed={**posterior.fixed, **dict.fromkeys(TERMS, 0.0)})
+    modes = LaplaceMixture((find_mode(plain.log_density, plain.coordinates(start)[None]),))
+    return whole, _intervals(plain, modes, {name: truth[name] for name in LAW_NAMES}, rng)
+
+
+def _intervals(
+    posterior: SlipPosterior,
+    modes: LaplaceMixture,
+    truth: dict[str, float],
+    rng: np.random.Generator,
+) -> Intervals:
+    """Compute the intervals of the parameters in `truth` by importance weighted draws."""
+    weighted = importance_draws(posterior.log_density, modes, n=N_DRAWS, rng=rng)
+    names = [parameter.name for parameter in posterior.parameters]
+    values = posterior.values(weighted.resample(RESAMPLED, rng=rng))
+    held, score, half = {}, {}, {}
+    for name, true in truth.items():
+        draws = values[:, names.index(name)]
+        low, high = np.quantile(draws, [0.05, 0.95])
+        held[name] = bool(low < true < high)
+        score[name] = float((draws.mean() - true) / draws.std())
+        half[name] = float(high - low) / 2
+    return Intervals(held, score, half)
+
+
+def table(fits: list[Intervals]) -> list[str]:
+    """Format one row a parameter: its count, mean score, and mean half width."""
+    rows = []
+    for name in fits[0].held:
+        held = sum(fit.held[name] for fit in fits)
+        bias = float(np.mean([fit.score[name] for fit in fits]))
+        half = float(np.mean([fit.half[name] for fit in fits]))
+        rows.append(f"| {name} | {held} of {len(fits)} | {bias:+.2f} | {half:.5g} |")
+    return rows
+
+
+def main(seeds: int, *, one_sided: bool) -> None:
+    """Print both tables."""
+    with ProcessPoolExecutor(2) as pool:
+        pairs = list(pool.map(partial(fit_seed, one_sided=one_sided), range(seeds)))
+    low, high = (int(x) for x in binom.interval(0.99, seeds, 0.9))
+    print(f"exact binomial 99 % interval of a count: {low} to {high} of {seeds}")
+    for title, index in (("with both terms", 0), ("without them", 1)):
+        print(f"\n| {title} | 90 % intervals that hold | mean error (sd) | half width |")
+        print("|---|---:|---:|---:|")
+        print("\n".join(table([pair[index] for pair in pairs])), flush=True)
+
+
+if __name__ == "__main__":
+    given = [word for word in sys.argv[1:] if not word.startswith("--")]
+    main(int(given[0]) if given else 200, one_sided="--one-sided" in sys.argv)

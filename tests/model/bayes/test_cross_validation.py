@@ -18,12 +18,13 @@ from model.bayes.cross_validation import (
 from model.bayes.laplace import find_mode
 from model.bayes.likelihood import NUISANCE, predict_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.slip import MagicFormula
+from model.slip import MagicFormula, SlipDefinition
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 LAW = MagicFormula(curvature=0.0)
 LAW_VALUES = (20.0, 1.5, 0.38)
+MATERIAL = SlipDefinition.MATERIAL
 PLAN = SweepPlan(slips=(0.01, 0.04, 0.5), loads=(2.13, 12.75), duration=0.3)
 COLUMNS = arrays(float, 12, elements=st.floats(-100.0, 100.0))
 
@@ -94,7 +95,7 @@ def test_a_perfect_load_cell_measures_the_law():
     slip, load = np.linspace(-0.2, 0.5, 9), np.linspace(2.0, 9.0, 9)
     values = np.array([*LAW_VALUES, *np.zeros(len(NUISANCE))])
     np.testing.assert_allclose(
-        measured_force(LAW, values, slip, load), LAW.force(slip, load, LAW_VALUES)
+        measured_force(LAW, values, slip, load, MATERIAL), LAW.force(slip, load, LAW_VALUES)
     )
 
 
@@ -102,8 +103,8 @@ def test_crosstalk_is_undone_before_the_law_is_used():
     slip, load = np.linspace(-0.2, 0.5, 9), np.linspace(2.0, 9.0, 9)
     traction = LAW.force(slip, load, LAW_VALUES)
     crosstalk = 0.05
-    values = np.array([*LAW_VALUES, 0.0, 0.0, 0.0, crosstalk, *np.zeros(4)])
-    found = measured_force(LAW, values, slip, load - crosstalk * traction)
+    values = np.array([*LAW_VALUES, 0.0, 0.0, 0.0, crosstalk, *np.zeros(6)])
+    found = measured_force(LAW, values, slip, load - crosstalk * traction, MATERIAL)
     np.testing.assert_allclose(found, traction, rtol=1e-3)
 
 
@@ -118,8 +119,10 @@ def test_without_wander_the_prediction_is_the_likelihoods(posterior):
         run_slip_error=np.zeros(posterior.blocks.n_runs),
     )
     for crosstalk, tolerance in ((0.0, 1e-6), (0.005, 1e-5)):
-        values = np.array([*LAW_VALUES, 0.01, -0.02, 0.1, crosstalk, 0.05, 0.01, 0.3, 0.1])
-        found = measured_force(LAW, values, blocks.slip, blocks.normal_force)
+        values = np.array(
+            [*LAW_VALUES, 0.01, -0.02, 0.1, crosstalk, 0.003, 0.02, 0.05, 0.01, 0.3, 0.1]
+        )
+        found = measured_force(LAW, values, blocks.slip, blocks.normal_force, MATERIAL)
         expected = predict_blocks(blocks, LAW, values[None]).force[0]
         np.testing.assert_allclose(found, expected, rtol=tolerance, atol=1e-9)
 
@@ -160,14 +163,15 @@ def test_a_run_is_predicted_by_the_fit_that_has_not_seen_it(validation, samples)
     predicted = validation.predict(samples, LAW)
     for run, part in enumerate(samples.slices()):
         values = validation.values[validation.fold[run]]
-        expected = measured_force(LAW, values, samples.slip[part], samples.normal_force[part])
+        slip, load = samples.slip[part], samples.normal_force[part]
+        expected = measured_force(LAW, values, slip, load, MATERIAL)
         np.testing.assert_array_equal(predicted[part], expected)
 
 
 def test_left_out_runs_of_the_right_law_are_predicted_well(validation, posterior):
     predicted = np.array(
         [
-            measured_force(LAW, validation.values[validation.fold[run]], slip, load)
+            measured_force(LAW, validation.values[validation.fold[run]], slip, load, MATERIAL)
             for run, slip, load in zip(
                 posterior.blocks.run,
                 posterior.blocks.slip,

@@ -82,7 +82,8 @@ def naive_fit(samples, length, fit, **fixed):
         slip_load_covariance=nothing,
         run_slip_error=np.zeros(blocks.n_runs),
     )
-    posterior = SlipPosterior(naive, THESIS_LAW, fit.posterior.priors, fixed)
+    exact = {"radius_error": 0.0, "rolling_resistance": 0.0}
+    posterior = SlipPosterior(naive, THESIS_LAW, fit.posterior.priors, {**exact, **fixed})
     start = posterior.coordinates(mode_values(fit.posterior, fit.laplace))
     return mode_values(posterior, find_mode(posterior.log_density, start[None]))
 

@@ -22,7 +22,8 @@ def test_a_section_holds_all_entries_of_its_kind():
     text = rendered("rig", columns, sectioned=True, appended=True, sheet="A")
     read = tomllib.loads(text)
     assert set(read) == {"rig"}
-    assert set(read["rig"]) == {"sheet", "columns", "constants", "runs", "rows", "load_cell"}
+    tables = {"columns", "constants", "runs", "rows", "load_cell", "rig_errors"}
+    assert set(read["rig"]) == {"sheet", *tables}
     assert read["rig"]["columns"]["normal_force"]["sign"] == "-1?"
     assert '#   "set": first 1, from 1 to 1' in text
 

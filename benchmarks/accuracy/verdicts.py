@@ -146,7 +146,10 @@ def judged(data: Data, *, seed: int = 1) -> Judged:
         found = read(data)
         cell = scaled_load_cell(found.samples, {"zero_stability": 0.1, "gain_sd": 0.005})
         law = MagicFormula("peak")
-        fit = prepare_fit(found.samples, law, load_cell=cell, rng=rng, validate=False, threads=1)
+        fit = prepare_fit(
+            found.samples, law, load_cell=cell, rig_errors=found.rig_errors, rng=rng,
+            validate=False, threads=1,
+        )  # fmt: skip
     except (ZebroLabError, ModelError) as error:
         return Judged(f"refused: {error}", None)
     posterior = fit.posterior

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Simulated rigs with one fault, linearised around the truth: no fit is needed to look for it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -41,16 +41,25 @@ def unchanged(samples: SlipSamples) -> SlipSamples:
     return samples
 
 
-def linearised(change: Change = unchanged) -> tuple[SlipPosterior, Linearised, SlipSamples]:
-    """Linearise around the truth the fit of a sound rig's samples, changed."""
+EXACT = {"radius_error": 0.0, "rolling_resistance": 0.0}
+"""A rig that is known to have neither error."""
+
+
+def linearised(
+    change: Change = unchanged,
+    *,
+    fixed: Mapping[str, float] = EXACT,
+    found: Mapping[str, float] = EXACT,
+) -> tuple[SlipPosterior, Linearised, SlipSamples]:
+    """Linearise around the truth, and what was found of the rig, the fit of changed samples."""
     samples = change(sound_sweep().samples)
     blocks = block_means(samples, 12)
     posterior = SlipPosterior(
-        blocks, THESIS_LAW, default_priors(THESIS_LAW, blocks, LoadCell(zero_stability=0.1))
+        blocks, THESIS_LAW, default_priors(THESIS_LAW, blocks, LoadCell(zero_stability=0.1)), fixed
     )
     names = [parameter.name for parameter in THESIS_LAW.parameters]
     truth = dict(zip(names, map(float, THESIS_VALUES), strict=True))
-    z = posterior.coordinates({**truth, **MEASURED})
+    z = posterior.coordinates({**truth, **MEASURED, **found})
     return posterior, linearise(posterior, z[None]), samples
 
 

@@ -9,6 +9,7 @@ from scipy.special import stdtr
 
 from model.bayes.blocks import slip_noise_variance
 from model.bayes.samples import SlipSamples
+from model.slip.definition import slip_per_radius_error
 from model.slip.law import Array, SlipLaw
 
 OUTLYING = 8.0  # robust standard deviations of a run, which no Gaussian sample reaches
@@ -30,17 +31,18 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
     Args:
         samples: The samples, n of them.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (k + 8,).
+        values: Law and measurement parameters, shape (k + 10,).
 
     Returns:
         Residuals and slopes, shape (n,) each [N].
     """
     k = len(law.parameters)
-    g_t, g_n, b_n, c = values[k : k + 4]
+    g_t, g_n, b_n, c, epsilon, c_r = values[k : k + 6]
+    slip = samples.slip - epsilon * slip_per_radius_error(samples.slip, samples.definition)
     load = (1 + g_n) * samples.normal_force - b_n + c * samples.traction_force
     load = np.maximum(load, 1e-9)
-    force = (1 + g_t) * law.force(samples.slip, load, values[:k])
-    slope = (1 + g_t) * law.slip_derivative(samples.slip, load, values[:k])
+    force = (1 + g_t) * (law.force(slip, load, values[:k]) - c_r * load)
+    slope = (1 + g_t) * law.slip_derivative(slip, load, values[:k])
     return samples.traction_force - force, np.broadcast_to(slope, force.shape)
 
 

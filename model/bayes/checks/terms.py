@@ -11,7 +11,7 @@ import numpy as np
 
 from model.bayes.advice import Advice, CorrectData, TryDefinition, ZeroBeforeEach
 from model.bayes.checks.linear import Linearised, Term
-from model.slip.definition import SlipDefinition
+from model.slip.definition import slip_per_radius_error
 from model.slip.law import Array
 
 
@@ -47,18 +47,6 @@ class Found:
     gain: float
     text: str
     advice: Advice
-
-
-def slip_of_a_wrong_radius(slip: Array, definition: SlipDefinition) -> Array:
-    """Compute the change of slip by a relative error of the radius ratio, shape (n,) [-].
-
-    With the ground disc's speed wrong by the factor 1 - e, material slip 1 - v_g/v_l changes by
-    e·(1 - slip), travel slip v_l/v_g - 1 by e·(1 + slip).
-    """
-    driving = (definition is SlipDefinition.MATERIAL) | (
-        (definition is SlipDefinition.LARGER) & (slip > 0)
-    )
-    return np.where(driving, 1 - slip, 1 + slip)
 
 
 def run_times(fit: Linearised) -> Array:
@@ -151,7 +139,7 @@ ZERO: Mapping[str, Suspect] = {
     ),
     "shift of slip": Suspect(
         lambda fit: (
-            fit.predicted.slope * slip_of_a_wrong_radius(fit.blocks.slip, fit.blocks.definition)
+            fit.predicted.slope * slip_per_radius_error(fit.blocks.slip, fit.blocks.definition)
         ),
         lambda a, s: (
             f"true slip is larger by {a:+.2g} ± {s:.1g} at zero slip (a ratio of radii wrong by "

@@ -3,12 +3,10 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from model.bayes.advice import CorrectData, TryDefinition, ZeroBeforeEach
-from model.bayes.checks.terms import LOAD, SIDES, TIME, ZERO, find, slip_of_a_wrong_radius
-from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
+from model.bayes.checks.terms import LOAD, SIDES, TIME, ZERO, find
 from support.linearised_fits import linearised, sound_sweep, with_force
 
 
@@ -61,15 +59,17 @@ def test_nothing_is_found_where_nothing_was_planted(family):
     assert all(each.term.p > 1e-3 for each in find(fit, family))
 
 
-@pytest.mark.parametrize("definition", SlipDefinition)
-def test_slip_of_a_wrong_radius_is_the_derivative_of_slip_by_the_ground_speed(definition):
-    slip = np.array([-0.4, -0.05, 0.05, 0.5])
-    material = convert_slip(slip, definition, SlipDefinition.MATERIAL)
-    ground, e = 1 - material, 1e-6
-    moved = slip_ratio(np.ones(4), ground * (1 - e), definition)
-    np.testing.assert_allclose(
-        (moved - slip) / e, slip_of_a_wrong_radius(slip, definition), rtol=1e-4
+def test_an_error_that_the_fit_estimates_is_found_only_beyond_what_the_rig_may_have():
+    usual, far = (
+        linearised(
+            lambda s, e=e: replace(s, slip=s.slip - e * (1 - s.slip)),
+            fixed={},
+            found={"radius_error": -e, "rolling_resistance": 0.0},
+        )[1]
+        for e in (0.01, 0.05)  # its prior's standard deviation is 0.01
     )
+    assert all(each.term.p > 0.01 for each in find(usual, ZERO))
+    assert find(far, ZERO)[0].name == "shift of slip"
 
 
 def test_the_sweep_behind_these_is_sound():

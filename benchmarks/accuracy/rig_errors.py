@@ -55,9 +55,15 @@ class Intervals:
     half: dict[str, float]
 
 
-def fit_seed(seed: int, *, one_sided: bool) -> tuple[Intervals, Intervals]:
-    """Simulate one rig's sweep; return the intervals of the fit with the terms, and without."""
-    plan = SweepPlan(slips=tuple(SLIPS[one_sided].tolist()))
+def fit_seed(seed: int, *, one_sided: bool, duration: float = 1.0) -> tuple[Intervals, Intervals]:
+    """Simulate one rig's sweep; return the intervals of the fit with the terms, and without.
+
+    Args:
+        seed: Seed of the rig and of its sweep.
+        one_sided: Whether slips go from 0 to 1 instead of -0.5 to 0.5.
+        duration: Time at each set-point [s].
+    """
+    plan = SweepPlan(slips=tuple(SLIPS[one_sided].tolist()), duration=duration)
     rng = np.random.default_rng([17, seed])
     errors = RigErrors(
         radius_ratio_sd(plan.radius_leg, plan.radius_ground, RADIUS_TOLERANCE), ROLLING_RESISTANCE

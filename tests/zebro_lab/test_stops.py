@@ -107,6 +107,7 @@ SERVED = Work("--duration 1", heard=(0,))
 WORK = {
     "zebro-lab calibrate": Work(FIT, keeps=a_fit_to_resume, says=f"{AT_ONCE}|{RESUMED}"),
     "calibrate-slip": Work(FIT, keeps=a_fit_to_resume, says=f"{AT_ONCE}|{RESUMED}"),
+    "zebro-lab read-off": Work("rig --out read"),
     "zebro-lab init": Work("bench.csv --kind rig"),
     "zebro-lab walk": Work("--slip coulomb:0.4 --duration 4 --figures --out walked"),
     "zebro-lab reach": Work("--goal 0.3,0.1 --slip coulomb:0.4 --out reached"),

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from shutil import copytree
 
 import arviz as az
 import numpy as np
@@ -339,13 +340,22 @@ def test_data_are_not_calibrated_into_their_own_folder(request_for, sweep, tmp_p
 
 
 def test_an_earlier_calibration_is_recorded_with_how_the_data_agree(
-    tmp_path, request_for, uninterrupted
+    tmp_path, request_for, uninterrupted, sweep
 ):
+    new = tmp_path / "this-year"
+    copytree(sweep, new)
+    (table,) = new.glob("*.csv")
+    table.write_text("".join(table.read_text().splitlines(keepends=True)[:-1]))
     changes = {"prior": ("offset_spread = 0.05 ± 0.02 N",)}
     with pytest.raises(DomainError, match="offset_spread: a prior of its own, and one from"):
-        calibrate(request_for(tmp_path / "x", prior_from=uninterrupted, **changes), Watcher())
+        calibrate(
+            request_for(tmp_path / "x", data=(new,), prior_from=uninterrupted, **changes),
+            Watcher(),
+        )
+    with pytest.raises(SettingsError, match="would count twice"):
+        calibrate(request_for(tmp_path / "x", prior_from=uninterrupted), Watcher())
     out = tmp_path / "calibration"
-    request = request_for(out, prior_from=uninterrupted, widen=1.5)
+    request = request_for(out, data=(new,), prior_from=uninterrupted, widen=1.5)
     calibration, _ = calibrate(request, Watcher())
     slip = tomllib.loads((out / "slip.toml").read_text())
     assert slip["priors"]["from"]["widen"] == 1.5

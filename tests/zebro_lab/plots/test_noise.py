@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.verdict import lag_one_limit
+from model.bayes.checks.fit import lag_one_limit
 from zebro_lab.plots import (
     residuals,
 )

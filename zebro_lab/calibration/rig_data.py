@@ -348,7 +348,7 @@ def _joined_priors(parts: Sequence[RigPart]) -> tuple[tuple[str, ...], Path | No
 
 def _joined_rig_errors(parts: Sequence[RigPart]) -> RigErrors:
     """Return the larger standard deviations of all parts' rigs."""
-    each = [part.columns.rig_errors.resolved(part.columns.constants) for part in parts]
+    each = [part.rig_errors for part in parts]
     return RigErrors(
         max(errors.radius_ratio for errors in each),
         max(errors.rolling_resistance for errors in each),

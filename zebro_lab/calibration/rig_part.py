@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from model.bayes.rig_errors import RigErrors
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 from zebro_lab.calibration.plausible import require_plausible
@@ -37,6 +38,7 @@ class RigPart:
         slip: Slip ratios, shape (n,) [-], with their definition.
         normal_force: Normal force, shape (n,) [N].
         traction_force: Traction force, shape (n,) [N].
+        rig_errors: Prior standard deviations of errors of its rig.
         runs: Run of each sample, and the names of the runs.
         time: Time, shape (n,) [s]; None if the table has none or every row is a trial.
         notes: Notes on reading and unit conversion, one line each.
@@ -50,6 +52,7 @@ class RigPart:
     slip: SlipColumn
     normal_force: Array
     traction_force: Array
+    rig_errors: RigErrors
     runs: Runs
     time: Array | None
     notes: tuple[str, ...]
@@ -113,6 +116,7 @@ def read_part(
         slip=slip_column,
         normal_force=pressed,
         traction_force=traction,
+        rig_errors=columns.rig_errors.resolved(table.radii()),
         runs=runs,
         time=run_times(table, runs),
         notes=(*raw.notes, *table.conversions(), *doubts),

@@ -185,8 +185,8 @@ class RigErrorsStated:
         """Return the standard deviations that a fit takes.
 
         Args:
-            radii: `radius_leg` and `radius_ground` [m]; without both, the ratio's standard
-                deviation is `UNKNOWN_RATIO` if it is not given.
+            radii: `radius_leg` and `radius_ground` [m], those that are known; without both, the
+                ratio's standard deviation is `UNKNOWN_RATIO` if it is not given.
         """
         ratio = self.radius_ratio
         if ratio is None and {"radius_leg", "radius_ground"} <= radii.keys():

@@ -91,6 +91,12 @@ class RigTable:
         """
         return self.raw.column(self.required(name).name).to_numpy(dtype=object)[self.rows]
 
+    def radii(self) -> dict[str, float]:
+        """Return the radii that are given, a column's as its median, by their names [m]."""
+        known = ("radius_leg", "radius_ground")
+        given = [name for name in known if name in self.columns.constants or self.source_of(name)]
+        return {name: float(np.median(self.constant_or_column(name))) for name in given}
+
     def constant_or_column(self, name: str) -> float | Array:
         """Return a radius [m]: one number from `[constants]`, or a column of shape (n,).
 

@@ -42,6 +42,17 @@ def test_columns_are_converted_and_every_file_and_conversion_is_told(two_runs, t
     assert (two_runs.rows_read, two_runs.sources) == (N, ())
 
 
+def test_radii_say_how_wrong_slip_may_be_from_constants_or_columns(tmp_path, two_runs):
+    apart = speeds().assign(radius_leg=0.035, radius_ground=0.12)
+    in_columns = part_of(write(tmp_path, apart))
+    assert in_columns.rig_errors == two_runs.rig_errors
+    assert two_runs.rig_errors.radius_ratio == pytest.approx(1e-4 * np.hypot(1 / 0.035, 1 / 0.12))
+
+
+def test_a_given_slip_without_radii_may_be_one_percent_wrong(tmp_path):
+    assert part_of(write(tmp_path, given_slip())).rig_errors.radius_ratio == 0.01
+
+
 def test_a_chosen_run_is_kept_whole_and_alone(two_runs):
     chosen = two_runs.with_runs(np.array([False, True]))
     assert chosen.runs.names == two_runs.runs.names[1:]

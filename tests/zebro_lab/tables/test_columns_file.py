@@ -9,7 +9,7 @@ import pytest
 
 from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import NotFound, SettingsError
-from zebro_lab.tables.columns import Columns, MappedColumn, RunRule
+from zebro_lab.tables.columns import Columns, MappedColumn, RigErrorsStated, RunRule
 from zebro_lab.tables.columns_file import (
     columns_above,
     nearest_columns,
@@ -44,6 +44,9 @@ keep = ["beta == 0", "`slip ratio` > 0.05"]
 [load_cell]
 zero_stability = "150 mN"
 gain_sd = "0.5 %"
+[rig_errors]
+radius = "0.2 mm"
+rolling_resistance = "1 %"
 """
 
 
@@ -67,6 +70,7 @@ def test_every_key_is_read_in_si(tmp_path):
         runs=RunRule(gap=0.5),
         keep=(RowCondition("beta", "==", 0), RowCondition("slip ratio", ">", 0.05)),
         load_cell={"zero_stability": 0.15, "gain_sd": 0.005},
+        rig_errors=RigErrorsStated(radius=2e-4, rolling_resistance=0.01),
     )
 
 
@@ -114,6 +118,11 @@ def test_byte_order_mark_is_accepted(tmp_path):
         ("[load_cell]\ngain = 0.1", "load_cell.gain: unknown key; did you mean 'gain_sd'"),
         ("[load_cell]\ngain_sd = 1", r"gain_sd: is 1, which is improbable; .* such as \"1 %\" "),
         ("[load_cell]\ngain_sd = -0.1", "load_cell.gain_sd: is -0.1; expected 0 or more"),
+        (
+            "[rig_errors]\nradius = 0.1",
+            r"radius: is 0.1 m, which is improbable; .* such as \"0.1 mm\" ",
+        ),
+        ("[rig_errors]\nradius = 0", "rig_errors.radius: is 0 m; expected more than 0"),
         ("[columns", "cannot be read as TOML"),
     ],
 )

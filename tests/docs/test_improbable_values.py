@@ -15,7 +15,7 @@ from zebro_lab.robot.leg_gaps import LONGEST_BRIDGED
 from zebro_lab.robot.leg_log import LONGEST_TURN, LONGEST_WRAPPED
 from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.robot.robot_file import HEAVIEST, LARGEST
-from zebro_lab.tables.columns_file import LARGEST_LOAD_CELL_ERROR
+from zebro_lab.tables.columns_file import LARGEST_LOAD_CELL_ERROR, LARGEST_RIG_ERROR
 from zebro_lab.tables.mapped_columns import INTERVALS
 from zebro_lab.track.photo_sequence import MOST_APART
 from zebro_lab.track.trajectory.table import FASTEST
@@ -29,6 +29,8 @@ LIMITS = {
     "traction over normal force": FRICTION,
     "one traction force": (STRAY,),
     "`load_cell.gain_sd`": (LARGEST_LOAD_CELL_ERROR,),
+    "`rig_errors.radius`": (LARGEST_RIG_ERROR["m"],),
+    "`rig_errors.radius_ratio`": (LARGEST_RIG_ERROR["dimensionless"],),
     "`--slip coulomb:MU`": (MOST_FRICTION,),
     "lengths in `robot.toml`": (LARGEST,),
     "mass in `robot.toml`": (HEAVIEST,),

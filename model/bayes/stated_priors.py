@@ -33,6 +33,12 @@ class EarlierPosterior:
     widen: float
     origin: str
 
+    @property
+    def title(self) -> str:
+        """The calibration's name and how far its posterior was widened, as text."""
+        widened = "not widened" if self.widen == 1 else f"widened {self.widen:g} times"
+        return f"{self.origin}, {widened}"
+
 
 @dataclass(frozen=True)
 class StatedPriors:
@@ -157,13 +163,8 @@ def with_stated(
     z = _coordinates({name: priors[name] for name in names}, earlier)
     sd = earlier.widen * z.std(axis=0, ddof=1)
     for name, mean, spread in zip(names, z.mean(axis=0), sd, strict=True):
-        changed[name] = Moved(priors[name], float(mean), float(spread), _said(earlier))
+        changed[name] = Moved(priors[name], float(mean), float(spread), earlier.title)
     return changed, PriorCorrelation(names, np.atleast_2d(np.corrcoef(z.T)))
-
-
-def _said(earlier: EarlierPosterior) -> str:
-    widened = "not widened" if earlier.widen == 1 else f"widened {earlier.widen:g} times"
-    return f"{earlier.origin}, {widened}"
 
 
 def _coordinates(priors: Mapping[str, Prior], earlier: EarlierPosterior) -> Array:

@@ -82,7 +82,10 @@ def state_priors(
         earlier.title,
     )
     priors = StatedPriors(single.single, posterior)
-    notes = (*earlier.notes, _said(posterior, carried))
+    said = (
+        f"prior: the posterior of {posterior.title}, with the correlations of {', '.join(carried)}"
+    )
+    notes = (*earlier.notes, said)
     return Stated(priors, texts, earlier, length, notes), laws
 
 
@@ -147,14 +150,6 @@ def _carried(
         name
         for name in earlier.draws
         if name in law or (request.carry == "all" and (same_blocks or name not in NOISE))
-    )
-
-
-def _said(posterior: EarlierPosterior, carried: tuple[str, ...]) -> str:
-    widened = "not widened" if posterior.widen == 1 else f"widened {posterior.widen:g} times"
-    return (
-        f"prior: the posterior of {posterior.origin}, {widened}, with the correlations of "
-        f"{', '.join(carried)}"
     )
 
 

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Terms that a rig may have and the model has not: shifts of slip and force, drift, two curves.
+"""Terms that a rig may have beside those of the fit: shifts of slip and force, drift, two curves.
 
-Each is a force at every block, of unit size; `Linearised.test` says how much of it there is.
+Each is a force at every block, of unit size; `Linearised.test` says how much of it there is. The
+fit estimates the error of the radii and rolling resistance within their priors; of these, what is
+found here is what lies beyond.
 """
 
 from collections.abc import Callable, Mapping
@@ -81,45 +83,31 @@ def _radius_advice(found: str, size: float) -> Advice:
     )
 
 
-def _force_advice(found: str, size: float) -> Advice:
-    del size
-    return CorrectData(
-        found,
-        "measure the traction at zero slip under each load, both ways round, subtract it from the "
-        "traction forces, and fit again; zero the load cell with the discs apart",
-    )
+def _correct(what: str) -> Callable[[str, float], Advice]:
+    """Return the advice to correct the data by what a text says, whatever the size of the term."""
+    return lambda found, _: CorrectData(found, what)
 
 
-def _sides_advice(found: str, size: float) -> Advice:
-    del size
-    return CorrectData(
-        found,
-        "weigh the load cell in both directions; if its gain is the same, fit driving and braking "
-        "apart ([rows] keep in columns.toml)",
-    )
+_MEASURE_ZERO = _correct(
+    "measure the traction at zero slip under each load, both ways round, subtract it from the "
+    "traction forces, and fit again; zero the load cell with the discs apart"
+)
+_PART_SIDES = _correct(
+    "weigh the load cell in both directions; if its gain is the same, fit driving and braking "
+    "apart ([rows] keep in columns.toml)"
+)
+_FREE_LOAD = _correct("give the same command with --load-sensitivity")
+_MEASURE_AGAIN = _correct(
+    "clean both discs, let them warm up, and measure again with the loads in another order; "
+    "fit the new runs alone"
+)
 
 
-def _load_advice(found: str, size: float) -> Advice:
-    del size
-    return CorrectData(found, "give the same command with --load-sensitivity")
-
-
-def _change_advice(found: str, size: float) -> Advice:
-    del size
-    return CorrectData(
-        found,
-        "clean both discs, let them warm up, and measure again with the loads in another order; "
-        "fit the new runs alone",
-    )
-
-
-def _zero_advice(found: str, size: float) -> Advice:
-    del size
+def _zero_often(found: str, _: float) -> Advice:
     return ZeroBeforeEach(found)
 
 
-def _definition_advice(found: str, size: float) -> Advice:
-    del size
+def _try_definition(found: str, _: float) -> Advice:
     return TryDefinition(found)
 
 
@@ -127,7 +115,7 @@ ZERO: Mapping[str, Suspect] = {
     "constant force": Suspect(
         lambda fit: np.ones(len(fit.blocks)),
         lambda a, s: f"a constant traction of {a:+.3g} ± {s:.2g} N (zero of the load cell)",
-        _force_advice,
+        _MEASURE_ZERO,
     ),
     "force in proportion to load": Suspect(
         lambda fit: fit.blocks.normal_force,
@@ -135,7 +123,7 @@ ZERO: Mapping[str, Suspect] = {
             f"a traction of {a:+.3g} ± {s:.2g} times the load at any slip (rolling resistance, or "
             "crosstalk of load into traction)"
         ),
-        _force_advice,
+        _MEASURE_ZERO,
     ),
     "shift of slip": Suspect(
         lambda fit: (
@@ -156,7 +144,7 @@ SIDES: Mapping[str, Suspect] = {
             f"driving forces are {2 * a:+.2%} ± {2 * s:.2%} larger than braking forces (gain of "
             "the load cell by direction, or two curves)"
         ),
-        _sides_advice,
+        _PART_SIDES,
     ),
     "slip definition": Suspect(
         _definition_change,
@@ -164,7 +152,7 @@ SIDES: Mapping[str, Suspect] = {
             f"the curve is bent {a:+.2g} ± {s:.1g} times as another slip definition would bend it "
             "(wrong slip definition, or a wrong speed)"
         ),
-        _definition_advice,
+        _try_definition,
     ),
 }
 """What makes driving and braking unlike."""
@@ -174,12 +162,12 @@ LOAD: Mapping[str, Suspect] = {
         lambda a, s: (
             f"forces grow with load to the power of {1 + a:.3f} ± {s:.2g}, not of the law's"
         ),
-        _load_advice,
+        _FREE_LOAD,
     ),
     "stiffness over load": Suspect(
         lambda fit: fit.predicted.slope * fit.blocks.slip * _log_load(fit),
         lambda a, s: f"stiffness over load changes with load to the power of {a:+.3f} ± {s:.2g}",
-        _load_advice,
+        _FREE_LOAD,
     ),
 }
 """What makes loads unlike."""
@@ -190,14 +178,14 @@ TIME: Mapping[str, Suspect] = {
             f"the zero of traction drifts by {2 * a:+.3g} ± {2 * s:.2g} N from the first run to "
             "the last"
         ),
-        _zero_advice,
+        _zero_often,
     ),
     "zero lost with time": Suspect(
         lambda fit: 1 + run_times(fit),
         lambda a, s: (
             f"the zero of traction drifts by {2 * a:+.3g} ± {2 * s:.2g} N since the first run"
         ),
-        _zero_advice,
+        _zero_often,
     ),
     "changing friction": Suspect(
         lambda fit: fit.predicted.force * run_times(fit),
@@ -205,12 +193,12 @@ TIME: Mapping[str, Suspect] = {
             f"forces change by {2 * a:+.2%} ± {2 * s:.2%} from the first run to the last (another "
             "material, warming, wear, or a drifting gain)"
         ),
-        _change_advice,
+        _MEASURE_AGAIN,
     ),
     "drift within runs": Suspect(
         _within,
         lambda a, s: f"forces drift by {a:+.3g} ± {s:.2g} N within each run",
-        _zero_advice,
+        _zero_often,
     ),
 }
 """What changes with time."""

@@ -15,7 +15,9 @@ from model.bayes.fit import (
     explain_numerical_errors,
     prepare_fit,
     require_forces,
+    validated,
 )
+from model.bayes.law_scores import LawScores, choose_law, load_groups, score_law
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.rig_errors import USUAL, RigErrors
@@ -79,6 +81,7 @@ def calibrate(
     earlier: Chains | None = None,
     keep: Callable[[Chains], object] = lambda _: None,
     stated: StatedPriors = UNSTATED,
+    scored: bool = False,
 ) -> tuple[Calibration, Chains]:
     """Choose a slip law for rig samples, sample its posterior and check the result.
 
@@ -95,6 +98,8 @@ def calibrate(
         earlier: Chains of a stopped fit of the same samples and settings, to resume from.
         keep: Called with all chains so far after every `CHUNK` kept steps, to save a checkpoint.
         stated: Priors that replace default ones.
+        scored: Whether to choose the law by `choose_law`, from predictions of left-out runs and
+            loads by the whole posterior, instead of by `compare`.
 
     Returns:
         The calibration, converged or not (see its verdict), and the chains it was computed from.
@@ -110,7 +115,10 @@ def calibrate(
     rng = np.random.default_rng(settings.seed)
     require_forces(samples, load_cell)
     known = load_cell, rig_errors, stated
-    fit, comparison = _choose_law(samples, laws, known, settings, rng, watcher)
+    fits = _prepare(samples, laws, known, settings, rng, watcher, validate=not scored)
+    fit, comparison = (
+        _by_scores(samples, fits, settings, rng, watcher) if scored else _by_comparison(fits)
+    )
     began = clock()
     judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
     with explain_numerical_errors(samples, fit.posterior.law):
@@ -124,19 +132,21 @@ def calibrate(
     return calibration, chains
 
 
-def _choose_law(
+def _prepare(
     samples: SlipSamples,
     laws: Mapping[str, SlipLaw],
     known: tuple[LoadCell, RigErrors, StatedPriors],
     settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
-) -> tuple[PreparedFit, LawComparison | None]:
-    """Prepare the fit of each law; return the one that `compare` chooses, and the comparison.
+    *,
+    validate: bool,
+) -> dict[str, PreparedFit]:
+    """Prepare the fit of each law, by name, all on the blocks of the first.
 
-    The comparison is None for one law. Raises `FitStopped` if a stop is requested before a law.
+    Raises `FitStopped` if a stop is requested before a law.
     """
-    fits: list[PreparedFit] = []
+    fits: dict[str, PreparedFit] = {}
     asked = settings.block_length
     choice = None if asked is None else BlockChoice(asked, None, "as asked for")
     for name, law in laws.items():
@@ -145,14 +155,45 @@ def _choose_law(
             raise FitStopped(None)
         fit = prepare_fit(
             samples, law, load_cell=known[0], rig_errors=known[1], stated=known[2], rng=rng,
-            block_choice=choice, threads=settings.threads,
+            block_choice=choice, threads=settings.threads, validate=validate,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks
-        fits.append(fit)
-    if len(fits) == 1:
-        return fits[0], None
-    comparison = compare(list(laws), fits)
-    return fits[comparison.chosen], comparison
+        fits[name] = fit
+    return fits
+
+
+def _by_comparison(
+    fits: Mapping[str, PreparedFit],
+) -> tuple[PreparedFit, LawComparison | None]:
+    """Return the fit that `compare` chooses, and the comparison, which is None for one law."""
+    each = list(fits.values())
+    if len(each) == 1:
+        return each[0], None
+    comparison = compare(list(fits), each)
+    return each[comparison.chosen], comparison
+
+
+def _by_scores(
+    samples: SlipSamples,
+    fits: Mapping[str, PreparedFit],
+    settings: SamplerSettings,
+    rng: np.random.Generator,
+    watcher: Watcher,
+) -> tuple[PreparedFit, LawScores]:
+    """Return the fit that `choose_law` chooses, cross-validated, and the scores of all.
+
+    Raises `FitStopped` if a stop is requested before a law.
+    """
+    scores = []
+    for name, fit in fits.items():
+        watcher.step(f"comparing: {name}", None)
+        if watcher.stop_requested():
+            raise FitStopped(None)
+        with explain_numerical_errors(samples, fit.posterior.law):
+            scores.append(score_law(name, fit, rng=rng, threads=settings.threads))
+    found = choose_law(scores, load_groups(next(iter(fits.values())).posterior.blocks)[1])
+    chosen = fits[found.laws[found.chosen].name]
+    return validated(chosen, threads=settings.threads), found
 
 
 def _sample(

@@ -22,6 +22,7 @@ from model.bayes.estimate import (
 )
 from model.bayes.fit import LawComparison, PreparedFit
 from model.bayes.laplace import importance_draws
+from model.bayes.law_scores import LawScores
 from model.bayes.posterior import SlipPosterior
 from model.bayes.prior_conflict import PriorShift, prior_shifts
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
@@ -59,7 +60,7 @@ class Calibration:
     """
 
     fit: PreparedFit
-    comparison: LawComparison | None
+    comparison: LawComparison | LawScores | None
     draws: Draws
     parameters: Sequence[Estimate]
     levels: np.ndarray
@@ -82,7 +83,7 @@ class Calibration:
 
 def conclude(
     fit: PreparedFit,
-    comparison: LawComparison | None,
+    comparison: LawComparison | LawScores | None,
     chains: Chains,
     convergence: Convergence,
     samples: SlipSamples,

@@ -168,14 +168,21 @@ def _prepared(
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
     starts = _starting_points(posterior, rng)
     modes = LaplaceMixture(find_modes(posterior.log_density, starts))
-    validation = (
-        cross_validate(posterior, modes.modes[0].mode, threads=threads)
-        if validate and blocks.n_runs > 1
-        else None
-    )
-    return PreparedFit(
-        posterior, modes, validation, choice, load_cell, rig_errors, defaults, stated
-    )
+    fit = PreparedFit(posterior, modes, None, choice, load_cell, rig_errors, defaults, stated)
+    return validated(fit, threads=threads) if validate else fit
+
+
+def validated(fit: PreparedFit, *, threads: int = 2) -> PreparedFit:
+    """Return a fit with its cross-validation; a single run is not cross-validated.
+
+    Args:
+        fit: The fit, with or without cross-validation.
+        threads: Number of folds fitted at once.
+    """
+    if fit.cross_validation is not None or fit.posterior.blocks.n_runs < 2:
+        return fit
+    validation = cross_validate(fit.posterior, fit.laplace.mode, threads=threads)
+    return replace(fit, cross_validation=validation)
 
 
 def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:

@@ -17,6 +17,7 @@ from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
 from zebro_lab.calibration.advice import advice_text
+from zebro_lab.calibration.law_table import LAWS_CSV, laws_content, laws_csv
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import shortest_distinct
@@ -36,11 +37,11 @@ SLIP_TOML = "slip.toml"
 AS_TESTED = "trustworthy as far as tested"
 """`State.AS_TESTED` of `model.bayes.verdict`, which takes long to import."""
 POSTERIOR = "posterior.nc"
-PICTURES = ("curves", "surface", "corner", "traces", "residuals")
+PICTURES = ("curves", "surface", "corner", "traces", "residuals", "laws")
 CALIBRATION = ResultKind(
     "calibration",
     "calibrate-slip",
-    (SLIP_TOML, "summary.csv", POSTERIOR, *in_every_format(*PICTURES)),
+    (SLIP_TOML, "summary.csv", LAWS_CSV, POSTERIOR, *in_every_format(*PICTURES)),
     schema=SCHEMA,
     inside={"walks": "walks"},
 )
@@ -84,7 +85,7 @@ def write_tables(
     inputs: Mapping[str, str],
     priors: Mapping[str, Any] | None = None,
 ) -> None:
-    """Write `slip.toml`, `summary.csv` and `posterior.nc` of a fit into a folder.
+    """Write `slip.toml`, `summary.csv` and `posterior.nc` of a fit, and `laws.csv` of a comparison.
 
     Args:
         folder: Existing folder to write into; files of these names are overwritten.
@@ -92,8 +93,12 @@ def write_tables(
         inputs: SHA-256 of each file that was read, by path.
         priors: What was stated beforehand, for the table `priors`; None or empty for nothing.
     """
+    from model.bayes.law_scores import LawScores
+
     (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs, priors or {}))
     (folder / "summary.csv").write_text(summary_csv(calibration))
+    if isinstance(calibration.comparison, LawScores):
+        (folder / LAWS_CSV).write_text(laws_csv(calibration.comparison))
     inference_data(calibration).to_netcdf(str(folder / POSTERIOR), engine="h5netcdf")
 
 
@@ -186,6 +191,7 @@ def _slip_toml(
         "verdict": _verdict_content(calibration),
         **_law_content(calibration),
         "tested": _tested_content(calibration),
+        **_comparison_content(calibration),
         **({"priors": dict(priors)} if priors else {}),
         "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
     })  # fmt: skip
@@ -231,6 +237,13 @@ def _law_content(calibration: "Calibration") -> dict[str, Any]:
             for load, row in zip(calibration.levels, calibration.curves, strict=True)
         ],
     }  # fmt: skip
+
+
+def _comparison_content(calibration: "Calibration") -> dict[str, Any]:
+    from model.bayes.law_scores import LawScores
+
+    scores = calibration.comparison
+    return {"comparison": laws_content(scores)} if isinstance(scores, LawScores) else {}
 
 
 def _tested_content(calibration: "Calibration") -> dict[str, Any]:

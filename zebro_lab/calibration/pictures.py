@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from model.bayes.calibration import Calibration
+from model.bayes.law_scores import LawScores
 from model.bayes.verdict import State
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
@@ -20,7 +21,8 @@ _MARKS: Final = {
 def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat = "png") -> None:
     """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit.
 
-    The titles of a fit that did not converge, is not trustworthy or not fully tested say so.
+    Where laws were compared by their scores, `laws` draws all of them. The titles of a fit that did
+    not converge, is not trustworthy or not fully tested say so.
 
     Args:
         folder: Existing folder to write the pictures into.
@@ -47,6 +49,15 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
             blocks, whitened=residuals.whitened, run_score=residuals.run_score, simulated=simulated
         ),
     }
+    scores = calibration.comparison
+    if isinstance(scores, LawScores):
+        figures["laws"] = plots.slip_laws(
+            blocks,
+            {score.name: (score.law, score.values) for score in scores.laws},
+            reference=scores.laws[scores.chosen].name,
+            load_levels=calibration.levels,
+            simulated=simulated,
+        )
     for name, figure in figures.items():
         mark = _MARKS.get(calibration.verdict.state)
         if mark is not None:

@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from typer import Argument, Option
 
@@ -12,7 +12,9 @@ from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 
-LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck"]
+COMPARE: Final = "compare"
+"""Value of `--law` that compares all laws."""
+LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck", "compare"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]
 
 
@@ -35,7 +37,13 @@ class CalibrationRequest:
         DefinitionName | None,
         Option(help="Definition of the slip ratio to fit in; default: that of the data."),
     ] = None
-    law: Annotated[LawName, Option(help="Slip law.")] = "magic-formula"
+    law: Annotated[
+        LawName,
+        Option(
+            help="Slip law; compare fits the simplest of all that predicts runs and loads that are "
+            "left out no worse than the others."
+        ),
+    ] = "magic-formula"
     curvature: Annotated[
         str,
         Option(
@@ -109,10 +117,26 @@ class CalibrationRequest:
         """Raise `SettingsError` for options that have no meaning or none beside the others."""
         require_curvature(self.curvature)
         self._require_priors()
-        if self.law != "magic-formula" and (self.curvature != "auto" or self.load_sensitivity):
+        if self.law == COMPARE:
+            self._require_comparable()
+        elif self.law != "magic-formula" and (self.curvature != "auto" or self.load_sensitivity):
             raise SettingsError(
                 f"--curvature and --load-sensitivity belong to the Magic Formula, not to "
                 f"'{self.law}'; leave them out",
+                key="--law",
+            )
+
+    def _require_comparable(self) -> None:
+        if self.load_sensitivity:
+            raise SettingsError(
+                "--law compare fits the Magic Formula both with and without dependence on load; "
+                "leave out --load-sensitivity",
+                key="--law",
+            )
+        if self.prior_from is not None:
+            raise SettingsError(
+                "--prior-from is the posterior of one law, whose parameters the others do not "
+                "have; leave out one of the two",
                 key="--law",
             )
 

@@ -11,10 +11,12 @@ from rich.text import Text
 from model.bayes.calibration import Calibration
 from model.bayes.checks.check import Outcome
 from model.bayes.estimate import Estimate, informed
+from model.bayes.law_scores import LawScores
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.verdict import State
 from model.counted import counted
 from zebro_lab.calibration.advice import advice_text
+from zebro_lab.calibration.law_table import sentence, signed
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import unit_symbol
@@ -70,12 +72,16 @@ def _print_blocks(console: Console, calibration: Calibration) -> None:
     lines += _comparison_lines(calibration)
     for line in lines:
         console.print(plain(line))
+    if isinstance(calibration.comparison, LawScores):
+        console.print(_law_table(calibration.comparison))
 
 
 def _comparison_lines(calibration: Calibration) -> list[str]:
     comparison = calibration.comparison
     if comparison is None:
         return []
+    if isinstance(comparison, LawScores):
+        return [f"law: {sentence(comparison)}"]
     chosen = comparison.names[comparison.chosen]
     others = [
         f"'{name}' predicts left-out runs {'worse' if difference < 0 else 'better, not clearly,'} "
@@ -86,6 +92,32 @@ def _comparison_lines(calibration: Calibration) -> list[str]:
         if i != comparison.chosen
     ]
     return [f"law: {chosen} ({'; '.join(others)})"]
+
+
+def _law_table(scores: LawScores) -> Table:
+    """Return the scores of all laws, the fitted one and the clearly worse marked."""
+    title = (
+        "log predictive density of what was left out, less that of the fitted law (with standard "
+        "error)"
+    )
+    numbers = ("para-\nmeters", "left-out\nruns", "left-out\nloads", "fits\nanew")
+    table = plain_table(title, ("law", ""), numbers, no_wrap=True)
+    for index, score in enumerate(scores.laws):
+        mark = "fitted" if index == scores.chosen else "clearly worse"
+        mark = "" if index in scores.told_together and index != scores.chosen else mark
+        loads = scores.loads(index, scores.chosen)
+        anew = int(score.runs.refitted.sum())
+        anew += 0 if score.loads is None else int(score.loads.refitted.sum())
+        own = index == scores.chosen
+        table.add_row(
+            score.name,
+            mark,
+            f"{len(score.law.parameters)}",
+            "0" if own else signed(scores.runs(index, scores.chosen)),
+            "not testable" if loads is None else "0" if own else signed(loads),
+            f"{anew}",
+        )
+    return table
 
 
 def _parameter_table(calibration: Calibration) -> Table:

@@ -4,27 +4,19 @@
 import time
 from dataclasses import asdict
 from pathlib import Path
-from typing import Literal
 
-import numpy as np
-
-from model.bayes.blocks import block_means
 from model.bayes.calibrate import FitStopped, SamplerSettings
 from model.bayes.calibrate import calibrate as fit_slip_law
 from model.bayes.calibration import Calibration
 from model.bayes.fit import scaled_load_cell
-from model.bayes.residuals import load_levels
 from model.bayes.sampler import Chains
-from model.bayes.samples import SlipSamples
 from model.progress import Watcher
-from model.slip.law import SlipLaw
-from model.slip.laws import slip_law
-from model.slip.magic_formula import MagicFormula
+from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
 from zebro_lab.calibration.checkpoint import load_checkpoint, save_checkpoint
 from zebro_lab.calibration.folder import CALIBRATION, write_tables
 from zebro_lab.calibration.pictures import draw_calibration
-from zebro_lab.calibration.request import CalibrationRequest, require_curvature
+from zebro_lab.calibration.request import COMPARE, CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.calibration.stated import Stated, priors_content, state_priors
 from zebro_lab.files.errors import ZebroLabError
@@ -88,7 +80,7 @@ def calibrate(
             was written if sampling had begun.
     """
     data = read(request, watcher) if data is None else data
-    stated, laws = state_priors(request, data, _candidates(request, data.samples))
+    stated, laws = state_priors(request, data, candidates(request, data.samples))
     inputs = file_hashes((*data.files, *stated.files))
     mark = fingerprint(inputs, request.decisive())
     earlier = load_checkpoint(request.out, fingerprint=mark) if request.resume else None
@@ -106,6 +98,7 @@ def calibrate(
             earlier=earlier,
             keep=checkpoint.keep,
             stated=stated.priors,
+            scored=request.law == COMPARE,
         )
         watcher.step("drawing", None)
         _write(request, calibration, inputs, stated)
@@ -154,7 +147,7 @@ def stated_notes(request: CalibrationRequest, data: RigData) -> tuple[str, ...]:
     Raises:
         ZebroLabError: A prior cannot be used, or an earlier calibration cannot be read.
     """
-    return state_priors(request, data, _candidates(request, data.samples))[0].notes
+    return state_priors(request, data, candidates(request, data.samples))[0].notes
 
 
 def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
@@ -165,27 +158,6 @@ def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
         threads=request.threads,
         seed=request.seed,
     )
-
-
-def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
-    """Return the laws to compare, by reported name, simplest first.
-
-    They are two for the Magic Formula with `--curvature auto` and data at several loads, else one.
-    """
-    if request.law != MagicFormula.name:
-        return {request.law: slip_law(request.law)}
-    middle_load = float(np.median(samples.normal_force))
-
-    def formula(curvature: Literal["peak", "constant"] | float) -> MagicFormula:
-        return MagicFormula(curvature, request.load_sensitivity, middle_load)
-
-    curvature = require_curvature(request.curvature)
-    if curvature != "auto":
-        return {request.law: formula(curvature)}
-    laws: dict[str, SlipLaw] = {"one curvature E at every load": formula("constant")}
-    if len(load_levels(block_means(samples, 10))) > 1:  # at one load the two are the same
-        laws["peak slip grows with load"] = formula("peak")
-    return laws
 
 
 def _write(

@@ -4,6 +4,7 @@
 from zebro_lab.terminal.stopping import stops_deferred
 
 with stops_deferred():  # matplotlib has C extensions
+    from zebro_lab.plots.laws import slip_laws
     from zebro_lab.plots.noise import residuals
     from zebro_lab.plots.posterior import corner, traces
     from zebro_lab.plots.sheet import add_to_title, parameter_labels, save
@@ -17,6 +18,7 @@ __all__ = [
     "residuals",
     "save",
     "slip_curves",
+    "slip_laws",
     "slip_surface",
     "traces",
 ]

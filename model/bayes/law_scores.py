@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""Comparison of slip laws by their predictions of left-out runs and of left-out loads."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.fit import CLEAR_WIN, PreparedFit
+from model.bayes.left_out import LeftOut, leave_out, weighted_draws
+from model.bayes.residuals import load_levels, nearest_level
+from model.errors import InsufficientData
+from model.slip.law import Array, SlipLaw
+
+SMALL = 4.0
+"""Difference of log density below which its standard error is no guide (Sivula et al. 2020)."""
+CURVES = 200  # draws of each law that are kept, for its curves
+
+
+@dataclass(frozen=True)
+class LawScore:
+    """How one law predicts data that it was not fitted to.
+
+    Attributes:
+        name: Name that the law is reported under.
+        law: The law, of k parameters.
+        runs: Predictions of each run without it.
+        loads: Predictions of each run without all runs at its load; None for one load.
+        values: Posterior draws of the law's parameters, shape (`CURVES`, k).
+    """
+
+    name: str
+    law: SlipLaw
+    runs: LeftOut
+    loads: LeftOut | None
+    values: Array
+
+    @property
+    def unreliable(self) -> int:
+        """Number of left-out runs and loads whose predictions are not reliable."""
+        return self.runs.unreliable + (0 if self.loads is None else self.loads.unreliable)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Log predictive density of a law minus another's.
+
+    Attributes:
+        value: The difference, summed over runs [-].
+        error: Its standard error [-].
+    """
+
+    value: float
+    error: float
+
+    @property
+    def clearly_worse(self) -> bool:
+        """Whether it is below zero by more than two standard errors and by more than `SMALL`."""
+        return self.value < -max(CLEAR_WIN * self.error, SMALL)
+
+
+@dataclass(frozen=True)
+class LawScores:
+    """Scores of several laws on the same blocks.
+
+    Attributes:
+        laws: Score of each law, by rising number of parameters.
+        levels: Loads that were left out, shape (n_levels,) [N].
+        best: Index of the law that predicts left-out runs best.
+        chosen: Index of the law that is fitted: the first of `told_together`.
+        told_together: Indices of the laws that no other one predicts clearly better than.
+    """
+
+    laws: tuple[LawScore, ...]
+    levels: Array
+    best: int
+    chosen: int
+    told_together: tuple[int, ...]
+
+    def runs(self, index: int, against: int) -> Difference:
+        """Compare two laws' predictions of left-out runs; the error is that over runs."""
+        excess = self.laws[index].runs.log_density - self.laws[against].runs.log_density
+        return Difference(float(excess.sum()), _standard_error(excess))
+
+    def loads(self, index: int, against: int) -> Difference | None:
+        """Compare two laws' predictions of left-out loads; None for one load.
+
+        The error is the larger of that over runs and that over loads.
+        """
+        mine, other = self.laws[index].loads, self.laws[against].loads
+        if mine is None or other is None:
+            return None
+        excess = mine.log_density - other.log_density
+        by_load = np.bincount(mine.group, excess)
+        error = max(_standard_error(excess), _standard_error(by_load))
+        return Difference(float(excess.sum()), error)
+
+
+def _standard_error(differences: Array) -> float:
+    """Compute the standard error of the sum of independent differences from their scatter."""
+    return float(np.sqrt(len(differences)) * np.std(differences, ddof=1))
+
+
+def load_groups(blocks: SlipBlocks) -> tuple[NDArray[np.intp], Array]:
+    """Sort runs by the load that was set.
+
+    Args:
+        blocks: The block means.
+
+    Returns:
+        Group of each run from 0, (n_runs,), and the load of each group, the median of its blocks'
+        loads [N].
+    """
+    nearest = nearest_level(np.maximum(blocks.run_mean(blocks.normal_force), 1e-9),
+                            load_levels(blocks))  # fmt: skip
+    used, group = np.unique(nearest, return_inverse=True)
+    of_block = group[blocks.run]
+    loads = [float(np.median(blocks.normal_force[of_block == i])) for i in range(len(used))]
+    return np.asarray(group, dtype=np.intp), np.array(loads)
+
+
+def score_law(
+    name: str, fit: PreparedFit, *, rng: np.random.Generator, threads: int = 2
+) -> LawScore:
+    """Predict each run, and each load, by a law that was fitted to the others.
+
+    Args:
+        name: Name that the law is reported under.
+        fit: The fit of the law to all runs.
+        rng: Source of randomness of the weighted draws.
+        threads: Number of fits without a run or load that are made at once.
+
+    Raises:
+        InsufficientData: There is one run.
+        FitError: A fit without a run or load failed.
+    """
+    posterior, approximation = fit.posterior, fit.approximation
+    blocks, k = posterior.blocks, len(posterior.law.parameters)
+    if blocks.n_runs < 2:
+        raise InsufficientData(
+            "laws are compared by runs that are left out, and these data are one run; expected two "
+            "at least: name one law, or separate the data into runs ([runs] in columns.toml)"
+        )
+    draws = weighted_draws(posterior, approximation, rng=rng)
+
+    def predicted(group: NDArray[np.intp]) -> LeftOut:
+        return leave_out(
+            posterior, draws, group, approximation=approximation, rng=rng, threads=threads
+        )
+
+    group, loads = load_groups(blocks)
+    return LawScore(
+        name=name,
+        law=posterior.law,
+        runs=predicted(np.arange(blocks.n_runs)),
+        loads=predicted(group) if len(loads) > 1 else None,
+        values=posterior.values(draws.resample(CURVES, rng=rng))[:, :k],
+    )
+
+
+def choose_law(scores: Sequence[LawScore], levels: Array) -> LawScores:
+    """Choose the simplest law that predicts left-out runs and loads no worse than the others.
+
+    Laws that predict left-out runs clearly worse than the best are dropped; of the others those
+    that predict left-out loads clearly worse than the best of these. The first that is left, the
+    one of the fewest parameters, is chosen.
+
+    Args:
+        scores: Score of each law, on the same blocks, one at least; of as many parameters the
+            preferred law first.
+        levels: Loads that were left out, shape (n_levels,) [N].
+    """
+    laws = tuple(sorted(scores, key=lambda score: len(score.law.parameters)))
+    best = int(np.argmax([score.runs.log_density.sum() for score in laws]))
+    found = LawScores(laws, levels, best, best, (best,))
+    left = [i for i in range(len(laws)) if not found.runs(i, best).clearly_worse]
+    of_loads = [laws[i].loads for i in left]
+    totals = [-np.inf if loads is None else loads.log_density.sum() for loads in of_loads]
+    top = left[int(np.argmax(totals))]
+    kept = [
+        i for i in left if (against := found.loads(i, top)) is None or not against.clearly_worse
+    ]
+    return LawScores(laws, levels, best, kept[0], tuple(kept))

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""Predictive density of left-out runs, or of all runs at a load, by weighted draws (PSIS-LOO)."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp
+
+from model.bayes.cross_validation import MAX_SINGLE_FOLDS, N_GROUPED_FOLDS
+from model.bayes.laplace import Laplace, LaplaceMixture, WeightedDraws, find_modes, importance_draws
+from model.bayes.posterior import SlipPosterior
+from model.slip.law import Array
+
+DRAWS = 2_000
+MAX_PARETO_K = 0.7  # tail index above which weights do not stand for the posterior without a group
+ADAPTATIONS = 3  # proposals that are tried for a posterior far from Gaussian
+_NEGLIGIBLE = 1e-12  # weight of a draw that is left out
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Log predictive density of each run given the other groups of runs.
+
+    Attributes:
+        group: Group that each run was left out with, shape (n_runs,).
+        log_density: Log density of each run's blocks given the runs of the other groups, posterior
+            draws averaged, shape (n_runs,) [-].
+        pareto_k: Tail index of the weights that stand for the posterior without each group, shape
+            (n_groups,) [-].
+        refitted: Whether the posterior without a group was computed anew, (n_groups,).
+    """
+
+    group: NDArray[np.intp]
+    log_density: Array
+    pareto_k: Array
+    refitted: NDArray[np.bool_]
+
+    @property
+    def unreliable(self) -> int:
+        """Number of groups whose weights are not reliable, though computed anew."""
+        return int(np.sum(~(self.pareto_k < MAX_PARETO_K)))
+
+
+def leave_out(
+    posterior: SlipPosterior,
+    draws: WeightedDraws,
+    group: NDArray[np.intp],
+    *,
+    approximation: LaplaceMixture,
+    rng: np.random.Generator,
+    threads: int = 2,
+) -> LeftOut:
+    r"""Compute the density of each run's blocks given the runs of the other groups.
+
+    .. math::
+        \log p(y_i | y_{-G}) = \log \frac{\sum_s w_s p(y_i|\theta_s)}{\sum_s w_s}, \qquad
+        w_s \propto \frac{p(\theta_s|y)}{q(\theta_s)\, p(y_G|\theta_s)},
+
+    with run i in the group G, and Pareto-smoothed weights of draws from q (Vehtari, Gelman and
+    Gabry 2017). Where their tail index exceeds `MAX_PARETO_K`, the posterior without the group is
+    approximated and drawn from anew, without each such group alone, or if they are more than 20
+    in 10 interleaved folds of them. Draws at which the law is not valid at one of the loads of all
+    data count as impossible, unless all are.
+
+    Args:
+        posterior: The posterior of all runs.
+        draws: Weighted draws of it.
+        group: Group of each run, from 0, shape (n_runs,). At least two groups.
+        approximation: Its Laplace approximations; searches for modes start at theirs.
+        rng: Source of randomness of draws that are made anew.
+        threads: Number of groups that are computed anew at once.
+
+    Raises:
+        FitError: Without a group's runs all modes lie outside the posterior's support.
+    """
+    kept = draws.weights > _NEGLIGIBLE
+    z, weights = draws.z[kept], draws.weights[kept]
+    density = posterior.run_log_likelihood(z)
+    n_groups = int(group.max()) + 1
+    log_density, pareto_k = np.empty(len(group)), np.empty(n_groups)
+    for index in range(n_groups):
+        mine = group == index
+        own = density[:, mine]
+        smoothed, pareto_k[index] = _smoothed(np.log(weights) - own.sum(axis=1))
+        log_density[mine] = logsumexp(smoothed[:, None] + own, axis=0)
+    refitted = ~(pareto_k < MAX_PARETO_K)
+    starts = np.stack([laplace.mode for laplace in approximation.modes])
+    folds = _folds(np.flatnonzero(refitted))
+
+    def refit(fold: NDArray[np.intp], own_rng: np.random.Generator) -> tuple[Array, float]:
+        return _refit(posterior, np.isin(group, fold), starts, own_rng)
+
+    with ThreadPoolExecutor(threads) as pool:
+        found = list(pool.map(refit, folds, rng.spawn(len(folds))))
+    for fold, (densities, k) in zip(folds, found, strict=True):
+        log_density[np.isin(group, fold)], pareto_k[fold] = densities, k
+    return LeftOut(group, log_density, pareto_k, refitted)
+
+
+def _folds(groups: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Return groups one by one, or if they are many in interleaved folds, as `cross_validate`."""
+    n_folds = len(groups) if len(groups) <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS
+    return [groups[index::n_folds] for index in range(n_folds)]
+
+
+def _smoothed(log_ratio: Array) -> tuple[Array, float]:
+    """Return Pareto-smoothed log weights, their sum one, and the tail index of the raw ones."""
+    import arviz as az  # late: takes seconds to import
+
+    smoothed, pareto_k = az.psislw(log_ratio)
+    return np.asarray(smoothed, dtype=float), float(pareto_k)
+
+
+def _refit(
+    posterior: SlipPosterior, left_out: NDArray[np.bool_], starts: Array, rng: np.random.Generator
+) -> tuple[Array, float]:
+    """Compute log densities of the left-out runs by draws of the posterior without them.
+
+    Returns them, shape (runs left out,), and the tail index of the weights of the draws.
+    """
+    without = posterior.without_runs(left_out)
+    approximation = LaplaceMixture(find_modes(without.log_density, starts))
+    draws = weighted_draws(without, approximation, rng=rng)
+    likely = draws.weights > _NEGLIGIBLE
+    valid = likely & np.isfinite(posterior.log_prior(draws.z))
+    used = valid if valid.any() else likely
+    density = posterior.without_runs(~left_out).run_log_likelihood(draws.z[used])
+    weights = np.log(draws.weights[used] / draws.weights[used].sum())
+    return np.asarray(logsumexp(weights[:, None] + density, axis=0)), draws.pareto_k
+
+
+def weighted_draws(
+    posterior: SlipPosterior, approximation: LaplaceMixture, *, rng: np.random.Generator
+) -> WeightedDraws:
+    """Draw from a posterior with importance weights, also where it is far from Gaussian.
+
+    While the weights of draws from the Laplace approximations are not reliable, a distribution with
+    the mean and covariance of the weighted draws joins them, at most `ADAPTATIONS` times.
+
+    Args:
+        posterior: The posterior.
+        approximation: Its Laplace approximations.
+        rng: Source of randomness.
+
+    Returns:
+        The draws with the smallest tail index of those tried.
+    """
+    best = importance_draws(posterior.log_density, approximation, n=DRAWS, rng=rng)
+    latest = best
+    for _ in range(ADAPTATIONS):
+        if best.pareto_k < MAX_PARETO_K:
+            break
+        approximation = LaplaceMixture((*approximation.modes, _gaussian(posterior, latest)))
+        latest = importance_draws(posterior.log_density, approximation, n=DRAWS, rng=rng)
+        best = min(best, latest, key=lambda each: each.pareto_k)
+    return best
+
+
+def _gaussian(posterior: SlipPosterior, draws: WeightedDraws) -> Laplace:
+    """Return a Gaussian with the mean and covariance of weighted draws, in a `Laplace`."""
+    mean = draws.weights @ draws.z
+    away = draws.z - mean
+    covariance = (draws.weights[:, None] * away).T @ away + 1e-6 * np.eye(len(mean))
+    height = float(posterior.log_density(mean[None])[0])
+    at = max(height, float(posterior.log_density(draws.z[None, np.argmax(draws.weights)])[0]))
+    return Laplace(mean, covariance, at)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""The laws that a request leaves to be chosen, the preferred first."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from model.bayes.samples import SlipSamples
+from model.slip import Brush, MagicFormula, SlipDefinition
+from zebro_lab.calibration.candidates import candidates
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.files.errors import SettingsError
+
+
+def samples(*loads):
+    run = np.repeat(np.arange(4), 20)
+    load = np.resize(loads, 4)[run].astype(float)
+    names = tuple("abcd")
+    return SlipSamples(np.full(80, 0.1), load, 0.4 * load, run, names, SlipDefinition.MATERIAL)
+
+
+def test_all_laws_are_compared_at_several_loads():
+    found = candidates(CalibrationRequest(law="compare"), samples(4.0, 12.0))
+    sensitive = [law.load_sensitivity for law in found.values() if isinstance(law, MagicFormula)]
+    assert sensitive == [False, False, True, True]
+    assert next(iter(found)) == "magic-formula, one E"
+    assert {"brush", "brush, kinetic", "coulomb-stribeck"} < set(found)
+
+
+def test_at_one_load_laws_that_differ_by_load_alone_are_left_out():
+    found = candidates(CalibrationRequest(law="compare"), samples(8.0))
+    assert list(found) == ["magic-formula, one E", "brush", "brush, kinetic", "coulomb-stribeck"]
+
+
+@pytest.mark.parametrize(
+    ("curvature", "name"), [("peak", "peak by load"), ("-0.5", "curvature -0.5")]
+)
+def test_a_curvature_that_is_stated_is_the_only_one(curvature, name):
+    asked = CalibrationRequest(law="compare", curvature=curvature)
+    formulas = [each for each in candidates(asked, samples(4.0, 12.0)) if "magic" in each]
+    assert formulas == [f"magic-formula, {name}", f"magic-formula, {name}, load-sensitive"]
+    assert list(candidates(replace(asked, law="magic-formula"), samples(4.0))) == ["magic-formula"]
+
+
+def test_a_named_law_is_the_only_one():
+    assert candidates(CalibrationRequest(law="brush"), samples(4.0, 12.0)) == {"brush": Brush()}
+
+
+@pytest.mark.parametrize("options", [{"load_sensitivity": True}, {"prior_from": "earlier"}])
+def test_what_belongs_to_one_law_is_refused_beside_a_comparison(options):
+    with pytest.raises(SettingsError, match="leave out"):
+        CalibrationRequest(law="compare", **options)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""Slip laws that a request names, or leaves to be chosen by the data."""
+
+from typing import Final, Literal
+
+import numpy as np
+
+from model.bayes.blocks import block_means
+from model.bayes.residuals import load_levels
+from model.bayes.samples import SlipSamples
+from model.slip.brush import Brush
+from model.slip.coulomb import CoulombStribeck
+from model.slip.law import SlipLaw
+from model.slip.laws import slip_law
+from model.slip.magic_formula import MagicFormula
+from zebro_lab.calibration.request import COMPARE, CalibrationRequest, require_curvature
+
+ONE_CURVATURE: Final = "one curvature E at every load"
+PEAK_WITH_LOAD: Final = "peak slip grows with load"
+
+
+def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
+    """Return the laws to choose from, by reported name, the preferred first.
+
+    They are the Magic Formula's, with `--law compare` the others' too, else the one that is named.
+
+    Args:
+        request: Options: law, curvature and dependence on load.
+        samples: The samples, whose loads decide which laws can be told apart.
+    """
+    if request.law not in (MagicFormula.name, COMPARE):
+        return {request.law: slip_law(request.law)}
+    several = len(load_levels(block_means(samples, 10))) > 1
+    formulas = _formulas(request, samples, sensitive=request.load_sensitivity, several=several)
+    if request.law != COMPARE:
+        return formulas if len(formulas) > 1 else {request.law: next(iter(formulas.values()))}
+    found: dict[str, SlipLaw] = {_short(name): law for name, law in formulas.items()}
+    found |= {
+        Brush.name: Brush(),
+        f"{Brush.name}, kinetic": Brush(kinetic=True),
+        CoulombStribeck.name: CoulombStribeck(),
+    }
+    if several:  # at one load its exponents are the priors'
+        sensitive = _formulas(request, samples, sensitive=True, several=True)
+        found |= {f"{_short(name)}, load-sensitive": law for name, law in sensitive.items()}
+    return found
+
+
+def _short(name: str) -> str:
+    """Return the name in a table of laws of a Magic Formula by that of its curvature."""
+    known = {ONE_CURVATURE: "one E", PEAK_WITH_LOAD: "peak by load"}
+    return f"{MagicFormula.name}, {known.get(name, name)}"
+
+
+def _formulas(
+    request: CalibrationRequest, samples: SlipSamples, *, sensitive: bool, several: bool
+) -> dict[str, SlipLaw]:
+    """Return the Magic Formulas by a name of their curvature, the preferred first.
+
+    They are two with `--curvature auto` and data at several loads, else one.
+    """
+    middle_load = float(np.median(samples.normal_force))
+
+    def formula(curvature: Literal["peak", "constant"] | float) -> MagicFormula:
+        return MagicFormula(curvature, sensitive, middle_load)
+
+    curvature = require_curvature(request.curvature)
+    if curvature == "peak":
+        return {PEAK_WITH_LOAD: formula("peak")}
+    if curvature not in ("auto", "constant"):
+        return {f"curvature {curvature:g}": formula(curvature)}
+    laws: dict[str, SlipLaw] = {ONE_CURVATURE: formula("constant")}
+    if curvature == "auto" and several:  # at one load the two are the same
+        laws[PEAK_WITH_LOAD] = formula("peak")
+    return laws

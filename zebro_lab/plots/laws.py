@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""Plot several slip laws over the same data, one row for each tested load."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from model.bayes.blocks import SlipBlocks
+from model.slip.law import Array, SlipLaw
+from zebro_lab.plots.sheet import (
+    CYCLE,
+    TRACTION_LABEL,
+    legend_below,
+    new_figure,
+    plain,
+    point_alpha,
+    slip_grid,
+    slip_label,
+    styled,
+)
+
+_BINS = 16  # of slip at each load, whose means are drawn beside the differences of the laws
+_STYLES = ("-", "--", "-.", ":")
+
+
+@styled
+def slip_laws(
+    blocks: SlipBlocks,
+    laws: Mapping[str, tuple[SlipLaw, Array]],
+    *,
+    reference: str,
+    load_levels: ArrayLike,
+    simulated: bool,
+) -> Figure:
+    """Draw the data and the curve of every law at each tested load, and how they differ.
+
+    On the left are block means and each law's median curve; on the right the curves less that of
+    the reference law, and means of the measured traction less the reference's prediction at each
+    block's own slip and load, with their standard errors, in bins of equally many blocks. Slip is
+    drawn on a square-root scale, on which both the rise and the fall of the curves are seen.
+
+    Args:
+        blocks: Block means of slip ratio and forces.
+        laws: Each law, of k parameters, with posterior draws of them, shape (n_draws, k), by name.
+        reference: Name of the law that the others are compared with.
+        load_levels: Nominal loads, shape (n_levels,) [N].
+        simulated: Whether to append "(simulated)" to the title.
+
+    Returns:
+        The figure.
+    """
+    levels = np.sort(np.ravel(np.asarray(load_levels, dtype=float)))
+    nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
+    figure = new_figure("Slip laws compared", simulated, width=9.0, height=1.6 + 2.3 * len(levels))
+    grid = figure.add_gridspec(len(levels), 2)
+    residual = blocks.traction_force - _median(laws[reference], blocks.slip, blocks.normal_force)
+    for row, load in enumerate(levels):
+        whole, beside = (figure.add_subplot(grid[row, column]) for column in (0, 1))
+        mine = nearest == row
+        slip = slip_grid(blocks.slip[mine] if mine.any() else blocks.slip, 250)
+        _draw_points(whole, blocks.slip[mine], blocks.traction_force[mine])
+        _draw_means(beside, blocks.slip[mine], residual[mine])
+        _draw_laws(whole, beside, laws, reference, slip, float(load))
+        whole.set_title(f"load {load:.4g} N", loc="left")
+        beside.set_title(f"less '{reference}'", loc="left")
+        whole.set_ylabel(TRACTION_LABEL)
+        beside.set_ylabel("difference [N]")
+    for axes in figure.axes[-2:]:
+        axes.set_xlabel(slip_label(blocks.definition))
+    for axes in figure.axes:
+        axes.set_xscale("function", functions=(_root, _square))
+        axes.axhline(0, color="0.6", lw=0.5, zorder=0)
+        ticks = _ticks(axes)
+        axes.set_xticks(ticks, [plain(tick) for tick in ticks])
+    legend_below(figure, columns=2)
+    return figure
+
+
+def _median(law: tuple[SlipLaw, Array], slip: Array, load: ArrayLike) -> Array:
+    """Compute the median traction of a law's draws at slips and loads, shape (n,) [N]."""
+    formula, draws = law
+    return np.median(formula.force(slip, load, draws.T[:, :, None]), axis=0)
+
+
+def _draw_laws(
+    whole: Axes,
+    beside: Axes,
+    laws: Mapping[str, tuple[SlipLaw, Array]],
+    reference: str,
+    slip: Array,
+    load: float,
+) -> None:
+    """Draw the median curve of each law, and its difference from the reference's."""
+    base = _median(laws[reference], slip, load)
+    for index, (name, law) in enumerate(laws.items()):
+        force = _median(law, slip, load)
+        own = name == reference
+        label = f"{name} (fitted)" if own else name
+        style = {
+            "color": CYCLE[index % len(CYCLE)],
+            "ls": _STYLES[index % len(_STYLES)],
+            "lw": 2.0 if own else 1.2,
+        }
+        whole.plot(slip, force, label=label, **style)
+        beside.plot(slip, force - base, **style)
+
+
+def _draw_points(axes: Axes, slip: Array, force: Array) -> None:
+    axes.scatter(
+        slip, force, s=9, color="0.35", alpha=point_alpha(len(slip)), linewidths=0,
+        label="block means",
+    )  # fmt: skip
+
+
+def _draw_means(axes: Axes, slip: Array, residual: Array) -> None:
+    """Draw means of residuals in bins of equally many blocks, with their standard errors."""
+    parts = np.array_split(np.argsort(slip), min(_BINS, max(1, len(slip) // 3)))
+    if not len(slip):
+        return
+    error = [np.std(residual[part], ddof=1) / np.sqrt(len(part)) if len(part) > 1 else 0.0
+             for part in parts]  # fmt: skip
+    axes.errorbar(
+        [float(slip[part].mean()) for part in parts],
+        [float(residual[part].mean()) for part in parts], error,
+        fmt="o", ms=3.5, color="0.2", lw=0.8, zorder=3,
+        label="measured less fitted: bin means, standard errors",
+    )  # fmt: skip
+
+
+def _root(slip: Array) -> Array:
+    """Map slip ratios to the scale of the axis, the square root with its sign."""
+    return np.sign(slip) * np.sqrt(np.abs(slip))
+
+
+def _square(position: Array) -> Array:
+    """Map positions on the axis to slip ratios, the inverse of `_root`."""
+    return np.sign(position) * np.square(position)
+
+
+def _ticks(axes: Axes) -> list[float]:
+    """Return ticks within the limits of a square-root axis: 1 and 3 times powers of ten, and 0."""
+    low, high = axes.get_xlim()
+    reach = max(-low, high)
+    power = 10.0 ** np.floor(np.log10(reach))
+    sizes = [part * power for part in (0.03, 0.1, 0.3, 1.0, 3.0) if part * power >= 0.03 * reach]
+    both = sorted({0.0, *sizes, *(-size for size in sizes)})
+    return [tick for tick in both if low <= tick <= high]

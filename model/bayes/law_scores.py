@@ -93,7 +93,7 @@ class LawScores:
         if mine is None or other is None:
             return None
         excess = mine.log_density - other.log_density
-        by_load = np.bincount(mine.group, excess)
+        by_load = np.bincount(mine.group, excess).astype(float)
         error = max(_standard_error(excess), _standard_error(by_load))
         return Difference(float(excess.sum()), error)
 

@@ -84,9 +84,9 @@ def signed(difference: "Difference") -> str:
 def laws_csv(scores: "LawScores") -> str:
     """Format the comparison as CSV: a header `COLUMNS`, then one line a law, the simplest first."""
     text = io.StringIO()
-    table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
-    table.writeheader()
-    table.writerows(_rows(scores))
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(COLUMNS)
+    table.writerows(row.values() for row in _rows(scores))
     return text.getvalue()
 
 

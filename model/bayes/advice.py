@@ -7,8 +7,6 @@ import numpy as np
 
 from model.slip.definition import SlipDefinition, convert_slip
 from model.slip.law import Array
-from model.slip.laws import LAWS
-from model.slip.magic_formula import MagicFormula
 
 _MEASURABLE = {
     SlipDefinition.MATERIAL: (-np.inf, 1.0),
@@ -90,13 +88,9 @@ class TryLaws(Advice):
     """Advice to fit the same data with the other laws.
 
     Attributes:
-        laws: Names of the other laws.
-        load_sensitivity: Whether the fitted law has a form that depends on load, to try as well.
         both_signs: Whether slip is driving and braking, which may differ.
     """
 
-    laws: tuple[str, ...]
-    load_sensitivity: bool
     both_signs: bool
 
 
@@ -141,18 +135,6 @@ def measure_slips(
     possible = np.clip(slips, *_MEASURABLE[definition])
     material = convert_slip(possible, definition, SlipDefinition.MATERIAL)
     return MeasureSlips(reason, tuple(map(float, loads)), tuple(map(float, material)))
-
-
-def try_laws(reason: str, law: str, *, both_signs: bool) -> TryLaws:
-    """Return advice to fit every other law.
-
-    Args:
-        reason: What the data show.
-        law: Name of the fitted law.
-        both_signs: Whether slip is driving and braking, which may differ.
-    """
-    others = tuple(name for name in LAWS if name != law)
-    return TryLaws(reason, others, law == MagicFormula.name, both_signs)
 
 
 def beyond_the_peak(peaks: Array, slip: Array) -> Array:

@@ -11,6 +11,7 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Chains
 from model.slip.law import Array, Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
+from model.slip.sided import N_SIDES, SidedLaw, side_factors
 
 MAX_PARETO_K = 0.7  # tail index from which importance weights are not reliable
 
@@ -125,6 +126,7 @@ def curve_estimates(
 
     In order: B, C, D, E (of a Magic Formula only), peak slip (or infinity), largest traction within
     the tested slip (known even where data end before the peak, unlike D), slope at zero slip [N].
+    Of a law with its sides apart these are of driving, and the last three follow for braking.
 
     Args:
         law: The slip law, of k parameters.
@@ -135,14 +137,29 @@ def curve_estimates(
     columns = values.T
     quantities: list[tuple[Parameter, Array]] = []
     if isinstance(law, MagicFormula):
-        coefficients = law.coefficients(load, columns)
-        quantities += zip(_PLAIN, coefficients, strict=True)
+        quantities += zip(_PLAIN, law.coefficients(load, columns), strict=True)
+    elif isinstance(law, SidedLaw) and isinstance(law.law, MagicFormula):
+        quantities += zip(_PLAIN, _driving_coefficients(law.law, load, columns), strict=True)
     peak = law.peak_slip(load, columns)
     largest = law.force(np.minimum(peak, slip_limit), load, columns)
     slope = law.slip_derivative(0.0, load, columns)
     quantities += zip(_FEATURES, (peak, largest, slope), strict=True)
+    if isinstance(law, SidedLaw):
+        peak = law.braking_peak_slip(load, columns)
+        largest = -law.force(np.maximum(peak, -slip_limit), load, columns)
+        slope = law.slip_derivative(-1e-12, load, columns)
+        quantities += zip(_BRAKING, (peak, largest, slope), strict=True)
     n = len(values)
     return [estimate(p, np.broadcast_to(np.asarray(x), n)) for p, x in quantities]
+
+
+def _driving_coefficients(
+    law: MagicFormula, load: float, columns: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Compute B, C, D [N] and E of the driving side from values of a `SidedLaw` of `law`."""
+    m, h = side_factors(1.0, *columns[-N_SIDES:])
+    B, C, D, E = law.coefficients(load, columns[:-N_SIDES])
+    return h * B, C, m * D, E
 
 
 @dataclass(frozen=True)
@@ -212,3 +229,11 @@ _FEATURES = (
     ),
     Parameter("initial_slope", "BCD", "newton", 0.0, np.inf, "slope at zero slip"),
 )
+_BRAKING = (
+    Parameter("braking_peak_slip", "x_m-", "dimensionless", -np.inf, 0.0,
+              "slip ratio of the braking peak"),
+    Parameter("largest_braking_force", "F_max-", "newton", 0.0, np.inf,
+              "largest braking force within the tested slip"),
+    Parameter("initial_braking_slope", "BCD-", "newton", 0.0, np.inf,
+              "slope of braking at zero slip"),
+)  # fmt: skip

@@ -16,7 +16,7 @@ from model.compiled import borrowing, inlined
 from model.elementary import log_of
 from model.lanes import LANES, put, row, select, size
 from model.slip.definition import slip_per_radius_error
-from model.slip.lane_force import ROWS, LaneLaw, law_at_load, law_at_slip
+from model.slip.lane_force import ROWS, LaneLaw, law_at_load, side_at_slip
 from model.slip.law import Array
 
 (
@@ -69,14 +69,14 @@ def lane_log_likelihood(blocks: SlipBlocks, law: LaneLaw, measurement: Array) ->
     rows = np.ascontiguousarray(padded.reshape(len(values), groups, LANES).swapaxes(0, 1))
     found = np.empty((groups, blocks.n_runs, LANES))
     _fill(
-        law.kind, law.sensitive, law.reference, rows, block_table(blocks), blocks.run_starts(),
-        blocks.run_slip_error, np.zeros((1, LANES)), found,
+        law.kind, law.sensitive, law.reference, law.sided, rows, block_table(blocks),
+        blocks.run_starts(), blocks.run_slip_error, np.zeros((1, LANES)), found,
     )  # fmt: skip
     return found.swapaxes(1, 2).reshape(groups * LANES, -1)[:w]
 
 
 @borrowing
-def _fill(kind, sensitive, reference, rows, table, starts, run_slip_error, zero, found):
+def _fill(kind, sensitive, reference, sided, rows, table, starts, run_slip_error, zero, found):
     """Fill the log densities `found`, shape (groups, n_runs, LANES); see `lane_log_likelihood`.
 
     The filter is that of `model.bayes.likelihood.filter_runs`. `rows` has shape (groups, values,
@@ -91,7 +91,7 @@ def _fill(kind, sensitive, reference, rows, table, starts, run_slip_error, zero,
             variance = nothing + 1.0
             for j in range(starts[i], starts[i + 1]):
                 block = table[j]
-                force, g, s = _predicted(kind, sensitive, reference, A, block)
+                force, g, s = _predicted(kind, sensitive, reference, sided, A, block)
                 sv = s * variance
                 total = _positive(s * sv + g * g * block[OWN_ERROR])
                 weight = 1.0 / total
@@ -124,21 +124,21 @@ def _positive(variance):
 
 
 @inlined
-def _predicted(kind, sensitive, reference, A, block):
+def _predicted(kind, sensitive, reference, sided, A, block):
     """Compute a block's expected traction, slope in slip and noise; see `predict_blocks`."""
     g_t, g_n, b_n = 1.0 + row(A, GAIN_T), 1.0 + row(A, GAIN_N), row(A, BIAS)
     shift, c_r = row(A, RADIUS) * block[SHIFT], row(A, ROLLING)
     load = _true_load(g_n, b_n, block[LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    centre = g_t * (law_at_slip(kind, at_load, block[CENTRE] - shift, load) - c_r * load)
-    above = g_t * (law_at_slip(kind, at_load, block[ABOVE] - shift, load) - c_r * load)
-    below = g_t * (law_at_slip(kind, at_load, block[BELOW] - shift, load) - c_r * load)
+    centre = g_t * (side_at_slip(sided, kind, A, at_load, block[CENTRE] - shift, load) - c_r * load)
+    above = g_t * (side_at_slip(sided, kind, A, at_load, block[ABOVE] - shift, load) - c_r * load)
+    below = g_t * (side_at_slip(sided, kind, A, at_load, block[BELOW] - shift, load) - c_r * load)
     load = _true_load(g_n, b_n, block[LIGHT_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    light = g_t * (law_at_slip(kind, at_load, block[LIGHT] - shift, load) - c_r * load)
+    light = g_t * (side_at_slip(sided, kind, A, at_load, block[LIGHT] - shift, load) - c_r * load)
     load = _true_load(g_n, b_n, block[HEAVY_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    heavy = g_t * (law_at_slip(kind, at_load, block[HEAVY] - shift, load) - c_r * load)
+    heavy = g_t * (side_at_slip(sided, kind, A, at_load, block[HEAVY] - shift, load) - c_r * load)
     across = heavy - light
     mean = light + block[HEAVY_SHARE] * across + (above - 2.0 * centre + below) * (1.0 / 6.0)
     slope = (above - below) * (0.5 / block[HALF_WIDTH])

@@ -65,6 +65,8 @@ def default_priors(
         "curvature": Below(1.0, 1.0, 1.0),
         "friction_load_exponent": Normal(0.0, 0.2),
         "stiffness_load_exponent": Normal(0.0, 0.3),
+        "side_stiffness": Normal(0.0, 0.2),
+        "side_friction": Normal(0.0, 0.1),
         "gain_traction": Normal(0.0, load_cell.gain_sd),
         "gain_normal": Normal(0.0, load_cell.gain_sd),
         "bias_normal": Normal(0.0, load_cell.bias_sd),

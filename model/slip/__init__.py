@@ -6,9 +6,10 @@ from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition, convert_slip, require_definition, slip_ratio
 from model.slip.lateral import lateral_slip, slip_angle
 from model.slip.law import Parameter, SlipLaw
-from model.slip.laws import LAWS, slip_law
+from model.slip.laws import LAWS, law_options, slip_law
 from model.slip.magic_formula import MagicFormula, magic_formula
 from model.slip.read_off import Coefficients, CurveFeatures, ReadOff, curve_features, read_off
+from model.slip.sided import SidedLaw
 
 __all__ = [
     "LAWS",
@@ -19,11 +20,13 @@ __all__ = [
     "MagicFormula",
     "Parameter",
     "ReadOff",
+    "SidedLaw",
     "SlipDefinition",
     "SlipLaw",
     "convert_slip",
     "curve_features",
     "lateral_slip",
+    "law_options",
     "magic_formula",
     "read_off",
     "require_definition",

@@ -5,7 +5,7 @@ The functions are those of `magic_formula`, `brush` and `coulomb_stribeck`, and 
 but for rounding.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -17,13 +17,16 @@ from model.slip.brush import Brush, static_friction_from_peak
 from model.slip.coulomb import CoulombStribeck
 from model.slip.law import Array, SlipLaw
 from model.slip.magic_formula import MagicFormula
+from model.slip.sided import N_SIDES, SidedLaw, side_factors
 
 MAGIC_PEAK: Final = 0  # the Magic Formula with E from the peak's position
 MAGIC: Final = 1  # the Magic Formula with E given
 BRUSH: Final = 2  # from here on coefficients do not depend on load
 COULOMB: Final = 3
-ROWS: Final = 7
+ROWS: Final = 9
 """Number of coefficients of any law, in the first rows of a lane's values."""
+FRICTION_FACTOR: Final = 7
+SLIP_FACTOR: Final = 8
 
 
 @dataclass(frozen=True)
@@ -34,14 +37,17 @@ class LaneLaw:
         kind: `MAGIC_PEAK`, `MAGIC`, `BRUSH` or `COULOMB`.
         sensitive: Whether friction and stiffness grow with powers of the load.
         reference: Load at which they have their parameters' values [N].
+        sided: Whether driving and braking are apart.
         coefficients: K, and of the Magic Formula C, mu, x_m/Fn or E, tan(pi/2C) and the exponents
             of mu and K; of the brush model mu_s and q; of Coulomb's friction mu, q and kappa_s.
-            The rest is 0. Shape (`ROWS`, w).
+            The rest is 0, but the last two: the factors of friction and of slip in driving, 1 over
+            those in braking. Shape (`ROWS`, w).
     """
 
     kind: int
     sensitive: bool
     reference: float
+    sided: bool
     coefficients: Array
 
 
@@ -52,6 +58,8 @@ def lane_law(law: SlipLaw, values: Array) -> LaneLaw | None:
         law: The slip law, of k parameters.
         values: Parameter values, shape (w, k).
     """
+    if isinstance(law, SidedLaw):
+        return _apart(lane_law(law.law, values[:, :-N_SIDES]), values[:, -N_SIDES:])
     columns = values.T
     if isinstance(law, MagicFormula):
         return _magic_formula(law, columns)
@@ -73,14 +81,24 @@ def _magic_formula(law: MagicFormula, columns: Array) -> LaneLaw:
     exponents = columns[-2:] if law.load_sensitivity else np.zeros((2, len(K)))
     kind = MAGIC_PEAK if peak else MAGIC
     found = _law(kind, K, C, mu, shape, np.tan(np.pi / (2 * C)), *exponents)
-    return LaneLaw(kind, law.load_sensitivity, law.reference_load, found.coefficients)
+    return LaneLaw(kind, law.load_sensitivity, law.reference_load, False, found.coefficients)
+
+
+def _apart(middle: LaneLaw | None, sides: Array) -> LaneLaw | None:
+    """Return a law with driving and braking apart by the parameters of its sides, shape (w, 2)."""
+    if middle is None:
+        return None
+    coefficients = middle.coefficients.copy()
+    coefficients[FRICTION_FACTOR], coefficients[SLIP_FACTOR] = side_factors(1.0, *sides.T)
+    return replace(middle, sided=True, coefficients=coefficients)
 
 
 def _law(kind: int, *rows: Array) -> LaneLaw:
     """Return a law that does not grow with powers of the load, its missing coefficients 0."""
     coefficients = np.zeros((ROWS, len(rows[0])))
     coefficients[: len(rows)] = rows
-    return LaneLaw(kind, False, 1.0, coefficients)
+    coefficients[FRICTION_FACTOR:] = 1.0
+    return LaneLaw(kind, False, 1.0, False, coefficients)
 
 
 @inlined
@@ -128,6 +146,26 @@ def law_at_slip(kind, at_load, slip, load):
     B, C, D, E = at_load
     Bk = B * slip
     return D * sin_half_turn(C * arctan(Bk - E * minus_arctan(Bk)))
+
+
+@inlined
+def side_at_slip(sided, kind, A, at_load, slip, load):
+    """Compute the traction of a slip law whose driving and braking may be apart [N].
+
+    Args:
+        sided: Whether they are apart; the law is as `law_at_slip` has it if not.
+        kind: Kind of the law.
+        A: Rows of values, the law's `ROWS` coefficients first.
+        at_load: Coefficients of `law_at_load`.
+        slip: Slip ratio, a lane's own [-].
+        load: Normal force, positive [N].
+    """
+    if not sided:
+        return law_at_slip(kind, at_load, slip, load)
+    m, h = row(A, FRICTION_FACTOR), row(A, SLIP_FACTOR)
+    braking = slip + 0.0 * m < 0.0
+    m, h = select(braking, 1.0 / m, m), select(braking, 1.0 / h, h)
+    return m * law_at_slip(kind, at_load, slip * h, load)
 
 
 @inlined

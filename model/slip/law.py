@@ -41,7 +41,7 @@ class SlipLaw(Protocol):
     is evaluated in one call: entries of shape (walkers, 1) against slip of shape (n,).
 
     Sign: a positive slip ratio (the leg's surface outruns the ground) drives the robot forward
-    with a positive force. Every law is odd in slip.
+    with a positive force. Every law is odd in slip, but for `SidedLaw`.
     """
 
     @property

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The slip laws by name."""
 
-from dataclasses import fields
+from dataclasses import asdict, fields
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
 from model.errors import DomainError
 from model.similar_name import similar_name
@@ -11,21 +11,25 @@ from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
+from model.slip.sided import SidedLaw
 
 LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
 """Class of every slip law, by the law's name."""
+SIDES: Final = "sides"
+TOGETHER: Final = "together"
+APART: Final = "apart"
 
 
 def slip_law(name: str, **options: Any) -> SlipLaw:
     """Create a slip law by name.
 
-    A law is stored as its name and its fields: `slip_law(law.name, **dataclasses.asdict(law))`
-    restores it.
+    A law is stored as its name and its options: `slip_law(law.name, **law_options(law))` restores
+    it.
 
     Args:
         name: A key of `LAWS`.
         options: Fields of the law's class, such as `curvature` of the Magic Formula; their values
-            are not checked.
+            are not checked. `sides="apart"` makes it a `SidedLaw`.
 
     Returns:
         The law.
@@ -37,10 +41,25 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
     ['slip_stiffness', 'friction', 'kinetic_ratio']
     """
     _require_known("slip law", name, tuple(LAWS))
-    known = tuple(field.name for field in fields(LAWS[name]))
+    known = (*(field.name for field in fields(LAWS[name])), SIDES)
     for option in options:
         _require_known(f"option of the slip law '{name}'", option, known)
-    return LAWS[name](**options)
+    own = {option: value for option, value in options.items() if option != SIDES}
+    law = LAWS[name](**own)
+    sides = options.get(SIDES, TOGETHER)
+    _require_known(f"value of the option '{SIDES}'", sides, (TOGETHER, APART))
+    return SidedLaw(law) if sides == APART else law
+
+
+def law_options(law: SlipLaw) -> dict[str, Any]:
+    """Return the options with which `slip_law` restores a law.
+
+    Args:
+        law: A law of a class in `LAWS`, or such a law with its sides apart.
+    """
+    if isinstance(law, SidedLaw):
+        return {**law_options(law.law), SIDES: APART}
+    return asdict(law)  # pyright: ignore[reportArgumentType]
 
 
 def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:

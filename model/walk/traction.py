@@ -11,6 +11,7 @@ from model.errors import DomainError
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition, convert_slip
 from model.slip.law import Array, SlipLaw, Values
+from model.slip.sided import middle_curve
 
 ToeLaw = Literal["saturated", "peak", "bristle"]
 TOE_LAWS: tuple[ToeLaw, ...] = ("saturated", "peak", "bristle")
@@ -116,6 +117,7 @@ def law_table(
     Loads are from 0.02 to 2 times the weight, one alone if traction is proportional to load. Slip
     ratios of the table are material ones from 0 to 10 000, |slip velocity| over the speed at which
     the leg's arc passes the contact; a law of another definition is evaluated at converted slip.
+    The table is odd: a law with driving and braking apart is tabulated by its middle curve.
 
     Args:
         law: The slip law.
@@ -134,6 +136,7 @@ def law_table(
         ValueError: The slip definition is unknown.
     """
     _require_toe(toe)
+    law, values = middle_curve(law, values)
     loads = weight * np.geomspace(*LOAD_RANGE, N_LOADS)
     valid = np.broadcast_to(law.valid(loads, values), loads.shape)
     if not valid.all():

@@ -115,13 +115,11 @@ def _weigh_load_cell(advice: WeighLoadCell) -> str:
 
 @advice_text.register
 def _try_laws(advice: TryLaws) -> str:
-    options = [f"--law {name}" for name in advice.laws]
-    options += ["--load-sensitivity"] * advice.load_sensitivity
-    apart = "; else fit driving and braking apart ([rows] keep in columns.toml)"
+    apart = ", then with that law and --sides auto"
     return (
-        f"{advice.reason}: give the same command with {', with '.join(options)}, each with an "
-        f"--out of its own, and use the result that is trustworthy{apart * advice.both_signs}; if "
-        "none is, check the slip definition (--slip-definition) and see residuals.png"
+        f"{advice.reason}: give the same command with --law compare{apart * advice.both_signs}, "
+        "each with an --out of its own, and use the result that is trustworthy; if none is, check "
+        "the slip definition (--slip-definition) and see residuals.png"
     )
 
 

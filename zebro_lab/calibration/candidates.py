@@ -11,23 +11,50 @@ from model.bayes.samples import SlipSamples
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
-from model.slip.laws import slip_law
+from model.slip.laws import APART, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula
+from model.slip.sided import SidedLaw
 from zebro_lab.calibration.request import COMPARE, CalibrationRequest, require_curvature
+from zebro_lab.files.errors import SettingsError
 
 ONE_CURVATURE: Final = "one curvature E at every load"
+FEWEST_BLOCKS: Final = 0.02
+"""Share of the blocks that slip drives, and brakes, from which there are two sides [-]."""
 PEAK_WITH_LOAD: Final = "peak slip grows with load"
 
 
 def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
     """Return the laws to choose from, by reported name, the preferred first.
 
-    They are the Magic Formula's, with `--law compare` the others' too, else the one that is named.
+    They are the Magic Formula's, with `--law compare` the others' too, else the one that is named;
+    with `--sides apart` all with their sides apart, with `--sides auto` those behind the others.
 
     Args:
-        request: Options: law, curvature and dependence on load.
-        samples: The samples, whose loads decide which laws can be told apart.
+        request: Options: law, curvature, dependence on load, and sides.
+        samples: The samples, whose loads and signs of slip decide what can be told apart.
+
+    Raises:
+        SettingsError: Sides are to be fitted apart, and slip has one sign.
     """
+    laws = _together(request, samples)
+    if request.sides == TOGETHER:
+        return laws
+    low, high = np.quantile(block_means(samples, 10).slip, [FEWEST_BLOCKS, 1 - FEWEST_BLOCKS])
+    both_signs = bool(low < 0 < high)
+    if request.sides == APART and not both_signs:
+        raise SettingsError(
+            "slip has one sign in these data, so there is one side to fit; leave out --sides",
+            key="--sides",
+        )
+    if request.sides == APART:
+        return {name: SidedLaw(law) for name, law in laws.items()}
+    if not both_signs:
+        return laws
+    return {**laws, **{f"{name}, sides apart": SidedLaw(law) for name, law in laws.items()}}
+
+
+def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
+    """Return the laws to choose from with driving and braking on one curve."""
     if request.law not in (MagicFormula.name, COMPARE):
         return {request.law: slip_law(request.law)}
     several = len(load_levels(block_means(samples, 10))) > 1

@@ -7,7 +7,7 @@ Only this module depends on the format of the first two; the draws are read in `
 import csv
 import io
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
-from model.slip.laws import slip_law
+from model.slip.laws import law_options, slip_law
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.law_table import LAWS_CSV, laws_content, laws_csv
 from zebro_lab.files.documents import read_toml_document
@@ -220,7 +220,7 @@ def _law_content(calibration: "Calibration") -> dict[str, Any]:
     law = calibration.posterior.law
     k = len(law.parameters)
     return {
-        "law": {"name": law.name, **asdict(law)},  # pyright: ignore[reportArgumentType]
+        "law": {"name": law.name, **law_options(law)},
         "parameters": {
             e.parameter.name: {
                 "symbol": e.parameter.symbol, "unit": e.parameter.unit, "mean": e.mean,

@@ -55,6 +55,13 @@ class CalibrationRequest:
     load_sensitivity: Annotated[
         bool, Option("--load-sensitivity", help="Let friction and stiffness vary with load.")
     ] = False
+    sides: Annotated[
+        Literal["together", "apart", "auto"],
+        Option(
+            help="Driving and braking: one curve (together); stiffness and friction of each side "
+            "(apart); or apart if that predicts left-out runs clearly better (auto)."
+        ),
+    ] = "together"
     block_length: Annotated[
         int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
     ] = None
@@ -133,6 +140,12 @@ class CalibrationRequest:
                 "leave out --load-sensitivity",
                 key="--law",
             )
+        if self.sides == "auto":
+            raise SettingsError(
+                "--law compare compares laws with their sides alike; choose --sides together or "
+                "apart, or compare first and give --sides auto with the law that was fitted",
+                key="--sides",
+            )
         if self.prior_from is not None:
             raise SettingsError(
                 "--prior-from is the posterior of one law, whose parameters the others do not "
@@ -146,6 +159,12 @@ class CalibrationRequest:
 
             for text in self.prior:
                 parse_prior(text, key="--prior")
+        if self.prior_from is not None and self.sides == "auto":
+            raise SettingsError(
+                "--prior-from is the posterior of one law, with its sides together or apart; leave "
+                "out --sides",
+                key="--sides",
+            )
         if self.prior_from is None and (self.widen != 1 or self.carry != "all"):
             raise SettingsError(
                 "--widen and --carry belong to --prior-from; name a calibration, or leave them out",
@@ -174,6 +193,7 @@ class CalibrationRequest:
             "law": self.law,
             "curvature": self.curvature,
             "load_sensitivity": self.load_sensitivity,
+            "sides": self.sides,
             "block_length": self.block_length,
             "load_cell": self.load_cell,
             "prior": list(self.prior),

@@ -12,7 +12,9 @@ from model.bayes.prior_conflict import PriorShift
 from model.bayes.priors import Prior
 from model.bayes.stated_priors import EarlierPosterior, StatedPriors
 from model.slip.law import Parameter, SlipLaw
+from model.slip.laws import TOGETHER
 from model.slip.magic_formula import MagicFormula
+from model.slip.sided import SidedLaw
 from zebro_lab.calibration.earlier import NOISE, EarlierCalibration, read_earlier
 from zebro_lab.calibration.prior_argument import named_priors, parse_prior
 from zebro_lab.calibration.request import CalibrationRequest
@@ -117,9 +119,15 @@ def _laws_of(
 ) -> dict[str, SlipLaw]:
     """Return the law of an earlier calibration; raise where the request or the data differ."""
     law, definition = earlier.curve.law, earlier.curve.definition
+    apart = isinstance(law, SidedLaw)
     asked_default = request.law == MagicFormula.name and request.curvature == "auto"
-    curvature = getattr(law, "curvature", None)
+    curvature = getattr(law.law if isinstance(law, SidedLaw) else law, "curvature", None)
     fits = request.law == law.name and request.curvature in ("auto", str(curvature))
+    if request.sides != TOGETHER and not apart:
+        raise SettingsError(
+            f"{earlier.title} was fitted with driving and braking together; leave out --sides",
+            key="--prior-from",
+        )
     if not (fits or (asked_default and not request.load_sensitivity)):
         raise SettingsError(
             f"{earlier.title} was fitted with the law '{law.name}'"

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from model.bayes.blocks import SlipBlocks
 from model.slip.law import Array, SlipLaw
+from model.slip.sided import braking_peak_slip
 from zebro_lab.plots.sheet import (
     BLUE,
     NARROW,
@@ -149,9 +150,18 @@ def _peaks(law: SlipLaw, draws: Array, load: float, slip: Array) -> Array:
     They are those of the tables: medians of each draw's own peak, not the peak of the median curve.
     """
     own = np.broadcast_to(law.peak_slip(load, draws.T), len(draws))
-    largest = law.force(np.minimum(own, np.abs(slip).max()), load, draws.T)
-    at, force = float(np.median(own)), float(np.median(largest))
-    both = np.array([[at, force], [-at, -force]])
+    braking = np.broadcast_to(braking_peak_slip(law, load, draws.T), len(draws))
+    reach = np.abs(slip).max()
+    forces = (
+        law.force(np.minimum(own, reach), load, draws.T),
+        law.force(np.maximum(braking, -reach), load, draws.T),
+    )
+    both = np.array(
+        [
+            [np.median(at), np.median(force)]
+            for at, force in zip((own, braking), forces, strict=True)
+        ]
+    )
     return both[(both[:, 0] > slip[0]) & (both[:, 0] < slip[-1])]
 
 

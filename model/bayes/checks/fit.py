@@ -10,7 +10,6 @@ from model.bayes.advice import (
     TryLaws,
     WeighLoadCell,
     ZeroBeforeEach,
-    try_laws,
 )
 from model.bayes.blocks import SlipBlocks
 from model.bayes.checks.check import Check, decided, not_testable
@@ -101,7 +100,7 @@ def _run_advice(residuals: Residuals, far: list[str]) -> Advice:
     )
 
 
-def whiteness(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Check:
+def whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
     """Check that whitened residuals of successive blocks are hardly correlated.
 
     The limit is `MAX_LAG_ONE`, or more for few blocks; not testable with fewer than `FEWEST_PAIRS`
@@ -122,24 +121,24 @@ def whiteness(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Check:
         name,
         abs(residuals.lag_one) < limit,
         f"lag-1 correlation of whitened residuals {residuals.lag_one:+.3f}, limit {limit:.2f}",
-        _whiteness_advice(residuals, blocks, law),
+        _whiteness_advice(residuals, blocks),
     )
 
 
-def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks, law: SlipLaw) -> Advice:
+def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks) -> Advice:
     """Choose between another law and shorter runs: drift neither alternates nor repeats by slip."""
     if residuals.lag_one < 0 or residuals.misfit_p < MISFIT_P:
-        return law_advice(blocks, law)
+        return law_advice(blocks)
     return ZeroBeforeEach("forces drift within runs, so that intervals are too narrow")
 
 
-def law_advice(blocks: SlipBlocks, law: SlipLaw) -> TryLaws:
+def law_advice(blocks: SlipBlocks) -> TryLaws:
     """Advise another law; slips of both signs, beyond noise about zero, may need one each."""
     smaller = min(blocks.slip.max(), -blocks.slip.min())
-    return try_laws(
-        "forces differ from the curve in the same way in all runs", law.name,
+    return TryLaws(
+        "forces differ from the curve in the same way in all runs",
         both_signs=bool(smaller > 0.1 * np.abs(blocks.slip).max()),
-    )  # fmt: skip
+    )
 
 
 def lag_one_limit(pairs: int) -> float:
@@ -150,7 +149,7 @@ def lag_one_limit(pairs: int) -> float:
     return float(max(MAX_LAG_ONE, 2.6 / np.sqrt(pairs)))
 
 
-def shape(residuals: Residuals, law: SlipLaw, blocks: SlipBlocks) -> Check:
+def shape(residuals: Residuals, blocks: SlipBlocks) -> Check:
     """Check that the misfit that all runs share is small or not significant, at each load too.
 
     It fails above `MAX_MISFIT` of the peak force at its load with a p-value below `MISFIT_P`. Not
@@ -189,5 +188,5 @@ def shape(residuals: Residuals, law: SlipLaw, blocks: SlipBlocks) -> Check:
         not failed,
         f"the misfit that all runs share is {residuals.misfit:.1%} of the peak force, limit "
         f"{MAX_MISFIT:.0%} where p is below {MISFIT_P:g} (p = {residuals.misfit_p:.2g})",
-        law_advice(blocks, law),
+        law_advice(blocks),
     )

@@ -67,7 +67,7 @@ def inspect(
         families.append((ONE_LAW, LOAD, ""))
     found = [(name, find(fit, suspects), why) for name, suspects, why in families]
     suspected = _suspected([each for _, some, _ in found for each in some])
-    advice = suspected[0].advice if suspected else law_advice(fit.blocks, posterior.law)
+    advice = suspected[0].advice if suspected else law_advice(fit.blocks)
     checks = (
         groups(fit, advice),
         *(_family(name, some, why) for name, some, why in found),

@@ -94,7 +94,7 @@ _MEASURE_ZERO = _correct(
 )
 _PART_SIDES = _correct(
     "weigh the load cell in both directions; if its gain is the same, fit driving and braking "
-    "apart ([rows] keep in columns.toml)"
+    "apart: the same command with --sides apart"
 )
 _FREE_LOAD = _correct("give the same command with --load-sensitivity")
 _MEASURE_AGAIN = _correct(

@@ -8,6 +8,7 @@ import numpy as np
 from model.compiled import compiled
 from model.slip.law import Array, SlipLaw, Values
 from model.slip.magic_formula import MagicFormula
+from model.slip.sided import middle_curve
 from model.walk.traction import TractionTable, VelocityCoulomb, law_table
 from model.walk.traction_lookup import table_value
 
@@ -52,6 +53,7 @@ def law_traction(law: SlipLaw, values: Values, *, weight: float) -> Traction:
     Raises:
         DomainError: A law that is tabulated loses its shape at these loads.
     """
+    law, values = middle_curve(law, values)
     if isinstance(law, MagicFormula) and law.curvature == "peak" and not law.load_sensitivity:
         K, C, friction, peak_slip = (float(np.asarray(value)) for value in values)
         return Traction(True, K / (C * friction), C, friction, peak_slip, _NO_TABLE)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Advice names what a rig can measure and which laws are left."""
+"""Advice names what a rig can measure."""
 
 import numpy as np
 import pytest
 
-from model.bayes.advice import beyond_the_peak, measure_slips, try_laws
+from model.bayes.advice import beyond_the_peak, measure_slips
 from model.slip.definition import SlipDefinition, convert_slip
-from model.slip.laws import LAWS
 
 LOADS = np.array([5.0, 10.0])
 SLIPS = np.array([0.01, 0.03, 0.2])
@@ -25,13 +24,6 @@ def test_a_slip_that_no_rig_can_hold_becomes_the_largest_that_it_can(definition)
     advice = measure_slips("x", loads=LOADS, slips=np.array([-3.0, 3.0]), definition=definition)
     assert min(advice.slips) > -10.1
     assert max(advice.slips) <= 1.0
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_every_other_law_is_offered_and_load_sensitivity_to_the_law_that_has_it(law):
-    advice = try_laws("x", law, both_signs=False)
-    assert set(advice.laws) == set(LAWS) - {law}
-    assert advice.load_sensitivity == (law == "magic-formula")
 
 
 def test_slips_beyond_the_peak_begin_at_it_and_take_the_side_of_the_data():

@@ -4,8 +4,8 @@ import pytest
 
 from model.compiled import compiled
 from model.lanes import LANES, put, row
-from model.slip import Brush, CoulombStribeck, MagicFormula
-from model.slip.lane_force import lane_law, law_at_load, law_at_slip
+from model.slip import Brush, CoulombStribeck, MagicFormula, SidedLaw
+from model.slip.lane_force import lane_law, law_at_load, side_at_slip
 
 LAWS = [
     MagicFormula(),
@@ -17,15 +17,17 @@ LAWS = [
     Brush(kinetic=True),
     CoulombStribeck(),
     CoulombStribeck(stribeck=False),
+    SidedLaw(MagicFormula("constant", load_sensitivity=True, reference_load=6.0)),
+    SidedLaw(Brush(kinetic=True)),
 ]
 
 
 @compiled
-def forces(kind, sensitive, reference, A, slip, load, found):
+def forces(kind, sensitive, reference, sided, A, slip, load, found):
     for i in range(len(slip)):
         one = row(load, i)
         at_load = law_at_load(kind, sensitive, reference, A, one)
-        put(found, i, law_at_slip(kind, at_load, row(slip, i), one))
+        put(found, i, side_at_slip(sided, kind, A, at_load, row(slip, i), one))
 
 
 def typical(law, rng):
@@ -33,7 +35,7 @@ def typical(law, rng):
     known = {
         "slip_stiffness": 20.0, "shape": 1.5, "friction": 0.4, "peak_slip_per_load": 0.0066,
         "curvature": -0.5, "friction_load_exponent": -0.1, "stiffness_load_exponent": 0.2,
-        "kinetic_ratio": 0.8, "stribeck_slip": 0.1,
+        "kinetic_ratio": 0.8, "stribeck_slip": 0.1, "side_stiffness": 0.3, "side_friction": -0.2,
     }  # fmt: skip
     middle = np.array([known[p.name] for p in law.parameters])
     return middle * rng.uniform(0.9, 1.1, (LANES, len(middle)))
@@ -51,7 +53,8 @@ def test_forces_in_lanes_are_the_laws_own(law):
     known = lane_law(law, values)
     assert known is not None
     found = np.empty_like(slip)
-    forces(known.kind, known.sensitive, known.reference, known.coefficients, slip, load, found)
+    kind = known.kind, known.sensitive, known.reference, known.sided
+    forces(*kind, known.coefficients, slip, load, found)
     exact = law.force(slip, load, values.T)
     np.testing.assert_allclose(found, exact, rtol=1e-11, atol=1e-12)
 

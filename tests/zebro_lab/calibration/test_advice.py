@@ -45,15 +45,11 @@ def test_short_runs_have_a_zero_each_and_are_fitted_alone():
     assert "calibrate-slip FURTHER" in advice.splitlines()[-1]
 
 
-def test_laws_are_options_and_driving_and_braking_are_parted_where_both_were_measured():
-    one = advice_text(TryLaws("x", ("brush",), load_sensitivity=False, both_signs=False))
-    both = advice_text(TryLaws("x", ("brush",), load_sensitivity=True, both_signs=True))
-    assert "with --law brush, each" in one
-    assert "--law brush, with --load-sensitivity, each" in both
-    assert ("driving and braking apart" in one, "driving and braking apart" in both) == (
-        False,
-        True,
-    )
+def test_laws_are_compared_and_driving_and_braking_parted_where_both_were_measured():
+    one = advice_text(TryLaws("x", both_signs=False))
+    both = advice_text(TryLaws("x", both_signs=True))
+    assert "with --law compare, each" in one
+    assert "with --law compare, then with that law and --sides auto, each" in both
 
 
 def test_each_run_that_is_left_out_has_its_command():

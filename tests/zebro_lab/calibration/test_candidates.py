@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from model.bayes.samples import SlipSamples
-from model.slip import Brush, MagicFormula, SlipDefinition
+from model.slip import Brush, MagicFormula, SidedLaw, SlipDefinition
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.errors import SettingsError
@@ -51,3 +51,21 @@ def test_a_named_law_is_the_only_one():
 def test_what_belongs_to_one_law_is_refused_beside_a_comparison(options):
     with pytest.raises(SettingsError, match="leave out"):
         CalibrationRequest(law="compare", **options)
+
+
+def test_sides_are_fitted_together_apart_or_both():
+    data = samples(4.0, 12.0)
+    slip = np.where(data.run % 2, 0.1, -0.1)
+    both = replace(data, slip=slip, traction_force=np.sign(slip) * data.traction_force)
+    apart = candidates(CalibrationRequest(law="brush", sides="apart"), both)
+    assert apart == {"brush": SidedLaw(Brush())}
+    auto = candidates(CalibrationRequest(law="brush", sides="auto"), both)
+    assert auto == {"brush": Brush(), "brush, sides apart": SidedLaw(Brush())}
+    assert list(candidates(CalibrationRequest(law="brush", sides="auto"), data)) == ["brush"]
+    with pytest.raises(SettingsError, match="slip has one sign"):
+        candidates(CalibrationRequest(law="brush", sides="apart"), data)
+
+
+def test_sides_are_not_chosen_beside_a_comparison_of_laws():
+    with pytest.raises(SettingsError, match="choose --sides together or apart"):
+        CalibrationRequest(law="compare", sides="auto")

@@ -7,7 +7,7 @@ import pytest
 from model.bayes.advice import MeasureAlso
 from model.bayes.checks.check import Outcome
 from model.bayes.checks.fit import FEWEST_PAIRS, lag_one_limit, shape, whiteness
-from support.judged_fits import LAW, blocks_at, clean, two_sided
+from support.judged_fits import blocks_at, clean, two_sided
 
 SLIPS = np.geomspace(0.01, 0.8, 8)
 
@@ -21,15 +21,15 @@ def test_the_limit_of_correlation_widens_with_fewer_pairs():
 def test_noise_in_time_needs_enough_pairs_of_blocks(per_run, made):
     blocks = blocks_at(SLIPS[:4], per_run=per_run, loads=(6.0, 12.0))
     assert (len(blocks) - blocks.n_runs >= FEWEST_PAIRS) == made
-    check = whiteness(clean(), blocks, LAW)
+    check = whiteness(clean(), blocks)
     assert (check.outcome is Outcome.PASSED) == made
 
 
 def test_the_shape_is_tested_only_where_set_points_are_repeated():
     twice = two_sided(0.4)
     once = twice.select_runs(np.arange(twice.n_runs) // 12 % 2 == 0)
-    assert shape(clean(), LAW, twice).passed
-    check = shape(clean(), LAW, once)
+    assert shape(clean(), twice).passed
+    check = shape(clean(), once)
     assert check.untested == "repeatability (no slip and load in two runs)"
     assert check.advice == MeasureAlso("no set-point was measured twice", repeats=2)
 
@@ -37,4 +37,4 @@ def test_the_shape_is_tested_only_where_set_points_are_repeated():
 def test_a_misfit_is_found_even_where_nothing_was_repeated():
     twice = two_sided(0.4)
     once = twice.select_runs(np.arange(twice.n_runs) // 12 % 2 == 0)
-    assert shape(clean(misfit=0.2, misfit_p=1e-6), LAW, once).failed
+    assert shape(clean(misfit=0.2, misfit_p=1e-6), once).failed

@@ -148,7 +148,7 @@ def curve_estimates(
         peak = law.braking_peak_slip(load, columns)
         largest = -law.force(np.maximum(peak, -slip_limit), load, columns)
         slope = law.slip_derivative(-1e-12, load, columns)
-        quantities += zip(_BRAKING, (peak, largest, slope), strict=True)
+        quantities += zip(BRAKING, (peak, largest, slope), strict=True)
     n = len(values)
     return [estimate(p, np.broadcast_to(np.asarray(x), n)) for p, x in quantities]
 
@@ -229,7 +229,7 @@ _FEATURES = (
     ),
     Parameter("initial_slope", "BCD", "newton", 0.0, np.inf, "slope at zero slip"),
 )
-_BRAKING = (
+BRAKING = (
     Parameter("braking_peak_slip", "x_m-", "dimensionless", -np.inf, 0.0,
               "slip ratio of the braking peak"),
     Parameter("largest_braking_force", "F_max-", "newton", 0.0, np.inf,
@@ -237,3 +237,4 @@ _BRAKING = (
     Parameter("initial_braking_slope", "BCD-", "newton", 0.0, np.inf,
               "slope of braking at zero slip"),
 )  # fmt: skip
+"""Features of the braking side of a law with its sides apart."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Terminal output of `calibrate-slip`: data, parameters, curve at each load, verdict."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from rich.text import Text
 
 from model.bayes.calibration import Calibration
 from model.bayes.checks.check import Outcome
-from model.bayes.estimate import Estimate, informed
+from model.bayes.estimate import BRAKING, Estimate, informed
 from model.bayes.law_scores import LawScores
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.verdict import State
@@ -54,7 +55,8 @@ def print_calibration(console: Console, calibration: Calibration, out: Path) -> 
     _print_blocks(console, calibration)
     console.print(_parameter_table(calibration))
     _print_priors(console, calibration)
-    console.print(_curve_table(calibration))
+    for table in _curve_tables(calibration):
+        console.print(table)
     _print_quality(console, calibration)
     _print_verdict(console, calibration)
     console.print(Text(f"\nwritten to {out}:"))
@@ -192,14 +194,26 @@ def _interval(e: Estimate) -> str:
     return f"{e.low:.4g} … {e.high:.4g}"
 
 
-def _curve_table(calibration: Calibration) -> Table:
+def _curve_tables(calibration: Calibration) -> list[Table]:
+    """Return the features of the curve at each load; where sides are apart a table for each."""
     title = (
         "slip curve at the median measured load of each load tested: median, and 90 % interval on "
         "the second line"
     )
-    headings = (f"{e.parameter.symbol} [{_unit(e)}]" for e in calibration.curves[0])
+    sides = [[e for e in row if e.parameter not in BRAKING] for row in calibration.curves]
+    braking = [[e for e in row if e.parameter in BRAKING] for row in calibration.curves]
+    if not braking[0]:
+        return [_curve_table(title, calibration.levels, sides)]
+    return [
+        _curve_table(f"driving: {title}", calibration.levels, sides),
+        _curve_table("braking: the same", calibration.levels, braking),
+    ]
+
+
+def _curve_table(title: str, levels: np.ndarray, curves: Sequence[Sequence[Estimate]]) -> Table:
+    headings = (f"{e.parameter.symbol} [{_unit(e)}]" for e in curves[0])
     table = plain_table(title, (), ("Fn [N]", *headings))
-    for load, row in zip(calibration.levels, calibration.curves, strict=True):
+    for load, row in zip(levels, curves, strict=True):
         table.add_row(f"{load:.4g}", *(f"{e.median:.4g}\n{e.low:.3g}…{e.high:.3g}" for e in row))
     return table
 

@@ -11,7 +11,7 @@ from model.bayes.laplace import find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.errors import DomainError, InsufficientData
-from model.slip import MagicFormula
+from model.slip import Brush, MagicFormula, SidedLaw
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
@@ -368,3 +368,35 @@ def test_a_wrong_sign_is_said_before_a_fit_is_wasted():
     with pytest.raises(DomainError, match=r"opposes the slip in \d+ of \d+ runs that slip.*sign"):
         require_forces(turned, LoadCell())
     require_forces(samples, LoadCell())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("apart", "chosen"), [((0.4, 0.2), 1), ((0.0, 0.0), 0)])
+def test_sides_are_apart_where_left_out_runs_say_so(apart, chosen):
+    law = SidedLaw(Brush(kinetic=True))
+    slips = np.tile(
+        [-0.3, -0.1, -0.05, -0.035, -0.02, -0.008, 0.008, 0.02, 0.035, 0.05, 0.1, 0.3], 2
+    )
+    plan = SweepPlan(slips=tuple(slips), loads=(4.0, 12.0), rate=60.0)
+    samples = simulate_sweep(
+        law, (20.0, 0.4, 0.7, *apart), plan=plan, imperfections=TYPICAL_RIG,
+        rng=np.random.default_rng(1),
+    ).samples  # fmt: skip
+    fits, choice = [], None
+    for each in (law.law, law):
+        fits.append(
+            prepare_fit(
+                samples,
+                each,
+                load_cell=scaled_load_cell(samples, {}),
+                block_choice=choice,
+                rng=np.random.default_rng(1),
+            )  # fmt: skip
+        )
+        choice = fits[-1].block_choice
+    assert compare(["together", "apart"], fits).chosen == chosen
+    laplace = fits[1].laplace
+    d_K, d_mu = fits[1].posterior.values(laplace.mode[None])[0, 3:5]
+    sd = np.sqrt(np.diag(laplace.covariance))[3:5] * [0.2, 0.1]
+    assert abs(d_K - apart[0]) < 3 * sd[0]
+    assert abs(d_mu - apart[1]) < 3 * sd[1]

@@ -39,8 +39,7 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
     laws = _together(request, samples)
     if request.sides == TOGETHER:
         return laws
-    low, high = np.quantile(block_means(samples, 10).slip, [FEWEST_BLOCKS, 1 - FEWEST_BLOCKS])
-    both_signs = bool(low < 0 < high)
+    both_signs = _has_both_signs(samples)
     if request.sides == APART and not both_signs:
         raise SettingsError(
             "slip has one sign in these data, so there is one side to fit; leave out --sides",
@@ -51,6 +50,14 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
     if not both_signs:
         return laws
     return {**laws, **{f"{name}, sides apart": SidedLaw(law) for name, law in laws.items()}}
+
+
+def _has_both_signs(samples: SlipSamples) -> bool:
+    """Return whether slip drives in some blocks and brakes in others, beyond its noise."""
+    blocks = block_means(samples, 10)
+    clear = np.abs(blocks.slip) > 3 * np.sqrt(blocks.slip_variance())
+    shares = [np.mean(clear & (sign * blocks.slip > 0)) for sign in (1, -1)]
+    return bool(min(shares) >= FEWEST_BLOCKS)
 
 
 def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:

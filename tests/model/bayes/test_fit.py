@@ -391,7 +391,7 @@ def test_sides_are_apart_where_left_out_runs_say_so(apart, chosen):
                 load_cell=scaled_load_cell(samples, {}),
                 block_choice=choice,
                 rng=np.random.default_rng(1),
-            )  # fmt: skip
+            )
         )
         choice = fits[-1].block_choice
     assert compare(["together", "apart"], fits).chosen == chosen

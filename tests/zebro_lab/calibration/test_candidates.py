@@ -69,3 +69,10 @@ def test_sides_are_fitted_together_apart_or_both():
 def test_sides_are_not_chosen_beside_a_comparison_of_laws():
     with pytest.raises(SettingsError, match="choose --sides together or apart"):
         CalibrationRequest(law="compare", sides="auto")
+
+
+def test_one_sign_of_slip_is_told_before_a_fit_of_both_sides(sweep, run_command, tmp_path):
+    out = tmp_path / "out"
+    ended = run_command("calibrate-slip", sweep, "--sides", "apart", "--out", out)
+    assert (ended.code, out.exists()) == (2, False)
+    assert "--sides: slip has one sign in these data" in ended.err

@@ -11,6 +11,7 @@ from zebro_lab.recording.doctor import command as doctor
 from zebro_lab.report import command as report
 from zebro_lab.runs import command as runs
 from zebro_lab.runs import plot_command
+from zebro_lab.study import command as study
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.ending import run
 from zebro_lab.terminal.version import Version
@@ -45,6 +46,7 @@ app.command(epilog=doctor.EPILOG)(doctor.doctor)
 app.add_typer(camera.app, name="camera")
 app.add_typer(rig.app, name="rig")
 app.add_typer(simulate_command.app, name="sim")
+app.add_typer(study.app, name="study")
 app.add_typer(check_command.app, name="zebro")
 
 slip_app = Application()

@@ -163,10 +163,10 @@ def _prepared(
     defaults = default_priors(law, everything, load_cell, rig_errors)
     choice = block_choice or choose_block_length(samples, law, priors=defaults, rng=rng)
     blocks = block_means(samples, choice.length)
-    fixed = _not_identified(blocks)
+    fixed = not_identified(blocks)
     priors, correlation = with_stated(defaults, stated, fixed=fixed)
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
-    starts = _starting_points(posterior, rng)
+    starts = starting_points(posterior, rng)
     modes = LaplaceMixture(find_modes(posterior.log_density, starts))
     fit = PreparedFit(posterior, modes, None, choice, load_cell, rig_errors, defaults, stated)
     return validated(fit, threads=threads) if validate else fit
@@ -257,22 +257,32 @@ def _implausible(load: float, traction: float) -> str:
     return "such a cell measures no such load: correct the cell's zero stability, or the loads"
 
 
-def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
+def not_identified(blocks: SlipBlocks) -> dict[str, float]:
     """Return fixed values by name: run offsets and noise correlation zero if no run has two blocks.
 
     Empty otherwise: all parameters are then sampled.
+
+    Args:
+        blocks: The block means.
     """
     if len(blocks) > blocks.n_runs:
         return {}
     return {"noise_correlation": 0.0, "offset_spread": 0.0}
 
 
-def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
+def starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
     """Choose starting points of the optimisation in coordinates z, shape (m, d).
 
     Two are at the least-squares curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks 12 to
     23 of 400 prior draws follow, evenly from the best to the worst within the support (fewer if it
     has fewer than 12): few data allow several shapes, and one start finds one mode.
+
+    Args:
+        posterior: The posterior density.
+        rng: Source of randomness.
+
+    Raises:
+        FitError: No prior draw is valid at the measured loads, or a residual overflowed.
     """
     blocks, law = posterior.blocks, posterior.law
     values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)

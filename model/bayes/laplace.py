@@ -16,6 +16,8 @@ from model.slip.law import Array
 LogDensity = Callable[[Array], Array]
 SAME_TOP = 0.05  # maxima closer than this in coordinates are the same mode
 NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, beyond which a mode is left out
+_MOST_NEWTON = 80  # steps of a search by Newton steps alone; 5 to 20 are usual
+_SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.001)  # of such a step that are tried
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 
@@ -174,8 +176,36 @@ def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
     Raises:
         FitError: No start lies inside the support.
     """
+    return _distinct(log_density, _tops(log_density, starts))
+
+
+def newton_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
+    """Find the modes as `find_modes` does, by Newton steps all the way, at a tenth of the cost.
+
+    For starts that lie near, such as a least-squares curve: far from a mode, where the density is
+    not convex, a step may end on a ridge that L-BFGS-B would follow.
+
+    Args:
+        log_density: Log density of coordinates (w, d), -inf out of support.
+        starts: Starting points, shape (m, d).
+
+    Returns:
+        The modes, as of `find_modes`.
+
+    Raises:
+        FitError: No start lies inside the support.
+    """
+
+    def search(start: Array) -> Array:
+        return _newton(log_density, start, steps=_MOST_NEWTON, shares=_SHARES)[0]
+
+    return _distinct(log_density, _tops(log_density, starts, search))
+
+
+def _distinct(log_density: LogDensity, found: list[Array]) -> tuple[Laplace, ...]:
+    """Approximate the density at maxima (d,), the highest first; return the modes that count."""
     tops: list[Array] = []
-    for top in _tops(log_density, starts):
+    for top in found:
         if all(np.linalg.norm(top - known) > SAME_TOP for known in tops):
             tops.append(top)
     distinct: list[Laplace] = []
@@ -209,10 +239,12 @@ def climb(log_density: LogDensity, starts: Array) -> Array:
     return _tops(log_density, starts)[0]
 
 
-def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
+def _tops(
+    log_density: LogDensity, starts: Array, search: Callable[[Array], Array] | None = None
+) -> list[Array]:
     """Maximise from every start inside the support; return the maxima, highest first.
 
-    Raises `FitError` if no start is inside.
+    The search is `_climb` by default. Raises `FitError` if no start is inside.
     """
     inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
@@ -220,7 +252,7 @@ def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
             f"the posterior density is zero at all {len(starts)} starting points: no curve within "
             "the law's priors fits these forces; check units and signs of slip and forces"
         )
-    tops = [_climb(log_density, start) for start in inside]
+    tops = [_climb(log_density, start) if search is None else search(start) for start in inside]
     return sorted(tops, key=lambda z: -float(log_density(z[None])[0]))
 
 
@@ -239,16 +271,22 @@ def _climb(log_density: LogDensity, start: Array) -> Array:
     return minimize(negative, start, jac=True, method="L-BFGS-B", options={"maxiter": 300}).x
 
 
-def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array, Array]:
+def _newton(
+    log_density: LogDensity,
+    z: Array,
+    *,
+    steps: int = 4,
+    shares: tuple[float, ...] = (1.0, 0.5, 0.25, 0.1),
+) -> tuple[Array, Array]:
     """Refine a mode by at most `steps` damped Newton steps; return it and the covariance there.
 
-    It ends when neither a whole step nor 0.5, 0.25 or 0.1 of one raises the log density.
+    It ends when none of the `shares` of a step raises the log density.
     """
     covariance = _covariance(log_density, z)
     for _ in range(steps):
         slope = gradient(log_density, z)
         move = covariance @ np.where(np.isfinite(slope), slope, 0.0)
-        trials = z + move * np.array([1.0, 0.5, 0.25, 0.1])[:, None]
+        trials = z + move * np.array(shares)[:, None]
         heights = log_density(np.vstack([z, trials]))
         if heights[1:].max() <= heights[0]:
             break

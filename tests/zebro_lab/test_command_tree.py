@@ -44,6 +44,7 @@ REFUSED_TEXTS = {
     "YYYY-MM-DDTHH:MM:SS": ("yesterday", "2020-06-01T12:00:00+01:00"),
     "KG,KG…": ("heavy", "1,nan", "1,-1", "0", ","),
     "A,B,C,D,E,F": ("a", "a,b,c,d,e,a", "a,b,c,d,e,"),
+    "tcp://HOST:PORT": ("here", "127.0.0.1:8786", "http://here:1", "tcp://here:0"),
     "SLIP": ("coulomb:38", "coulomb:", "coulomb:nan", "coulomb:0.4:0", "coulomb:0.4:1:2"),
 }
 """Texts that options of a metavar refuse."""

@@ -141,6 +141,8 @@ WORK = {
     "zebro-lab sim zebro": SERVED,
     "zebro-lab sim rig": SERVED,
     "zebro-lab sim imu": SERVED,
+    "zebro-lab study sbc": Work("--plan plan.toml --law coulomb-stribeck --replicates 3 --out sbc"),
+    "zebro-lab study coverage": Work("--plan plan.toml --replicates 3 --out coverage"),
     "zebro-lab zebro check": Work("sim --save mine.toml", CHECKED, says=f"(.*: )?({AT_ONCE})"),
 }
 

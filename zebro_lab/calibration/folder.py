@@ -47,6 +47,10 @@ CALIBRATION = ResultKind(
 )
 """Kind of a calibration folder; `walks/` inside was fitted with its law and is removed with it."""
 
+BLOCK_MOMENTS = (
+    "slip_wander", "slip_error", "load_variance", "load_skewness", "slip_load_covariance",
+)  # fmt: skip
+"""Moments of slip and load within a block, as `SlipBlocks` has them."""
 _ADVICE = "name a slip.toml or the folder that calibrate-slip wrote"
 SUMMARY_COLUMNS = (
     "parameter", "symbol", "unit", "mean", "sd", "q05", "median", "q95", "prior", "contraction",
@@ -285,8 +289,9 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
     """Convert a fit to ArviZ InferenceData, with one chain for each ensemble of walkers.
 
     Groups: `posterior`, draws of the free parameters; `sample_stats`, log density `lp`;
-    `observed_data`, traction by block; `constant_data`, slip ratio, load, run index and number of
-    samples by block. Attributes: source, slip definition, law, headline of the verdict.
+    `observed_data`, traction by block; `constant_data`, slip ratio, load, run index, number of
+    samples and `BLOCK_MOMENTS` by block, and the variance of the slip error that its run shares.
+    Attributes: source, slip definition, law, headline of the verdict.
     """
     import arviz as az
 
@@ -298,6 +303,8 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
         "normal_force": blocks.normal_force,
         "run": blocks.run,
         "samples": blocks.count,
+        **{name: getattr(blocks, name) for name in BLOCK_MOMENTS},
+        "run_slip_error": blocks.run_slip_error[blocks.run],
     }
     return az.from_dict(
         posterior={

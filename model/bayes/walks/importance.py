@@ -17,13 +17,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from scipy.spatial.distance import cdist
 
 from model.bayes.walks.prior import Case
 from model.slip.law import Array
 
-DRAWS = 200  # draws in a round
-MOST_ROUNDS = 10
-WANTED = 150.0  # effective draws at which sampling ends
 TAIL = 5  # degrees of freedom of the proposals
 ENOUGH = 60.0  # effective draws from which a round's Gaussians are estimated
 BEFORE = 2.0  # draws a dimension that a case's former covariance counts as in its new one
@@ -31,6 +29,25 @@ PATIENCE = 3  # rounds of proposals around modes alone, more efficient where the
 CENTRES = 50  # draws that are centres of a round's narrower proposals
 WIDTHS = (0.6, 0.3)  # of the narrower proposals, in turn, in standard deviations of their case
 _LEAST = 1e-3  # added to each case's probability of being drawn
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Size and number of the rounds of adaptive importance sampling.
+
+    Attributes:
+        draws: Draws in a round.
+        wanted: Effective draws at which sampling ends.
+        rounds: Largest number of rounds.
+    """
+
+    draws: int
+    wanted: float
+    rounds: int
+
+
+FOR_WALKS = Effort(200, 150.0, 10)
+"""Rounds of walks, of which a draw costs tens of milliseconds."""
 
 
 @dataclass(frozen=True)
@@ -78,10 +95,11 @@ def weighted_draws(
     *,
     rng: np.random.Generator,
     progress: Callable[[float], None],
+    effort: Effort = FOR_WALKS,
 ) -> WeightedCaseDraws:
     """Draw weighted samples of the posterior by adaptive importance sampling.
 
-    Rounds of `DRAWS` draws are added until `WANTED` draws are effective, `MOST_ROUNDS` at most.
+    Rounds of draws are added until enough draws are effective, up to a number of rounds.
 
     Args:
         modes: Gaussian of each case, in the order of the cases' indices.
@@ -89,20 +107,21 @@ def weighted_draws(
             constant; called once a round.
         rng: Source of randomness.
         progress: Called with the fraction of the largest number of rounds done.
+        effort: Size and number of the rounds.
     """
     rounds = [_around_modes(modes)]
     z, case = np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
     log_p, log_q = np.empty(0), np.empty(0)
     while True:
-        more, of_case = _draw(rounds[-1], rng)
+        more, of_case = _draw(rounds[-1], effort.draws, rng)
         log_q = np.logaddexp(log_q, _log_proposal(rounds[-1], z, case))
         before = [_log_proposal(each, more, of_case) for each in rounds]
         log_q = np.concatenate([log_q, np.logaddexp.reduce(before, axis=0)])
         z, case = np.concatenate([z, more]), np.concatenate([case, of_case])
         log_p = np.concatenate([log_p, log_density(more, of_case)])
         weight = _weights(log_p - log_q)
-        progress(len(rounds) / MOST_ROUNDS)
-        if 1 / (weight @ weight) >= WANTED or len(rounds) == MOST_ROUNDS:
+        progress(len(rounds) / effort.rounds)
+        if 1 / (weight @ weight) >= effort.wanted or len(rounds) == effort.rounds:
             return WeightedCaseDraws(z, case, weight, log_q)
         flat = _tempered(log_p - log_q)
         modes = _adapted(modes, z, case, flat)
@@ -171,17 +190,19 @@ def _root(covariance: Array) -> Array:
     return np.asarray(np.linalg.cholesky(covariance), dtype=float)
 
 
-def _draw(bumps: Sequence[_Bumps], rng: np.random.Generator) -> tuple[Array, NDArray[np.intp]]:
-    """Draw `DRAWS` points and the indices of their cases from the proposals of a round.
+def _draw(
+    bumps: Sequence[_Bumps], n: int, rng: np.random.Generator
+) -> tuple[Array, NDArray[np.intp]]:
+    """Draw n points and the indices of their cases from the proposals of a round.
 
     Student's t is a Gaussian over the root of a scaled chi-square.
     """
     shares = np.concatenate([each.shares for each in bumps])
     means = np.concatenate([each.means for each in bumps])
     group = np.repeat(np.arange(len(bumps)), [len(each.means) for each in bumps])
-    chosen = rng.choice(len(shares), size=DRAWS, p=shares / shares.sum())
-    normal = rng.standard_normal((DRAWS, means.shape[1]))
-    normal *= np.sqrt(TAIL / rng.chisquare(TAIL, (DRAWS, 1)))
+    chosen = rng.choice(len(shares), size=n, p=shares / shares.sum())
+    normal = rng.standard_normal((n, means.shape[1]))
+    normal *= np.sqrt(TAIL / rng.chisquare(TAIL, (n, 1)))
     roots = np.stack([each.root for each in bumps])[group[chosen]]
     case = np.array([each.case for each in bumps], dtype=np.intp)[group[chosen]]
     return means[chosen] + (roots @ normal[..., None])[..., 0], case
@@ -199,10 +220,9 @@ def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> 
         rows = np.flatnonzero(case == each.case)
         if len(rows) == 0:
             continue
-        away = solve_triangular(
-            each.root, (z[rows][:, None] - each.means).reshape(-1, d).T, lower=True
-        )
-        square = (away**2).sum(axis=0).reshape(len(rows), -1)
+        points = solve_triangular(each.root, z[rows].T, lower=True).T
+        centres = solve_triangular(each.root, each.means.T, lower=True).T
+        square = cdist(points, centres, "sqeuclidean")
         t = -0.5 * (TAIL + d) * np.log1p(square / TAIL) - np.log(np.diag(each.root)).sum()
         here = np.logaddexp.reduce(t + np.log(each.shares / total), axis=1)
         log[rows] = np.logaddexp(log[rows], here)

@@ -13,6 +13,7 @@ from model.bayes.laplace import (
     gradient,
     hessian,
     importance_draws,
+    newton_modes,
 )
 from model.errors import FitError
 
@@ -134,6 +135,21 @@ def test_each_mode_is_listed_once_the_highest_first():
     modes = find_modes(two_hills, np.array([[-2.2], [2.3], [-1.8], [1.9]]))
     assert [float(m.mode[0]) for m in modes] == pytest.approx([2.0, -2.0], abs=1e-3)
     np.testing.assert_allclose(LaplaceMixture(modes).weights, [0.75, 0.25], atol=1e-2)
+
+
+def test_newton_steps_find_the_same_modes():
+    starts = np.array([[-2.2], [2.3], [-1.8], [1.9]])
+    for one, other in zip(
+        newton_modes(two_hills, starts), find_modes(two_hills, starts), strict=True
+    ):
+        np.testing.assert_allclose(one.mode, other.mode, atol=1e-4)
+        np.testing.assert_allclose(one.covariance, other.covariance, rtol=1e-3)
+
+
+def test_newton_steps_climb_from_where_the_density_is_not_convex():
+    student = stats.multivariate_t(np.array([1.0, -2.0]), np.diag([0.05, 0.2]), df=3)
+    (found,) = newton_modes(scaled(student, 0.0), np.array([[3.0, 1.0]]))
+    np.testing.assert_allclose(found.mode, [1.0, -2.0], atol=1e-3)
 
 
 def test_a_mode_that_holds_nothing_is_left_out():

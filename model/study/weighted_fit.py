@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""Fit of one simulated experiment by weighted draws: from its modes, adapted where need be."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.estimate import MAX_PARETO_K
+from model.bayes.fit import starting_points
+from model.bayes.laplace import (
+    LaplaceMixture,
+    WeightedDraws,
+    importance_draws,
+    newton_modes,
+)
+from model.bayes.posterior import SlipPosterior
+from model.bayes.walks.importance import Effort, Mode, weighted_draws
+from model.slip.law import Array
+from model.study.design import StudyDesign
+
+DRAWS = 3000  # of the Laplace approximations
+ENOUGH = 800.0  # effective draws, for ranks among 99
+FURTHER = Effort(draws=1000, wanted=ENOUGH, rounds=20)
+STARTS = 5  # of searches for modes: two at the least-squares curve, then the best prior draws
+RESAMPLED = 8000  # draws that intervals are read from
+
+
+@dataclass(frozen=True)
+class WeightedFit:
+    """Posterior of one simulated experiment, as weighted draws.
+
+    Attributes:
+        posterior: The posterior density.
+        draws: Draws with importance weights.
+    """
+
+    posterior: SlipPosterior
+    draws: WeightedDraws
+
+    @property
+    def effective(self) -> float:
+        """Number of draws that the weighted ones are worth."""
+        return float(1 / np.sum(self.draws.weights**2))
+
+    @property
+    def reliable(self) -> bool:
+        """Whether the weights can be trusted: Pareto k below 0.7, and half of `ENOUGH` draws."""
+        return self.draws.pareto_k < MAX_PARETO_K and self.effective >= ENOUGH / 2
+
+    def values(self, n: int, rng: np.random.Generator) -> Array:
+        """Resample n equally weighted draws of the free parameters' values, shape (n, d)."""
+        values = self.posterior.values(self.draws.resample(n, rng=rng))
+        return values[:, [p.name not in self.posterior.fixed for p in self.posterior.parameters]]
+
+
+def fit_blocks(design: StudyDesign, blocks: SlipBlocks, rng: np.random.Generator) -> WeightedFit:
+    """Fit simulated blocks: find the modes, draw from them, and adapt until the weights are good.
+
+    Args:
+        design: Law and priors of the fit.
+        blocks: The blocks, with their traction.
+        rng: Source of randomness.
+
+    Raises:
+        FitError: No curve comes near the forces, or no start lies within the priors' support.
+    """
+    posterior = design.posterior(blocks)
+    starts = starting_points(posterior, rng)[:STARTS]
+    modes = LaplaceMixture(newton_modes(posterior.log_density, starts))
+    return weigh(posterior, modes, rng)
+
+
+def weigh(posterior: SlipPosterior, modes: LaplaceMixture, rng: np.random.Generator) -> WeightedFit:
+    """Draw from Laplace approximations, and from adapted ones where their weights are not good.
+
+    Args:
+        posterior: The posterior density.
+        modes: Laplace approximations at its modes.
+        rng: Source of randomness.
+    """
+    first = WeightedFit(posterior, importance_draws(posterior.log_density, modes, n=DRAWS, rng=rng))
+    if first.reliable and first.effective >= ENOUGH:
+        return first
+    adapted = weighted_draws(
+        [_spanning(modes)],
+        lambda z, _: posterior.log_density(z),
+        rng=rng,
+        progress=lambda _: None,
+        effort=FURTHER,
+    )
+    return WeightedFit(posterior, _smoothed(adapted.z, adapted.weight))
+
+
+def _spanning(modes: LaplaceMixture) -> Mode:
+    """Return one Gaussian with mean and covariance of a mixture of Laplace approximations."""
+    means = np.stack([each.mode for each in modes.modes])
+    mean = modes.weights @ means
+    covariance = sum(
+        weight * (each.covariance + np.outer(each.mode - mean, each.mode - mean))
+        for weight, each in zip(modes.weights, modes.modes, strict=True)
+    )
+    return Mode(None, mean, np.asarray(covariance), 0.0)
+
+
+def _smoothed(z: Array, weights: Array) -> WeightedDraws:
+    """Smooth importance weights (n,) by a Pareto tail, as `importance_draws` does."""
+    import arviz as az
+
+    with np.errstate(divide="ignore"):
+        log = np.maximum(np.log(weights), -1e6)
+    smoothed, pareto_k = az.psislw(log)
+    kept = np.exp(np.asarray(smoothed))
+    return WeightedDraws(z, kept / kept.sum(), float(pareto_k))

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+"""Workers are processes of this machine or those of a scheduler, not both."""
+
+import pytest
+
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.workers.request import WorkersRequest
+
+
+def test_processes_beside_a_scheduler_are_wrong_usage():
+    WorkersRequest(processes=3)
+    WorkersRequest(scheduler="tcp://127.0.0.1:8786")
+    with pytest.raises(SettingsError, match="--processes"):
+        WorkersRequest(processes=3, scheduler="tcp://127.0.0.1:8786")
+
+
+def test_a_wrong_address_is_wrong_usage():
+    with pytest.raises(SettingsError, match="--scheduler: found 'here'"):
+        WorkersRequest(scheduler="here")

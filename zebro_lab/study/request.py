@@ -7,11 +7,11 @@ from typing import Annotated, Literal, TypeAlias
 
 from typer import Option
 
-from zebro_lab.calibration.request import LawName
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.workers.request import WorkersRequest
 
+FittedLaw: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck"]
 Wrong: TypeAlias = Literal["independent-noise", "perfect-rig"]
 
 
@@ -67,7 +67,7 @@ class SbcRequest:
 
     layout: LayoutRequest = field(default_factory=LayoutRequest)
     law: Annotated[
-        LawName | None, Option(help="Slip law, with --plan; default: magic-formula.")
+        FittedLaw | None, Option(help="Slip law, with --plan; default: magic-formula.")
     ] = None
     wrong: Annotated[
         Wrong | None,

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.bayes.laplace import climb
-from model.bayes.likelihood import run_log_likelihood
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition, slip_per_radius_error
@@ -125,5 +124,5 @@ def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -
 
     with ThreadPoolExecutor(threads) as pool:
         values = np.stack(list(pool.map(fit, range(n_folds))))
-    density = run_log_likelihood(posterior.blocks, posterior.law, values)
+    density = posterior.run_log_likelihood_of(values)
     return CrossValidation(fold, values, density[fold, np.arange(n_runs)])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Posterior density of a slip law's and the measurement's parameters, given block means."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -9,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.bayes.blocks import SlipBlocks
-from model.bayes.likelihood import NUISANCE, run_log_likelihood
+from model.bayes.likelihood import NUISANCE, predict_blocks, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.stated_priors import PriorCorrelation
+from model.bayes.student import student_log_likelihood
 from model.slip.law import Array, Parameter, SlipLaw
 
 
@@ -112,6 +114,7 @@ class SlipPosterior:
         priors: Prior of each parameter by name.
         fixed: Value of each parameter that is not sampled, by name.
         correlation: Correlation of the parameters' own coordinates a priori; None without one.
+        tail: Degrees of freedom of the noise's Student-t; infinite for Gaussian noise [-].
     """
 
     blocks: SlipBlocks
@@ -119,6 +122,7 @@ class SlipPosterior:
     priors: Mapping[str, Prior]
     fixed: Mapping[str, float] = field(default_factory=dict)
     correlation: PriorCorrelation | None = None
+    tail: float = math.inf
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -208,7 +212,14 @@ class SlipPosterior:
 
     def run_log_likelihood(self, z: Array) -> Array:
         """Compute the log likelihood of each run's blocks given z (w, d), shape (w, n_runs)."""
-        return run_log_likelihood(self.blocks, self.law, self.values(z))
+        return self.run_log_likelihood_of(self.values(z))
+
+    def run_log_likelihood_of(self, values: Array) -> Array:
+        """Compute the log likelihood of each run's blocks given values (w, k + 10), (w, n_runs)."""
+        if math.isinf(self.tail):
+            return run_log_likelihood(self.blocks, self.law, values)
+        predicted = predict_blocks(self.blocks, self.law, values)
+        return student_log_likelihood(self.blocks, predicted, values, self.tail)
 
     def without_runs(self, left_out: NDArray[np.bool_]) -> "SlipPosterior":
         """Return the posterior with the same priors and fixed values, without data of some runs.

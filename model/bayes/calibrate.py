@@ -10,6 +10,7 @@ from model.bayes.calibration import Calibration, conclude
 from model.bayes.convergence import Convergence, assess
 from model.bayes.fit import (
     LawComparison,
+    Noise,
     PreparedFit,
     compare,
     explain_numerical_errors,
@@ -82,6 +83,7 @@ def calibrate(
     keep: Callable[[Chains], object] = lambda _: None,
     stated: StatedPriors = UNSTATED,
     scored: bool = False,
+    noise: Noise = "gauss",
 ) -> tuple[Calibration, Chains]:
     """Choose a slip law for rig samples, sample its posterior and check the result.
 
@@ -100,6 +102,7 @@ def calibrate(
         stated: Priors that replace default ones.
         scored: Whether to choose the law by `choose_law`, from predictions of left-out runs and
             loads by the whole posterior, instead of by `compare`.
+        noise: Distribution of the noise, as `prepare_fit` has it.
 
     Returns:
         The calibration, converged or not (see its verdict), and the chains it was computed from.
@@ -115,7 +118,7 @@ def calibrate(
     rng = np.random.default_rng(settings.seed)
     require_forces(samples, load_cell)
     known = load_cell, rig_errors, stated
-    fits = _prepare(samples, laws, known, settings, rng, watcher, validate=not scored)
+    fits = _prepare(samples, laws, known, settings, rng, watcher, validate=not scored, noise=noise)
     fit, comparison = (
         _by_scores(samples, fits, settings, rng, watcher) if scored else _by_comparison(fits)
     )
@@ -141,6 +144,7 @@ def _prepare(
     watcher: Watcher,
     *,
     validate: bool,
+    noise: Noise,
 ) -> dict[str, PreparedFit]:
     """Prepare the fit of each law, by name, all on the blocks of the first.
 
@@ -155,7 +159,7 @@ def _prepare(
             raise FitStopped(None)
         fit = prepare_fit(
             samples, law, load_cell=known[0], rig_errors=known[1], stated=known[2], rng=rng,
-            block_choice=choice, threads=settings.threads, validate=validate,
+            block_choice=choice, threads=settings.threads, validate=validate, noise=noise,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks
         fits[name] = fit

@@ -2,7 +2,7 @@
 """Result of the fit of a slip law: estimates, curve, checks and verdict."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from model.bayes.estimate import (
     thin_draws,
 )
 from model.bayes.fit import LawComparison, PreparedFit
+from model.bayes.gaussian_equivalent import gaussian_equivalent
 from model.bayes.laplace import importance_draws
 from model.bayes.law_scores import LawScores
 from model.bayes.posterior import SlipPosterior
@@ -29,6 +30,7 @@ from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, m
 from model.bayes.sampler import Chains
 from model.bayes.samples import SlipSamples
 from model.bayes.verdict import Verdict, judge
+from model.slip.law import Array
 
 DRAWS_PER_ENSEMBLE = 1000
 IMPORTANCE_DRAWS = 10_000
@@ -94,7 +96,8 @@ def conclude(
 ) -> Calibration:
     """Compute estimates, residuals, checks and verdict from the chains of a fit.
 
-    Residuals and verdict use about `_CHECKED` of the draws.
+    Residuals and verdict use about `_CHECKED` of the draws, and with Student-t noise the blocks of
+    `gaussian_equivalent`.
 
     Args:
         fit: The fit that was sampled.
@@ -112,7 +115,8 @@ def conclude(
     posterior = fit.posterior
     draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
     some = draws.flat[:: max(1, len(draws.flat) // _CHECKED)]
-    residuals = analyse_residuals(posterior.blocks, posterior.law, some)
+    checked = gaussian_equivalent(posterior, some)
+    residuals = _analysed(posterior, checked, some)
     weighted = importance_draws(
         posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
     )
@@ -120,7 +124,7 @@ def conclude(
     levels = middle_loads(posterior.blocks)
     validation = fit.cross_validation
     compared = agreement(draws, weighted, convergence)
-    centred = linearise(posterior, draws.z.reshape(-1, draws.z.shape[-1]))
+    centred = linearise(checked, draws.z.reshape(-1, draws.z.shape[-1]))
     return Calibration(
         fit=fit,
         comparison=comparison,
@@ -142,7 +146,7 @@ def conclude(
             convergence=convergence,
             residuals=residuals,
             agreement=compared,
-            inspection=inspect(posterior, centred, samples, fit.block_choice.correlation),
+            inspection=inspect(checked, centred, samples, fit.block_choice.correlation),
             offset_scale=fit.load_cell.zero_stability,
         ),
         contraction=narrowed,
@@ -152,6 +156,20 @@ def conclude(
         source=source,
         seconds=seconds,
         prior_shifts=prior_shifts(posterior, fit.stated, draws.z.reshape(-1, draws.z.shape[-1])),
+    )
+
+
+def _analysed(posterior: SlipPosterior, checked: SlipPosterior, values: Array) -> Residuals:
+    """Analyse the residuals of the blocks as Gaussian noise has them; R² and RMSE of all as is."""
+    found = analyse_residuals(checked.blocks, posterior.law, values)
+    if checked is posterior:
+        return found
+    plain = analyse_residuals(posterior.blocks, posterior.law, values)
+    return replace(
+        found,
+        r_squared=plain.r_squared,
+        rmse=plain.rmse,
+        rmse_over_load=plain.rmse_over_load,
     )
 
 

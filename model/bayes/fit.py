@@ -3,7 +3,8 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -17,8 +18,11 @@ from model.bayes.priors import Prior
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
+from model.bayes.tail_choice import choose_tail
 from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
+
+Noise: TypeAlias = Literal["gauss", "student"]
 
 FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
@@ -42,6 +46,8 @@ class PreparedFit:
         rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
         defaults: Default prior of each parameter by name, beside those of the posterior.
         stated: Priors that were stated.
+        tails: Log evidence of each number of degrees of freedom of Student-t noise minus that of
+            Gaussian noise; empty for Gaussian noise [-].
     """
 
     posterior: SlipPosterior
@@ -52,6 +58,7 @@ class PreparedFit:
     rig_errors: RigErrors
     defaults: Mapping[str, Prior]
     stated: StatedPriors = UNSTATED
+    tails: Mapping[float, float] = field(default_factory=dict)
 
     @property
     def laplace(self) -> Laplace:
@@ -90,6 +97,7 @@ def prepare_fit(
     validate: bool = True,
     threads: int = 2,
     stated: StatedPriors = UNSTATED,
+    noise: Noise = "gauss",
 ) -> PreparedFit:
     """Average the samples, build the posterior, find its modes and cross-validate it.
 
@@ -103,6 +111,7 @@ def prepare_fit(
         validate: Whether to cross-validate, which a single run never is.
         threads: Folds of the cross-validation fitted at once.
         stated: Priors that replace default ones; the block length is chosen without them.
+        noise: Distribution of the noise: "student" has the tails that explain the data best.
 
     Raises:
         InsufficientData: There are fewer samples than the law's parameters plus two, traction is
@@ -115,7 +124,7 @@ def prepare_fit(
     require_forces(samples, load_cell)
     with explain_numerical_errors(samples, law):
         return _prepared(
-            samples, law, load_cell, rig_errors, rng, block_choice, validate, threads, stated
+            samples, law, load_cell, rig_errors, rng, block_choice, validate, threads, stated, noise
         )
 
 
@@ -157,6 +166,7 @@ def _prepared(
     validate: bool,
     threads: int,
     stated: StatedPriors,
+    noise: Noise,
 ) -> PreparedFit:
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
@@ -168,7 +178,13 @@ def _prepared(
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
     starts = starting_points(posterior, rng)
     modes = LaplaceMixture(find_modes(posterior.log_density, starts))
-    fit = PreparedFit(posterior, modes, None, choice, load_cell, rig_errors, defaults, stated)
+    tails: Mapping[float, float] = {}
+    if noise == "student":
+        chosen = choose_tail(posterior, modes)
+        posterior, modes, tails = chosen.posterior, chosen.approximation, chosen.gain
+    fit = PreparedFit(
+        posterior, modes, None, choice, load_cell, rig_errors, defaults, stated, tails
+    )
     return validated(fit, threads=threads) if validate else fit
 
 

@@ -79,9 +79,7 @@ def _filtered(
 
 
 @compiled
-def filter_student_runs(
-    residual, noise, slope, slip_error, run_slip_error, starts, rho, tau, tail
-):
+def filter_student_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho, tau, tail):
     """Compute each run's log density and scaled innovations by the filter of this module.
 
     `residual`, `noise` and `slope` are (w, n), `slip_error` (n,), `run_slip_error` (n_runs,),

@@ -62,6 +62,13 @@ class CalibrationRequest:
             "(apart); or apart if that predicts left-out runs clearly better (auto)."
         ),
     ] = "together"
+    noise: Annotated[
+        Literal["gauss", "student"],
+        Option(
+            help="Noise of block means: gauss, or student (t, with tails as heavy as the data "
+            "ask), which a few far blocks hardly move."
+        ),
+    ] = "gauss"
     block_length: Annotated[
         int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
     ] = None
@@ -194,6 +201,7 @@ class CalibrationRequest:
             "curvature": self.curvature,
             "load_sensitivity": self.load_sensitivity,
             "sides": self.sides,
+            "noise": self.noise,
             "block_length": self.block_length,
             "load_cell": self.load_cell,
             "prior": list(self.prior),

@@ -71,11 +71,25 @@ def _print_blocks(console: Console, calibration: Calibration) -> None:
         f"Samples are averaged in {len(blocks)} blocks of about {choice.length} ({choice.reason})"
         + (f"; the noise is correlated over {correlation:.0f} samples." if correlation else "."),
     ]
+    lines += _noise_lines(calibration)
     lines += _comparison_lines(calibration)
     for line in lines:
         console.print(plain(line))
     if isinstance(calibration.comparison, LawScores):
         console.print(_law_table(calibration.comparison))
+
+
+def _noise_lines(calibration: Calibration) -> list[str]:
+    """Say which Student-t noise was chosen, and how much better than Gaussian noise it is."""
+    if not calibration.fit.tails:
+        return []
+    tail = calibration.posterior.tail
+    gain = calibration.fit.tails[tail]
+    if gain <= 0:
+        better = f"Gaussian noise explains them better, by {-gain:.0f}: --noise gauss is enough"
+    else:
+        better = f"better than Gaussian noise by {gain:.0f} in log evidence"
+    return [f"noise: Student-t with {tail:.0f} degrees of freedom; {better}"]
 
 
 def _comparison_lines(calibration: Calibration) -> list[str]:

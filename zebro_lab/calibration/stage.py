@@ -99,6 +99,7 @@ def calibrate(
             keep=checkpoint.keep,
             stated=stated.priors,
             scored=request.law == COMPARE,
+            noise=request.noise,
         )
         watcher.step("drawing", None)
         _write(request, calibration, inputs, stated)

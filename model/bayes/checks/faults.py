@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Checks of faults that no term in the model would mend: of samples, of runs, of priors."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -45,7 +46,7 @@ def faults(
     residual, slope = raw_residuals(samples, posterior.law, fit.values)
     return (
         _sign(samples),
-        _outliers(samples, residual, slope),
+        _outliers(samples, residual, slope, allowed=not math.isinf(posterior.tail)),
         _clipped(samples),
         _delay(samples, residual, slope),
         *_friction(fit, explained),
@@ -76,20 +77,23 @@ def _counted(names: tuple[str, ...]) -> str:
     return f"{len(names)} run{'s' * (len(names) != 1)}"
 
 
-def _outliers(samples: SlipSamples, residual: Array, slope: Array) -> Check:
+def _outliers(samples: SlipSamples, residual: Array, slope: Array, *, allowed: bool) -> Check:
+    """Check that no samples leap so far that the fit suffers; it does not if they are allowed."""
     found = outliers(samples, residual, slope)
     cause = f"outliers: {found.count} samples leap by about {found.size:.3g} N"
     advice: Advice = CorrectData(
         cause,
         "look at the raw log about them (cable, plug, noise), skip such rows with [rows] keep in "
-        "columns.toml, or leave the runs out, and fit again",
+        "columns.toml, or leave the runs out, and fit again; where they cannot be told from the "
+        "others, give the same command with --noise student",
     )
     check = decided(
         "no samples leap from their neighbours",
-        not found.matter,
+        allowed or not found.matter,
         f"samples that leap by more than 8 robust standard deviations: {found.count} of "
         f"{len(samples)}"
-        + (f", most in run '{samples.run_names[found.run]}'" if found.count else ""),
+        + (f", most in run '{samples.run_names[found.run]}'" if found.count else "")
+        + ("; Student-t noise allows for them" if found.count and allowed else ""),
         advice,
     )
     return _failed(check, cause)

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: MIT
 """`slip.toml` read back, and every way in which it may not be one."""
 
+import io
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from rich.console import Console
 
-from model.slip import Brush, MagicFormula
+from model.slip import Brush, MagicFormula, SidedLaw
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import read_slip, write_tables
+from zebro_lab.calibration.screen import print_calibration
+from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError
 
 GOOD = """
@@ -105,3 +111,37 @@ def test_a_fit_is_read_back_with_its_curve_and_draws(tmp_path):
     text = (tmp_path / "slip.toml").read_text()
     assert "SIMULATED data: nothing here was measured." in text
     assert len((tmp_path / "summary.csv").read_text().splitlines()) > k
+
+
+def test_a_law_with_its_sides_apart_is_read_back(tmp_path):
+    apart = """law = { name = "brush", kinetic = false, sides = "apart" }
+[parameters]
+slip_stiffness.mean = 20.0
+friction.mean = 0.4
+side_stiffness.mean = 0.1
+side_friction.mean = -0.1
+"""
+    begin, end = GOOD.index("law ="), GOOD.index("[covariance]")
+    rows = ", ".join(str([float(i == j) for j in range(4)]) for i in range(4))
+    text = GOOD[:begin] + apart + GOOD[end:]
+    start = text.index("matrix =")
+    text = f"{text[:start]}matrix = [{rows}]\n{text[text.index('[tested]') :]}"
+    (tmp_path / "slip.toml").write_text(text)
+    assert read_slip(tmp_path).law == SidedLaw(Brush())
+    (tmp_path / "slip.toml").write_text(text.replace('"apart"', '"aprt"'))
+    with pytest.raises(DataError, match="did you mean 'apart'"):
+        read_slip(tmp_path)
+
+
+def test_student_noise_is_written_and_printed_with_what_was_tried(tmp_path):
+    calibration = short_calibration()
+    posterior = replace(calibration.posterior, tail=5.0)
+    fit = replace(calibration.fit, posterior=posterior, tails={5.0: 12.3, 30.0: 4.0})
+    student = replace(calibration, fit=fit)
+    write_tables(tmp_path, student, inputs={})
+    noise = read_toml_document(tmp_path / "slip.toml")["noise"]
+    assert (noise["degrees_of_freedom"], noise["tried"]) == (5.0, [5.0, 30.0])
+    console = Console(file=io.StringIO(), width=160)
+    print_calibration(console, student, tmp_path)
+    said = console.file.getvalue()
+    assert "Student-t with 5 degrees of freedom; better than Gaussian noise by 12" in said

@@ -6,20 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.blocks import block_means
-from model.bayes.gaussian_equivalent import gaussian_equivalent
-from model.bayes.laplace import LaplaceMixture, find_mode
+from model.bayes.laplace import find_mode
 from model.bayes.likelihood import PredictedForces, filter_runs, predict_blocks
-from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.rig_errors import RigErrors
 from model.bayes.student import filter_student_runs, normal_scores
-from model.bayes.tail_choice import choose_tail
-from model.slip import Brush
-from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
-
-LAW, TRUTH = Brush(), (20.0, 0.4)
-KNOWN = {"slip_stiffness": 20.0, "friction": 0.4, "noise_floor": 0.03}
+from support.dropped_forces import KNOWN, LAW, deviations, posterior_of, simulated
 
 
 def filtered(residual, tail, starts=(0, 3, 7)):
@@ -60,48 +50,6 @@ def test_a_far_block_moves_its_run_no_more_the_farther_it_is():
     assert score(100.0, None) > 20 * score(3.0, None)
 
 
-def simulated(seed, dropped):
-    """Return samples and, for a share of the tenths of a second, a force that falls short."""
-    slips = np.tile([0.005, 0.015, 0.03, 0.06, 0.15, 0.4], 3)
-    plan = SweepPlan(slips=tuple(slips), loads=(4.0, 12.0), rate=50.0)
-    rng = np.random.default_rng(seed)
-    samples = simulate_sweep(LAW, TRUTH, plan=plan, imperfections=TYPICAL_RIG, rng=rng).samples
-    force = samples.traction_force.copy()
-    for start in range(0, len(force), 5):
-        if rng.random() < dropped:
-            force[start : start + 5] *= rng.uniform(0.0, 0.6)
-    return replace(samples, traction_force=force)
-
-
-def posterior_of(samples):
-    """Return the posterior on a rig that is well known, so that intervals are narrow."""
-    blocks = block_means(samples, 5)
-    cell = LoadCell(zero_stability=0.05, gain_sd=0.001, bias_sd=0.01, crosstalk_sd=0.001)
-    priors = default_priors(LAW, blocks, cell, RigErrors(0.001, 0.002))
-    return SlipPosterior(blocks, LAW, priors)
-
-
-def deviations(posterior):
-    """Return how far the mode lies from the truth in its standard deviations, K and mu."""
-    truth = posterior.coordinates(KNOWN)
-    mode = find_mode(posterior.log_density, truth[None])
-    return (mode.mode[:2] - truth[:2]) / np.sqrt(np.diag(mode.covariance)[:2])
-
-
-def test_far_blocks_come_near_and_the_others_stay_for_the_checks():
-    posterior = posterior_of(simulated(1, 0.05))
-    values = posterior.values(posterior.coordinates(KNOWN)[None])
-    assert gaussian_equivalent(posterior, values) is posterior
-    blocks = gaussian_equivalent(replace(posterior, tail=3.0), values).blocks
-    expected = predict_blocks(blocks, LAW, values).force[0]
-    before = np.abs(posterior.blocks.traction_force - expected)
-    after = np.abs(blocks.traction_force - expected)
-    far = before > 0.8
-    assert far.sum() > 5
-    assert after[far].max() < 0.25 * before[far].max()
-    assert np.median(np.abs(after - before)[~far]) < 0.02
-
-
 def test_scores_of_many_degrees_of_freedom_are_white_and_normal():
     posterior = posterior_of(simulated(2, 0.0))
     mode = find_mode(posterior.log_density, posterior.coordinates(KNOWN)[None]).mode
@@ -124,13 +72,3 @@ def test_with_heavy_tails_intervals_hold_the_truth_where_gaussian_ones_do_not():
     inside = [np.sum(np.abs(found) < 1.645, axis=0) for found in (gauss, student)]
     assert inside[0][1] <= 2  # of friction, 20 of 20 with Student-t noise
     assert min(inside[1]) >= 15  # less happens once in 90
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("dropped", "tails"), [(0.05, {3.0, 5.0}), (0.0, {30.0})])
-def test_tails_are_as_heavy_as_the_data_have_them(dropped, tails):
-    posterior = posterior_of(simulated(1, dropped))
-    gauss = find_mode(posterior.log_density, posterior.coordinates(KNOWN)[None])
-    chosen = choose_tail(posterior, LaplaceMixture((gauss,)))
-    assert chosen.posterior.tail in tails
-    assert (chosen.gain[chosen.posterior.tail] > 10) == (dropped > 0)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 
-from model.mapping import Result, Shared
+from model.mapping import Mapper, Result, Shared
 from model.progress import Watcher
 from model.slip.definition import SlipDefinition
 from model.slip.law import SlipLaw
@@ -77,10 +77,11 @@ def study_sbc(request: SbcRequest, watcher: Watcher) -> Studied:
     """
     require_replaceable(request.out, SBC, inputs=request.layout.inputs)
     law = slip_law(request.law) if request.law not in (None, MagicFormula.name) else THESIS_LAW
-    layout = _read(request.layout, law, watcher)
-    fitted = layout.design.assuming(WRONG.get(request.wrong or "", {}))
-    study = RankStudy(layout.design, fitted)
-    replicates = _mapped(request, rank_replicate, study, watcher)
+    with open_workers(request.workers) as workers:  # first, so that a wrong address is told at once
+        layout = _read(request.layout, law, watcher)
+        fitted = layout.design.assuming(WRONG.get(request.wrong or "", {}))
+        study = RankStudy(layout.design, fitted)
+        replicates = _mapped(workers, rank_replicate, study, request, watcher)
     result = conclude_ranks(fitted.free, replicates)
     title = f"{layout.title}, law '{layout.design.law.name}'"
     if request.wrong:
@@ -108,13 +109,14 @@ def study_coverage(request: CoverageRequest, watcher: Watcher) -> Studied:
     given = () if request.truth is None else (request.truth,)
     require_replaceable(request.out, COVERAGE, inputs=(*request.layout.inputs, *given))
     law, truth, named = _truth(request)
-    layout = _read(request.layout, law, watcher)
-    if layout.plan is None or layout.block_length is None:
-        study, named = CoverageStudy(layout.design, layout.mean), "its posterior mean"
-        replicates = _mapped(request, coverage_replicate, study, watcher)
-    else:
-        swept = SweepStudy(layout.design, layout.plan, layout.block_length, truth)
-        replicates = _mapped(request, sweep_replicate, swept, watcher)
+    with open_workers(request.workers) as workers:
+        layout = _read(request.layout, law, watcher)
+        if layout.plan is None or layout.block_length is None:
+            study, named = CoverageStudy(layout.design, layout.mean), "its posterior mean"
+            replicates = _mapped(workers, coverage_replicate, study, request, watcher)
+        else:
+            swept = SweepStudy(layout.design, layout.plan, layout.block_length, truth)
+            replicates = _mapped(workers, sweep_replicate, swept, request, watcher)
     result = conclude_coverage(replicates)
     title = f"{layout.title}, law '{layout.design.law.name}', truth: {named}"
     studied = Studied(title, result, coverage_content(result, layout.design), layout.notes)
@@ -153,20 +155,20 @@ def _truth(request: CoverageRequest) -> tuple[SlipLaw, Mapping[str, float], str]
 
 
 def _mapped(
-    request: SbcRequest | CoverageRequest,
+    workers: Mapper,
     function: Callable[[Shared, Replicate], Result],
     study: Shared,
+    request: SbcRequest | CoverageRequest,
     watcher: Watcher,
 ) -> list[Result]:
-    """Compute all replicates by the workers of a request."""
+    """Compute all replicates of a request, and report how many are done."""
     tasks = [Replicate(request.seed, index) for index in range(request.replicates)]
     found: list[Result] = []
-    with open_workers(request.workers) as workers:
-        watcher.step("replicates", 0.0)
-        with closing(workers.map(function, study, tasks)) as results:
-            for each in results:
-                found.append(each)
-                watcher.step("replicates", len(found) / len(tasks))
+    watcher.step("replicates", 0.0)
+    with closing(workers.map(function, study, tasks)) as results:
+        for each in results:
+            found.append(each)
+            watcher.step("replicates", len(found) / len(tasks))
     return found
 
 

@@ -47,7 +47,7 @@ def parse_address(text: str) -> SchedulerAddress:
     found = _ADDRESS.fullmatch(text)
     if found is None or not 0 < int(found[3]) < 65536:
         raise SettingsError(
-            f"found '{text}'; expected tcp://HOST:PORT or tls://HOST:PORT, as dask-scheduler "
+            f"found '{text}'; expected tcp://HOST:PORT or tls://HOST:PORT, as dask scheduler "
             "prints it, such as tcp://127.0.0.1:8786",
             key=OPTION,
         )

@@ -133,7 +133,7 @@ def open_cluster(text: str) -> Iterator[Cluster]:
         except (OSError, ValueError, TypeError) as error:
             raise ClusterError(
                 f"{text}: no Dask scheduler answers within {ANSWERS_WITHIN:g} s; is it running "
-                f"(dask-scheduler), and is the port open{_certificates(address.protocol)}?"
+                f"(dask scheduler), and is the port open{_certificates(address.protocol)}?"
             ) from error
         try:
             versions = software()
@@ -196,7 +196,7 @@ def _require_same(client: "Client", text: str, versions: Mapping[str, str]) -> N
         client.wait_for_workers(1, timeout=ANSWERS_WITHIN)
     except TimeoutError as error:
         raise ClusterError(
-            f"{text}: the scheduler has no workers; start some (dask-worker {text})"
+            f"{text}: the scheduler has no workers; start some (dask worker {text})"
         ) from error
     try:
         found: Any = client.run(software)
@@ -216,12 +216,14 @@ def _certificates(protocol: str) -> str:
 @contextmanager
 def _quiet_dask() -> Iterator[None]:
     """Keep Dask's own log and warnings from the terminal: what matters is an error of ours."""
-    logger = logging.getLogger("distributed")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL + 1)
+    handlers = logging.getLogger("distributed").handlers  # which its loggers share
+    levels = [handler.level for handler in handlers]
+    for handler in handlers:
+        handler.setLevel(logging.CRITICAL + 1)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
     finally:
-        logger.setLevel(level)
+        for handler, level in zip(handlers, levels, strict=True):
+            handler.setLevel(level)

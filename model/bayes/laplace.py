@@ -180,9 +180,10 @@ def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
 
 
 def newton_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
-    """Find the modes as `find_modes` does, by Newton steps all the way, at a tenth of the cost.
+    """Find the modes as `find_modes` does, by damped Newton steps all the way.
 
-    For starts that lie near, such as a least-squares curve: far from a mode, where the density is
+    They take a few steps where the density is badly conditioned, and L-BFGS-B hundreds. They are
+    for starts that lie near, such as a least-squares curve: far from a mode, where the density is
     not convex, a step may end on a ridge that L-BFGS-B would follow.
 
     Args:

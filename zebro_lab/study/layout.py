@@ -159,6 +159,8 @@ def _of_calibration(path: Path, request: LayoutRequest) -> Layout:
         rig_errors=_known(RigErrors, settings, "rig_errors", folder, USUAL),
         stated={**stated, **_stated(request, curve.law)},
     )  # fmt: skip
+    if "noise" in read_toml_document(slip.file):
+        notes += ("its Student-t noise is left out: the study simulates and fits Gaussian noise",)
     title = f"data of {slip.file.absolute().parent.name}"
     files = (slip.file, folder / "posterior.nc", folder / MANIFEST)
     return Layout(design, title, None, None, _means(slip.file, design), files, notes)

@@ -75,6 +75,14 @@ def test_the_prior_of_an_earlier_calibration_is_left_out_and_told(tmp_path):
     assert any("--prior-from is left out" in note for note in found.notes)
 
 
+def test_student_t_noise_is_left_out_and_told(tmp_path):
+    folder = calibration_folder(tmp_path / "mine")
+    with (folder / "slip.toml").open("a") as file:
+        file.write('\n[noise]\ndistribution = "student"\n')
+    found = read_layout(LayoutRequest(calibration=folder), THESIS_LAW)
+    assert any("Student-t noise is left out" in note for note in found.notes)
+
+
 def test_a_calibration_without_its_load_cell_is_damaged(tmp_path):
     folder = calibration_folder(tmp_path / "mine")
     (folder / "manifest.json").write_text(json.dumps({"settings": {}}))

@@ -9,6 +9,7 @@ from model.bayes.convergence import Convergence
 from model.bayes.laplace import WeightedDraws
 from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Chains
+from model.slip.discrepancy import LawWithDiscrepancy
 from model.slip.law import Array, Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import N_SIDES, SidedLaw, side_factors
@@ -136,8 +137,10 @@ def curve_estimates(
     """
     columns = values.T
     quantities: list[tuple[Parameter, Array]] = []
-    if isinstance(law, MagicFormula):
-        quantities += zip(_PLAIN, law.coefficients(load, columns), strict=True)
+    base = law.law if isinstance(law, LawWithDiscrepancy) else law
+    if isinstance(base, MagicFormula):
+        coefficients = base.coefficients(load, columns[: len(base.parameters)])
+        quantities += zip(_PLAIN, coefficients, strict=True)
     elif isinstance(law, SidedLaw) and isinstance(law.law, MagicFormula):
         quantities += zip(_PLAIN, _driving_coefficients(law.law, load, columns), strict=True)
     peak = law.peak_slip(load, columns)

@@ -9,12 +9,14 @@ from model.errors import DomainError
 from model.similar_name import similar_name
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
+from model.slip.discrepancy import NAME, LawWithDiscrepancy
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import SidedLaw
 
 LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
 """Class of every slip law, by the law's name."""
+DISCREPANCY: Final = NAME
 SIDES: Final = "sides"
 TOGETHER: Final = "together"
 APART: Final = "apart"
@@ -29,7 +31,8 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
     Args:
         name: A key of `LAWS`.
         options: Fields of the law's class, such as `curvature` of the Magic Formula; their values
-            are not checked. `sides="apart"` makes it a `SidedLaw`.
+            are not checked. `sides="apart"` makes it a `SidedLaw`, `discrepancy`, the fields of
+            a `LawWithDiscrepancy` but its law, one of these.
 
     Returns:
         The law.
@@ -41,22 +44,27 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
     ['slip_stiffness', 'friction', 'kinetic_ratio']
     """
     _require_known("slip law", name, tuple(LAWS))
-    known = (*(field.name for field in fields(LAWS[name])), SIDES)
+    known = (*(field.name for field in fields(LAWS[name])), SIDES, DISCREPANCY)
     for option in options:
         _require_known(f"option of the slip law '{name}'", option, known)
-    own = {option: value for option, value in options.items() if option != SIDES}
+    own = {key: value for key, value in options.items() if key not in (SIDES, DISCREPANCY)}
     law = LAWS[name](**own)
     sides = options.get(SIDES, TOGETHER)
     _require_known(f"value of the option '{SIDES}'", sides, (TOGETHER, APART))
-    return SidedLaw(law) if sides == APART else law
+    if sides == APART:
+        law = SidedLaw(law)
+    return LawWithDiscrepancy(law, **options[DISCREPANCY]) if DISCREPANCY in options else law
 
 
 def law_options(law: SlipLaw) -> dict[str, Any]:
     """Return the options with which `slip_law` restores a law.
 
     Args:
-        law: A law of a class in `LAWS`, or such a law with its sides apart.
+        law: A law of a class in `LAWS`, or such a law with its sides apart or a discrepancy.
     """
+    if isinstance(law, LawWithDiscrepancy):
+        own = {field.name: getattr(law, field.name) for field in fields(law)}
+        return {**law_options(own.pop("law")), DISCREPANCY: own}
     if isinstance(law, SidedLaw):
         return {**law_options(law.law), SIDES: APART}
     return asdict(law)  # pyright: ignore[reportArgumentType]

@@ -10,6 +10,7 @@ from model.bayes.residuals import load_levels
 from model.bayes.samples import SlipSamples
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
+from model.slip.discrepancy import with_discrepancy
 from model.slip.law import SlipLaw
 from model.slip.laws import APART, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula
@@ -27,7 +28,8 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
     """Return the laws to choose from, by reported name, the preferred first.
 
     They are the Magic Formula's, with `--law compare` the others' too, else the one that is named;
-    with `--sides apart` all with their sides apart, with `--sides auto` those behind the others.
+    with `--sides apart` all with their sides apart, with `--sides auto` those behind the others;
+    with `--discrepancy` all with a departure over the tested slips.
 
     Args:
         request: Options: law, curvature, dependence on load, and sides.
@@ -37,6 +39,14 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
         SettingsError: Sides are to be fitted apart, and slip has one sign.
     """
     laws = _together(request, samples)
+    if request.discrepancy is not None:
+        low, high = float(samples.slip.min()), float(samples.slip.max())
+        sd = request.discrepancy
+        departing: dict[str, SlipLaw] = {
+            name: with_discrepancy(law, sd, smallest=low, largest=high)
+            for name, law in laws.items()
+        }
+        return departing
     if request.sides == TOGETHER:
         return laws
     both_signs = _has_both_signs(samples)

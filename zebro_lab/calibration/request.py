@@ -62,6 +62,15 @@ class CalibrationRequest:
             "(apart); or apart if that predicts left-out runs clearly better (auto)."
         ),
     ] = "together"
+    discrepancy: Annotated[
+        float | None,
+        Option(
+            metavar="SHARE",
+            help="Add a smooth departure from the law over slip, of this standard deviation over "
+            "the load [-], as 0.02; drawn in discrepancy.png.",
+        ),
+        Limits(above=0.0, most=0.5, advice="2 % of the load is 0.02"),
+    ] = None
     noise: Annotated[
         Literal["gauss", "student"],
         Option(
@@ -131,6 +140,7 @@ class CalibrationRequest:
         """Raise `SettingsError` for options that have no meaning or none beside the others."""
         require_curvature(self.curvature)
         self._require_priors()
+        self._require_lone_discrepancy()
         if self.law == COMPARE:
             self._require_comparable()
         elif self.law != "magic-formula" and (self.curvature != "auto" or self.load_sensitivity):
@@ -139,6 +149,22 @@ class CalibrationRequest:
                 f"'{self.law}'; leave them out",
                 key="--law",
             )
+
+    def _require_lone_discrepancy(self) -> None:
+        if self.discrepancy is None:
+            return
+        beside = {
+            "--law compare": self.law == COMPARE,
+            "--sides": self.sides != "together",
+            "--prior-from": self.prior_from is not None,
+        }
+        for option, given in beside.items():
+            if given:
+                raise SettingsError(
+                    f"--discrepancy departs from one law, on both sides of zero slip as it needs; "
+                    f"leave out {option}",
+                    key="--discrepancy",
+                )
 
     def _require_comparable(self) -> None:
         if self.load_sensitivity:
@@ -202,6 +228,7 @@ class CalibrationRequest:
             "load_sensitivity": self.load_sensitivity,
             "sides": self.sides,
             "noise": self.noise,
+            "discrepancy": self.discrepancy,
             "block_length": self.block_length,
             "load_cell": self.load_cell,
             "prior": list(self.prior),

@@ -16,6 +16,7 @@ from model.bayes.law_scores import LawScores
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.verdict import State
 from model.counted import counted
+from model.slip.discrepancy import LawWithDiscrepancy, chance_of_law
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.law_table import sentence, signed
 from zebro_lab.calibration.rig_data import RigData
@@ -23,6 +24,8 @@ from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import unit_symbol
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
+
+CLEAR_DEPARTURE_P = 0.01
 
 
 def print_data(console: Console, data: RigData) -> None:
@@ -57,6 +60,8 @@ def print_calibration(console: Console, calibration: Calibration, out: Path) -> 
     _print_priors(console, calibration)
     for table in _curve_tables(calibration):
         console.print(table)
+    for line in _departure_lines(calibration):
+        console.print(plain(line))
     _print_quality(console, calibration)
     _print_verdict(console, calibration)
     console.print(Text(f"\nwritten to {out}:"))
@@ -77,6 +82,24 @@ def _print_blocks(console: Console, calibration: Calibration) -> None:
         console.print(plain(line))
     if isinstance(calibration.comparison, LawScores):
         console.print(_law_table(calibration.comparison))
+
+
+def _departure_lines(calibration: Calibration) -> list[str]:
+    """Say whether the data depart from the law, and where furthest, if a departure was fitted."""
+    law, blocks = calibration.posterior.law, calibration.posterior.blocks
+    if not isinstance(law, LawWithDiscrepancy):
+        return []
+    draws = calibration.draws.flat[:, : len(law.parameters)]
+    p = chance_of_law(law, draws)
+    slip = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, 101)))
+    departures = 100 * law.departure(slip, draws.T[:, :, None])
+    mean, sd = departures.mean(axis=0), departures.std(axis=0)
+    at = int(np.argmax(np.abs(mean)))
+    said = "the data depart from it" if p < CLEAR_DEPARTURE_P else "the law alone would do"
+    return [
+        f"Departure from the law (prior ± {100 * law.sd:g} % of the load): {said} (p = {p:.2g}); "
+        f"largest at slip {slip[at]:.2g}, {mean[at]:+.2f} ± {sd[at]:.2f} % of the load"
+    ]
 
 
 def _noise_lines(calibration: Calibration) -> list[str]:

@@ -4,6 +4,7 @@
 from zebro_lab.terminal.stopping import stops_deferred
 
 with stops_deferred():  # matplotlib has C extensions
+    from zebro_lab.plots.discrepancy import discrepancy
     from zebro_lab.plots.laws import slip_laws
     from zebro_lab.plots.noise import residuals
     from zebro_lab.plots.posterior import corner, traces
@@ -14,6 +15,7 @@ with stops_deferred():  # matplotlib has C extensions
 __all__ = [
     "add_to_title",
     "corner",
+    "discrepancy",
     "parameter_labels",
     "residuals",
     "save",

@@ -19,9 +19,10 @@ from model.bayes.walks.importance import Effort, Mode, weighted_draws
 from model.slip.law import Array
 from model.study.design import StudyDesign
 
-DRAWS = 3000  # of the Laplace approximations
-ENOUGH = 800.0  # effective draws, for ranks among 99
-FURTHER = Effort(draws=1000, wanted=ENOUGH, rounds=20)
+DRAWS = 4000  # of the Laplace approximations
+ENOUGH = 2000.0  # effective draws; of 800, tails of posteriors on a ridge are seen too thin
+LEAST = 400.0  # effective draws, for a rank among 99
+FURTHER = Effort(draws=2000, wanted=ENOUGH, rounds=15)
 STARTS = 5  # of searches for modes: two at the least-squares curve, then the best prior draws
 RESAMPLED = 8000  # draws that intervals are read from
 
@@ -45,8 +46,8 @@ class WeightedFit:
 
     @property
     def reliable(self) -> bool:
-        """Whether the weights can be trusted: Pareto k below 0.7, and half of `ENOUGH` draws."""
-        return self.draws.pareto_k < MAX_PARETO_K and self.effective >= ENOUGH / 2
+        """Whether the weights can be trusted: Pareto k below 0.7, and at least `LEAST` draws."""
+        return self.draws.pareto_k < MAX_PARETO_K and self.effective >= LEAST
 
     def values(self, n: int, rng: np.random.Generator) -> Array:
         """Resample n equally weighted draws of the free parameters' values, shape (n, d)."""

@@ -7,7 +7,7 @@ import pytest
 from model.bayes.laplace import Laplace, LaplaceMixture, find_mode
 from model.study import weighted_fit
 from model.study.simulated_blocks import simulate_blocks
-from model.study.weighted_fit import ENOUGH, fit_blocks, weigh
+from model.study.weighted_fit import LEAST, fit_blocks, weigh
 from support.study_layouts import design
 
 TRUE = np.array([20.0, 0.4, *np.zeros(6), 0.05, 0.02, 0.3, 0.05])
@@ -22,7 +22,7 @@ def fitted():
 
 def test_a_fit_is_reliable_and_holds_the_truth(fitted):
     assert fitted.reliable
-    assert fitted.effective >= ENOUGH / 2
+    assert fitted.effective >= LEAST
     friction = fitted.values(4000, np.random.default_rng(1))[:, 1]
     assert abs(friction.mean() - 0.4) < 4 * friction.std()
 

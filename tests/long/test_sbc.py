@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Ranks of true values are uniform for the full data model, and not for one that forgets noise.
 
-The layout is a sweep of 10 slip ratios of both signs at three loads, 30 runs of 0.4 s; parameters of
-law, load cell, radii, rolling resistance, noise and offsets are drawn from the default priors.
+The layout is a sweep of 10 slip ratios of both signs at three loads, 30 runs of 0.4 s. Parameters
+of law, load cell, radii, rolling resistance, noise and offsets are drawn from the default priors.
 """
 
 import os

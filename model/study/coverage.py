@@ -145,23 +145,26 @@ class Covered:
 
     @property
     def passed(self) -> bool:
-        """Whether all counts lie inside their joint intervals."""
-        return all(
-            low <= count <= high for count, (low, high) in zip(self.held, self.joint, strict=True)
-        )
+        """Whether no count lies below its joint interval.
+
+        A count above is no failure: where data say little of a parameter whose truth stays the
+        same, the prior's middle holds it every time.
+        """
+        return all(count >= low for count, (low, _) in zip(self.held, self.joint, strict=True))
 
     @property
     def words(self) -> str:
         """What the counts say, in words."""
-        pairs = list(zip(self.held, self.joint, strict=True))
-        if self.passed:
-            inside = all(
-                low <= count <= high
-                for count, (low, high) in zip(self.held, self.band, strict=True)
-            )
-            return "as stated" if inside else "as stated, within the chance of all counts together"
-        few = any(count < low for count, (low, _) in pairs)
-        return "intervals too narrow, or off" if few else "intervals too wide"
+        if not self.passed:
+            return "intervals too narrow, or off"
+        if self.n < FEWEST_FITS:
+            return "too few to say"
+        if any(count > high for count, (_, high) in zip(self.held, self.joint, strict=True)):
+            return "more often than stated"
+        inside = all(
+            low <= count <= high for count, (low, high) in zip(self.held, self.band, strict=True)
+        )
+        return "as stated" if inside else "as stated, within the chance of all counts together"
 
 
 def binomial_band(n: int, share: float, outside: float) -> tuple[int, int]:
@@ -227,7 +230,7 @@ class CoverageResult:
                 f"not testable: {self.left_out} of {len(self.replicates)} fits could not be "
                 "weighed; the intervals of the others hold the truth as often as they state"
             )
-        return f"passed: intervals of all {len(self.covered)} parameters hold as stated"
+        return f"passed: intervals of all {len(self.covered)} parameters hold as often as stated"
 
 
 def conclude_coverage(replicates: Sequence[CoverageReplicate]) -> CoverageResult:

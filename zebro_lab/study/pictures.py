@@ -109,7 +109,7 @@ def draw_coverage(covered: Sequence[Covered], *, title: str) -> Figure:
         for row, each in zip(rows, covered, strict=True):
             axes.plot(
                 each.held[index] / each.n, row, marker="o", ms=5, ls="none",
-                color=BLUE if far[0] <= each.held[index] / each.n <= top[0] else RED,
+                color=BLUE if each.held[index] >= each.joint[index][0] else RED,
             )  # fmt: skip
         axes.set_xlabel(f"share of {n} intervals\nof {100 * level:g} % that hold [-]")
     bias = panels[-1]

@@ -67,7 +67,7 @@ def test_a_fit_that_fails_is_told(monkeypatch):
     [
         (50, 90, "as stated"),
         (50, 60, "intervals too narrow, or off"),
-        (80, 100, "intervals too wide"),
+        (80, 100, "more often than stated"),
         (50, 81, "as stated, within the chance of all counts together"),
     ],
 )
@@ -83,6 +83,15 @@ def test_the_headline_names_what_fails_and_what_is_too_little():
     assert few.headline.startswith("not testable with 10 fits")
     lost = [*replicates(50, 90), *replicates(5, 9, n=30, reliable=False)]
     assert conclude_coverage(lost).headline.startswith("not testable: 30 of 130")
+
+
+def test_intervals_that_hold_more_often_than_stated_do_not_fail():
+    assert conclude_coverage(replicates(100, 100)).headline.startswith("passed")
+
+
+def test_few_intervals_say_little():
+    (covered,) = conclude_coverage(replicates(5, 9, n=10)).covered
+    assert covered.words == "too few to say"
 
 
 def test_means_of_error_and_half_width_are_those_of_the_fits_that_count():

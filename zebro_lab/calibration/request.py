@@ -14,7 +14,13 @@ from zebro_lab.terminal.picture_options import FormatOption
 
 COMPARE: Final = "compare"
 """Value of `--law` that compares all laws."""
-LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck", "compare"]
+KINETIC_BRUSH: Final = "brush-kinetic"
+"""Value of `--law` for the brush model with kinetic friction."""
+LawName: TypeAlias = Literal[
+    "magic-formula", "brush", "brush-kinetic", "coulomb-stribeck", "compare"
+]
+SidesName: TypeAlias = Literal["together", "apart", "auto"]
+NoiseName: TypeAlias = Literal["gauss", "student"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]
 
 
@@ -56,7 +62,7 @@ class CalibrationRequest:
         bool, Option("--load-sensitivity", help="Let friction and stiffness vary with load.")
     ] = False
     sides: Annotated[
-        Literal["together", "apart", "auto"],
+        SidesName,
         Option(
             help="Driving and braking: one curve (together); stiffness and friction of each side "
             "(apart); or apart if that predicts left-out runs clearly better (auto)."
@@ -72,7 +78,7 @@ class CalibrationRequest:
         Limits(above=0.0, most=0.5, advice="2 % of the load is 0.02"),
     ] = None
     noise: Annotated[
-        Literal["gauss", "student"],
+        NoiseName,
         Option(
             help="Noise of block means: gauss, or student (t, with tails as heavy as the data "
             "ask), which a few far blocks hardly move."

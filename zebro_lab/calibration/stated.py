@@ -122,7 +122,10 @@ def _laws_of(
     apart = isinstance(law, SidedLaw)
     asked_default = request.law == MagicFormula.name and request.curvature == "auto"
     curvature = getattr(law.law if isinstance(law, SidedLaw) else law, "curvature", None)
-    fits = request.law == law.name and request.curvature in ("auto", str(curvature))
+    fits = request.law.removesuffix("-kinetic") == law.name and request.curvature in (
+        "auto",
+        str(curvature),
+    )
     if request.sides != TOGETHER and not apart:
         raise SettingsError(
             f"{earlier.title} was fitted with driving and braking together; leave out --sides",

@@ -13,7 +13,13 @@ from model.progress import Watcher
 from model.slip.curve import SlipCurve
 from zebro_lab.calibration import folder as calibration_folder
 from zebro_lab.calibration import stage as calibration_stage
-from zebro_lab.calibration.request import CalibrationRequest, DefinitionName, LawName
+from zebro_lab.calibration.request import (
+    CalibrationRequest,
+    DefinitionName,
+    LawName,
+    NoiseName,
+    SidesName,
+)
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.calibration.rig_data import read_rig_data as read_rig_files
 from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
@@ -89,6 +95,9 @@ def calibrate(
     columns: PathLike | None = None,
     slip_definition: DefinitionName | None = None,
     law: LawName = "magic-formula",
+    sides: SidesName = "together",
+    noise: NoiseName = "gauss",
+    discrepancy: float | None = None,
     prior: Sequence[str] = (),
     prior_from: PathLike | None = None,
     widen: float = 1.0,
@@ -104,7 +113,12 @@ def calibrate(
         out: Calibration folder to write; None to keep no files.
         columns: A `columns.toml` for all data, instead of those beside the tables.
         slip_definition: Definition of the slip ratio to fit in; None for that of the data.
-        law: "magic-formula", "brush" or "coulomb-stribeck".
+        law: "magic-formula", "brush", "brush-kinetic" or "coulomb-stribeck"; "compare" fits the
+            simplest that predicts left-out runs and loads no worse than the others.
+        sides: Whether driving and braking follow one curve; "auto" lets left-out runs decide.
+        noise: "gauss", or "student" for data with outliers.
+        discrepancy: Standard deviation of a smooth departure from the law, over the load [-]; None
+            for none.
         prior: What is known of parameters beforehand, such as "friction = 0.40 ± 0.05".
         prior_from: Calibration whose posterior is the prior; its law is fitted.
         widen: Factor on the standard deviations of that prior.
@@ -125,6 +139,9 @@ def calibrate(
             columns=optional(columns),
             slip_definition=slip_definition,
             law=law,
+            sides=sides,
+            noise=noise,
+            discrepancy=discrepancy,
             prior=tuple(prior),
             prior_from=optional(prior_from),
             widen=widen,

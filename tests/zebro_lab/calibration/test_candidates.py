@@ -27,12 +27,12 @@ def test_all_laws_are_compared_at_several_loads():
     sensitive = [law.load_sensitivity for law in found.values() if isinstance(law, MagicFormula)]
     assert sensitive == [False, False, True, True]
     assert next(iter(found)) == "magic-formula, one E"
-    assert {"brush", "brush, kinetic", "coulomb-stribeck"} < set(found)
+    assert {"brush", "brush-kinetic", "coulomb-stribeck"} < set(found)
 
 
 def test_at_one_load_laws_that_differ_by_load_alone_are_left_out():
     found = candidates(CalibrationRequest(law="compare"), samples(8.0))
-    assert list(found) == ["magic-formula, one E", "brush", "brush, kinetic", "coulomb-stribeck"]
+    assert list(found) == ["magic-formula, one E", "brush", "brush-kinetic", "coulomb-stribeck"]
 
 
 @pytest.mark.parametrize(
@@ -87,3 +87,8 @@ def test_a_departure_belongs_to_one_law_and_spans_the_tested_slips():
     for beside in ({"law": "compare"}, {"sides": "auto"}, {"prior_from": Path("earlier")}):
         with pytest.raises(SettingsError, match="--discrepancy departs from one law"):
             CalibrationRequest(discrepancy=0.02, **beside)
+
+
+def test_the_brush_model_with_kinetic_friction_is_asked_for_by_name():
+    found = candidates(CalibrationRequest(law="brush-kinetic"), samples(4.0, 12.0))
+    assert found == {"brush-kinetic": Brush(kinetic=True)}

@@ -68,11 +68,7 @@ def fit_seed(seed: int, *, one_sided: bool, duration: float = 1.0) -> tuple[Inte
     errors = RigErrors(
         radius_ratio_sd(plan.radius_leg, plan.radius_ground, RADIUS_TOLERANCE), ROLLING_RESISTANCE
     )
-    rig = replace(
-        draw_imperfections(rng),
-        radius_error=rng.normal(0.0, errors.radius_ratio),
-        rolling_resistance=rng.normal(0.0, errors.rolling_resistance),
-    )
+    rig = draw_imperfections(rng, errors)
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
     fit = prepare_fit(
         sweep.samples, THESIS_LAW, load_cell=CELL, rig_errors=errors, rng=rng, validate=False

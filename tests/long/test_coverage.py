@@ -5,13 +5,13 @@ Four seconds at 1 kHz in each of 248 runs are a million samples, of which noise 
 leaves one in a hundred, and run offsets of 0.1 N hardly more than one a run. A likelihood that
 counts samples must be far too sure; the calibration's must not. Three fits of the same data:
 
-* the calibration: AR(1) noise and run offsets, the load cell's errors free under their priors,
-  from which each replicate's true errors are drawn;
-* the same with the load cell's errors known;
+* the calibration: AR(1) noise and run offsets, the errors of the load cell, of the radii and of
+  rolling free under their priors, from which each replicate's true errors are drawn;
+* the same with these errors known;
 * the same again with every block independent and no offsets.
 
-The last two are a pair that differs in nothing but the noise. The load cell's errors are known
-there, because an error of gain shifts friction by as much in every sample: its prior would keep an
+The last two are a pair that differs in nothing but the noise. The rig's errors are known there,
+because an error of gain shifts friction by as much in every sample: its prior would keep an
 interval wide that counts the samples wrongly, and hide what is to be seen.
 
 Intervals come from the Laplace approximation with importance weights, which costs a tenth of the
@@ -30,6 +30,7 @@ from model.bayes.blocks import block_means
 from model.bayes.fit import prepare_fit
 from model.bayes.laplace import LaplaceMixture, find_mode, importance_draws
 from model.bayes.posterior import LoadCell, SlipPosterior
+from model.bayes.rig_errors import USUAL
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
@@ -42,16 +43,19 @@ N_INDEPENDENT = 40  # of them; its fit costs four times the others, and is nowhe
 RHO = 0.98
 PLAN = SweepPlan(duration=4.0, rate=1000.0)
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
-LOAD_CELL_ERRORS = ("gain_traction", "gain_normal", "bias_normal", "crosstalk")
+ERRORS = (
+    "gain_traction", "gain_normal", "bias_normal", "crosstalk", "radius_error",
+    "rolling_resistance",
+)  # fmt: skip
 LOAD = 6.63  # at which B and D are read [N]
 
 IID_BLOCK = 10
 """Samples in a block of the independent fit. Averaging helps it, if only a little while blocks are
 shorter than the noise's memory of 99 samples; every sample alone would take ten times as long."""
 
-CALIBRATION = "AR(1) and offsets, gains free"
-KNOWN = "AR(1) and offsets, gains known"
-INDEPENDENT = f"independent blocks of {IID_BLOCK}, gains known"
+CALIBRATION = "AR(1) and offsets, errors free"
+KNOWN = "AR(1) and offsets, errors known"
+INDEPENDENT = f"independent blocks of {IID_BLOCK}, errors known"
 ARMS = (CALIBRATION, KNOWN, INDEPENDENT)
 N_DRAWS = 2000
 N_IID_DRAWS = 300
@@ -152,11 +156,11 @@ def replicate(seed: int) -> dict[str, Fit]:
     """Simulate a sweep and fit it in every way, by arm."""
     rng = np.random.default_rng([N_REPLICATES, seed])
     truth = replace(
-        draw_imperfections(rng), offset_sd=0.1, noise_correlation_time=-0.001 / np.log(RHO)
+        draw_imperfections(rng, USUAL), offset_sd=0.1, noise_correlation_time=-0.001 / np.log(RHO)
     )
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=PLAN, imperfections=truth, rng=rng)
     posterior, calibration = calibrate(sweep.samples, rng)
-    errors = {name: getattr(truth, name) for name in LOAD_CELL_ERRORS}
+    errors = {name: getattr(truth, name) for name in ERRORS}
     known = replace(posterior, fixed={**posterior.fixed, **errors})
     fits = {CALIBRATION: calibration, KNOWN: refit(known, calibration.mode, n=N_DRAWS, rng=rng)}
     if seed >= N_INDEPENDENT:

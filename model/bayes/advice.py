@@ -74,6 +74,11 @@ class SampleAgain(Advice):
 
 
 @dataclass(frozen=True)
+class SamplePosterior(Advice):
+    """Advice to sample the posterior, of which only an approximation was weighted."""
+
+
+@dataclass(frozen=True)
 class ZeroBeforeEach(Advice):
     """Advice to measure again in short runs with a zero of their own, and to fit only these."""
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from model.bayes.calibration import Calibration, conclude
 from model.bayes.convergence import Convergence, assess
+from model.bayes.estimate import thin_draws
 from model.bayes.fit import (
     LawComparison,
     Noise,
@@ -18,9 +19,11 @@ from model.bayes.fit import (
     require_forces,
     validated,
 )
+from model.bayes.laplace import importance_draws
 from model.bayes.law_scores import LawScores, choose_law, load_groups, score_law
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
+from model.bayes.preview import Preview, preview, weighted_posterior
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
@@ -33,6 +36,8 @@ THIN = 5  # sampler moves a kept step
 CHUNK = 20  # kept steps between checks for a request to stop
 FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
 FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `max_steps` says
+DRAWS_PER_ENSEMBLE = 1000  # at most
+IMPORTANCE_DRAWS = 10_000
 FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
@@ -60,6 +65,8 @@ class SamplerSettings:
         threads: Number of folds of the cross-validation fitted, and of ensembles sampled, at once;
             below `FEW_BLOCKS` blocks one ensemble is sampled at a time.
         seed: Seed of the random generators.
+        sampled: Whether the posterior is sampled by emcee; else its draws are weighted ones of the
+            Laplace approximation.
     """
 
     ensembles: int = 4
@@ -67,6 +74,7 @@ class SamplerSettings:
     block_length: int | None = None
     threads: int = 2
     seed: int = 1
+    sampled: bool = True
 
 
 def calibrate(
@@ -84,8 +92,11 @@ def calibrate(
     stated: StatedPriors = UNSTATED,
     scored: bool = False,
     noise: Noise = "gauss",
-) -> tuple[Calibration, Chains]:
+    first: Callable[[Preview], object] = lambda _: None,
+) -> tuple[Calibration, Chains | None]:
     """Choose a slip law for rig samples, sample its posterior and check the result.
+
+    Weighted draws of the Laplace approximation come first, and sampling confirms them.
 
     Args:
         samples: The samples, at least one.
@@ -103,9 +114,11 @@ def calibrate(
         scored: Whether to choose the law by `choose_law`, from predictions of left-out runs and
             loads by the whole posterior, instead of by `compare`.
         noise: Distribution of the noise, as `prepare_fit` has it.
+        first: Called with the parameters by weighted draws, before sampling.
 
     Returns:
-        The calibration, converged or not (see its verdict), and the chains it was computed from.
+        The calibration, converged or not (see its verdict), and the chains it was computed from;
+        None without sampling.
 
     Raises:
         InsufficientData: There are fewer samples than a law's parameters plus two, traction is
@@ -123,14 +136,27 @@ def calibrate(
         _by_scores(samples, fits, settings, rng, watcher) if scored else _by_comparison(fits)
     )
     began = clock()
-    judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
-    with explain_numerical_errors(samples, fit.posterior.law):
-        chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep)
+    posterior, judging = fit.posterior, rng.spawn(1)[0]  # the same draws where a fit was resumed
+    with explain_numerical_errors(samples, posterior.law):
+        watcher.step("weighting", None)
+        weighted = importance_draws(
+            posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=judging,
+            threads=_threads(fit, settings),
+        )  # fmt: skip
+        first(preview(posterior, weighted, rng=judging))
+        chains = None
+        if settings.sampled:
+            chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep)
+            draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
+        else:
+            draws, convergence = weighted_posterior(
+                posterior, weighted, parts=settings.ensembles, n=DRAWS_PER_ENSEMBLE, rng=judging
+            )
         seconds = clock() - began
         watcher.step("judging", None)
         calibration = conclude(
-            fit, comparison, chains, convergence, samples,
-            source=source, seconds=seconds, rng=judging,
+            fit, comparison, draws, convergence, samples,
+            weighted=weighted if settings.sampled else None, source=source, seconds=seconds,
         )  # fmt: skip
     return calibration, chains
 
@@ -218,7 +244,7 @@ def _sample(
         density, fit.approximation, ensembles=settings.ensembles, thin=THIN, rng=rng
     )
     most = max(settings.max_steps // chains.thin, FIRST_LOOK)
-    threads = 1 if len(fit.posterior.blocks) < FEW_BLOCKS else settings.threads
+    threads = _threads(fit, settings)
     look = next_look(chains.n_steps - CHUNK + 1)
     watcher.step("sampling", 0.0)
     while True:
@@ -236,6 +262,11 @@ def _sample(
             density, chains, steps=CHUNK, approximation=fit.approximation, threads=threads
         )
         keep(chains)
+
+
+def _threads(fit: PreparedFit, settings: SamplerSettings) -> int:
+    """Return the number of threads for a posterior's density."""
+    return 1 if len(fit.posterior.blocks) < FEW_BLOCKS else settings.threads
 
 
 def next_look(n_steps: int) -> int:

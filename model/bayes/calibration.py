@@ -18,22 +18,18 @@ from model.bayes.estimate import (
     contraction,
     curve_estimates,
     estimate,
-    thin_draws,
 )
 from model.bayes.fit import LawComparison, PreparedFit
 from model.bayes.gaussian_equivalent import gaussian_equivalent
-from model.bayes.laplace import importance_draws
+from model.bayes.laplace import WeightedDraws
 from model.bayes.law_scores import LawScores
 from model.bayes.posterior import SlipPosterior
 from model.bayes.prior_conflict import PriorShift, prior_shifts
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
-from model.bayes.sampler import Chains
 from model.bayes.samples import SlipSamples
 from model.bayes.verdict import Verdict, judge
 from model.slip.law import Array
 
-DRAWS_PER_ENSEMBLE = 1000
-IMPORTANCE_DRAWS = 10_000
 _CHECKED = 400  # about this many draws are used for residuals and verdict
 
 
@@ -44,20 +40,22 @@ class Calibration:
     Attributes:
         fit: Posterior density, Laplace approximations, cross-validation and block length.
         comparison: Comparison of several laws; None if there was only one.
-        draws: Posterior draws, at most `DRAWS_PER_ENSEMBLE` of each ensemble.
+        draws: Posterior draws, one row an ensemble.
         parameters: Posterior of every parameter, fixed ones included: the law's, then the
             measurement's.
         levels: Median measured load at each load that was set, by `middle_loads`, shape (m,) [N].
         curves: Posterior of the curve's features, as by `curve_estimates`, at each load level.
         convergence: Convergence diagnostics of the sampler.
         residuals: Analysis of the residuals.
-        agreement: Comparison of the sampler's draws with importance sampling.
+        agreement: Comparison of the sampler's draws with importance sampling; None where the
+            posterior was not sampled, and the draws are weighted ones.
         verdict: Whether the fit converged and can be trusted.
         contraction: 1 - posterior over prior variance of each sampled parameter, by name [-].
         r_squared: Fraction of the variance of measured traction explained by predictions of
             left-out runs; None without cross-validation [-].
         source: Where the data come from: "real", "sim:...", "unknown" and others.
-        seconds: Time that sampling took, without that of the chains it resumed from [s].
+        seconds: Time that sampling or weighting took, without that of the chains it resumed
+            from [s].
         prior_shifts: Comparison of each stated prior with the data.
     """
 
@@ -69,7 +67,7 @@ class Calibration:
     curves: Sequence[Sequence[Estimate]]
     convergence: Convergence
     residuals: Residuals
-    agreement: Agreement
+    agreement: Agreement | None
     verdict: Verdict
     contraction: Mapping[str, float]
     r_squared: float | None
@@ -86,44 +84,41 @@ class Calibration:
 def conclude(
     fit: PreparedFit,
     comparison: LawComparison | LawScores | None,
-    chains: Chains,
+    draws: Draws,
     convergence: Convergence,
     samples: SlipSamples,
     *,
+    weighted: WeightedDraws | None,
     source: str,
     seconds: float,
-    rng: np.random.Generator,
 ) -> Calibration:
-    """Compute estimates, residuals, checks and verdict from the chains of a fit.
+    """Compute estimates, residuals, checks and verdict from the draws of a fit.
 
     Residuals and verdict use about `_CHECKED` of the draws, and with Student-t noise the blocks of
     `gaussian_equivalent`.
 
     Args:
-        fit: The fit that was sampled.
+        fit: The fit.
         comparison: Comparison of several laws; None if there was only one.
-        chains: The sampler's chains.
-        convergence: Convergence diagnostics of the chains.
+        draws: Draws of its posterior.
+        convergence: Convergence diagnostics of the draws.
         samples: The samples that were fitted, here for R² of the left-out runs.
+        weighted: Weighted draws of the Laplace approximation, to compare with; None where these
+            are the draws.
         source: Source of the samples.
         seconds: Time that sampling took [s].
-        rng: Source of randomness of the importance draws.
 
     Raises:
         LinAlgError: The covariance of a run's blocks is singular.
     """
     posterior = fit.posterior
-    draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
     some = draws.flat[:: max(1, len(draws.flat) // _CHECKED)]
     checked = gaussian_equivalent(posterior, some)
     residuals = _analysed(posterior, checked, some)
-    weighted = importance_draws(
-        posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
-    )
     narrowed = contraction(posterior, draws)
     levels = middle_loads(posterior.blocks)
     validation = fit.cross_validation
-    compared = agreement(draws, weighted, convergence)
+    compared = None if weighted is None else agreement(draws, weighted, convergence)
     centred = linearise(checked, draws.z.reshape(-1, draws.z.shape[-1]))
     return Calibration(
         fit=fit,

@@ -12,6 +12,7 @@ from model.slip.law import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
+MAX_PARETO_K = 0.7  # tail index from which importance weights are not reliable
 MAX_R_HAT = 1.01
 MIN_ESS = 400.0
 MIN_LENGTH = 50.0  # least length of the chains, in autocorrelation times
@@ -34,6 +35,8 @@ class Convergence:
         ess_tail: Effective sample size of the 5 % and 95 % quantiles [-].
         mcse: Monte Carlo error of the mean over the posterior standard deviation [-].
         thin: Sampler moves of a kept step.
+        pareto_k: Tail index of the weights, where the draws are weighted ones of an approximation
+            and no chain; else None [-].
     """
 
     burn_in: int
@@ -44,6 +47,12 @@ class Convergence:
     ess_tail: Array
     mcse: Array
     thin: int = 1
+    pareto_k: float | None = None
+
+    @property
+    def weights_reliable(self) -> bool:
+        """Whether there are no weights, or reliable ones: a tail index below `MAX_PARETO_K`."""
+        return self.pareto_k is None or self.pareto_k < MAX_PARETO_K
 
     @property
     def moves(self) -> int:
@@ -54,7 +63,8 @@ class Convergence:
         """List the unmet criteria as text, each with its worst value; empty when converged.
 
         Criteria: R-hat at most `MAX_R_HAT`, Monte Carlo error at most `MAX_MCSE`, bulk and tail ESS
-        at least `MIN_ESS`, length at least `MIN_LENGTH` autocorrelation times. NaN counts as unmet.
+        at least `MIN_ESS`, length at least `MIN_LENGTH` autocorrelation times, and of weighted
+        draws a tail index below `MAX_PARETO_K`. NaN counts as unmet.
         """
         length = float((self.length / self.autocorrelation_time).min())
         at_most = [
@@ -66,7 +76,9 @@ class Convergence:
             ("tail effective sample size", float(self.ess_tail.min()), MIN_ESS),
             ("chain length in autocorrelation times", length, MIN_LENGTH),
         ]
+        unreliable = [] if self.weights_reliable else [_unreliable(self.pareto_k)]
         return [
+            *unreliable,
             *(f"{rule} is {x:.3f}, limit {m:g}" for rule, x, m in at_most if not x <= m),
             *(f"{rule} is {x:.0f}, at least {m:g} needed" for rule, x, m in at_least if not x >= m),
         ]
@@ -74,15 +86,20 @@ class Convergence:
     def summary(self) -> str:
         """Format the worst value of each diagnostic as one line of text."""
         length = float((self.length / self.autocorrelation_time).min())
+        kind = (
+            f"{length:.0f} autocorrelation times"
+            if self.pareto_k is None
+            else f"Pareto k of the weights {self.pareto_k:.2f}"
+        )
         return (
             f"R-hat {self.r_hat.max():.3f}, bulk ESS {self.ess_bulk.min():.0f}, tail ESS "
-            f"{self.ess_tail.min():.0f}, {length:.0f} autocorrelation times, Monte Carlo error "
+            f"{self.ess_tail.min():.0f}, {kind}, Monte Carlo error "
             f"{self.mcse.max():.1%} of the spread"
         )
 
     @property
     def converged(self) -> bool:
-        """Whether all five criteria of `failures` are met."""
+        """Whether all criteria of `failures` are met."""
         return not self.failures()
 
     def fraction_done(self) -> float:
@@ -99,6 +116,10 @@ class Convergence:
                 1.0,
             )
         )
+
+
+def _unreliable(pareto_k: float | None) -> str:
+    return f"tail index of the weights (Pareto k) is {pareto_k:.2f}, below {MAX_PARETO_K:g} needed"
 
 
 def assess(chains: Chains) -> Convergence:
@@ -126,6 +147,41 @@ def assess(chains: Chains) -> Convergence:
         mcse=1 / np.sqrt(_array(az.ess(walkers, method="mean"))),
         thin=chains.thin,
     )
+
+
+def assess_weighted(draws: Array, weighted: Array, weights: Array, pareto_k: float) -> Convergence:
+    """Compute the diagnostics of weighted draws, which are independent.
+
+    Effective sizes are those of the weighted estimates of the mean (bulk) and of the shares below
+    the 5 % and 95 % quantiles (tail), by the variance sum of w²(h - E h)² of an estimate of h.
+
+    Args:
+        draws: Coordinates resampled from m independent parts of the draws, shape (m, n, d).
+        weighted: Coordinates of all weighted draws, shape (w, d).
+        weights: Their weights, with sum one, shape (w,).
+        pareto_k: Tail index of the weights [-].
+    """
+    import arviz as az
+
+    quantiles = np.quantile(draws.reshape(-1, draws.shape[-1]), [0.05, 0.95], axis=0)
+    tails = [_effective_size((weighted <= q).astype(float), weights) for q in quantiles]
+    bulk = _effective_size(weighted, weights)
+    return Convergence(
+        burn_in=0,
+        length=draws.shape[1],
+        autocorrelation_time=np.ones(draws.shape[-1]),
+        r_hat=_array(az.rhat(_dataset(draws), method="rank")),
+        ess_bulk=bulk,
+        ess_tail=np.minimum(*tails),
+        mcse=1 / np.sqrt(bulk),
+        pareto_k=pareto_k,
+    )
+
+
+def _effective_size(h: Array, weights: Array) -> Array:
+    """Compute the effective size of the weighted mean of h, (w, d), for each column, (d,)."""
+    away = (h - weights @ h) ** 2
+    return weights @ away / (weights**2 @ away)
 
 
 def _dataset(chains: Array) -> "Dataset":

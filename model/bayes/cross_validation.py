@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.laplace import climb
+from model.bayes.laplace import Laplace, climb
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition, slip_per_radius_error
@@ -101,18 +101,20 @@ def r_squared(measured: Array, predicted: Array) -> float:
     )
 
 
-def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -> CrossValidation:
+def cross_validate(
+    posterior: SlipPosterior, laplace: Laplace, *, threads: int = 2
+) -> CrossValidation:
     """Find the posterior's mode without each fold of runs, and predict the runs left out.
 
     Up to 20 runs are left out one by one, more in 10 interleaved groups.
 
     Args:
         posterior: The posterior of all runs, at least two.
-        mode: Coordinates of the mode of all runs, where each search starts, shape (d,).
+        laplace: Approximation at the mode of all runs, where each search starts.
         threads: Number of folds that are fitted at once.
 
     Raises:
-        FitError: Without a fold's runs `mode` lies outside the posterior's support.
+        FitError: Without a fold's runs the mode lies outside the posterior's support.
     """
     n_runs = posterior.blocks.n_runs
     n_folds = n_runs if n_runs <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS
@@ -120,7 +122,8 @@ def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -
 
     def fit(index: int) -> Array:
         kept = posterior.without_runs(fold == index)
-        return posterior.values(climb(kept.log_density, mode[None])[None])[0]
+        top = climb(kept.log_density, laplace.mode[None], laplace.covariance)
+        return posterior.values(top[None])[0]
 
     with ThreadPoolExecutor(threads) as pool:
         values = np.stack(list(pool.map(fit, range(n_folds))))

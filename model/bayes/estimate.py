@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.bayes.convergence import Convergence
+from model.bayes.convergence import MAX_PARETO_K, Convergence
 from model.bayes.laplace import WeightedDraws
 from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Chains
@@ -13,8 +13,6 @@ from model.slip.discrepancy import LawWithDiscrepancy
 from model.slip.law import Array, Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import N_SIDES, SidedLaw, side_factors
-
-MAX_PARETO_K = 0.7  # tail index from which importance weights are not reliable
 
 
 @dataclass(frozen=True)

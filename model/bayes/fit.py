@@ -197,7 +197,7 @@ def validated(fit: PreparedFit, *, threads: int = 2) -> PreparedFit:
     """
     if fit.cross_validation is not None or fit.posterior.blocks.n_runs < 2:
         return fit
-    validation = cross_validate(fit.posterior, fit.laplace.mode, threads=threads)
+    validation = cross_validate(fit.posterior, fit.laplace, threads=threads)
     return replace(fit, cross_validation=validation)
 
 

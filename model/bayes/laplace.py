@@ -2,11 +2,13 @@
 """Laplace approximation: modes, covariances there, and importance sampling from them."""
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
@@ -16,8 +18,8 @@ from model.slip.law import Array
 LogDensity = Callable[[Array], Array]
 SAME_TOP = 0.05  # maxima closer than this in coordinates are the same mode
 NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, beyond which a mode is left out
-_MOST_NEWTON = 80  # steps of a search by Newton steps alone; 5 to 20 are usual
-_SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.001)  # of such a step that are tried
+ITERATIONS = 15  # of a search for a mode in one scaling
+ROUNDS = 20  # scalings of a search
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 
@@ -176,37 +178,8 @@ def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
     Raises:
         FitError: No start lies inside the support.
     """
-    return _distinct(log_density, _tops(log_density, starts))
-
-
-def newton_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
-    """Find the modes as `find_modes` does, by damped Newton steps all the way.
-
-    They take a few steps where the density is badly conditioned, and L-BFGS-B hundreds. They are
-    for starts that lie near, such as a least-squares curve: far from a mode, where the density is
-    not convex, a step may end on a ridge that L-BFGS-B would follow.
-
-    Args:
-        log_density: Log density of coordinates (w, d), -inf out of support.
-        starts: Starting points, shape (m, d).
-
-    Returns:
-        The modes, as of `find_modes`.
-
-    Raises:
-        FitError: No start lies inside the support.
-    """
-
-    def search(start: Array) -> Array:
-        return _newton(log_density, start, steps=_MOST_NEWTON, shares=_SHARES)[0]
-
-    return _distinct(log_density, _tops(log_density, starts, search))
-
-
-def _distinct(log_density: LogDensity, found: list[Array]) -> tuple[Laplace, ...]:
-    """Approximate the density at maxima (d,), the highest first; return the modes that count."""
     tops: list[Array] = []
-    for top in found:
+    for top in _tops(log_density, starts):
         if all(np.linalg.norm(top - known) > SAME_TOP for known in tops):
             tops.append(top)
     distinct: list[Laplace] = []
@@ -224,12 +197,14 @@ def _laplace(log_density: LogDensity, top: Array) -> Laplace:
     return Laplace(mode, covariance, float(log_density(mode[None])[0]))
 
 
-def climb(log_density: LogDensity, starts: Array) -> Array:
+def climb(log_density: LogDensity, starts: Array, covariance: Array | None = None) -> Array:
     """Maximise the log density from several starting points; return the coordinates of the best.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
         starts: Starting points, shape (m, d).
+        covariance: About the covariance at the mode, (d, d), which scales the search; None for
+            that at each start.
 
     Returns:
         Coordinates, shape (d,).
@@ -237,15 +212,13 @@ def climb(log_density: LogDensity, starts: Array) -> Array:
     Raises:
         FitError: No start lies inside the support.
     """
-    return _tops(log_density, starts)[0]
+    return _tops(log_density, starts, covariance)[0]
 
 
-def _tops(
-    log_density: LogDensity, starts: Array, search: Callable[[Array], Array] | None = None
-) -> list[Array]:
+def _tops(log_density: LogDensity, starts: Array, covariance: Array | None = None) -> list[Array]:
     """Maximise from every start inside the support; return the maxima, highest first.
 
-    The search is `_climb` by default. Raises `FitError` if no start is inside.
+    Raises `FitError` if no start is inside.
     """
     inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
@@ -253,41 +226,58 @@ def _tops(
             f"the posterior density is zero at all {len(starts)} starting points: no curve within "
             "the law's priors fits these forces; check units and signs of slip and forces"
         )
-    tops = [_climb(log_density, start) if search is None else search(start) for start in inside]
+    tops = [_climb(log_density, start, covariance) for start in inside]
     return sorted(tops, key=lambda z: -float(log_density(z[None])[0]))
 
 
-def _climb(log_density: LogDensity, start: Array) -> Array:
-    """Maximise the log density from one start (d,) by L-BFGS-B; return where the search ended.
+def _climb(log_density: LogDensity, start: Array, covariance: Array | None = None) -> Array:
+    """Maximise the log density from one start (d,); return where the search ended.
 
-    The search ends after 300 iterations at the latest.
+    L-BFGS-B in coordinates in which the density is about as wide in every direction: scaled by the
+    covariance (d, d) first, where one is given, and by that at the place reached after each
+    `ITERATIONS`. Ends after `ROUNDS` of these at the latest.
     """
+    z = start
+    for _ in range(ROUNDS):
+        scaling = _covariance(log_density, z) if covariance is None else covariance
+        z, ended = _climb_scaled(log_density, z, scaling)
+        if ended:
+            break
+        covariance = None
+    return z
 
-    def negative(z: Array) -> tuple[float, Array]:
-        value, slope = _value_and_gradient(log_density, z)
+
+def _climb_scaled(log_density: LogDensity, start: Array, covariance: Array) -> tuple[Array, bool]:
+    """Climb from a start for up to `ITERATIONS`; return the place, and whether the search ended.
+
+    The coordinates u of the search are z = start + S u, with S the root of the covariance.
+    """
+    eigenvalues, vectors = np.linalg.eigh(covariance)
+    root = vectors * np.sqrt(eigenvalues)
+
+    def negative(u: Array) -> tuple[float, Array]:
+        value, slope = _value_and_gradient(log_density, start + root @ u)
         if not np.isfinite(value):
-            return 1e12, np.zeros_like(z)
-        return -value, -np.where(np.isfinite(slope), slope, 0.0)
+            return 1e12, np.zeros_like(u)
+        return -value, -root.T @ np.where(np.isfinite(slope), slope, 0.0)
 
-    return minimize(negative, start, jac=True, method="L-BFGS-B", options={"maxiter": 300}).x
+    found = minimize(
+        negative, np.zeros(len(start)), jac=True, method="L-BFGS-B",
+        options={"maxiter": ITERATIONS},
+    )  # fmt: skip
+    return start + root @ found.x, found.nit < ITERATIONS
 
 
-def _newton(
-    log_density: LogDensity,
-    z: Array,
-    *,
-    steps: int = 4,
-    shares: tuple[float, ...] = (1.0, 0.5, 0.25, 0.1),
-) -> tuple[Array, Array]:
+def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array, Array]:
     """Refine a mode by at most `steps` damped Newton steps; return it and the covariance there.
 
-    It ends when none of the `shares` of a step raises the log density.
+    It ends when neither a whole step nor 0.5, 0.25 or 0.1 of one raises the log density.
     """
     covariance = _covariance(log_density, z)
     for _ in range(steps):
         slope = gradient(log_density, z)
         move = covariance @ np.where(np.isfinite(slope), slope, 0.0)
-        trials = z + move * np.array(shares)[:, None]
+        trials = z + move * np.array([1.0, 0.5, 0.25, 0.1])[:, None]
         heights = log_density(np.vstack([z, trials]))
         if heights[1:].max() <= heights[0]:
             break
@@ -317,11 +307,38 @@ class WeightedDraws:
         z: Coordinates, shape (n, d).
         weights: Pareto-smoothed weights, with sum one, shape (n,).
         pareto_k: Tail index of the raw weights; above 0.7 the weights are not reliable [-].
+        log_density: Log posterior density up to a constant, shape (n,).
     """
 
     z: Array
     weights: Array
     pareto_k: float
+    log_density: Array
+
+    @property
+    def effective_size(self) -> float:
+        """Kish's effective sample size, that of as many draws of equal weight [-]."""
+        return float(1 / np.sum(self.weights**2))
+
+    def part(self, chosen: slice) -> "WeightedDraws":
+        """Return a part of the draws as if it were all, its weights with sum one.
+
+        Args:
+            chosen: Which draws, at least one.
+        """
+        weights = self.weights[chosen]
+        return WeightedDraws(
+            self.z[chosen], weights / weights.sum(), self.pareto_k, self.log_density[chosen]
+        )
+
+    def resampled(self, n: int, *, rng: np.random.Generator) -> NDArray[np.intp]:
+        """Resample draws by their weights, with replacement; return their indices, shape (n,).
+
+        Args:
+            n: Number of draws.
+            rng: Source of randomness.
+        """
+        return rng.choice(len(self.z), size=n, p=self.weights)
 
     def resample(self, n: int, *, rng: np.random.Generator) -> Array:
         """Resample draws by their importance weights, with replacement, to equally weighted ones.
@@ -333,11 +350,16 @@ class WeightedDraws:
         Returns:
             Coordinates, shape (n, d).
         """
-        return self.z[rng.choice(len(self.z), size=n, p=self.weights)]
+        return self.z[self.resampled(n, rng=rng)]
 
 
 def importance_draws(
-    log_density: LogDensity, proposal: LaplaceMixture, *, n: int, rng: np.random.Generator
+    log_density: LogDensity,
+    proposal: LaplaceMixture,
+    *,
+    n: int,
+    rng: np.random.Generator,
+    threads: int = 1,
 ) -> WeightedDraws:
     """Draw from a mixture of Laplace approximations and weight the draws by the posterior.
 
@@ -349,13 +371,15 @@ def importance_draws(
         proposal: The mixture to draw from.
         n: Number of draws.
         rng: Source of randomness.
+        threads: Number of batches of draws whose density is computed at once.
     """
     import arviz as az
 
     z = proposal.draw(n, rng=rng)
-    batches = np.array_split(z, n // 64 + 1)
-    ratio = np.concatenate([log_density(batch) for batch in batches]) - proposal.log_pdf(z)
+    with ThreadPoolExecutor(threads) as pool:
+        density = np.concatenate(list(pool.map(log_density, np.array_split(z, n // 64 + 1))))
+    ratio = density - proposal.log_pdf(z)
     ratio = np.where(np.isfinite(ratio), ratio, -1e6 + ratio[np.isfinite(ratio)].max())
     smoothed, pareto_k = az.psislw(ratio)
     weights = np.exp(np.asarray(smoothed))
-    return WeightedDraws(z, weights / weights.sum(), float(pareto_k))
+    return WeightedDraws(z, weights / weights.sum(), float(pareto_k), density)

@@ -132,7 +132,7 @@ def judge(
     contraction: Mapping[str, float],
     convergence: Convergence,
     residuals: Residuals,
-    agreement: Agreement,
+    agreement: Agreement | None,
     inspection: Inspection,
     offset_scale: float,
 ) -> Verdict:
@@ -146,7 +146,8 @@ def judge(
             name [-].
         convergence: Convergence diagnostics of the sampler.
         residuals: Analysis of the residuals.
-        agreement: Comparison of the sampler with importance sampling.
+        agreement: Comparison of the sampler with importance sampling; None where the posterior was
+            not sampled.
         inspection: What was looked for in the data.
         offset_scale: Scale of the prior on the run offsets' spread [N].
     """

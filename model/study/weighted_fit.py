@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.bayes.blocks import SlipBlocks
-from model.bayes.estimate import MAX_PARETO_K
+from model.bayes.convergence import MAX_PARETO_K
 from model.bayes.fit import starting_points
 from model.bayes.laplace import (
     LaplaceMixture,
     WeightedDraws,
+    find_modes,
     importance_draws,
-    newton_modes,
 )
 from model.bayes.posterior import SlipPosterior
 from model.bayes.walks.importance import Effort, Mode, weighted_draws
@@ -68,7 +68,7 @@ def fit_blocks(design: StudyDesign, blocks: SlipBlocks, rng: np.random.Generator
     """
     posterior = design.posterior(blocks)
     starts = starting_points(posterior, rng)[:STARTS]
-    modes = LaplaceMixture(newton_modes(posterior.log_density, starts))
+    modes = LaplaceMixture(find_modes(posterior.log_density, starts))
     return weigh(posterior, modes, rng)
 
 
@@ -90,7 +90,7 @@ def weigh(posterior: SlipPosterior, modes: LaplaceMixture, rng: np.random.Genera
         progress=lambda _: None,
         effort=FURTHER,
     )
-    return WeightedFit(posterior, _smoothed(adapted.z, adapted.weight))
+    return WeightedFit(posterior, _smoothed(posterior, adapted.z, adapted.weight))
 
 
 def _spanning(modes: LaplaceMixture) -> Mode:
@@ -104,7 +104,7 @@ def _spanning(modes: LaplaceMixture) -> Mode:
     return Mode(None, mean, np.asarray(covariance), 0.0)
 
 
-def _smoothed(z: Array, weights: Array) -> WeightedDraws:
+def _smoothed(posterior: SlipPosterior, z: Array, weights: Array) -> WeightedDraws:
     """Smooth importance weights (n,) by a Pareto tail, as `importance_draws` does."""
     import arviz as az
 
@@ -112,4 +112,4 @@ def _smoothed(z: Array, weights: Array) -> WeightedDraws:
         log = np.maximum(np.log(weights), -1e6)
     smoothed, pareto_k = az.psislw(log)
     kept = np.exp(np.asarray(smoothed))
-    return WeightedDraws(z, kept / kept.sum(), float(pareto_k))
+    return WeightedDraws(z, kept / kept.sum(), float(pareto_k), posterior.log_density(z))

@@ -7,7 +7,9 @@ import numpy as np
 
 from model.bayes.calibration import Calibration, conclude
 from model.bayes.convergence import assess
+from model.bayes.estimate import thin_draws
 from model.bayes.fit import prepare_fit
+from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.sampler import advance, start_chains
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
@@ -27,6 +29,9 @@ def short_calibration() -> Calibration:
     density = fit.posterior.log_density
     chains = start_chains(density, fit.approximation, ensembles=2, thin=5, rng=rng)
     chains = advance(density, chains, steps=100, approximation=fit.approximation, threads=1)
+    convergence = assess(chains)
+    weighted = importance_draws(density, fit.approximation, n=4000, rng=rng)
     return conclude(
-        fit, None, chains, assess(chains), samples, source="sim:test", seconds=1.5, rng=rng
-    )
+        fit, None, thin_draws(fit.posterior, chains, convergence, n=1000), convergence, samples,
+        weighted=weighted, source="sim:test", seconds=1.5,
+    )  # fmt: skip

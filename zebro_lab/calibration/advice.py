@@ -12,6 +12,7 @@ from model.bayes.advice import (
     MeasureSlips,
     SampleAgain,
     SampleLonger,
+    SamplePosterior,
     TryDefinition,
     TryLaws,
     WeighLoadCell,
@@ -39,6 +40,11 @@ def advice_text(advice: Advice) -> str:
 @advice_text.register
 def _sample_longer(advice: SampleLonger) -> str:
     return f"{advice.reason}: give the same command with --resume --max-steps {advice.moves}"
+
+
+@advice_text.register
+def _sample_posterior(advice: SamplePosterior) -> str:
+    return f"{advice.reason}: give the same command with --engine emcee"
 
 
 @advice_text.register

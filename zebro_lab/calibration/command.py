@@ -22,7 +22,7 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
         ZebroLabError, ModelError: As in `zebro_lab.calibration.stage.calibrate`.
     """
     from model.bayes.calibrate import FEWEST_MOVES
-    from zebro_lab.calibration.screen import print_calibration, print_data
+    from zebro_lab.calibration.screen import print_calibration, print_data, print_preview
     from zebro_lab.calibration.stage import Stopped, calibrate, read, stated_notes
 
     with output.progress() as watcher:
@@ -35,9 +35,14 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
             f"--max-steps {request.max_steps} is fewer than the {FEWEST_MOVES} sampler moves "
             f"before a fit is first judged; {FEWEST_MOVES} are made"
         )
+    console = output.console()
     try:
         with output.progress() as watcher:
-            calibration, _ = calibrate(request, watcher, data)
+            calibration, _ = calibrate(
+                request, watcher, data,
+                (lambda found: print_preview(console, found)) if request.engine == "auto"
+                else (lambda _: None),
+            )  # fmt: skip
     except Stopped as stopped:
         if stopped.checkpoint is None:
             say(str(stopped), err=True)

@@ -21,6 +21,7 @@ LawName: TypeAlias = Literal[
 ]
 SidesName: TypeAlias = Literal["together", "apart", "auto"]
 NoiseName: TypeAlias = Literal["gauss", "student"]
+EngineName: TypeAlias = Literal["auto", "emcee", "laplace"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]
 
 
@@ -128,6 +129,14 @@ class CalibrationRequest:
             help="What --prior-from carries over: all, for the same load cell, or law, for another."
         ),
     ] = "all"
+    engine: Annotated[
+        EngineName,
+        Option(
+            help="auto: a first answer by weighted draws of the Laplace approximation, which emcee "
+            "then confirms; emcee: without the first answer; laplace: the first answer alone, as "
+            "a calibration that was not confirmed.",
+        ),
+    ] = "auto"
     ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
     max_steps: Annotated[
         int,
@@ -147,6 +156,12 @@ class CalibrationRequest:
         require_curvature(self.curvature)
         self._require_priors()
         self._require_lone_discrepancy()
+        if self.resume and self.engine == "laplace":
+            raise SettingsError(
+                "--resume goes on with a stopped fit by emcee; leave out --engine laplace, which "
+                "takes seconds",
+                key="--engine",
+            )
         if self.law == COMPARE:
             self._require_comparable()
         elif self.law != "magic-formula" and (self.curvature != "auto" or self.load_sensitivity):
@@ -241,6 +256,7 @@ class CalibrationRequest:
             "prior_from": None if self.prior_from is None else str(self.prior_from),
             "widen": self.widen,
             "carry": self.carry,
+            "sampled": self.engine != "laplace",
             "ensembles": self.ensembles,
             "seed": self.seed,
         }

@@ -11,8 +11,10 @@ from rich.text import Text
 
 from model.bayes.calibration import Calibration
 from model.bayes.checks.check import Outcome
+from model.bayes.convergence import MAX_PARETO_K
 from model.bayes.estimate import BRAKING, Estimate, informed
 from model.bayes.law_scores import LawScores
+from model.bayes.preview import Preview
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.verdict import State
 from model.counted import counted
@@ -45,6 +47,38 @@ def print_data(console: Console, data: RigData) -> None:
     ]
     for line in lines:
         console.print(plain(line))
+
+
+def print_preview(console: Console, found: Preview) -> None:
+    """Print the parameters of the first answer, which no check has seen, before sampling.
+
+    Args:
+        console: Console to print to.
+        found: The first answer.
+    """
+    if not found.reliable:
+        console.print(
+            plain(
+                "first answer: none, the posterior is far from its Laplace approximation (Pareto k "
+                f"{found.pareto_k:.2f}, below {MAX_PARETO_K:g} needed); sampling decides"
+            )
+        )
+        return
+    console.print(
+        plain(
+            f"first answer for '{found.law}', not checked yet, by "
+            f"{found.effective_size:.0f} effective draws of the Laplace approximation (Pareto k "
+            f"{found.pareto_k:.2f}); sampling goes on to confirm it:"
+        )
+    )
+    for e in found.estimates:
+        unit = _unit(e)
+        console.print(
+            plain(
+                f"  {e.parameter.name} {e.parameter.symbol} = {e.median:.4g}"
+                f"{'' if unit == '-' else f' {unit}'}, 90 % interval {_interval(e)}"
+            )
+        )
 
 
 def print_calibration(console: Console, calibration: Calibration, out: Path) -> None:
@@ -266,7 +300,8 @@ def _print_quality(console: Console, calibration: Calibration) -> None:
             f"Cross-validation: R² {calibration.r_squared:.4f} of samples "
             f"({calibration.fit.cross_validation.scheme})"
         )
-    lines.append(f"Sampling took {calibration.seconds:.0f} s.")
+    what = "Weighting" if calibration.agreement is None else "Sampling"
+    lines.append(f"{what} took {calibration.seconds:.0f} s.")
     for line in lines:
         console.print(plain(line))
 

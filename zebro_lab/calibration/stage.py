@@ -2,6 +2,7 @@
 """Stage of `calibrate-slip`: read rig data, sample the posterior, write the calibration folder."""
 
 import time
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from model.bayes.calibrate import FitStopped, SamplerSettings
 from model.bayes.calibrate import calibrate as fit_slip_law
 from model.bayes.calibration import Calibration
 from model.bayes.fit import scaled_load_cell
+from model.bayes.preview import Preview
 from model.bayes.sampler import Chains
 from model.progress import Watcher
 from zebro_lab.calibration.candidates import candidates
@@ -61,7 +63,10 @@ def read(request: CalibrationRequest, watcher: Watcher) -> RigData:
 
 
 def calibrate(
-    request: CalibrationRequest, watcher: Watcher, data: RigData | None = None
+    request: CalibrationRequest,
+    watcher: Watcher,
+    data: RigData | None = None,
+    first: Callable[[Preview], object] = lambda _: None,
 ) -> tuple[Calibration, RigData]:
     """Fit a slip law to rig data; write the calibration folder, with a checkpoint if not converged.
 
@@ -69,6 +74,7 @@ def calibrate(
         request: Options: data, settings and output folder.
         watcher: Receives progress and may request a stop.
         data: What `read` returned for the same request; None to read it here.
+        first: Called with the first answer, before sampling.
 
     Returns:
         The finished fit and the rig data that were fitted.
@@ -100,6 +106,7 @@ def calibrate(
             stated=stated.priors,
             scored=request.law == COMPARE,
             noise=request.noise,
+            first=first,
         )
         watcher.step("drawing", None)
         _write(request, calibration, inputs, stated)
@@ -109,7 +116,7 @@ def calibrate(
         if checkpoint.exists or request.resume:
             raise Stopped(request.out / CHECKPOINT) from stopped
         raise
-    if calibration.convergence.converged:
+    if calibration.convergence.converged or chains is None:
         (request.out / CHECKPOINT).unlink(missing_ok=True)
     else:
         checkpoint.save(chains)
@@ -158,6 +165,7 @@ def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
         block_length=stated.block_length,
         threads=request.threads,
         seed=request.seed,
+        sampled=request.engine != "laplace",
     )
 
 

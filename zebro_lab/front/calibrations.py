@@ -16,6 +16,7 @@ from zebro_lab.calibration import stage as calibration_stage
 from zebro_lab.calibration.request import (
     CalibrationRequest,
     DefinitionName,
+    EngineName,
     LawName,
     NoiseName,
     SidesName,
@@ -101,6 +102,7 @@ def calibrate(
     prior: Sequence[str] = (),
     prior_from: PathLike | None = None,
     widen: float = 1.0,
+    engine: EngineName = "auto",
     ensembles: int = 4,
     max_steps: int = 30_000,
     seed: int = 1,
@@ -122,6 +124,8 @@ def calibrate(
         prior: What is known of parameters beforehand, such as "friction = 0.40 ± 0.05".
         prior_from: Calibration whose posterior is the prior; its law is fitted.
         widen: Factor on the standard deviations of that prior.
+        engine: "auto" or "emcee" to sample the posterior; "laplace" for weighted draws of the
+            Laplace approximation in seconds, which nothing confirms.
         ensembles: Number of independent ensembles of walkers.
         max_steps: Largest number of sampler moves; a fit that has not converged ends then.
         seed: Seed of all random numbers.
@@ -145,6 +149,7 @@ def calibrate(
             prior=tuple(prior),
             prior_from=optional(prior_from),
             widen=widen,
+            engine=engine,
             ensembles=ensembles,
             max_steps=max_steps,
             seed=seed,

@@ -20,6 +20,8 @@ calibrate-slip datasets/rig-sim
 
 calibrate-slip data/ --out calibration --resume
 
+calibrate-slip data/ --engine laplace --out first-look
+
 calibrate-slip bench.csv --columns bench-columns.toml --load-sensitivity
 
 calibrate-slip data/ --prior "friction = 0.40 ± 0.05"

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Checks of the computation: convergence of the sampler, and agreement of two samplers."""
 
-from model.bayes.advice import SampleAgain, SampleLonger
-from model.bayes.checks.check import Check, decided, not_testable
-from model.bayes.convergence import Convergence
-from model.bayes.estimate import MAX_PARETO_K, Agreement
+from model.bayes.advice import SampleAgain, SampleLonger, SamplePosterior
+from model.bayes.checks.check import Check, Outcome, decided, not_testable
+from model.bayes.convergence import MAX_PARETO_K, Convergence
+from model.bayes.estimate import Agreement
 
 ENGINES = "two computations of the posterior agree"
 MAX_MEAN = 0.1  # difference of means, in standard deviations
@@ -15,21 +15,35 @@ MOST_ERROR = 3.0  # times the limits: with more the comparison says nothing
 
 def convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
     """Return one failed check for each unmet criterion, or one passed check."""
-    advice = SampleLonger("sample longer", 2 * convergence.moves)
+    advice = (
+        SampleLonger("sample longer", 2 * convergence.moves)
+        if convergence.pareto_k is None
+        else SamplePosterior("the weighted draws do not suffice")
+    )
     failures = convergence.failures()
     if failures:
         return tuple(decided("sampler", False, failure, advice) for failure in failures)
     return (decided("sampler", True, convergence.summary(), advice),)
 
 
-def engines(found: Agreement) -> Check:
+def engines(found: Agreement | None) -> Check:
     """Check that sampler and importance sampling give the same means and spreads.
 
     They may differ by `MAX_MEAN` standard deviations and `MAX_SPREAD`, or by `ERRORS` Monte Carlo
     errors of the difference where that is more. Not testable where the importance weights are not
-    reliable, or too few draws count for more than `MOST_ERROR` times the limits to show.
+    reliable, or too few draws count for more than `MOST_ERROR` times the limits to show, or the
+    posterior was not sampled (None).
     """
     advice = SampleAgain("two computations of the posterior differ")
+    if found is None:
+        return Check(
+            ENGINES,
+            Outcome.NOT_TESTABLE,
+            "not made: the posterior was not sampled, its draws are weighted ones of an "
+            "approximation",
+            SamplePosterior("the weighted draws were not confirmed"),
+            "second computation (posterior not sampled)",
+        )
     if not found.comparable:
         return not_testable(
             ENGINES,

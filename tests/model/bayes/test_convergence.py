@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from model.bayes.convergence import BURN_IN, assess
+from model.bayes.convergence import BURN_IN, assess, assess_weighted
 from model.bayes.sampler import Chains
 
 
@@ -130,3 +130,33 @@ def test_a_diagnostic_that_cannot_be_computed_is_not_met(name):
     failures = replace(found, **{name: unknown}).failures()
     assert len(failures) == 1
     assert " is nan, " in failures[0]
+
+
+def weighted(slope=0.0, *, n=40_000, pareto_k=0.1):
+    """Assess standard normal draws in two coordinates whose log weights rise with the first."""
+    z = np.random.default_rng(8).standard_normal((n, 2))
+    weights = np.exp(slope * z[:, 0])
+    weights /= weights.sum()
+    part = np.random.default_rng(9).choice(n, size=(4, 1000), p=weights)
+    return assess_weighted(z[part], z, weights, pareto_k)
+
+
+def test_equal_weights_are_worth_all_draws():
+    found = weighted()
+    np.testing.assert_allclose([found.ess_bulk, found.ess_tail], 40_000, rtol=1e-9)
+    assert found.converged
+    assert "Pareto k of the weights 0.10" in found.summary()
+
+
+def test_unequal_weights_are_worth_what_the_variance_of_a_weighted_mean_says():
+    # Of weights exp(s x) of a standard normal x, E w² (h - E h)² is exp(s²) E_2s (h - s)², with
+    # mean 2s: 1 + s² times as much for x itself, once as much for a coordinate beside it.
+    found = weighted(0.4)
+    expected = 40_000 * np.exp(-(0.4**2)) / np.array([1 + 0.4**2, 1.0])
+    np.testing.assert_allclose(found.ess_bulk, expected, rtol=0.05)
+    assert (found.ess_tail < 40_000).all()
+
+
+def test_weights_with_a_heavy_tail_are_not_converged():
+    (text,) = weighted(pareto_k=0.7).failures()
+    assert text == "tail index of the weights (Pareto k) is 0.70, below 0.7 needed"

@@ -15,7 +15,7 @@ from model.bayes.cross_validation import (
     measured_force,
     r_squared,
 )
-from model.bayes.laplace import find_mode
+from model.bayes.laplace import Laplace, find_mode
 from model.bayes.likelihood import NUISANCE, predict_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula, SlipDefinition
@@ -49,15 +49,15 @@ def posterior(samples):
 
 
 @pytest.fixture(scope="module")
-def mode(posterior):
+def laplace(posterior):
     known = dict(zip(("slip_stiffness", "shape", "friction"), LAW_VALUES, strict=True))
     start = posterior.coordinates({**known, "noise_floor": 0.03})
-    return find_mode(posterior.log_density, start[None]).mode
+    return find_mode(posterior.log_density, start[None])
 
 
 @pytest.fixture(scope="module")
-def validation(posterior, mode):
-    return cross_validate(posterior, mode)
+def validation(posterior, laplace):
+    return cross_validate(posterior, laplace)
 
 
 # --- R²
@@ -136,12 +136,12 @@ def test_each_of_few_runs_is_left_out_once_and_alone(validation, posterior):
     assert validation.scheme == "leave one run out, 6 runs"
 
 
-def test_a_fit_never_sees_the_run_it_leaves_out(validation, posterior, mode):
+def test_a_fit_never_sees_the_run_it_leaves_out(validation, posterior, laplace):
     spoilt_run = 3
     rows = posterior.blocks.run == spoilt_run
     force = posterior.blocks.traction_force + np.where(rows, 3.0, 0.0)
     spoilt = replace(posterior, blocks=replace(posterior.blocks, traction_force=force))
-    found = cross_validate(spoilt, mode)
+    found = cross_validate(spoilt, laplace)
     own = validation.fold[spoilt_run]
     np.testing.assert_array_equal(found.values[own], validation.values[own])
     others = np.delete(np.arange(len(found.values)), own)
@@ -184,14 +184,14 @@ def test_left_out_runs_of_the_right_law_are_predicted_well(validation, posterior
 
 
 def test_many_runs_are_left_out_in_interleaved_groups(monkeypatch):
-    def stay(log_density, starts):
+    def stay(log_density, starts, covariance):
         return starts[0]
 
     monkeypatch.setattr(cross_validation, "climb", stay)
     plan = replace(PLAN, slips=tuple(np.linspace(0, 0.5, 12)))
     posterior = posterior_of(block_means(simulated(plan=plan), 20))
     mode = posterior.coordinates({"noise_floor": 0.05})
-    found = cross_validate(posterior, mode)
+    found = cross_validate(posterior, Laplace(mode, np.eye(len(mode)), 0.0))
     np.testing.assert_array_equal(found.fold, np.arange(24) % 10)
     assert found.scheme == "leave out 24 runs in 10 interleaved groups"
     np.testing.assert_array_equal(found.values, np.repeat(posterior.values(mode[None]), 10, axis=0))
@@ -200,8 +200,8 @@ def test_many_runs_are_left_out_in_interleaved_groups(monkeypatch):
     )
 
 
-def test_folds_fitted_at_once_or_in_turn_are_the_same(posterior, mode, validation):
-    in_turn = cross_validate(posterior, mode, threads=1)
+def test_folds_fitted_at_once_or_in_turn_are_the_same(posterior, laplace, validation):
+    in_turn = cross_validate(posterior, laplace, threads=1)
     np.testing.assert_array_equal(in_turn.values, validation.values)
     np.testing.assert_array_equal(in_turn.log_density, validation.log_density)
 

@@ -145,7 +145,7 @@ def test_contraction_is_0_where_the_posterior_is_the_prior_and_1_where_it_is_a_p
 
 
 def weighted(z: np.ndarray, pareto_k: float = 0.3) -> WeightedDraws:
-    return WeightedDraws(z, np.full(len(z), 1 / len(z)), pareto_k)
+    return WeightedDraws(z, np.full(len(z), 1 / len(z)), pareto_k, np.zeros(len(z)))
 
 
 def test_engines_with_the_same_draws_agree_exactly():

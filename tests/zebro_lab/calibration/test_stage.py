@@ -279,6 +279,20 @@ def test_curve_without_a_peak_is_written_with_its_peak_at_infinity(
     assert read_slip(tmp_path).law == calibration.posterior.law
 
 
+def test_weighted_draws_alone_make_a_calibration_that_says_so(request_for, tmp_path, no_pictures):
+    out, answers = tmp_path / "calibration", []
+    found, _ = calibrate(request_for(out, engine="laplace"), Watcher(), first=answers.append)
+    (first,) = answers
+    assert first.reliable
+    assert found.convergence.converged
+    assert "second computation (posterior not sampled)" in found.verdict.headline()
+    assert not found.verdict.trustworthy
+    assert not (out / "checkpoint.npz").exists()
+    for early, late in zip(first.estimates, found.parameters, strict=False):
+        assert early.median == pytest.approx(late.median, abs=0.15 * late.sd)
+    assert read_slip(out).covariance.shape == (4, 4)
+
+
 def test_curvature_auto_compares_laws_on_left_out_runs(request_for, tmp_path, no_pictures):
     asked = request_for(tmp_path, curvature="auto", max_steps=1)
     calibration, _ = calibrate(asked, Watcher())
@@ -296,6 +310,7 @@ def test_curvature_auto_compares_laws_on_left_out_runs(request_for, tmp_path, no
         ({"curvature": "1.5"}, "expected auto, peak, constant or a number below 1"),
         ({"law": "brush", "curvature": "peak"}, "belong to the Magic Formula"),
         ({"law": "brush", "curvature": "auto", "load_sensitivity": True}, "belong to the Magic"),
+        ({"engine": "laplace", "resume": True}, "leave out --engine laplace"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(request_for, tmp_path, changes, problem):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.advice import SampleAgain, SampleLonger
+from model.bayes.advice import SampleAgain, SampleLonger, SamplePosterior
 from model.bayes.checks.check import Outcome
 from model.bayes.checks.sampling import convergence_checks, engines
 from support.judged_fits import AGREED, CONVERGED
@@ -41,3 +41,11 @@ def test_every_unmet_rule_of_convergence_is_a_failed_check():
     assert found[0].advice == SampleLonger(
         "sample longer", 2 * replace(CONVERGED, length=100).moves
     )
+
+
+def test_weighted_draws_that_nothing_confirms_are_untested_and_asked_to_be_sampled():
+    check = engines(None)
+    assert check.outcome is Outcome.NOT_TESTABLE
+    assert check.untested == "second computation (posterior not sampled)"
+    (bad,) = convergence_checks(replace(CONVERGED, pareto_k=0.9))
+    assert {type(check.advice), type(bad.advice)} == {SamplePosterior}

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Coverage of fits of simulated sweeps whose radii are wrong and whose discs resist rolling.
 
-python -m benchmarks.accuracy.rig_errors [SEEDS] [--one-sided]
+python -m benchmarks.accuracy.rig_errors [SEEDS] [--one-sided] [--everything]
 
 Each seed is a rig of its own: load cell, radii and rolling resistance are drawn from the priors.
 Slips go from -0.5 to 0.5, or with --one-sided from 0 to 1 as in the bundled sweep. Each sweep is
 fitted, by importance weighted draws of the Laplace approximation, with the two terms and without.
+With --everything the rig has more errors, which no term of the fit stands for: both discs run out
+of true by 0.05 mm, forces are read 3 ms late or early (standard deviation), speeds are read with
+an error that makes 0.01 of slip, and slip itself wanders by 0.01 within 50 ms.
 Prints for each parameter how many 90 % intervals hold the truth, with the exact binomial 99 %
 interval of that count, the mean error in posterior standard deviations and the interval's half
 width.
@@ -29,13 +32,23 @@ from model.bayes.rig_errors import (
     radius_ratio_sd,
 )
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.imperfections import BIAS_SD, CROSSTALK_SD, GAIN_SD, draw_imperfections
+from rig.slip_rig.imperfections import (
+    BIAS_SD,
+    CROSSTALK_SD,
+    GAIN_SD,
+    RigImperfections,
+    draw_imperfections,
+)
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 CELL = LoadCell(zero_stability=0.1, gain_sd=GAIN_SD, bias_sd=BIAS_SD, crosstalk_sd=CROSSTALK_SD)
 LAW_NAMES = tuple(parameter.name for parameter in THESIS_LAW.parameters)
 TERMS = ("radius_error", "rolling_resistance")
 SLIPS = {True: np.linspace(0.0, 1.0, 62), False: np.linspace(-0.5, 0.5, 62)}
+RUN_OUT = 5e-5  # of both discs [m]
+DELAY_SD = 0.003  # of the forces [s]
+SLIP_NOISE = 0.01  # of the measured slip, and wander of the true one [-]
+WANDER_TIME = 0.05  # [s]
 N_DRAWS = 2000
 RESAMPLED = 8000
 
@@ -55,12 +68,27 @@ class Intervals:
     half: dict[str, float]
 
 
-def fit_seed(seed: int, *, one_sided: bool, duration: float = 1.0) -> tuple[Intervals, Intervals]:
+def with_everything(
+    rig: RigImperfections, plan: SweepPlan, rng: np.random.Generator
+) -> RigImperfections:
+    """Add run-out, a delay, noise of the speeds and wander of slip to a rig."""
+    omega_ground = plan.speed_leg / plan.radius_ground
+    noise = SLIP_NOISE / np.hypot(1 / plan.omega_leg, 1 / omega_ground)
+    return replace(
+        rig, run_out_leg=RUN_OUT, run_out_ground=RUN_OUT, delay=rng.normal(0.0, DELAY_SD),
+        speed_noise=float(noise), slip_wander_sd=SLIP_NOISE, slip_wander_time=WANDER_TIME,
+    )  # fmt: skip
+
+
+def fit_seed(
+    seed: int, *, one_sided: bool, everything: bool = False, duration: float = 1.0
+) -> tuple[Intervals, Intervals]:
     """Simulate one rig's sweep; return the intervals of the fit with the terms, and without.
 
     Args:
         seed: Seed of the rig and of its sweep.
         one_sided: Whether slips go from 0 to 1 instead of -0.5 to 0.5.
+        everything: Whether the rig has errors that no term stands for, too.
         duration: Time at each set-point [s].
     """
     plan = SweepPlan(slips=tuple(SLIPS[one_sided].tolist()), duration=duration)
@@ -69,6 +97,8 @@ def fit_seed(seed: int, *, one_sided: bool, duration: float = 1.0) -> tuple[Inte
         radius_ratio_sd(plan.radius_leg, plan.radius_ground, RADIUS_TOLERANCE), ROLLING_RESISTANCE
     )
     rig = draw_imperfections(rng, errors)
+    if everything:
+        rig = with_everything(rig, plan, rng)
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
     fit = prepare_fit(
         sweep.samples, THESIS_LAW, load_cell=CELL, rig_errors=errors, rng=rng, validate=False
@@ -115,10 +145,12 @@ def table(fits: list[Intervals]) -> list[str]:
     return rows
 
 
-def main(seeds: int, *, one_sided: bool) -> None:
+def main(seeds: int, *, one_sided: bool, everything: bool = False) -> None:
     """Print both tables."""
     with ProcessPoolExecutor(2) as pool:
-        pairs = list(pool.map(partial(fit_seed, one_sided=one_sided), range(seeds)))
+        pairs = list(
+            pool.map(partial(fit_seed, one_sided=one_sided, everything=everything), range(seeds))
+        )
     low, high = (int(x) for x in binom.interval(0.99, seeds, 0.9))
     print(f"exact binomial 99 % interval of a count: {low} to {high} of {seeds}")
     for title, index in (("with both terms", 0), ("without them", 1)):
@@ -129,4 +161,8 @@ def main(seeds: int, *, one_sided: bool) -> None:
 
 if __name__ == "__main__":
     given = [word for word in sys.argv[1:] if not word.startswith("--")]
-    main(int(given[0]) if given else 200, one_sided="--one-sided" in sys.argv)
+    main(
+        int(given[0]) if given else 200,
+        one_sided="--one-sided" in sys.argv,
+        everything="--everything" in sys.argv,
+    )

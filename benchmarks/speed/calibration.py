@@ -24,7 +24,7 @@ from model.bayes import sampler
 from model.bayes.convergence import assess
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.laplace import importance_draws
-from model.bayes.likelihood import log_likelihood, predict_blocks
+from model.bayes.likelihood import log_likelihood, predict_blocks, slip_errors
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
@@ -70,6 +70,7 @@ def dense_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
     blocks = posterior.blocks
     predicted = predict_blocks(blocks, posterior.law, values[None])
     rho, tau = values[-2:]
+    own, shared = slip_errors(blocks, values)
     total = 0.0
     starts = blocks.run_starts()
     for i, (first, end) in enumerate(pairwise(starts)):
@@ -78,8 +79,8 @@ def dense_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
         lag = np.abs(np.subtract.outer(np.arange(len(noise)), np.arange(len(noise))))
         covariance = (
             np.outer(noise, noise) * rho**lag
-            + np.diag(slope**2 * blocks.slip_error[part])
-            + np.outer(slope, slope) * blocks.run_slip_error[i]
+            + np.diag(slope**2 * own[part])
+            + np.outer(slope, slope) * shared[i]
             + tau**2
         )
         residual = blocks.traction_force[part] - predicted.force[0, part]
@@ -90,7 +91,7 @@ def dense_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
 def independent_log_likelihood(samples: SlipSamples, values: Array) -> float:
     """Compute the likelihood that takes every sample for independent, as a first script would."""
     force = THESIS_LAW.force(samples.slip, samples.normal_force, values[:4])
-    noise = values[8] + values[9] * np.abs(force)
+    noise = values[-4] + values[-3] * np.abs(force)
     return float(norm.logpdf(samples.traction_force, force, noise).sum())
 
 

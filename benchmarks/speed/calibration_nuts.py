@@ -77,7 +77,7 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
         return (B * x_m - jnp.tan(jnp.pi / (2 * C))) / (B * x_m - jnp.arctan(B * x_m))
 
     def log_density(z: Any) -> Any:
-        K, C, mu, x, g_t, g_n, b_n, c, epsilon, c_r, s_0, s_1, rho, tau = (
+        K, C, mu, x, g_t, g_n, b_n, c, epsilon, c_r, q, scatter, s_0, s_1, rho, tau = (
             jax_value(prior, z[i]) for i, prior in enumerate(priors)
         )
         B = K / (C * mu)
@@ -98,8 +98,8 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
         noise = s_0 + s_1 * jnp.abs(mean)
         dense = (
             noise[:, :, None] * noise[:, None, :] * rho**lag
-            + (slope**2 * slip_error)[:, :, None] * jnp.eye(slip.shape[1])
-            + slope[:, :, None] * slope[:, None, :] * run_slip_error
+            + (slope**2 * (q**2 * slip_error + scatter**2))[:, :, None] * jnp.eye(slip.shape[1])
+            + slope[:, :, None] * slope[:, None, :] * q**2 * run_slip_error
             + tau**2
         )
         factor = jnp.linalg.cholesky(dense)

@@ -12,12 +12,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import chdtri
+from scipy.special import chdtri, polygamma
 
 from model.bayes.block_edges import BY_CHANCE, block_starts
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
+
+MOST_ERROR = 0.03  # relative error of the weight of a block's own slip; else the run's mean is used
+NOISE_ALONE = 0.01  # probability
+ALIKE = 2.5  # of runs alike, scatter over sampling variance: wander links blocks, and runs are few
+MOST_FREEDOM = 1e6  # of a variance that many runs share
 
 
 @dataclass(frozen=True)
@@ -234,19 +239,57 @@ def _calibrate_slip(
     block, variance :math:`\lambda\sigma^2/n`, and one the run shares,
     :math:`(1-\lambda)\sigma^2/N`, so that the variance of the run's mean is :math:`\sigma^2/N`. A
     likelihood that ignored the error of the measured slip, or gave the true slip a flat prior,
-    would flatten the curve. Returns the slips (n,), their own (n,) and shared (n_runs,) variances.
+    would flatten the curve.
+
+    A spread that noise alone could make counts as none. A wrong :math:`\lambda` would bias the
+    slope by as much: where its own relative error is above `MOST_ERROR`, every block has the run's
+    mean, with the errors :math:`\omega^2` and :math:`\sigma^2/N`. Returns the slips (n,), their own
+    (n,) and shared (n_runs,) variances.
     """
     n_blocks, n_samples = np.bincount(run), np.bincount(run, count)
     middle = np.bincount(run, slip * count) / n_samples
     error = noise * n_blocks / n_samples
     spare = np.maximum(n_blocks - 1, 1)
     total = np.bincount(run, (slip - middle[run]) ** 2) / spare
-    typical = _median_variance(total[n_blocks > 1], spare[n_blocks > 1])
-    spread = _shrink(total, 2 * typical**2 / spare, typical)
-    true_spread = np.maximum(np.where(n_blocks > 1, spread, 0.0) - error, 0.0)
-    weight = true_spread / np.maximum(true_spread + error, 1e-300)
-    calibrated = middle[run] + weight[run] * (slip - middle[run])
-    return calibrated, (weight * error)[run], (1 - weight) * noise / n_samples
+    several = n_blocks > 1
+    spread, worth = np.zeros(len(total)), np.ones(len(total))
+    spread[several], worth[several] = _beyond_noise(total[several], spare[several], error[several])
+    weight = spread / np.maximum(spread + error, 1e-300)
+    known = (1 - weight) * np.sqrt(2 / worth) <= MOST_ERROR * weight
+    calibrated = middle[run] + np.where(known, weight, 0.0)[run] * (slip - middle[run])
+    own, shared = np.where(known, weight * error, spread), np.where(known, 1 - weight, 1.0)
+    return calibrated, own[run], shared * noise / n_samples
+
+
+def _beyond_noise(total: Array, freedom: Array, error: Array) -> tuple[Array, Array]:
+    """Estimate the variance of true slip between each run's blocks.
+
+    Logarithms of the runs' variances are shrunk towards their typical value in proportion to their
+    sampling error, `ALIKE` times the trigamma function of half the degrees of freedom. A variance
+    that noise alone exceeds with the probability `NOISE_ALONE` counts as noise, by a chi-square of
+    as many degrees of freedom as the shrunk variance is worth.
+
+    Args:
+        total: Variance of measured slip between blocks of each run, shape (n_runs,) [-].
+        freedom: Its degrees of freedom, shape (n_runs,).
+        error: The part of it that noise makes, shape (n_runs,) [-].
+
+    Returns:
+        The variance of true slip [-], and the degrees of freedom that the shrunk variance of
+        measured slip is worth, (n_runs,) each.
+    """
+    if not total.any():
+        return np.zeros_like(total), np.ones_like(total)
+    typical = _median_variance(total, freedom)
+    own = np.maximum(total, 1e-300)
+    away = np.log(own / max(typical, 1e-300))
+    scatter = (1.4826 * np.median(np.abs(away))) ** 2
+    by_chance = ALIKE * polygamma(1, freedom / 2)
+    share = np.maximum(0.0, 1.0 - by_chance / max(scatter, 1e-300))
+    spread = own * np.exp((share - 1) * away)
+    worth = np.minimum(freedom / np.maximum(share, 1e-6), MOST_FREEDOM)
+    by_noise = error * chdtri(worth, NOISE_ALONE) / worth
+    return np.where(spread > by_noise, np.maximum(spread - error, 0.0), 0.0), worth
 
 
 def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array) -> Array:

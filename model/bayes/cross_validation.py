@@ -27,7 +27,7 @@ class CrossValidation:
     Attributes:
         fold: Index of the fold in which each run was left out, shape (n_runs,).
         values: Law and measurement parameters at the posterior mode without each fold's runs,
-            shape (n_folds, k + 10).
+            shape (n_folds, k + 12).
         log_density: Log density of each run's blocks at the mode without the run, (n_runs,) [-].
     """
 
@@ -73,7 +73,7 @@ def measured_force(
     Args:
         law: The slip law, of k parameters.
         values: Law and measurement parameters, of which gains, load bias, crosstalk, the error of
-            the radii and rolling resistance are used, shape (k + 10,).
+            the radii and rolling resistance are used, shape (k + 12,).
         slip: Slip ratio, shape (n,) [-].
         normal_force: Measured normal force, shape (n,) [N].
         definition: Definition of the slip ratios.

@@ -274,16 +274,20 @@ def _implausible(load: float, traction: float) -> str:
 
 
 def not_identified(blocks: SlipBlocks) -> dict[str, float]:
-    """Return fixed values by name: run offsets and noise correlation zero if no run has two blocks.
+    """Return fixed values by name, of parameters that these blocks have nothing to say of.
 
-    Empty otherwise: all parameters are then sampled.
+    Run offsets and noise correlation are zero if no run has two blocks, and the scale of slip
+    errors is 1 if no slip has any.
 
     Args:
         blocks: The block means.
     """
-    if len(blocks) > blocks.n_runs:
-        return {}
-    return {"noise_correlation": 0.0, "offset_spread": 0.0}
+    single = {"noise_correlation": 0.0, "offset_spread": 0.0}
+    erring = bool(blocks.slip_error.any() or blocks.run_slip_error.any())
+    return {
+        **(single if len(blocks) == blocks.n_runs else {}),
+        **({} if erring else {"slip_error_scale": 1.0}),
+    }
 
 
 def starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:

@@ -23,7 +23,7 @@ def gaussian_equivalent(posterior: SlipPosterior, values: Array) -> SlipPosterio
 
     Args:
         posterior: The posterior.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 10).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
 
     Raises:
         LinAlgError: The covariance of a run's blocks is singular.

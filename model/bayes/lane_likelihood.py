@@ -20,8 +20,8 @@ from model.slip.lane_force import ROWS, LaneLaw, law_at_load, side_at_slip
 from model.slip.law import Array
 
 (
-    GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, FLOOR, GROWTH, RHO, TAU,
-) = range(ROWS, ROWS + 10)  # fmt: skip
+    GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, SCALE, SCATTER, FLOOR, GROWTH, RHO, TAU,
+) = range(ROWS, ROWS + 12)  # fmt: skip
 (
     LOAD, CENTRE, ABOVE, BELOW, LIGHT_LOAD, LIGHT, HEAVY_LOAD, HEAVY, HALF_WIDTH, HEAVY_SHARE,
     LOAD_STEP, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
@@ -57,7 +57,7 @@ def lane_log_likelihood(blocks: SlipBlocks, law: LaneLaw, measurement: Array) ->
     Args:
         blocks: The block means.
         law: Coefficients of the law for w parameter vectors.
-        measurement: The 10 parameters of the measurement, shape (w, 10).
+        measurement: The 12 parameters of the measurement, shape (w, 12).
 
     Returns:
         Log density of each run, shape (w, n_runs).
@@ -85,7 +85,8 @@ def _fill(kind, sensitive, reference, sided, rows, table, starts, run_slip_error
     for group in range(len(rows)):
         A, result = rows[group], found[group]
         rho, nothing = row(A, RHO), row(zero, 0)
-        forget = rho * rho
+        forget, q = rho * rho, row(A, SCALE) * row(A, SCALE)
+        own = row(A, SCATTER) * row(A, SCATTER)
         for i in range(len(starts) - 1):
             m_r = m_1 = m_g = rr = r1 = rg = s11 = s1g = sgg = log_determinant = nothing
             variance = nothing + 1.0
@@ -93,7 +94,7 @@ def _fill(kind, sensitive, reference, sided, rows, table, starts, run_slip_error
                 block = table[j]
                 force, g, s = _predicted(kind, sensitive, reference, sided, A, block)
                 sv = s * variance
-                total = _positive(s * sv + g * g * block[OWN_ERROR])
+                total = _positive(s * sv + g * g * (q * block[OWN_ERROR] + own))
                 weight = 1.0 / total
                 e_r, e_1, e_g = block[FORCE] - force - s * m_r, 1.0 - s * m_1, g - s * m_g
                 gain = sv * weight
@@ -105,7 +106,7 @@ def _fill(kind, sensitive, reference, sided, rows, table, starts, run_slip_error
                 m_1 = rho * (m_1 + gain * e_1)
                 m_g = rho * (m_g + gain * e_g)
                 variance = forget * variance * (1.0 - gain * s) + (1.0 - forget)
-            d_1, d_g = row(A, TAU) * row(A, TAU), run_slip_error[i]
+            d_1, d_g = row(A, TAU) * row(A, TAU), q * run_slip_error[i]
             a, b, c, d = 1.0 + d_1 * s11, d_1 * s1g, d_g * s1g, 1.0 + d_g * sgg
             determinant = _positive(a * d - b * c)
             x_1 = (d * d_1 * r1 - b * d_g * rg) / determinant

@@ -13,6 +13,10 @@ rolling resistance of :math:`c_r` times the load, which acts against the driving
 the slip (Pacejka's vertical shift); a run offset
 :math:`b_i \sim N(0, \tau^2)`, noise e of marginal standard deviation :math:`s_0 + s_1 |f|` that is
 AR(1) after standardising, and the slip errors of `SlipBlocks` entering through the law's slope.
+Their size is an estimate itself, and the speeds do not show all of them (discs run out of true):
+the variance of a block's slip error is :math:`q^2` times the estimate plus
+:math:`\sigma_\kappa^2`. If both were taken as known, the scatter of forces where the curve is steep
+would determine its slope, and bias it.
 Offset, shared slip error and noise are integrated out exactly by a Kalman filter of each run.
 """
 
@@ -41,6 +45,10 @@ NUISANCE = (
               "relative error of the ratio of radii, ground disc over leg"),
     Parameter("rolling_resistance", "c_r", "dimensionless", -np.inf, np.inf,
               "force against driving at any slip, for each newton of load"),
+    Parameter("slip_error_scale", "q", "dimensionless", 0.0, np.inf,
+              "true over estimated size of the errors of measured slip"),
+    Parameter("slip_scatter", "sigma_kappa", "dimensionless", 0.0, np.inf,
+              "standard deviation of a block's slip that the speeds do not show"),
     Parameter("noise_floor", "s_0", "newton", 0.0, np.inf,
               "noise of a block mean at zero force"),
     Parameter("noise_slope", "s_1", "dimensionless", 0.0, np.inf,
@@ -50,7 +58,7 @@ NUISANCE = (
     Parameter("offset_spread", "tau", "newton", 0.0, np.inf,
               "standard deviation of the force offset between runs"),
 )  # fmt: skip
-"""The 10 parameters of the measurement, in their order behind the law's in parameter vectors."""
+"""The 12 parameters of the measurement, in their order behind the law's in parameter vectors."""
 
 
 @dataclass(frozen=True)
@@ -86,11 +94,12 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
     Args:
         blocks: The block means, n of them.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 10).
+        values: Law and measurement parameters, shape (w, k + 12).
     """
     k = len(law.parameters)
     law_values = values[:, :k].T[:, :, None]
-    g_t, g_n, b_n, c, epsilon, c_r, s_0, s_1 = values[:, k : k + 8].T[:, :, None]
+    g_t, g_n, b_n, c, epsilon, c_r = values[:, k : k + 6].T[:, :, None]
+    s_0, s_1 = values[:, -4:-2].T[:, :, None]
     rule = load_rule(blocks)
     shift = epsilon * slip_per_radius_error(blocks.slip, blocks.definition)
 
@@ -120,7 +129,7 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 10).
+        values: Law and measurement parameters, shape (w, k + 12).
 
     Returns:
         Log density of each run, shape (w, n_runs).
@@ -130,11 +139,25 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     if known is not None:
         return lane_log_likelihood(blocks, known, values[:, k:])
     predicted = predict_blocks(blocks, law, values)
-    rho, tau = values[:, -2], values[:, -1]
+    scale, scatter, rho, tau = values[:, -6], values[:, -5], values[:, -2], values[:, -1]
     return filter_runs(
         blocks.traction_force - predicted.force, predicted.noise, predicted.slope,
-        blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), rho, tau,
+        blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), scale, scatter, rho, tau,
     )  # fmt: skip
+
+
+def slip_errors(blocks: SlipBlocks, values: Array) -> tuple[Array, Array]:
+    """Compute the variance of each block's own slip error and of that which its run shares [-].
+
+    Args:
+        blocks: The block means, n of them.
+        values: Law and measurement parameters, shape (k + 12,).
+
+    Returns:
+        Variances of blocks, shape (n,), and of runs, shape (n_runs,).
+    """
+    scale, scatter = values[-6:-4]
+    return scale**2 * blocks.slip_error + scatter**2, scale**2 * blocks.run_slip_error
 
 
 def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
@@ -143,7 +166,7 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 10).
+        values: Law and measurement parameters, shape (w, k + 12).
 
     Returns:
         Log likelihood of each parameter vector, shape (w,).
@@ -152,7 +175,9 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
 
 
 @compiled
-def filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho, tau):
+def filter_runs(
+    residual, noise, slope, slip_error, run_slip_error, starts, scale, scatter, rho, tau
+):
     """Compute each run's log density by a Kalman filter, offset and shared slip error integrated.
 
     State: the standardised noise z, AR(1) with unit variance; observation noise: the block's own
@@ -161,11 +186,12 @@ def filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho,
     and determinant of the run's covariance by the Woodbury identity.
 
     `residual`, `noise` and `slope` are (w, n), `slip_error` (n,), `run_slip_error` (n_runs,),
-    `starts` (n_runs + 1,), `rho` and `tau` (w,); the result is (w, n_runs).
+    `starts` (n_runs + 1,), `scale`, `scatter`, `rho` and `tau` (w,); the result is (w, n_runs).
     """
     n_walkers, n_runs = residual.shape[0], len(starts) - 1
     result = np.empty((n_walkers, n_runs))
     for w in range(n_walkers):
+        q, own = scale[w] ** 2, scatter[w] ** 2
         for i in range(n_runs):
             m_r = m_1 = m_g = 0.0
             variance = 1.0
@@ -173,7 +199,7 @@ def filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho,
             log_determinant = 0.0
             for j in range(starts[i], starts[i + 1]):
                 s, g = noise[w, j], slope[w, j]
-                total = s * s * variance + g * g * slip_error[j]
+                total = s * s * variance + g * g * (q * slip_error[j] + own)
                 e_r, e_1, e_g = residual[w, j] - s * m_r, 1.0 - s * m_1, g - s * m_g
                 gain = variance * s / total
                 rr += e_r * e_r / total
@@ -187,7 +213,7 @@ def filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho,
                 m_1 = rho[w] * (m_1 + gain * e_1)
                 m_g = rho[w] * (m_g + gain * e_g)
                 variance = rho[w] ** 2 * variance * (1 - gain * s) + 1 - rho[w] ** 2
-            d_1, d_g = tau[w] ** 2, run_slip_error[i]
+            d_1, d_g = tau[w] ** 2, q * run_slip_error[i]
             a, b = 1 + d_1 * s11, d_1 * s1g
             c, d = d_g * s1g, 1 + d_g * sgg
             determinant = a * d - b * c

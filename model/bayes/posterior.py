@@ -75,6 +75,8 @@ def default_priors(
         "crosstalk": Normal(0.0, load_cell.crosstalk_sd),
         "radius_error": Normal(0.0, rig_errors.radius_ratio),
         "rolling_resistance": Normal(0.0, rig_errors.rolling_resistance),
+        "slip_error_scale": LogNormal(1.0, 0.5),
+        "slip_scatter": HalfNormal(rig_errors.slip_scatter),
         "noise_floor": LogNormal(0.02 * force_scale, 1.5),
         "noise_slope": HalfNormal(0.05),
         "noise_correlation": Uniform(-0.5, 0.99),
@@ -152,7 +154,7 @@ class SlipPosterior:
         return np.quantile(self.blocks.normal_force, [0.0, 0.25, 0.5, 0.75, 1.0])
 
     def values(self, z: Array) -> Array:
-        """Map coordinates z (w, d) to values of all parameters, fixed ones too, (w, k + 10)."""
+        """Map coordinates z (w, d) to values of all parameters, fixed ones too, (w, k + 12)."""
         columns = iter(np.moveaxis(self.own_coordinates(z), -1, 0))
         return np.stack(
             [
@@ -215,7 +217,7 @@ class SlipPosterior:
         return self.run_log_likelihood_of(self.values(z))
 
     def run_log_likelihood_of(self, values: Array) -> Array:
-        """Compute the log likelihood of each run's blocks given values (w, k + 10), (w, n_runs)."""
+        """Compute the log likelihood of each run's blocks given values (w, k + 12), (w, n_runs)."""
         if math.isinf(self.tail):
             return run_log_likelihood(self.blocks, self.law, values)
         predicted = predict_blocks(self.blocks, self.law, values)

@@ -15,7 +15,7 @@ from model.slip.law import Array, SlipLaw
 N_TRIALS = 400  # prior draws that are tried as starts
 N_CLIMBS = 5  # best of them that are optimised
 MAX_BLOCKS = 3000  # largest number of blocks
-MAX_SLIP_SPREAD = 0.3  # of the curve's slip scale within a block: the quadrature is good to 1e-3
+MAX_SLIP_SPREAD = 0.45  # of the slip scale within a block; more, and the quadrature is biased
 MIN_BLOCKS_PER_RUN = 5
 MEMORIES = 2  # correlation times in a block: means over shorter ones are not an AR(1) process
 
@@ -134,7 +134,7 @@ def choose_block_length(
     slope reaches its largest force), and that there are at most 3,000 blocks. The slip sensors'
     white noise is no part of that time: the likelihood has it apart. Two limits override these: a
     run of median length keeps 5 blocks, and the standard deviation of true slip in nine of ten
-    blocks is at most 0.3 slip scales. The length is 1 at least.
+    blocks is at most 0.45 slip scales. The length is 1 at least.
 
     Args:
         samples: The samples.

@@ -9,7 +9,7 @@ from scipy.linalg import solve_triangular, toeplitz
 from scipy.special import fdtrc, fdtri, ndtri
 
 from model.bayes.blocks import SlipBlocks
-from model.bayes.likelihood import PredictedForces, predict_blocks
+from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
 from model.slip.law import Array, SlipLaw
 
 SLIP_BINS = 8
@@ -66,7 +66,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 10).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
 
     Raises:
         LinAlgError: The covariance of a run's blocks is singular.
@@ -112,18 +112,19 @@ def covariance_factors(
         blocks: The block means, n of them.
         slope: Slope of force over slip of each block, shape (n,) [N].
         noise: Standard deviation of the noise of each block, shape (n,) [N].
-        values: Law and measurement parameters, of which the last two are used, the noise's
-            correlation and the offset's standard deviation, shape (k + 8,).
+        values: Law and measurement parameters, of which slip errors, the noise's correlation and
+            the offset's standard deviation are used, shape (k + 12,).
     """
     rho, tau = values[-2:]
+    own, shared = slip_errors(blocks, values)
     starts = blocks.run_starts()
     factors = []
     for index in range(blocks.n_runs):
         part = slice(starts[index], starts[index + 1])
         s, g = noise[part], slope[part]
         covariance = np.outer(s, s) * toeplitz(rho ** np.arange(len(s))) + tau**2
-        covariance += np.outer(g, g) * blocks.run_slip_error[index]
-        covariance += np.diag(g**2 * blocks.slip_error[part])
+        covariance += np.outer(g, g) * shared[index]
+        covariance += np.diag(g**2 * own[part])
         factors.append(np.linalg.cholesky(covariance))
     return factors
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Errors of the rig that a fit estimates: the ratio of the discs' radii and rolling resistance."""
+"""Errors of the rig that a fit estimates: ratio of the radii, rolling resistance, run-out."""
 
 import math
 from dataclasses import dataclass
@@ -10,6 +10,10 @@ UNKNOWN_RATIO = 0.01
 """Standard deviation of the relative error of the ratio of two radii that are not known [-]."""
 ROLLING_RESISTANCE = 0.02
 """Standard deviation of the rolling resistance of rubber on a disc, over the load [-]."""
+RUN_OUT = 5e-5
+"""Amplitude by which the radius of a disc at the contact varies once a turn [m]."""
+UNKNOWN_SCATTER = 0.002
+"""Scale of the slip of a block that the speeds do not show, of discs that are not known [-]."""
 
 
 @dataclass(frozen=True)
@@ -19,10 +23,13 @@ class RigErrors:
     Attributes:
         radius_ratio: Of the relative error of the ratio of the discs' radii [-].
         rolling_resistance: Of the resistance of rolling over the load [-].
+        slip_scatter: Scale of the half-normal prior of the standard deviation of a block's slip
+            that the speeds do not show [-].
     """
 
     radius_ratio: float = UNKNOWN_RATIO
     rolling_resistance: float = ROLLING_RESISTANCE
+    slip_scatter: float = UNKNOWN_SCATTER
 
 
 USUAL = RigErrors()
@@ -41,3 +48,17 @@ def radius_ratio_sd(radius_leg: float, radius_ground: float, tolerance: float) -
     0.00298
     """
     return tolerance * math.hypot(1 / radius_leg, 1 / radius_ground)
+
+
+def run_out_scatter(radius_leg: float, radius_ground: float, run_out: float) -> float:
+    """Compute the standard deviation of slip where the radii of both discs vary as sines [-].
+
+    Args:
+        radius_leg: Radius of the leg disc [m].
+        radius_ground: Radius of the ground disc [m].
+        run_out: Amplitude of each radius over a turn [m].
+
+    >>> round(run_out_scatter(0.035, 0.12, 5e-5), 5)
+    0.00105
+    """
+    return radius_ratio_sd(radius_leg, radius_ground, run_out) / math.sqrt(2)

@@ -40,7 +40,7 @@ def sampled_rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> SampledRise
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 10).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
     """
     levels = load_levels(blocks)
     k = len(law.parameters)

@@ -39,7 +39,7 @@ def student_log_likelihood(
     Args:
         blocks: The block means.
         predicted: Predictions by the w parameter vectors; their noise is the scale of the t.
-        values: Law and measurement parameters, of which the last two are used, shape (w, k + 10).
+        values: Law and measurement parameters, of which the last six are used, shape (w, k + 12).
         tail: Degrees of freedom [-].
 
     Returns:
@@ -56,7 +56,7 @@ def normal_scores(
     Args:
         blocks: The block means, n of them.
         predicted: Predictions by the w parameter vectors.
-        values: Law and measurement parameters, shape (w, k + 10).
+        values: Law and measurement parameters, shape (w, k + 12).
         tail: Degrees of freedom [-].
 
     Returns:
@@ -73,18 +73,21 @@ def _filtered(
     """Return the log density of each run (w, n_runs), and the scaled innovations (w, n)."""
     return filter_student_runs(
         blocks.traction_force - predicted.force, predicted.noise, predicted.slope,
-        blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), values[:, -2],
-        values[:, -1], tail,
+        blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), values[:, -6],
+        values[:, -5], values[:, -2], values[:, -1], tail,
     )  # fmt: skip
 
 
 @compiled
-def filter_student_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho, tau, tail):
+def filter_student_runs(
+    residual, noise, slope, slip_error, run_slip_error, starts, size, scatter, rho, tau, tail
+):
     """Compute each run's log density and scaled innovations by the filter of this module.
 
     `residual`, `noise` and `slope` are (w, n), `slip_error` (n,), `run_slip_error` (n_runs,),
-    `starts` (n_runs + 1,), `rho` and `tau` (w,), `tail` a number; the results are (w, n_runs) and
-    (w, n). State: standardised noise z, offset b and shared slip error e.
+    `starts` (n_runs + 1,), `size` (of slip errors over their estimates), `scatter`, `rho` and `tau`
+    (w,), `tail` a number; the results are (w, n_runs) and (w, n). State: standardised noise z,
+    offset b and shared slip error e.
     """
     n_walkers, n_runs = residual.shape[0], len(starts) - 1
     result = np.empty((n_walkers, n_runs))
@@ -93,16 +96,16 @@ def filter_student_runs(residual, noise, slope, slip_error, run_slip_error, star
         math.lgamma(0.5 * (tail + 1)) - math.lgamma(0.5 * tail) - 0.5 * math.log(tail * math.pi)
     )
     for w in range(n_walkers):
-        r2 = rho[w] ** 2
+        r2, q, own = rho[w] ** 2, size[w] ** 2, scatter[w] ** 2
         for i in range(n_runs):
             z = b = e = 0.0
-            zz, bb, ee = 1.0, tau[w] ** 2, run_slip_error[i]
+            zz, bb, ee = 1.0, tau[w] ** 2, q * run_slip_error[i]
             zb = ze = be = 0.0
             total = 0.0
             for j in range(starts[i], starts[i + 1]):
                 s, g = noise[w, j], slope[w, j]
                 hz, hb, he = s * zz + zb + g * ze, s * zb + bb + g * be, s * ze + be + g * ee
-                scale = s * hz + hb + g * he + g * g * slip_error[j]
+                scale = s * hz + hb + g * he + g * g * (q * slip_error[j] + own)
                 away = residual[w, j] - s * z - b - g * e
                 distance = away * away / scale
                 total += (

@@ -47,7 +47,7 @@ class StudyDesign:
         return tuple(p.name for p in self.posterior(self.blocks).free)
 
     def named(self, values: Array) -> dict[str, float]:
-        """Return values of all parameters, shape (k + 10,), by name."""
+        """Return values of all parameters, shape (k + 12,), by name."""
         names = [p.name for p in self.posterior(self.blocks).parameters]
         return dict(zip(names, map(float, values), strict=True))
 
@@ -56,7 +56,7 @@ class StudyDesign:
         return replace(self, fixed={**self.fixed, **fixed})
 
     def draw(self, rng: np.random.Generator) -> Array:
-        """Draw values of all parameters from the prior, shape (k + 10,).
+        """Draw values of all parameters from the prior, shape (k + 12,).
 
         Draws of which the law makes no valid curve at the loads are drawn again, as the prior
         density is zero there.

@@ -32,23 +32,24 @@ def simulate_blocks(
         \qquad N = (1 + g_n) F_n - b_n + c F ,
 
     averaged over the samples of block j of run i; :math:`\kappa` is the slip of the true radii, at
-    the block's slip plus errors of the variances that the blocks state (one of the block, one that
-    the run shares); :math:`b_i \sim N(0, \tau^2)`, and u is a stationary AR(1) process of unit
-    variance and correlation :math:`\rho`, new in each run.
+    the block's slip plus errors: one of the block and one that the run shares, of q times the
+    standard deviations that the blocks state, and one of the block of :math:`\sigma_\kappa`;
+    :math:`b_i \sim N(0, \tau^2)`, and u is a stationary AR(1) process of unit variance and
+    correlation :math:`\rho`, new in each run.
 
     Args:
         layout: The blocks; their traction is not used.
         law: The slip law, of k parameters.
-        values: Values of the law's and the measurement's parameters, shape (k + 10,).
+        values: Values of the law's and the measurement's parameters, shape (k + 12,).
         rng: Source of randomness.
 
     Returns:
         The blocks with the simulated traction, all else as it was: what an experimenter knows.
     """
     k = len(law.parameters)
-    s_0, s_1, rho, tau = values[k + 6 :]
-    own = rng.normal(0.0, np.sqrt(layout.slip_error))
-    shared = rng.normal(0.0, np.sqrt(layout.run_slip_error))
+    size, scatter, s_0, s_1, rho, tau = values[k + 6 :]
+    own = rng.normal(0.0, np.sqrt(size**2 * layout.slip_error + scatter**2))
+    shared = rng.normal(0.0, size * np.sqrt(layout.run_slip_error))
     expected = _mean_traction(layout, law, values, layout.slip + own + shared[layout.run])
     offset = rng.normal(0.0, tau, layout.n_runs)
     noise = (s_0 + s_1 * np.abs(expected)) * _correlated(layout, rho, rng)
@@ -61,7 +62,7 @@ def _mean_traction(layout: SlipBlocks, law: SlipLaw, values: Array, slip: Array)
     Args:
         layout: The blocks.
         law: The slip law.
-        values: Values of all parameters, shape (k + 10,).
+        values: Values of all parameters, shape (k + 12,).
         slip: True mean slip of each block by the stated radii, shape (n,) [-].
     """
     k = len(law.parameters)

@@ -45,6 +45,10 @@ class RigImperfections:
             true ratio is the stated one times 1 + this [-].
         rolling_resistance: Resistance of rolling over the load, a force against driving at any slip
             while the leg disc turns [-].
+        run_out_leg: Run-out of the leg disc: amplitude by which its radius at the contact varies,
+            once a turn [m].
+        run_out_ground: The same of the ground disc [m].
+        delay: Time by which the readings of both forces are behind those of the speeds [s].
 
     Raises:
         DomainError: A standard deviation, time, height or width is negative or NaN, or an error of
@@ -66,6 +70,9 @@ class RigImperfections:
     bump_width: float = 1.0
     radius_error: float = 0.0
     rolling_resistance: float = 0.0
+    run_out_leg: float = 0.0
+    run_out_ground: float = 0.0
+    delay: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("gain_traction", "gain_normal", "radius_error"):
@@ -77,7 +84,7 @@ class RigImperfections:
 
 
 _SIGNED = {"gain_traction", "gain_normal", "bias_normal", "crosstalk", "radius_error",
-           "rolling_resistance"}  # fmt: skip
+           "rolling_resistance", "delay"}  # fmt: skip
 _NOT_NEGATIVE = tuple(f.name for f in fields(RigImperfections) if f.name not in _SIGNED)
 
 TYPICAL_RIG = RigImperfections(

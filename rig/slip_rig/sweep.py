@@ -147,7 +147,8 @@ def simulate_sweep(
         F_t = (1 + g_t)\,[f(\kappa, F_n) - c_r F_n] + b_{run} + e, \qquad
         F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
 
-    with F_t the measured traction, f the law at the true slip kappa and load F_n, b_run ~
+    with F_t the measured traction, f the law at the true slip kappa and load F_n of `delay` before,
+    b_run ~
     N(0, tau²), and e an AR(1) process, stationary and independent in each run, whose marginal
     standard deviation is s0 + s1 times the size of the first term; g_t, g_n, b_n, c, c_r, tau, s0
     and s1 as in `RigImperfections`.
@@ -166,11 +167,13 @@ def simulate_sweep(
     true_radius = plan.radius_ground * (1 + imperfections.radius_error)
     omega_ground = plan.speed_leg * (1 - slip) / true_radius
     load = _ride_bump(omega_ground, plan, imperfections, rng)
+    slip = _run_out(slip, omega_ground, plan, imperfections, rng)
     offset = rng.normal(0.0, imperfections.offset_sd, plan.n_runs)
     pulled = law.force(slip, load, values) - imperfections.rolling_resistance * load
-    force = (1 + imperfections.gain_traction) * pulled
+    force = _late((1 + imperfections.gain_traction) * pulled, plan, imperfections)
     traction_force = force + offset[:, None] + _force_noise(force, plan, imperfections, rng)
-    normal_force = measured_load(load, traction_force, imperfections=imperfections)
+    pressed = _late(load, plan, imperfections)
+    normal_force = measured_load(pressed, traction_force, imperfections=imperfections)
     table: dict[str, Column] = {
         "t": np.arange(slip.size) / plan.rate,
         "omega_leg": plan.omega_leg + rng.normal(0.0, imperfections.speed_noise, slip.size),
@@ -234,6 +237,36 @@ def _ride_bump(
     turned = np.cumsum(omega_ground.ravel()).reshape(omega_ground.shape) / plan.rate
     angle = rng.uniform(0.0, 2 * np.pi) + turned
     return load[:, None] * (1 + bump_rise(angle, height=truth.bump_height, width=truth.bump_width))
+
+
+def _run_out(
+    slip: Array,
+    omega_ground: Array,
+    plan: SweepPlan,
+    truth: RigImperfections,
+    rng: np.random.Generator,
+) -> Array:
+    """Compute the slip of discs out of true, whose speeds give `slip`; (runs, samples) each [-].
+
+    The radius of a disc at the contact varies with the cosine of its angle, which starts anywhere.
+    The ground disc's speed is `omega_ground` [rad/s].
+    """
+    if not (truth.run_out_leg or truth.run_out_ground):
+        return slip
+    starts = rng.uniform(0.0, 2 * np.pi, 2)
+    leg = starts[0] + plan.omega_leg * np.arange(slip.size).reshape(slip.shape) / plan.rate
+    ground = starts[1] + np.cumsum(omega_ground.ravel()).reshape(slip.shape) / plan.rate
+    higher_leg = 1 + truth.run_out_leg / plan.radius_leg * np.cos(leg)
+    higher_ground = 1 + truth.run_out_ground / plan.radius_ground * np.cos(ground)
+    return 1 - (1 - slip) * higher_ground / higher_leg
+
+
+def _late(values: Array, plan: SweepPlan, truth: RigImperfections) -> Array:
+    """Delay forces within each run, shape (runs, samples) [N]; the first one is held."""
+    if not truth.delay:
+        return values
+    t = np.arange(plan.n_samples) / plan.rate
+    return np.stack([np.interp(t - truth.delay, t, run) for run in values])
 
 
 def _force_noise(

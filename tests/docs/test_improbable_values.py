@@ -29,7 +29,7 @@ LIMITS = {
     "traction over normal force": FRICTION,
     "one traction force": (STRAY,),
     "`load_cell.gain_sd`": (LARGEST_LOAD_CELL_ERROR,),
-    "`rig_errors.radius`": (LARGEST_RIG_ERROR["m"],),
+    "`rig_errors.radius` and `run_out`": (LARGEST_RIG_ERROR["m"],),
     "`rig_errors.radius_ratio`": (LARGEST_RIG_ERROR["dimensionless"],),
     "`--slip coulomb:MU`": (MOST_FRICTION,),
     "lengths in `robot.toml`": (LARGEST,),

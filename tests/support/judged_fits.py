@@ -53,7 +53,7 @@ def two_sided(largest_slip: float, **changes) -> SlipBlocks:
 
 def draws(law_values: tuple[float, ...], *, offset_spread: float = 0.05) -> np.ndarray:
     """Repeat one parameter vector, of a perfect load cell, as if it were draws."""
-    measurement = (0.0, 0.0, 0.0, 0.0, 0.02, 0.01, 0.1, offset_spread)
+    measurement = (*(0.0,) * 6, 1.0, 0.0, 0.02, 0.01, 0.1, offset_spread)
     return np.tile([*law_values, *measurement], (5, 1))
 
 

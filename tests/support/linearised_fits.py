@@ -18,6 +18,7 @@ from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, simulate_sweep
 HALF = (0.01, 0.02, 0.035, 0.06, 0.15, 0.4)
 SLIPS = (*(-s for s in HALF[::-1]), *HALF)
 MEASURED = {
+    "slip_error_scale": 1.0,
     "noise_floor": 0.03,
     "noise_slope": 0.01,
     "noise_correlation": 0.1,

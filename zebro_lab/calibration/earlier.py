@@ -15,8 +15,10 @@ from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.source_names import is_simulated
 
-NOISE: Final = ("noise_floor", "noise_slope", "noise_correlation")
-"""Parameters of the noise of block means, which hold for one block length."""
+NOISE: Final = (
+    "slip_error_scale", "slip_scatter", "noise_floor", "noise_slope", "noise_correlation",
+)  # fmt: skip
+"""Parameters of the errors of block means, which hold for one block length."""
 
 
 @dataclass(frozen=True)

@@ -352,6 +352,7 @@ def _joined_rig_errors(parts: Sequence[RigPart]) -> RigErrors:
     return RigErrors(
         max(errors.radius_ratio for errors in each),
         max(errors.rolling_resistance for errors in each),
+        max(errors.slip_scatter for errors in each),
     )
 
 

@@ -51,6 +51,7 @@ _LOAD_CELL: Final = """
 [{at}rig_errors]  # standard deviations, of what a fit of both sides of zero slip estimates
 # radius = "0.1 mm"  # of each disc
 # rolling_resistance = 0.02  # over the load
+# run_out = "0.05 mm"  # of each disc, amplitude over a turn
 """
 _MEANINGS: Final = {
     "t": "time, increasing", "t_s": "time, increasing", "x_m": "position in the floor frame",

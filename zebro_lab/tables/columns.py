@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 from model.bayes.rig_errors import (
     RADIUS_TOLERANCE,
     ROLLING_RESISTANCE,
+    RUN_OUT,
     UNKNOWN_RATIO,
+    UNKNOWN_SCATTER,
     RigErrors,
     radius_ratio_sd,
+    run_out_scatter,
 )
 from model.slip.definition import SlipDefinition
 from rig.nearest_name import nearest
@@ -175,23 +178,29 @@ class RigErrorsStated:
         radius_ratio: Of the relative error of the ratio of the radii, instead of `radius` [-]; None
             if not given.
         rolling_resistance: Of the rolling resistance over the load [-].
+        run_out: Amplitude by which each disc's radius at the contact varies once a turn [m].
     """
 
     radius: float = RADIUS_TOLERANCE
     radius_ratio: float | None = None
     rolling_resistance: float = ROLLING_RESISTANCE
+    run_out: float = RUN_OUT
 
     def resolved(self, radii: Mapping[str, float]) -> RigErrors:
         """Return the standard deviations that a fit takes.
 
         Args:
             radii: `radius_leg` and `radius_ground` [m], those that are known; without both, the
-                ratio's standard deviation is `UNKNOWN_RATIO` if it is not given.
+                ratio's standard deviation is `UNKNOWN_RATIO` if it is not given, and the scale of
+                slip that the speeds do not show `UNKNOWN_SCATTER`.
         """
-        ratio = self.radius_ratio
-        if ratio is None and {"radius_leg", "radius_ground"} <= radii.keys():
-            ratio = radius_ratio_sd(radii["radius_leg"], radii["radius_ground"], self.radius)
-        return RigErrors(UNKNOWN_RATIO if ratio is None else ratio, self.rolling_resistance)
+        ratio, scatter = UNKNOWN_RATIO, UNKNOWN_SCATTER
+        if {"radius_leg", "radius_ground"} <= radii.keys():
+            both = radii["radius_leg"], radii["radius_ground"]
+            ratio = radius_ratio_sd(*both, self.radius)
+            scatter = run_out_scatter(*both, self.run_out)
+        ratio = ratio if self.radius_ratio is None else self.radius_ratio
+        return RigErrors(ratio, self.rolling_resistance, scatter)
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,7 @@ _RIG_ERRORS = {
     "radius": "m",
     "radius_ratio": "dimensionless",
     "rolling_resistance": "dimensionless",
+    "run_out": "m",
 }
 _SOURCES = ("real", "sim", "replay", "import", "mixed", "unknown")
 """Kinds of source; `import` and `mixed` only stand beside exported tables."""

@@ -61,7 +61,7 @@ class Linearised:
         factors: Lower Cholesky factor of each run's covariance [N].
         basis: Orthonormal basis of the columns of A, shape (n + d, d) [-].
         rest: r without what the fit could absorb, shape (n + d,) [-].
-        values: Law and measurement parameters at the centre, shape (k + 10,).
+        values: Law and measurement parameters at the centre, shape (k + 12,).
         z: Coordinates of the centre, shape (d,).
     """
 

@@ -31,7 +31,7 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
     Args:
         samples: The samples, n of them.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (k + 10,).
+        values: Law and measurement parameters, shape (k + 12,).
 
     Returns:
         Residuals and slopes, shape (n,) each [N].

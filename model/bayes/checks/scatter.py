@@ -7,6 +7,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from model.bayes.checks.linear import Linearised
+from model.bayes.likelihood import slip_errors
 from model.slip.law import Array
 
 FEWEST_RUNS = 6
@@ -55,11 +56,12 @@ def friction_scatter(fit: Linearised, explained: Array) -> FrictionScatter | Non
         return None
     residual = fit.residual - explained
     mean, force = blocks.run_mean(residual), blocks.run_mean(fit.predicted.force)
-    unit = fit.predicted.noise + np.abs(fit.predicted.slope) * np.sqrt(blocks.slip_error)
+    own, shared = slip_errors(blocks, fit.values)
+    unit = fit.predicted.noise + np.abs(fit.predicted.slope) * np.sqrt(own)
     deviation = (residual - mean[blocks.run]) / unit
     within = float(np.sum(deviation**2)) / (len(blocks) - blocks.n_runs)
     noise = MEMORY * within * blocks.run_mean(unit**2) / sizes
-    noise = noise + blocks.run_mean(fit.predicted.slope) ** 2 * blocks.run_slip_error
+    noise = noise + blocks.run_mean(fit.predicted.slope) ** 2 * shared
     largest = float(np.abs(force).max())
     zero, _ = _best(mean, noise, np.ones_like(force), np.append(0.0, GRID * largest))
     both, size = max(

@@ -28,7 +28,7 @@ from model.slip.magic_formula import peak_slip
 ANY = Parameter("x", "x", "newton", -math.inf, math.inf, "anything")
 RNG = np.random.default_rng(3)
 CONVERGENCE = Convergence(
-    0, 1000, *([np.ones(10)] * 2), *([np.full(10, 5e3)] * 2), np.full(10, 0.01)
+    0, 1000, *([np.ones(12)] * 2), *([np.full(12, 5e3)] * 2), np.full(12, 0.01)
 )
 
 
@@ -114,8 +114,8 @@ def test_thinned_draws_lie_behind_the_burn_in_and_keep_their_ensemble():
     ones = np.ones(d)
     kept = thin_draws(posterior(), chains, Convergence(8, 12, *[ones] * 5), n=30)
     assert kept.z.shape == (4, 30, d)
-    assert kept.values.shape == (4, 30, 2 + 10)
-    assert kept.flat.shape == (120, 2 + 10)
+    assert kept.values.shape == (4, 30, 2 + 12)
+    assert kept.flat.shape == (120, 2 + 12)
     for ensemble in range(4):
         assert np.all(kept.z[ensemble] == ensemble / 10)
     np.testing.assert_array_equal(kept.log_density, kept.z[..., 0])

@@ -20,7 +20,7 @@ TYPICAL = {
     "curvature": -0.5, "friction_load_exponent": -0.1, "stiffness_load_exponent": 0.2,
     "kinetic_ratio": 0.8, "stribeck_slip": 0.1, "gain_traction": 0.01, "gain_normal": -0.01,
     "bias_normal": 0.1, "crosstalk": 0.02, "radius_error": 0.004, "rolling_resistance": 0.02,
-    "noise_floor": 0.1, "noise_slope": 0.03,
+    "slip_error_scale": 1.3, "slip_scatter": 0.002, "noise_floor": 0.1, "noise_slope": 0.03,
     "noise_correlation": 0.4, "offset_spread": 0.1,
 }  # fmt: skip
 
@@ -46,7 +46,7 @@ def blocks(seed=0, sizes=(1, 4, 9, 2)):
 
 
 def vectors(law, count, seed=1):
-    """Return parameter vectors near typical ones, shape (count, k + 10)."""
+    """Return parameter vectors near typical ones, shape (count, k + 12)."""
     middle = np.array([TYPICAL[p.name] for p in (*law.parameters, *NUISANCE)])
     return middle * np.random.default_rng(seed).uniform(0.9, 1.1, (count, len(middle)))
 
@@ -56,7 +56,8 @@ def by_definition(data, law, values):
     predicted = predict_blocks(data, law, values)
     return filter_runs(
         data.traction_force - predicted.force, predicted.noise, predicted.slope,
-        data.slip_error, data.run_slip_error, data.run_starts(), values[:, -2], values[:, -1],
+        data.slip_error, data.run_slip_error, data.run_starts(), values[:, -6], values[:, -5],
+        values[:, -2], values[:, -1],
     )  # fmt: skip
 
 

@@ -25,8 +25,11 @@ SIZES = (1, 4, 9, 1, 6)
 
 
 def parameters(**nuisance):
-    """Return one parameter vector, shape (1, k + 10); noise 0.1 N, the rest 0 unless named."""
-    known = {"noise_floor": 0.1, **nuisance}
+    """Return one parameter vector, shape (1, k + 12), of 0 unless named.
+
+    Noise is 0.1 N, and slip errors are as estimated.
+    """
+    known = {"noise_floor": 0.1, "slip_error_scale": 1.0, **nuisance}
     return np.array([[*LAW_VALUES, *(known.get(p.name, 0.0) for p in NUISANCE)]])
 
 
@@ -83,7 +86,7 @@ def test_rounding_makes_no_density_of_a_misfit(stiffness, noise_floor):
     assert (density <= -sizes * (np.log(noise_floor) + 0.5 * np.log(2 * np.pi)) + 1e-9).all()
 
 
-def dense_covariances(data, predicted, *, rho, tau):
+def dense_covariances(data, predicted, *, rho, tau, scale=1.0, scatter=0.0):
     """Build every run's covariance from the data model, term by term."""
     covariances = []
     for run in range(data.n_runs):
@@ -92,8 +95,8 @@ def dense_covariances(data, predicted, *, rho, tau):
         powers = np.power(rho, np.arange(len(s)), dtype=float)  # 0**0 is 1: white noise
         correlated = np.diag(s) @ toeplitz(powers) @ np.diag(s)
         offset = tau**2 * np.ones((len(s), len(s)))
-        shared_error = data.run_slip_error[run] * np.outer(g, g)
-        own_error = np.diag(g**2 * data.slip_error[rows])
+        shared_error = scale**2 * data.run_slip_error[run] * np.outer(g, g)
+        own_error = np.diag(g**2 * (scale**2 * data.slip_error[rows] + scatter**2))
         covariances.append(correlated + offset + shared_error + own_error)
     return covariances
 
@@ -101,7 +104,8 @@ def dense_covariances(data, predicted, *, rho, tau):
 def dense_log_densities(data, values):
     predicted = predict_blocks(data, LAW, values)
     residual = data.traction_force - predicted.force[0]
-    covariances = dense_covariances(data, predicted, rho=values[0, -2], tau=values[0, -1])
+    scale, scatter, *_, rho, tau = values[0, -6:]
+    covariances = dense_covariances(data, predicted, rho=rho, tau=tau, scale=scale, scatter=scatter)
     return [
         multivariate_normal(cov=covariance).logpdf(residual[data.run == run])
         for run, covariance in enumerate(covariances)
@@ -148,6 +152,14 @@ def test_slip_errors_enter_the_filter_and_not_only_the_mean():
         np.testing.assert_allclose(run_log_likelihood(data, LAW, values)[0], expected, rtol=1e-9)
     difference = log_likelihood(sharp, LAW, values) - log_likelihood(blurred, LAW, values)
     assert abs(difference[0]) > 1.0
+
+
+@pytest.mark.parametrize("size", [{"slip_error_scale": 1.7}, {"slip_scatter": 0.01}])
+def test_the_size_of_slip_errors_is_a_parameter(size):
+    data, values = blurred_blocks(), parameters(offset_spread=0.1, **size)
+    expected = dense_log_densities(data, values)
+    np.testing.assert_allclose(run_log_likelihood(data, LAW, values)[0], expected, rtol=1e-9)
+    assert abs(log_likelihood(data, LAW, values) - log_likelihood(data, LAW, parameters())) > 0.1
 
 
 def test_many_parameter_vectors_at_once_are_each_on_its_own():

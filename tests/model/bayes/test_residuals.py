@@ -31,6 +31,7 @@ SIZE = 6
 
 def parameters(law_values=LAW_VALUES, **nuisance):
     known = {
+        "slip_error_scale": 1.0,
         "noise_floor": 0.02,
         "noise_slope": 0.01,
         "noise_correlation": 0.6,

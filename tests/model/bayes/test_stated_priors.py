@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from model.bayes.checks.faults import NOISE
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.laplace import hessian
 from model.bayes.posterior import LoadCell, default_priors
@@ -199,6 +200,8 @@ def test_a_widened_prior_gives_the_product_of_its_density_and_the_likelihood():
     expected = np.linalg.inv(-hessian(product, centre))
     found = drawn(fit)
     for i, name in enumerate(names):
+        if name in NOISE:  # far from Gaussian, unlike the Hessian's posterior
+            continue
         spread = base[name].coordinate(found[name]).std()
         assert spread == pytest.approx(np.sqrt(expected[i, i]), rel=0.05), name
 

@@ -17,7 +17,16 @@ def filtered(residual, tail, starts=(0, 3, 7)):
     rng = np.random.default_rng(1)
     noise, slope = rng.uniform(0.5, 1.5, (2, 1, 7))[..., :n]
     errors = 0.1 * np.ones(n), np.array([0.3, 0.2])
-    given = residual[None], noise, slope, *errors, np.array(starts), np.array([0.6])
+    given = (
+        residual[None],
+        noise,
+        slope,
+        *errors,
+        np.array(starts),
+        np.array([1.2]),
+        np.array([0.01]),
+        np.array([0.6]),
+    )
     tau = np.array([0.8])
     if tail is None:
         return filter_runs(*given, tau)[0]

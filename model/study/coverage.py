@@ -22,6 +22,8 @@ FEWEST_FITS: Final = 20
 RIG: Final = ("gain_traction", "gain_normal", "bias_normal", "crosstalk", "radius_error",
               "rolling_resistance")  # fmt: skip
 """Errors of load cell and rig, drawn from their priors for each replicate."""
+SLIP_ERRORS: Final = ("slip_error_scale", "slip_scatter")
+"""Errors of slip, drawn as well where blocks are simulated; of samples they have no true value."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class CoverageStudy:
 
     Attributes:
         design: Layout, law and priors.
-        truth: True value of each parameter but those of `RIG`, by name.
+        truth: True value of each parameter but those of `RIG` and `SLIP_ERRORS`, by name.
     """
 
     design: StudyDesign
@@ -73,15 +75,23 @@ def coverage_replicate(study: CoverageStudy, task: Replicate) -> CoverageReplica
     """
     rng = np.random.default_rng([task.seed, task.index])
     design = study.design
-    truth = {**study.truth, **draw_rig(design, rng)}
+    truth = {**study.truth, **draw_rig(design, rng, (*RIG, *SLIP_ERRORS))}
     values = np.array([truth[p.name] for p in design.posterior(design.blocks).parameters])
     blocks = simulate_blocks(design.blocks, design.law, values, rng=rng)
     return compare_fit(design, blocks, truth, task.index, rng)
 
 
-def draw_rig(design: StudyDesign, rng: np.random.Generator) -> dict[str, float]:
-    """Draw the errors of load cell and rig from their priors, by name."""
-    return {name: float(design.priors[name].value(rng.standard_normal())) for name in RIG}
+def draw_rig(
+    design: StudyDesign, rng: np.random.Generator, names: tuple[str, ...] = RIG
+) -> dict[str, float]:
+    """Draw errors of load cell and rig from their priors, by name.
+
+    Args:
+        design: Design with the priors.
+        rng: Source of randomness.
+        names: The errors.
+    """
+    return {name: float(design.priors[name].value(rng.standard_normal())) for name in names}
 
 
 def compare_fit(

@@ -11,11 +11,13 @@ from model.bayes.blocks import block_means
 from model.bayes.laplace import LaplaceMixture, find_modes
 from model.bayes.left_out import leave_out, weighted_draws
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
+from model.bayes.rig_errors import RigErrors
 from model.slip import Brush
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 LAW, TRUTH = Brush(), (20.0, 0.4)
+PERFECT = RigErrors(1e-4, 1e-3, 1e-4)  # so that no run decides alone
 PLAN = SweepPlan(slips=(-0.05, 0.01, 0.03, 0.3), loads=(4.0, 12.0), rate=40.0)
 
 
@@ -24,7 +26,7 @@ def posterior():
     rng = np.random.default_rng(4)
     samples = simulate_sweep(LAW, TRUTH, plan=PLAN, imperfections=TYPICAL_RIG, rng=rng).samples
     blocks = block_means(samples, 10)
-    return SlipPosterior(blocks, LAW, default_priors(LAW, blocks, LoadCell()))
+    return SlipPosterior(blocks, LAW, default_priors(LAW, blocks, LoadCell(), PERFECT))
 
 
 @pytest.fixture(scope="module")

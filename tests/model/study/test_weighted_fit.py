@@ -10,7 +10,7 @@ from model.study.simulated_blocks import simulate_blocks
 from model.study.weighted_fit import LEAST, fit_blocks, weigh
 from support.study_layouts import design
 
-TRUE = np.array([20.0, 0.4, *np.zeros(6), 0.05, 0.02, 0.3, 0.05])
+TRUE = np.array([20.0, 0.4, *np.zeros(6), 1.0, 0.0, 0.05, 0.02, 0.3, 0.05])
 
 
 @pytest.fixture(scope="module")

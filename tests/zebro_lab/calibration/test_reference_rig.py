@@ -2,11 +2,12 @@
 """Rigs of other laboratories, calibrated through column maps; draws come from the second engine."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from model.bayes.advice import TryLaws
 from model.bayes.checks.inspection import inspect
@@ -15,8 +16,9 @@ from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
 from model.bayes.estimate import Agreement
 from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell
-from model.bayes.laplace import importance_draws
+from model.bayes.laplace import find_mode, importance_draws
 from model.bayes.residuals import Residuals, analyse_residuals
+from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.verdict import Verdict, judge
 from model.slip.magic_formula import MagicFormula
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
@@ -48,6 +50,7 @@ columns.omega_ground = "omega_g"
 constants = { radius_leg = "35 mm", radius_ground = "120 mm" }
 runs.by = ["Fn_set", "kappa_set"]
 """
+FREE = MagicFormula("constant")
 CONVERGED = Convergence(0, 1000, *([np.ones(1)] * 2), *([np.full(1, 5e3)] * 2), np.full(1, 0.01))
 
 
@@ -70,10 +73,10 @@ class Judged:
         )
 
 
-def judged(data: RigData, law: MagicFormula) -> Judged:
+def judged(data: RigData, law: MagicFormula, rig_errors: RigErrors = USUAL) -> Judged:
     rng = np.random.default_rng(1)
     cell = scaled_load_cell(data.samples, data.load_cell)
-    fit = prepare_fit(data.samples, law, load_cell=cell, rng=rng)
+    fit = prepare_fit(data.samples, law, load_cell=cell, rig_errors=rig_errors, rng=rng)
     posterior = fit.posterior
     weighted = importance_draws(posterior.log_density, fit.approximation, n=1000, rng=rng)
     z = weighted.resample(400, rng=rng)
@@ -156,10 +159,25 @@ def test_driving_and_braking_wheel_in_sand_is_called_a_bad_fit(read):
 
 
 @pytest.mark.parametrize("curvature", [0.0, "constant"])
-def test_virtual_rig_gives_back_its_law(read, curvature):
-    found = judged(read("virtual-world/rig", SIMULATED_RIG), MagicFormula(curvature))
+def test_virtual_rig_gives_back_its_law_where_its_radii_and_rolling_are_known(read, curvature):
+    known = RigErrors(1e-5, 1e-4, 1e-4)
+    found = judged(read("virtual-world/rig", SIMULATED_RIG), MagicFormula(curvature), known)
     K, C, mu = (found.values[name].mean() for name in ("slip_stiffness", "shape", "friction"))
     assert pytest.approx(1.564, abs=0.02) == C
     assert pytest.approx(0.38, rel=0.02) == mu
     assert K / (C * mu) == pytest.approx(34.34, rel=0.15)
     assert found.verdict.weak == {} or "shape" not in found.verdict.weak
+
+
+def test_virtual_rig_of_which_nothing_is_known_has_the_truth_near_its_mode(read):
+    # Slip of one sign: friction and rolling resistance are known together only.
+    posterior = (fit := judged(read("virtual-world/rig", SIMULATED_RIG), FREE).fit).posterior
+    truth = {"slip_stiffness": 34.34 * 1.564 * 0.38, "shape": 1.564, "friction": 0.38,
+             "curvature": 0.0, "radius_error": 0.0, "rolling_resistance": 0.0}  # fmt: skip
+    best = dict(zip((p.name for p in posterior.parameters),
+                    posterior.values(fit.laplace.mode[None])[0], strict=True))  # fmt: skip
+    held = replace(posterior, fixed={**posterior.fixed, **truth})
+    rest = find_mode(held.log_density, held.coordinates(best)[None]).mode
+    values = dict(zip(best, held.values(rest[None])[0], strict=True))
+    (there,) = posterior.log_density(posterior.coordinates(values)[None])
+    assert 2 * (fit.laplace.log_density - there) < chi2.ppf(0.99, len(truth))

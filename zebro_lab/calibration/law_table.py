@@ -33,10 +33,11 @@ def sentence(scores: "LawScores") -> str:
         names = ", ".join(
             f"'{scores.laws[i].name}' ({signed(scores.runs(i, scores.chosen))})" for i in others
         )
-        said = (
-            f"'{chosen}' and {names} cannot be told apart by these data; the simplest, '{chosen}', "
-            "is fitted"
-        )
+        fewest = len(scores.laws[scores.chosen].law.parameters)
+        alone = all(len(scores.laws[i].law.parameters) > fewest for i in others)
+        why = "the simplest" if alone else "of as many parameters the first"
+        said = f"'{chosen}' and {names} cannot be told apart by these data; {why}, '{chosen}', "
+        said += "is fitted"
     else:
         said = f"'{chosen}' predicts what was left out best and is fitted"
     worse = [i for i in range(len(scores.laws)) if i not in scores.told_together]

@@ -64,6 +64,13 @@ def test_laws_that_cannot_be_told_apart_are_named_and_the_simplest_fitted():
     assert "the simplest, 'brush', is fitted" in said
 
 
+def test_of_laws_with_as_many_parameters_the_first_is_not_called_simplest():
+    twin = [score(name, BRUSH, (20.0, 0.4), 0.0) for name in ("one", "two")]
+    assert "of as many parameters the first, 'one', is fitted" in sentence(
+        choose_law(twin, np.array([4.0, 12.0]))
+    )
+
+
 def test_one_load_and_bad_weights_are_said():
     said = sentence(scores(0.1, levels=(8.0,), k=0.9))
     assert "left-out loads are not testable with these data (one load)" in said

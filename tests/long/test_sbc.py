@@ -26,7 +26,7 @@ from zebro_lab.workers.processes import Processes
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(5400)]
 
-RIGHT, WITHOUT_MEMORY = 300, 100
+REPLICATES = 300
 SWEEP = {
     "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [3.0, 8.0, 13.0]",
     "first = 0.0, last = 1.0, count = 62": "first = -0.3, last = 1.0, count = 10",
@@ -49,9 +49,9 @@ def design(tmp_path_factory):
     return read_layout(LayoutRequest(plan=file), THESIS_LAW).design
 
 
-def studied(study: RankStudy, n: int) -> RankResult:
-    """Rank n replicates on all cores, and print the table."""
-    tasks = [Replicate(1, index) for index in range(n)]
+def studied(study: RankStudy) -> RankResult:
+    """Rank all replicates on all cores, and print the table."""
+    tasks = [Replicate(1, index) for index in range(REPLICATES)]
     workers = Processes(os.cpu_count() or 1)
     result = conclude_ranks(study.fitted.free, list(workers.map(rank_replicate, study, tasks)))
     say(f"\n\n{result.headline}; {result.ranked} ranked, {result.left_out} left out\n")
@@ -64,13 +64,13 @@ def studied(study: RankStudy, n: int) -> RankResult:
 
 
 def test_ranks_of_the_full_data_model_are_uniform(design):
-    result = studied(RankStudy(design, design), RIGHT)
+    result = studied(RankStudy(design, design))
     assert result.testable
     assert not result.failed
 
 
 def test_a_model_without_memory_and_offsets_is_found_out(design):
     wrong = design.assuming(WRONG["independent-noise"])
-    result = studied(RankStudy(design, wrong), WITHOUT_MEMORY)
+    result = studied(RankStudy(design, wrong))
     assert min(each.chi_square_p for each in result.tests) < 1e-6
     assert min(each.ecdf_p for each in result.tests) < 1e-6

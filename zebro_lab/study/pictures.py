@@ -30,6 +30,7 @@ def draw_ranks(tests: Sequence[Uniformity], *, title: str) -> Figure:
     """
     figure, panels = _panels(tests, f"Ranks of true values: {title}")
     edges = np.linspace(0, DRAWS + 1, BINS + 1)
+    highest = max(int(histogram(test.ranks).max()) for test in tests)
     for test, axes in zip(tests, panels, strict=True):
         n = len(test.ranks)
         low, high = binomial_band(n, 1 / BINS, 0.01)
@@ -39,7 +40,7 @@ def draw_ranks(tests: Sequence[Uniformity], *, title: str) -> Figure:
             histogram(test.ranks), edges, fill=True, alpha=0.7, label="counts",
             color=BLUE if test.passed else RED,
         )  # fmt: skip
-        axes.set_ylim(bottom=0)
+        axes.set_ylim(0, 1.05 * max(highest, high))
         _head(axes, test, f"$\\chi^2$ p {_p(test.chi_square_p)}")
     _label(panels, "rank among 99 draws", "replicates")
     legend_below(figure, columns=2)

@@ -6,6 +6,7 @@ from typing import Final
 
 from model.bayes.calibration import Calibration
 from model.bayes.law_scores import LawScores
+from model.bayes.likelihood import predict_blocks
 from model.bayes.verdict import State
 from model.slip.discrepancy import LawWithDiscrepancy
 from zebro_lab.files.picture_format import PictureFormat
@@ -56,10 +57,13 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
         figures["discrepancy"] = plots.discrepancy(blocks, law, draws=draws, simulated=simulated)
     scores = calibration.comparison
     if isinstance(scores, LawScores):
+        centre = calibration.draws.flat.mean(axis=0)
+        expected = predict_blocks(blocks, law, centre[None]).force
         figures["laws"] = plots.slip_laws(
             blocks,
             {score.name: (score.law, score.values) for score in scores.laws},
             reference=scores.laws[scores.chosen].name,
+            residual=blocks.traction_force - expected[0],
             load_levels=calibration.levels,
             simulated=simulated,
         )

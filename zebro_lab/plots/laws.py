@@ -32,20 +32,23 @@ def slip_laws(
     laws: Mapping[str, tuple[SlipLaw, Array]],
     *,
     reference: str,
+    residual: Array,
     load_levels: ArrayLike,
     simulated: bool,
 ) -> Figure:
     """Draw the data and the curve of every law at each tested load, and how they differ.
 
     On the left are block means and each law's median curve; on the right the curves less that of
-    the reference law, and means of the measured traction less the reference's prediction at each
-    block's own slip and load, with their standard errors, in bins of equally many blocks. Slip is
+    the reference law, and means of the residuals with their standard errors, in bins of equally
+    many blocks. Slip is
     drawn on a square-root scale, on which both the rise and the fall of the curves are seen.
 
     Args:
         blocks: Block means of slip ratio and forces.
         laws: Each law, of k parameters, with posterior draws of them, shape (n_draws, k), by name.
         reference: Name of the law that the others are compared with.
+        residual: Measured traction less what the reference's fit expects of each block, with the
+            errors of cell and rig, shape (n_blocks,) [N].
         load_levels: Nominal loads, shape (n_levels,) [N].
         simulated: Whether to append "(simulated)" to the title.
 
@@ -56,7 +59,6 @@ def slip_laws(
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
     figure = new_figure("Slip laws compared", simulated, width=9.0, height=1.6 + 2.3 * len(levels))
     grid = figure.add_gridspec(len(levels), 2)
-    residual = blocks.traction_force - _median(laws[reference], blocks.slip, blocks.normal_force)
     for row, load in enumerate(levels):
         whole, beside = (figure.add_subplot(grid[row, column]) for column in (0, 1))
         mine = nearest == row
@@ -101,7 +103,7 @@ def _draw_laws(
         label = f"{name} (fitted)" if own else name
         style = {
             "color": CYCLE[index % len(CYCLE)],
-            "ls": _STYLES[index % len(_STYLES)],
+            "ls": "-" if own else _STYLES[index % len(_STYLES)],
             "lw": 2.0 if own else 1.2,
         }
         whole.plot(slip, force, label=label, **style)
@@ -145,6 +147,6 @@ def _ticks(axes: Axes) -> list[float]:
     low, high = axes.get_xlim()
     reach = max(-low, high)
     power = 10.0 ** np.floor(np.log10(reach))
-    sizes = [part * power for part in (0.03, 0.1, 0.3, 1.0, 3.0) if part * power >= 0.03 * reach]
+    sizes = [part * power for part in (0.03, 0.1, 0.3, 1.0, 3.0) if part * power >= 0.07 * reach]
     both = sorted({0.0, *sizes, *(-size for size in sizes)})
     return [tick for tick in both if low <= tick <= high]

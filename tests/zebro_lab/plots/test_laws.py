@@ -14,7 +14,15 @@ from zebro_lab.plots import slip_laws
 def figure(rig):
     laws = {"truth": (rig.law, np.tile(rig.truth, (3, 1))),
             "brush": (Brush(), np.tile((20.4, 0.38), (3, 1)))}  # fmt: skip
-    return slip_laws(rig.blocks, laws, reference="truth", load_levels=RIG_LOADS, simulated=True)
+    residual = np.full(len(rig.blocks.slip), 0.07)
+    return slip_laws(
+        rig.blocks,
+        laws,
+        reference="truth",
+        residual=residual,
+        load_levels=RIG_LOADS,
+        simulated=True,
+    )
 
 
 def test_each_load_has_curves_and_their_difference_from_the_fitted_one(figure, rig):
@@ -27,6 +35,8 @@ def test_each_load_has_curves_and_their_difference_from_the_fitted_one(figure, r
         expected = np.asarray(brush.get_ydata()) - np.asarray(own.get_ydata())
         lines = [each for each in beside.lines if len(each.get_xdata()) == len(slip)]
         np.testing.assert_allclose(lines[1].get_ydata(), expected)
+        (points,) = beside.containers
+        np.testing.assert_allclose(np.asarray(points.lines[0].get_ydata(), dtype=float), 0.07)
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "truth (fitted)" in labels
 

@@ -6,8 +6,8 @@ python -m benchmarks.accuracy.rig_errors [SEEDS] [--one-sided] [--everything]
 Each seed is a rig of its own: load cell, radii and rolling resistance are drawn from the priors.
 Slips go from -0.5 to 0.5, or with --one-sided from 0 to 1 as in the bundled sweep. Each sweep is
 fitted, by importance weighted draws of the Laplace approximation, with the two terms and without.
-With --everything the rig has more errors, which no term of the fit stands for: both discs run out
-of true by 0.05 mm, forces are read 3 ms late or early (standard deviation), speeds are read with
+With --everything the rig has more errors, which both fits have to bear: both discs run out of
+true by 0.05 mm, forces are read 3 ms late or early (standard deviation), speeds are read with
 an error that makes 0.01 of slip, and slip itself wanders by 0.01 within 50 ms.
 Prints for each parameter how many 90 % intervals hold the truth, with the exact binomial 99 %
 interval of that count, the mean error in posterior standard deviations and the interval's half
@@ -88,7 +88,7 @@ def fit_seed(
     Args:
         seed: Seed of the rig and of its sweep.
         one_sided: Whether slips go from 0 to 1 instead of -0.5 to 0.5.
-        everything: Whether the rig has errors that no term stands for, too.
+        everything: Whether the rig runs out of true, reads late, and its slip wanders, too.
         duration: Time at each set-point [s].
     """
     plan = SweepPlan(slips=tuple(SLIPS[one_sided].tolist()), duration=duration)

@@ -51,7 +51,7 @@ columns.slip_ratio = { name = "SL", definition = "travel" }
 runs.gap = "1 s"
 """
 ONE_PRESSURE = 'rows.keep = ["P > 80", "P < 86"]\n'
-NO_ERRORS = RigErrors(1e-9, 1e-9)
+NO_ERRORS = RigErrors(1e-9, 1e-9, 1e-9)
 N_DRAWS = 2000
 RESAMPLED = 300
 

@@ -373,13 +373,26 @@ def importance_draws(
         rng: Source of randomness.
         threads: Number of batches of draws whose density is computed at once.
     """
-    import arviz as az
-
     z = proposal.draw(n, rng=rng)
     with ThreadPoolExecutor(threads) as pool:
         density = np.concatenate(list(pool.map(log_density, np.array_split(z, n // 64 + 1))))
     ratio = density - proposal.log_pdf(z)
     ratio = np.where(np.isfinite(ratio), ratio, -1e6 + ratio[np.isfinite(ratio)].max())
-    smoothed, pareto_k = az.psislw(ratio)
-    weights = np.exp(np.asarray(smoothed))
-    return WeightedDraws(z, weights / weights.sum(), float(pareto_k), density)
+    log_weights, pareto_k = pareto_smoothed(ratio)
+    weights = np.exp(log_weights)
+    return WeightedDraws(z, weights / weights.sum(), pareto_k, density)
+
+
+def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:
+    """Smooth the largest importance ratios by a generalised Pareto tail (Vehtari et al. 2024).
+
+    Args:
+        log_ratio: Logarithms of the raw ratios, shape (n,).
+
+    Returns:
+        Logarithms of the weights, whose sum is one, shape (n,), and the tail index of the ratios.
+    """
+    import arviz as az  # late: takes seconds to import
+
+    smoothed, pareto_k = az.psislw(log_ratio)
+    return np.asarray(smoothed, dtype=float), float(pareto_k)

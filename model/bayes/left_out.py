@@ -8,13 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from model.bayes.convergence import MAX_PARETO_K
 from model.bayes.cross_validation import MAX_SINGLE_FOLDS, N_GROUPED_FOLDS
-from model.bayes.laplace import Laplace, LaplaceMixture, WeightedDraws, find_modes, importance_draws
+from model.bayes.laplace import (
+    Laplace,
+    LaplaceMixture,
+    WeightedDraws,
+    find_modes,
+    importance_draws,
+    pareto_smoothed,
+)
 from model.bayes.posterior import SlipPosterior
 from model.slip.law import Array
 
 DRAWS = 2_000
-MAX_PARETO_K = 0.7  # tail index above which weights do not stand for the posterior without a group
 ADAPTATIONS = 3  # proposals that are tried for a posterior far from Gaussian
 _NEGLIGIBLE = 1e-12  # weight of a draw that is left out
 
@@ -83,7 +90,7 @@ def leave_out(
     for index in range(n_groups):
         mine = group == index
         own = density[:, mine]
-        smoothed, pareto_k[index] = _smoothed(np.log(weights) - own.sum(axis=1))
+        smoothed, pareto_k[index] = pareto_smoothed(np.log(weights) - own.sum(axis=1))
         log_density[mine] = logsumexp(smoothed[:, None] + own, axis=0)
     refitted = ~(pareto_k < MAX_PARETO_K)
     starts = np.stack([laplace.mode for laplace in approximation.modes])
@@ -103,14 +110,6 @@ def _folds(groups: NDArray[np.intp]) -> list[NDArray[np.intp]]:
     """Return groups one by one, or if they are many in interleaved folds, as `cross_validate`."""
     n_folds = len(groups) if len(groups) <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS
     return [groups[index::n_folds] for index in range(n_folds)]
-
-
-def _smoothed(log_ratio: Array) -> tuple[Array, float]:
-    """Return Pareto-smoothed log weights, their sum one, and the tail index of the raw ones."""
-    import arviz as az  # late: takes seconds to import
-
-    smoothed, pareto_k = az.psislw(log_ratio)
-    return np.asarray(smoothed, dtype=float), float(pareto_k)
 
 
 def _refit(

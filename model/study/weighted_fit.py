@@ -13,6 +13,7 @@ from model.bayes.laplace import (
     WeightedDraws,
     find_modes,
     importance_draws,
+    pareto_smoothed,
 )
 from model.bayes.posterior import SlipPosterior
 from model.bayes.walks.importance import Effort, Mode, weighted_draws
@@ -42,7 +43,7 @@ class WeightedFit:
     @property
     def effective(self) -> float:
         """Number of draws that the weighted ones are worth."""
-        return float(1 / np.sum(self.draws.weights**2))
+        return self.draws.effective_size
 
     @property
     def reliable(self) -> bool:
@@ -105,11 +106,9 @@ def _spanning(modes: LaplaceMixture) -> Mode:
 
 
 def _smoothed(posterior: SlipPosterior, z: Array, weights: Array) -> WeightedDraws:
-    """Smooth importance weights (n,) by a Pareto tail, as `importance_draws` does."""
-    import arviz as az
-
+    """Return draws whose importance weights (n,) are smoothed as `importance_draws` does."""
     with np.errstate(divide="ignore"):
         log = np.maximum(np.log(weights), -1e6)
-    smoothed, pareto_k = az.psislw(log)
-    kept = np.exp(np.asarray(smoothed))
-    return WeightedDraws(z, kept / kept.sum(), float(pareto_k), posterior.log_density(z))
+    log_weights, pareto_k = pareto_smoothed(log)
+    kept = np.exp(log_weights)
+    return WeightedDraws(z, kept / kept.sum(), pareto_k, posterior.log_density(z))

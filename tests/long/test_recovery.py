@@ -41,7 +41,7 @@ TRUTH = np.array(THESIS_VALUES)
 LAW = THESIS_LAW.parameters
 
 ENOUGH_ESS = 5000.0
-"""The engines are to agree to 5 % in spread over the sampled seeds times 14 parameters, of which
+"""The engines are to agree to 5 % in spread over the sampled seeds times 16 parameters, of which
 the largest deviation counts: 3 standard errors of a spread, 1/sqrt(2 ESS), are 3 % here."""
 IMPORTANCE_DRAWS = 20_000
 CHUNK = 100  # kept steps between two looks at the chains

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from benchmarks.accuracy.tyre_bench import COLUMNS as TYRE
 from model.bayes.advice import TryLaws
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
@@ -25,14 +26,6 @@ from zebro_lab.calibration.rig_data import RigData, read_rig_data
 
 pytestmark = pytest.mark.reference
 
-TYRE = """
-source = "real"
-columns.t = { name = "ET", unit = "s" }
-columns.normal_force = { name = "FZ", unit = "N", sign = -1 }
-columns.traction_force = { name = "FX", unit = "N" }
-columns.slip_ratio = { name = "SL", definition = "travel" }
-runs.gap = "1 s"
-"""
 SAND = """
 source = "real"
 columns.normal_force = { name = "avg_Fz", unit = "N", sign = -1 }

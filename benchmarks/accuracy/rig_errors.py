@@ -23,7 +23,7 @@ import numpy as np
 from scipy.stats import binom
 
 from model.bayes.fit import prepare_fit
-from model.bayes.laplace import LaplaceMixture, find_mode, importance_draws
+from model.bayes.laplace import LaplaceMixture, find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.rig_errors import (
     RADIUS_TOLERANCE,
@@ -31,6 +31,7 @@ from model.bayes.rig_errors import (
     RigErrors,
     radius_ratio_sd,
 )
+from model.bayes.weighted import importance_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import (
     BIAS_SD,
@@ -109,7 +110,8 @@ def fit_seed(
     whole = _intervals(posterior, fit.approximation, truth, rng)
     values = posterior.values(fit.laplace.mode[None])[0]
     start = dict(zip((p.name for p in posterior.parameters), map(float, values), strict=True))
-    plain = replace(posterior, fixed={**posterior.fixed, **dict.fromkeys(TERMS, 0.0)})
+    held = {**posterior.fixed, **dict.fromkeys(TERMS, 0.0)}
+    plain = replace(posterior, fixed=held, shear=None)
     modes = LaplaceMixture((find_mode(plain.log_density, plain.coordinates(start)[None]),))
     return whole, _intervals(plain, modes, {name: truth[name] for name in LAW_NAMES}, rng)
 

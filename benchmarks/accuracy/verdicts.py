@@ -29,9 +29,9 @@ from model.bayes.checks.linear import linearise
 from model.bayes.convergence import Convergence
 from model.bayes.estimate import Agreement
 from model.bayes.fit import prepare_fit, scaled_load_cell
-from model.bayes.laplace import importance_draws
 from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, Verdict, judge
+from model.bayes.weighted import importance_draws
 from model.errors import ModelError
 from model.slip.law import Array
 from model.slip.magic_formula import MagicFormula

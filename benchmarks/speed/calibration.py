@@ -23,10 +23,10 @@ from benchmarks.tables import print_table
 from model.bayes import sampler
 from model.bayes.convergence import assess
 from model.bayes.fit import PreparedFit, prepare_fit
-from model.bayes.laplace import importance_draws
 from model.bayes.likelihood import log_likelihood, predict_blocks, slip_errors
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
+from model.bayes.weighted import importance_draws
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, draw_imperfections, simulate_sweep

@@ -19,7 +19,6 @@ from model.bayes.fit import (
     require_forces,
     validated,
 )
-from model.bayes.laplace import importance_draws
 from model.bayes.law_scores import LawScores, choose_law, load_groups, score_law
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
@@ -28,6 +27,7 @@ from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
+from model.bayes.weighted import weighted_draws
 from model.errors import FitError
 from model.progress import Watcher
 from model.slip.law import SlipLaw
@@ -38,6 +38,7 @@ FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
 FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `max_steps` says
 DRAWS_PER_ENSEMBLE = 1000  # at most
 IMPORTANCE_DRAWS = 10_000
+EFFECTIVE_DRAWS = 1_000.0  # below, the weighted draws are adapted to the posterior
 FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
@@ -139,9 +140,9 @@ def calibrate(
     posterior, judging = fit.posterior, rng.spawn(1)[0]  # the same draws where a fit was resumed
     with explain_numerical_errors(samples, posterior.law):
         watcher.step("weighting", None)
-        weighted = importance_draws(
-            posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=judging,
-            threads=_threads(fit, settings),
+        weighted = weighted_draws(
+            posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, wanted=EFFECTIVE_DRAWS,
+            rng=judging, threads=_threads(fit, settings),
         )  # fmt: skip
         first(preview(posterior, weighted, rng=judging))
         chains = None
@@ -237,9 +238,12 @@ def _sample(
     """Sample, from `earlier` if given, until convergence or the largest number of steps.
 
     Progress goes to `watcher`, all chains to `keep` after every `CHUNK` kept steps. Raises
-    `FitStopped`, with the chains so far, if a stop is requested.
+    `FitStopped`, with the chains so far, if a stop is requested, and `FitError` if the log density
+    at the end of earlier chains is another one now.
     """
     density = fit.posterior.log_density
+    if earlier is not None:
+        _require_same_density(fit, earlier)
     chains = earlier or start_chains(
         density, fit.approximation, ensembles=settings.ensembles, thin=THIN, rng=rng
     )
@@ -262,6 +266,17 @@ def _sample(
             density, chains, steps=CHUNK, approximation=fit.approximation, threads=threads
         )
         keep(chains)
+
+
+def _require_same_density(fit: PreparedFit, earlier: Chains) -> None:
+    """Raise `FitError` unless chains hold the density of this fit: it tells another version."""
+    z, kept = earlier.z[0, -1], earlier.log_density[0, -1]
+    d = len(fit.posterior.free)
+    if z.shape[-1] != d or not np.allclose(fit.posterior.log_density(z), kept, atol=1e-3):
+        raise FitError(
+            "the stopped fit belongs to another posterior than these data give now: it was stopped "
+            "by another version of zebro-lab, or on another machine; run without --resume"
+        )
 
 
 def _threads(fit: PreparedFit, settings: SamplerSettings) -> int:

@@ -21,13 +21,13 @@ from model.bayes.estimate import (
 )
 from model.bayes.fit import LawComparison, PreparedFit
 from model.bayes.gaussian_equivalent import gaussian_equivalent
-from model.bayes.laplace import WeightedDraws
 from model.bayes.law_scores import LawScores
 from model.bayes.posterior import SlipPosterior
 from model.bayes.prior_conflict import PriorShift, prior_shifts
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
 from model.bayes.samples import SlipSamples
 from model.bayes.verdict import Verdict, judge
+from model.bayes.weighted import WeightedDraws
 from model.slip.law import Array
 
 _CHECKED = 400  # about this many draws are used for residuals and verdict

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.bayes.convergence import MAX_PARETO_K, Convergence
-from model.bayes.laplace import WeightedDraws
 from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Chains
+from model.bayes.weighted import WeightedDraws
 from model.slip.discrepancy import LawWithDiscrepancy
 from model.slip.law import Array, Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula

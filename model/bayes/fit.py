@@ -11,14 +11,16 @@ import numpy as np
 from model.bayes.blocks import SlipBlocks, block_means
 from model.bayes.checks.raw import opposed_runs
 from model.bayes.cross_validation import CrossValidation, cross_validate
-from model.bayes.laplace import Laplace, LaplaceMixture, find_modes
+from model.bayes.laplace import Laplace, LaplaceMixture
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
 from model.bayes.priors import Prior
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
+from model.bayes.shear import find_shear
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.bayes.tail_choice import choose_tail
+from model.bayes.tails import approximate
 from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
 
@@ -39,7 +41,7 @@ class PreparedFit:
 
     Attributes:
         posterior: Posterior density, with blocks, law and priors.
-        approximation: Laplace approximations at the modes, the highest first.
+        approximation: Laplace approximations at the modes, the highest first, and in heavy tails.
         cross_validation: Prediction of left-out runs; None for one run or without validation.
         block_choice: The block length and the reason for it.
         load_cell: Prior knowledge of the load cell.
@@ -128,6 +130,28 @@ def prepare_fit(
         )
 
 
+def straightened(
+    posterior: SlipPosterior, approximation: LaplaceMixture, rng: np.random.Generator
+) -> tuple[SlipPosterior, LaplaceMixture]:
+    """Shear the coordinates of a posterior with one mode that lies along a curved ridge.
+
+    Args:
+        posterior: The posterior.
+        approximation: Its Laplace approximations.
+        rng: Source of randomness of the points that the shear is fitted to.
+
+    Returns:
+        The same posterior in straightened coordinates, and its Laplace approximations there; both
+        as given where the posterior is straight or has several modes.
+    """
+    mode, *others = approximation.modes
+    shear = None if others else find_shear(posterior.log_density, mode, rng)
+    if shear is None:
+        return posterior, approximation
+    sheared = replace(posterior, shear=shear)
+    return sheared, approximate(sheared.log_density, mode.mode[None])
+
+
 @contextmanager
 def explain_numerical_errors(samples: SlipSamples, law: SlipLaw) -> Iterator[None]:
     """Convert numerical failures within the context into a `FitError` that describes the data.
@@ -177,13 +201,14 @@ def _prepared(
     priors, correlation = with_stated(defaults, stated, fixed=fixed)
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
     starts = starting_points(posterior, rng)
-    modes = LaplaceMixture(find_modes(posterior.log_density, starts))
+    approximation = approximate(posterior.log_density, starts)
     tails: Mapping[float, float] = {}
     if noise == "student":
-        chosen = choose_tail(posterior, modes)
-        posterior, modes, tails = chosen.posterior, chosen.approximation, chosen.gain
+        chosen = choose_tail(posterior, approximation)
+        posterior, approximation, tails = chosen.posterior, chosen.approximation, chosen.gain
+    posterior, approximation = straightened(posterior, approximation, rng)
     fit = PreparedFit(
-        posterior, modes, None, choice, load_cell, rig_errors, defaults, stated, tails
+        posterior, approximation, None, choice, load_cell, rig_errors, defaults, stated, tails
     )
     return validated(fit, threads=threads) if validate else fit
 

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Laplace approximation: modes, covariances there, and importance sampling from them."""
+"""Laplace approximation: modes of a density, covariances there, and mixtures of the Gaussians."""
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
@@ -53,29 +51,37 @@ class Laplace:
 
 @dataclass(frozen=True)
 class LaplaceMixture:
-    """A mixture of Student-t distributions with 8 degrees of freedom, one at each mode.
+    """A mixture of Student-t distributions with 8 degrees of freedom, at modes and in tails.
 
     Attributes:
-        modes: Laplace approximations, m of them in d coordinates, whose modes and covariances (as
-            scale matrices) are used.
+        modes: Laplace approximations in d coordinates, whose modes and covariances (as scale
+            matrices) are used.
+        tails: Gaussians in tails that reach farther than those at the modes, with the log density
+            at their centres.
     """
 
     modes: tuple[Laplace, ...]
+    tails: tuple[Laplace, ...] = ()
+
+    @property
+    def parts(self) -> tuple[Laplace, ...]:
+        """All Gaussians of the mixture, those at the modes first."""
+        return (*self.modes, *self.tails)
 
     @cached_property
     def weights(self) -> Array:
-        """Weights of the modes by evidence, at least about a tenth of an equal share, (m,) [-]."""
-        evidence = np.array([laplace.log_evidence() for laplace in self.modes])
+        """Weights of the parts by evidence, at least about a tenth of an equal share [-]."""
+        evidence = np.array([laplace.log_evidence() for laplace in self.parts])
         share = np.exp(evidence - evidence.max())
         share = np.maximum(share / share.sum(), 0.1 / len(share))
         return share / share.sum()
 
     @cached_property
-    def _parts(self) -> list[Any]:
+    def _distributions(self) -> list[Any]:
         from scipy.stats import multivariate_t  # late: takes longest of all to import
 
         frozen: Any = multivariate_t  # scipy's stub has the covariance as an int
-        return [frozen(laplace.mode, laplace.covariance, df=8) for laplace in self.modes]
+        return [frozen(laplace.mode, laplace.covariance, df=8) for laplace in self.parts]
 
     def draw(self, n: int, *, rng: np.random.Generator) -> Array:
         """Draw coordinates from the mixture.
@@ -90,15 +96,15 @@ class LaplaceMixture:
         counts = rng.multinomial(n, self.weights)
         parts = [
             np.reshape(part.rvs(size=count, random_state=rng), (count, -1))
-            for part, count in zip(self._parts, counts, strict=True)
+            for part, count in zip(self._distributions, counts, strict=True)
             if count
         ]
         return rng.permutation(np.concatenate(parts))
 
     def log_pdf(self, z: Array) -> Array:
         """Compute the mixture's log density at coordinates z of shape (w, d), shape (w,)."""
-        parts = np.stack([np.reshape(part.logpdf(z), len(z)) for part in self._parts], axis=1)
-        return np.asarray(logsumexp(parts + np.log(self.weights), axis=1))
+        each = [np.reshape(part.logpdf(z), len(z)) for part in self._distributions]
+        return np.asarray(logsumexp(np.stack(each, axis=1) + np.log(self.weights), axis=1))
 
 
 def gradient(log_density: LogDensity, z: Array) -> Array:
@@ -112,6 +118,23 @@ def gradient(log_density: LogDensity, z: Array) -> Array:
         Gradient, shape (d,); not finite where a step leaves the support.
     """
     return _value_and_gradient(log_density, z)[1]
+
+
+def gradients(log_density: LogDensity, points: Array) -> Array:
+    """Compute the gradients at several points by central differences, in one batched call.
+
+    Args:
+        log_density: Log density of points, shape (w, d) to (w,).
+        points: Coordinates of the points, shape (m, d).
+
+    Returns:
+        Gradients, shape (m, d); not finite where a step leaves the support.
+    """
+    m, d = points.shape
+    steps = STEP * np.concatenate([np.eye(d), -np.eye(d)])
+    both = log_density((points[:, None] + steps).reshape(-1, d)).reshape(m, 2, d)
+    with np.errstate(invalid="ignore"):  # infinities across the edge of the support
+        return (both[:, 0] - both[:, 1]) / (2 * STEP)
 
 
 def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array]:
@@ -239,7 +262,7 @@ def _climb(log_density: LogDensity, start: Array, covariance: Array | None = Non
     """
     z = start
     for _ in range(ROUNDS):
-        scaling = _covariance(log_density, z) if covariance is None else covariance
+        scaling = covariance_at(log_density, z) if covariance is None else covariance
         z, ended = _climb_scaled(log_density, z, scaling)
         if ended:
             break
@@ -273,7 +296,7 @@ def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array
 
     It ends when neither a whole step nor 0.5, 0.25 or 0.1 of one raises the log density.
     """
-    covariance = _covariance(log_density, z)
+    covariance = covariance_at(log_density, z)
     for _ in range(steps):
         slope = gradient(log_density, z)
         move = covariance @ np.where(np.isfinite(slope), slope, 0.0)
@@ -282,12 +305,12 @@ def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array
         if heights[1:].max() <= heights[0]:
             break
         z = trials[np.argmax(heights[1:])]
-        covariance = _covariance(log_density, z)
+        covariance = covariance_at(log_density, z)
     return z, covariance
 
 
-def _covariance(log_density: LogDensity, z: Array) -> Array:
-    """Invert the negative Hessian at z, with the covariance's eigenvalues within (0, 1].
+def covariance_at(log_density: LogDensity, z: Array) -> Array:
+    """Invert the negative Hessian at z, (d,), with the covariance's eigenvalues within (0, 1].
 
     Coordinates are standard normal a priori and data only narrow them. An eigenvalue of the
     precision below 1 is therefore a non-convexity of the density or a difference across the edge of
@@ -297,102 +320,3 @@ def _covariance(log_density: LogDensity, z: Array) -> Array:
     precision = np.where(np.isfinite(precision), precision, 0.0)
     eigenvalues, vectors = np.linalg.eigh(precision)
     return (vectors / np.maximum(eigenvalues, 1.0)) @ vectors.T
-
-
-@dataclass(frozen=True)
-class WeightedDraws:
-    """Draws with importance weights.
-
-    Attributes:
-        z: Coordinates, shape (n, d).
-        weights: Pareto-smoothed weights, with sum one, shape (n,).
-        pareto_k: Tail index of the raw weights; above 0.7 the weights are not reliable [-].
-        log_density: Log posterior density up to a constant, shape (n,).
-    """
-
-    z: Array
-    weights: Array
-    pareto_k: float
-    log_density: Array
-
-    @property
-    def effective_size(self) -> float:
-        """Kish's effective sample size, that of as many draws of equal weight [-]."""
-        return float(1 / np.sum(self.weights**2))
-
-    def part(self, chosen: slice) -> "WeightedDraws":
-        """Return a part of the draws as if it were all, its weights with sum one.
-
-        Args:
-            chosen: Which draws, at least one.
-        """
-        weights = self.weights[chosen]
-        return WeightedDraws(
-            self.z[chosen], weights / weights.sum(), self.pareto_k, self.log_density[chosen]
-        )
-
-    def resampled(self, n: int, *, rng: np.random.Generator) -> NDArray[np.intp]:
-        """Resample draws by their weights, with replacement; return their indices, shape (n,).
-
-        Args:
-            n: Number of draws.
-            rng: Source of randomness.
-        """
-        return rng.choice(len(self.z), size=n, p=self.weights)
-
-    def resample(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Resample draws by their importance weights, with replacement, to equally weighted ones.
-
-        Args:
-            n: Number of draws.
-            rng: Source of randomness.
-
-        Returns:
-            Coordinates, shape (n, d).
-        """
-        return self.z[self.resampled(n, rng=rng)]
-
-
-def importance_draws(
-    log_density: LogDensity,
-    proposal: LaplaceMixture,
-    *,
-    n: int,
-    rng: np.random.Generator,
-    threads: int = 1,
-) -> WeightedDraws:
-    """Draw from a mixture of Laplace approximations and weight the draws by the posterior.
-
-    Pareto-smoothed importance sampling (Vehtari et al. 2024), a check of the sampler. Draws outside
-    the support have practically no weight; at least one has to lie inside.
-
-    Args:
-        log_density: Log density of coordinates (w, d), -inf out of support.
-        proposal: The mixture to draw from.
-        n: Number of draws.
-        rng: Source of randomness.
-        threads: Number of batches of draws whose density is computed at once.
-    """
-    z = proposal.draw(n, rng=rng)
-    with ThreadPoolExecutor(threads) as pool:
-        density = np.concatenate(list(pool.map(log_density, np.array_split(z, n // 64 + 1))))
-    ratio = density - proposal.log_pdf(z)
-    ratio = np.where(np.isfinite(ratio), ratio, -1e6 + ratio[np.isfinite(ratio)].max())
-    log_weights, pareto_k = pareto_smoothed(ratio)
-    weights = np.exp(log_weights)
-    return WeightedDraws(z, weights / weights.sum(), pareto_k, density)
-
-
-def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:
-    """Smooth the largest importance ratios by a generalised Pareto tail (Vehtari et al. 2024).
-
-    Args:
-        log_ratio: Logarithms of the raw ratios, shape (n,).
-
-    Returns:
-        Logarithms of the weights, whose sum is one, shape (n,), and the tail index of the ratios.
-    """
-    import arviz as az  # late: takes seconds to import
-
-    smoothed, pareto_k = az.psislw(log_ratio)
-    return np.asarray(smoothed, dtype=float), float(pareto_k)

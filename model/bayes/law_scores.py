@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.fit import CLEAR_WIN, PreparedFit
-from model.bayes.left_out import LeftOut, leave_out, weighted_draws
+from model.bayes.left_out import DRAWS, ENOUGH, LeftOut, leave_out
 from model.bayes.residuals import load_levels, nearest_level
+from model.bayes.weighted import weighted_draws
 from model.errors import InsufficientData
 from model.slip.law import Array, SlipLaw
 
@@ -143,7 +144,7 @@ def score_law(
             "laws are compared by runs that are left out, and these data are one run; expected two "
             "at least: name one law, or separate the data into runs ([runs] in columns.toml)"
         )
-    draws = weighted_draws(posterior, approximation, rng=rng)
+    draws = weighted_draws(posterior.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=rng)
 
     def predicted(group: NDArray[np.intp]) -> LeftOut:
         return leave_out(

@@ -10,19 +10,14 @@ from scipy.special import logsumexp
 
 from model.bayes.convergence import MAX_PARETO_K
 from model.bayes.cross_validation import MAX_SINGLE_FOLDS, N_GROUPED_FOLDS
-from model.bayes.laplace import (
-    Laplace,
-    LaplaceMixture,
-    WeightedDraws,
-    find_modes,
-    importance_draws,
-    pareto_smoothed,
-)
+from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import SlipPosterior
+from model.bayes.tails import approximate
+from model.bayes.weighted import WeightedDraws, pareto_smoothed, weighted_draws
 from model.slip.law import Array
 
-DRAWS = 2_000
-ADAPTATIONS = 3  # proposals that are tried for a posterior far from Gaussian
+DRAWS = 2_000  # of a posterior, at first
+ENOUGH = 200.0  # effective draws of the posterior without a group
 _NEGLIGIBLE = 1e-12  # weight of a draw that is left out
 
 
@@ -120,48 +115,11 @@ def _refit(
     Returns them, shape (runs left out,), and the tail index of the weights of the draws.
     """
     without = posterior.without_runs(left_out)
-    approximation = LaplaceMixture(find_modes(without.log_density, starts))
-    draws = weighted_draws(without, approximation, rng=rng)
+    approximation = approximate(without.log_density, starts)
+    draws = weighted_draws(without.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=rng)
     likely = draws.weights > _NEGLIGIBLE
     valid = likely & np.isfinite(posterior.log_prior(draws.z))
     used = valid if valid.any() else likely
     density = posterior.without_runs(~left_out).run_log_likelihood(draws.z[used])
     weights = np.log(draws.weights[used] / draws.weights[used].sum())
     return np.asarray(logsumexp(weights[:, None] + density, axis=0)), draws.pareto_k
-
-
-def weighted_draws(
-    posterior: SlipPosterior, approximation: LaplaceMixture, *, rng: np.random.Generator
-) -> WeightedDraws:
-    """Draw from a posterior with importance weights, also where it is far from Gaussian.
-
-    While the weights of draws from the Laplace approximations are not reliable, a distribution with
-    the mean and covariance of the weighted draws joins them, at most `ADAPTATIONS` times.
-
-    Args:
-        posterior: The posterior.
-        approximation: Its Laplace approximations.
-        rng: Source of randomness.
-
-    Returns:
-        The draws with the smallest tail index of those tried.
-    """
-    best = importance_draws(posterior.log_density, approximation, n=DRAWS, rng=rng)
-    latest = best
-    for _ in range(ADAPTATIONS):
-        if best.pareto_k < MAX_PARETO_K:
-            break
-        approximation = LaplaceMixture((*approximation.modes, _gaussian(posterior, latest)))
-        latest = importance_draws(posterior.log_density, approximation, n=DRAWS, rng=rng)
-        best = min(best, latest, key=lambda each: each.pareto_k)
-    return best
-
-
-def _gaussian(posterior: SlipPosterior, draws: WeightedDraws) -> Laplace:
-    """Return a Gaussian with the mean and covariance of weighted draws, in a `Laplace`."""
-    mean = draws.weights @ draws.z
-    away = draws.z - mean
-    covariance = (draws.weights[:, None] * away).T @ away + 1e-6 * np.eye(len(mean))
-    height = float(posterior.log_density(mean[None])[0])
-    at = max(height, float(posterior.log_density(draws.z[None, np.argmax(draws.weights)])[0]))
-    return Laplace(mean, covariance, at)

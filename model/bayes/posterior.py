@@ -13,6 +13,7 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import NUISANCE, predict_blocks, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.bayes.rig_errors import USUAL, RigErrors
+from model.bayes.shear import Shear
 from model.bayes.stated_priors import PriorCorrelation
 from model.bayes.student import student_log_likelihood
 from model.slip.law import Array, Parameter, SlipLaw
@@ -108,6 +109,8 @@ class SlipPosterior:
     prior maps to the value; it is z, or for parameters that are correlated a priori the mixture of
     several z that has this correlation.
 
+    With a shear z are straightened coordinates: those independent a priori are `shear.sheared(z)`.
+
     Shapes: w points, d free parameters, k parameters of the law.
 
     Attributes:
@@ -117,6 +120,7 @@ class SlipPosterior:
         fixed: Value of each parameter that is not sampled, by name.
         correlation: Correlation of the parameters' own coordinates a priori; None without one.
         tail: Degrees of freedom of the noise's Student-t; infinite for Gaussian noise [-].
+        shear: Shear of the coordinates, of the same d; None without one.
     """
 
     blocks: SlipBlocks
@@ -125,6 +129,7 @@ class SlipPosterior:
     fixed: Mapping[str, float] = field(default_factory=dict)
     correlation: PriorCorrelation | None = None
     tail: float = math.inf
+    shear: Shear | None = None
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -138,11 +143,19 @@ class SlipPosterior:
 
     def own_coordinates(self, z: Array) -> Array:
         """Map coordinates z (..., d) to each parameter's own one, standard normal a priori."""
-        return z if self.correlation is None else z @ self._roots[0]
+        return self._own(self.prior_coordinates(z))
+
+    def prior_coordinates(self, z: Array) -> Array:
+        """Map coordinates z (..., d) to those that are independent standard normal a priori."""
+        return z if self.shear is None else self.shear.sheared(z)
+
+    def _own(self, independent: Array) -> Array:
+        """Map coordinates that are independent a priori, (..., d), to the own ones."""
+        return independent if self.correlation is None else independent @ self._roots[0]
 
     @cached_property
     def _roots(self) -> tuple[Array, Array]:
-        """Symmetric matrix that maps z to the own coordinates, and its inverse, (d, d) each."""
+        """Symmetric matrix from independent to own coordinates, and its inverse, (d, d) each."""
         if self.correlation is None:
             return np.eye(len(self.free)), np.eye(len(self.free))
         names = [p.name for p in self.free]
@@ -155,10 +168,14 @@ class SlipPosterior:
 
     def values(self, z: Array) -> Array:
         """Map coordinates z (w, d) to values of all parameters, fixed ones too, (w, k + 12)."""
-        columns = iter(np.moveaxis(self.own_coordinates(z), -1, 0))
+        return self._values(self.prior_coordinates(z))
+
+    def _values(self, independent: Array) -> Array:
+        """Map coordinates that are independent a priori to values of all parameters."""
+        columns = iter(np.moveaxis(self._own(independent), -1, 0))
         return np.stack(
             [
-                np.full(z.shape[:-1], self.fixed[p.name])
+                np.full(independent.shape[:-1], self.fixed[p.name])
                 if p.name in self.fixed
                 else self.priors[p.name].value(next(columns))
                 for p in self.parameters
@@ -179,22 +196,26 @@ class SlipPosterior:
             ],
             dtype=float,
         )
-        if self.correlation is None:
-            return own
         with np.errstate(invalid="ignore"):  # infinite outside the support
-            return own @ self._roots[1]
+            y = own if self.correlation is None else own @ self._roots[1]
+            return y if self.shear is None else self.shear.straightened(y)
 
     def log_prior(self, z: Array) -> Array:
         """Compute the log prior density at z (w, d), shape (w,).
 
         -inf where the law is not valid (see `SlipLaw.valid`) at one of the loads of `_check_loads`.
         """
-        k = len(self.law.parameters)
         with np.errstate(all="ignore"):  # an optimiser may try coordinates beyond any number
-            law_values = self.values(z)[:, :k].T[:, :, None]
-            valid = np.all(self.law.valid(self._check_loads, law_values), axis=-1)
-        log_density = -0.5 * np.sum(z**2 + np.log(2 * np.pi), axis=1)
-        return np.where(valid, log_density, -np.inf)
+            return self._prior_and_values(z)[0]
+
+    def _prior_and_values(self, z: Array) -> tuple[Array, Array]:
+        """Compute the log prior density (w,) and the values (w, k + 12) at z (w, d)."""
+        independent = self.prior_coordinates(z)
+        values = self._values(independent)
+        law_values = values[:, : len(self.law.parameters)].T[:, :, None]
+        valid = np.all(self.law.valid(self._check_loads, law_values), axis=-1)
+        log_density = -0.5 * np.sum(independent**2 + np.log(2 * np.pi), axis=1)
+        return np.where(valid, log_density, -np.inf), values
 
     def log_density(self, z: Array) -> Array:
         """Compute the log posterior density at z, up to a constant.
@@ -205,11 +226,11 @@ class SlipPosterior:
         Returns:
             Log density, shape (w,); -inf out of support, never NaN.
         """
-        log_density = self.log_prior(z)
-        inside = np.isfinite(log_density)
-        if inside.any():
-            with np.errstate(all="ignore"):
-                log_density[inside] += self.run_log_likelihood(z[inside]).sum(axis=1)
+        with np.errstate(all="ignore"):  # an optimiser may try coordinates beyond any number
+            log_density, values = self._prior_and_values(z)
+            inside = np.isfinite(log_density)
+            if inside.any():
+                log_density[inside] += self.run_log_likelihood_of(values[inside]).sum(axis=1)
         return np.where(np.isfinite(log_density), log_density, -np.inf)
 
     def run_log_likelihood(self, z: Array) -> Array:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp
 
-from model.bayes.laplace import LaplaceMixture, find_modes
+from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import SlipPosterior
 from model.bayes.student import TAILS
+from model.bayes.tails import approximate
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def choose_tail(posterior: SlipPosterior, approximation: LaplaceMixture) -> Tail
     starts = np.stack([laplace.mode for laplace in approximation.modes])
     for tail in sorted(TAILS, reverse=True):
         own = replace(posterior, tail=tail)
-        found[tail] = own, LaplaceMixture(find_modes(own.log_density, starts))
+        found[tail] = own, approximate(own.log_density, starts)
         starts = np.stack([laplace.mode for laplace in found[tail][1].modes])
     gain = {tail: _log_evidence(modes) - gauss for tail, (_, modes) in found.items()}
     best = max(gain, key=lambda tail: gain[tail])

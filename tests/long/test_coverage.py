@@ -28,10 +28,11 @@ import pytest
 
 from model.bayes.blocks import block_means
 from model.bayes.fit import prepare_fit
-from model.bayes.laplace import LaplaceMixture, find_mode, importance_draws
+from model.bayes.laplace import LaplaceMixture, find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.rig_errors import USUAL
 from model.bayes.samples import SlipSamples
+from model.bayes.weighted import importance_draws
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
@@ -161,7 +162,7 @@ def replicate(seed: int) -> dict[str, Fit]:
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=PLAN, imperfections=truth, rng=rng)
     posterior, calibration = calibrate(sweep.samples, rng)
     errors = {name: getattr(truth, name) for name in ERRORS}
-    known = replace(posterior, fixed={**posterior.fixed, **errors})
+    known = replace(posterior, fixed={**posterior.fixed, **errors}, shear=None)
     fits = {CALIBRATION: calibration, KNOWN: refit(known, calibration.mode, n=N_DRAWS, rng=rng)}
     if seed >= N_INDEPENDENT:
         return fits

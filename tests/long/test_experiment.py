@@ -13,9 +13,9 @@ import pytest
 from scipy.stats import chi2
 
 from model.bayes.fit import prepare_fit
-from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.samples import SlipSamples
+from model.bayes.weighted import importance_draws
 from model.slip.definition import SlipDefinition
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.control import Control

@@ -23,10 +23,10 @@ from scipy.stats import chi2
 from model.bayes.convergence import Convergence, assess
 from model.bayes.estimate import Agreement, Estimate, agreement, estimate, thin_draws
 from model.bayes.fit import PreparedFit, prepare_fit
-from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
+from model.bayes.weighted import importance_draws
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep

@@ -9,9 +9,9 @@ from model.bayes.calibration import Calibration, conclude
 from model.bayes.convergence import assess
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import prepare_fit
-from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.sampler import advance, start_chains
+from model.bayes.weighted import importance_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep

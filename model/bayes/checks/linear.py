@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 r"""Score tests: would one more term in the model of the data explain what the fit leaves?
 
-Around the posterior's centre the model is linear: with L the Cholesky factor of the covariance of
-the block means, J the derivative of their prediction by the d fitted coordinates z, and
-z ~ N(0, 1) a priori,
+Around the posterior's centre the model is linear: with F the measured block means, L the Cholesky
+factor of their covariance, f their prediction, J its derivative by the d fitted coordinates z, and
+y(z) ~ N(0, 1) a priori with the derivative Y (y is z itself unless z is straightened),
 
 .. math::
-    r = \begin{pmatrix} L^{-1}(y - f) \\ -\hat z \end{pmatrix}, \qquad
-    A = \begin{pmatrix} L^{-1} J \\ 1 \end{pmatrix}, \qquad
+    r = \begin{pmatrix} L^{-1}(F - f) \\ -y(\hat z) \end{pmatrix}, \qquad
+    A = \begin{pmatrix} L^{-1} J \\ Y \end{pmatrix}, \qquad
     D = \begin{pmatrix} L^{-1} t \\ 0 \end{pmatrix}
 
 of a further term a·t, t one force a block. What the fit could absorb is projected out of r and D,
@@ -121,8 +121,10 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
     factors = covariance_factors(blocks, every.slope[0], every.noise[0], values[0])
     residual = blocks.traction_force - predicted.force
     white = whiten(blocks, np.column_stack([residual, jacobian]), factors)
-    basis = np.linalg.qr(np.vstack([white[:, 1:], np.eye(d)]))[0]
-    right = np.append(white[:, 0], -centre)
+    prior = posterior.prior_coordinates(around)
+    prior_jacobian = (prior[1 : d + 1] - prior[d + 1 :]).T / (2 * STEP)
+    basis = np.linalg.qr(np.vstack([white[:, 1:], prior_jacobian]))[0]
+    right = np.append(white[:, 0], -prior[0])
     return Linearised(
         blocks,
         predicted,

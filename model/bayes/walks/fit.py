@@ -4,7 +4,7 @@
 Two walks cannot identify six offsets unless most of them are small. The prior therefore states
 that every leg has a small offset, and that perhaps one leg has a large offset, wrongly mounted or
 knocked before one walk. Each of these cases has its mode (`model.bayes.walks.modes`), around which
-draws are made and weighted (`model.bayes.walks.importance`), with steering and stride integrated
+draws are made and weighted (`model.bayes.adaptive`), with steering and stride integrated
 out (`model.bayes.walks.terms`). Paths alone often cannot identify the wrongly mounted leg; several
 cases then have similar weights.
 """
@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.walks.importance import WeightedCaseDraws, weighted_draws
+from model.bayes.adaptive import WeightedCaseDraws, adaptive_draws
 from model.bayes.walks.misfit import TrackedWalk, WalkMisfit
 from model.bayes.walks.modes import ModeSearch
 from model.bayes.walks.posterior import WalkPosterior, state_in
@@ -67,7 +67,7 @@ def fit_walks(
     modes = search.modes(progress=lambda done: report(0.05 + 0.25 * done))
     density = _Density(misfits, prior, threads)
     inner = [mode.within(WALKED) for mode in modes]
-    drawn = weighted_draws(inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done))
+    drawn = adaptive_draws(inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done))
     return WalkFit(density, drawn, tuple(walk.name for walk in walks), rng)
 
 

@@ -16,11 +16,12 @@ early, and the better of the two results is kept.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.walks.importance import Mode
+from model.bayes.adaptive import Mode
 from model.bayes.walks.misfit import WalkMisfit
 from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
 from model.robot import N_LEGS
@@ -38,6 +39,17 @@ SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets at which walks are
 FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets to which residuals are interpolated
 CLIMBED = 4  # largest number of cases that are optimised after the scans
 UNLIKELY = 8.0  # log evidence below the best at which a case is not optimised; margin for the scans
+
+
+@dataclass(frozen=True)
+class CaseMode(Mode):
+    """The posterior in one case as a Gaussian.
+
+    Attributes:
+        case: The wrongly mounted leg; None for no leg.
+    """
+
+    case: Case
 
 
 def _evidence(mode: Mode) -> float:
@@ -65,7 +77,7 @@ class ModeSearch:
         self.numbers = range(len(misfits)) if numbers is None else numbers
         self.ends = np.cumsum([misfit.size for misfit in misfits])
 
-    def modes(self, *, progress: Callable[[float], None]) -> list[Mode]:
+    def modes(self, *, progress: Callable[[float], None]) -> list[CaseMode]:
         """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
 
         Optimised are no wrongly mounted leg and the `CLIMBED` others of the largest log evidence
@@ -89,7 +101,7 @@ class ModeSearch:
                 modes[i] = min(tops, key=lambda top: self.cost(top.z, top.case))
         return modes
 
-    def _scan_at_rest(self) -> list[Mode]:
+    def _scan_at_rest(self) -> list[CaseMode]:
         """Estimate every case's Gaussian by a scan about the prior mode, in order of `all_cases`.
 
         At the mode of the first case the other parameters have already absorbed part of the effect
@@ -130,7 +142,7 @@ class ModeSearch:
         """
         return float((self.residuals(z[None], case)[0] ** 2).sum() + z @ z)
 
-    def climb(self, case: Case, z: Array) -> tuple[Mode, Array]:
+    def climb(self, case: Case, z: Array) -> tuple[CaseMode, Array]:
         """Find the mode of a case by Gauss-Newton with a line search, `MOST_MOVES` moves at most.
 
         Args:
@@ -162,7 +174,7 @@ class ModeSearch:
         evidence = -0.5 * (r @ r + z @ z) + 0.5 * np.linalg.slogdet(covariance)[1]
         return self._mode(case, z, covariance, float(evidence)), J
 
-    def scan(self, plain: Mode, J: Array) -> list[Mode]:
+    def scan(self, plain: CaseMode, J: Array) -> list[CaseMode]:
         """Estimate the Gaussian of every case by a scan over the offset of one leg at a time.
 
         Args:
@@ -197,7 +209,9 @@ class ModeSearch:
         walked = self.residuals(points, WrongLeg(leg))
         return np.stack([np.interp(FINE, SCANNED, column) for column in walked.T], axis=1)
 
-    def _scanned(self, case: WrongLeg, r: Array, J: Array, follow: NDArray[np.floating]) -> Mode:
+    def _scanned(
+        self, case: WrongLeg, r: Array, J: Array, follow: NDArray[np.floating]
+    ) -> CaseMode:
         """Compute the Gaussian of a case, with its evidence, from one leg's scan.
 
         Args:
@@ -222,10 +236,10 @@ class ModeSearch:
 
     def _mode(
         self, case: Case, z: Array, covariance: NDArray[np.floating], evidence: float
-    ) -> Mode:
+    ) -> CaseMode:
         """Build a mode; `evidence` is its log evidence without the case's prior probability."""
         log_probability = self.prior.log_probability(case, walks=len(self.misfits))
-        return Mode(case, z, np.asarray(covariance, dtype=float), evidence + log_probability)
+        return CaseMode(z, np.asarray(covariance, dtype=float), evidence + log_probability, case)
 
     def _linearised(self, z: Array, case: Case) -> tuple[Array, Array]:
         """Compute residuals (n,) at z (14,), and their Jacobian (n, 14) by central differences.

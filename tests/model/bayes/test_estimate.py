@@ -17,9 +17,9 @@ from model.bayes.estimate import (
     estimate,
     thin_draws,
 )
-from model.bayes.laplace import WeightedDraws
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.sampler import Chains
+from model.bayes.weighted import WeightedDraws
 from model.slip import Brush, CoulombStribeck, MagicFormula
 from model.slip.definition import SlipDefinition
 from model.slip.law import Parameter, SlipLaw

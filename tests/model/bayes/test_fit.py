@@ -371,7 +371,7 @@ def test_a_wrong_sign_is_said_before_a_fit_is_wasted():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("apart", "chosen"), [((0.4, 0.2), 1), ((0.0, 0.0), 0)])
+@pytest.mark.parametrize(("apart", "chosen"), [((0.6, 0.3), 1), ((0.0, 0.0), 0)])
 def test_sides_are_apart_where_left_out_runs_say_so(apart, chosen):
     law = SidedLaw(Brush(kinetic=True))
     slips = np.tile(

@@ -5,15 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from model.bayes.laplace import (
-    Laplace,
-    LaplaceMixture,
-    find_mode,
-    find_modes,
-    gradient,
-    hessian,
-    importance_draws,
-)
+from model.bayes.laplace import Laplace, LaplaceMixture, find_mode, find_modes, gradient, hessian
 from model.errors import FitError
 
 
@@ -166,65 +158,3 @@ def test_a_mixtures_density_is_that_of_its_draws(seed):
     assert cumulative[-1] == pytest.approx(1.0, abs=1e-3)
     drawn = mixture.draw(400, rng=rng)[:, 0]
     assert stats.kstest(drawn, lambda x: np.interp(x, grid, cumulative)).pvalue > 1e-4
-
-
-# --- importance sampling
-
-
-def test_weights_of_two_modes_are_those_of_the_density():
-    modes = LaplaceMixture(find_modes(two_hills, np.array([[-2.2], [2.3]])))
-    drawn = importance_draws(two_hills, modes, n=4000, rng=np.random.default_rng(6))
-    assert drawn.weights[drawn.z[:, 0] > 0].sum() == pytest.approx(0.75, abs=0.01)
-
-
-def test_weighted_draws_have_the_mean_and_spread_of_a_skewed_density():
-    def log_gamma(z):  # of log of a gamma variable: skewed to the left, mode at 0
-        return 6 * (z[:, 0] - np.exp(z[:, 0])) - 4.5 * (z[:, 1] - z[:, 0]) ** 2
-
-    exact_mean = stats.loggamma(6).mean() - np.log(6)
-    exact_sd = stats.loggamma(6).std()
-    laplace = find_mode(log_gamma, np.zeros((1, 2)))
-    assert laplace.mode[0] == pytest.approx(0.0, abs=1e-4)
-    drawn = importance_draws(
-        log_gamma, LaplaceMixture((laplace,)), n=20_000, rng=np.random.default_rng(0)
-    )
-    mean = drawn.weights @ drawn.z
-    sd = np.sqrt(drawn.weights @ (drawn.z - mean) ** 2)
-    assert mean == pytest.approx([exact_mean, exact_mean], abs=0.02)
-    assert sd == pytest.approx([exact_sd, np.hypot(exact_sd, 1 / 3)], rel=0.02)
-    assert drawn.weights.sum() == pytest.approx(1.0)
-    assert drawn.pareto_k < 0.5
-
-
-def test_a_density_far_wider_than_its_laplace_approximation_is_reported():
-    def cauchy(z):
-        return stats.cauchy.logpdf(z[:, 0], scale=0.2)
-
-    laplace = find_mode(cauchy, np.zeros((1, 1)))
-    drawn = importance_draws(
-        cauchy, LaplaceMixture((laplace,)), n=4000, rng=np.random.default_rng(1)
-    )
-    assert drawn.pareto_k > 0.7
-
-
-def test_draws_out_of_support_carry_no_weight():
-    laplace = find_mode(positive_only, np.array([[0.5]]))
-    wide = type(laplace)(laplace.mode, 4 * np.eye(1), laplace.log_density)
-    drawn = importance_draws(
-        positive_only, LaplaceMixture((wide,)), n=4000, rng=np.random.default_rng(2)
-    )
-    outside = drawn.z[:, 0] <= 0
-    assert outside.mean() > 0.1
-    np.testing.assert_array_equal(drawn.weights[outside], 0.0)
-    resampled = drawn.resample(20_000, rng=np.random.default_rng(3))
-    assert resampled.min() > 0
-    assert resampled.mean() == pytest.approx(21 / 20, rel=0.02)
-
-
-def test_the_same_generator_gives_the_same_draws():
-    modes = LaplaceMixture(find_modes(two_hills, np.array([[2.0]])))
-    one, same = (
-        importance_draws(two_hills, modes, n=500, rng=np.random.default_rng(4)) for _ in range(2)
-    )
-    np.testing.assert_array_equal(one.z, same.z)
-    np.testing.assert_array_equal(one.weights, same.weights)

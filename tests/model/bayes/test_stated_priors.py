@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """An earlier posterior as a prior gives what all data together give; a widened one less."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy import stats
 
 from model.bayes.checks.faults import NOISE
 from model.bayes.fit import PreparedFit, prepare_fit
-from model.bayes.laplace import hessian
+from model.bayes.laplace import LaplaceMixture, find_mode, hessian
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import BlockChoice
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Uniform
@@ -149,6 +150,13 @@ def drawn(fit: PreparedFit, n=20_000) -> dict[str, np.ndarray]:
     return {p.name: values[:, i] for i, p in enumerate(fit.posterior.parameters)}
 
 
+def unsheared(fit: PreparedFit) -> PreparedFit:
+    """Return a fit whose Gaussian is that of the coordinates without a shear."""
+    plain = replace(fit.posterior, shear=None)
+    mode = find_mode(plain.log_density, fit.laplace.mode[None])  # where a shear has its fixed point
+    return replace(fit, posterior=plain, approximation=LaplaceMixture((mode,)))
+
+
 CARRIED = ("slip_stiffness", "shape", "friction", "peak_slip_per_load", "gain_traction",
            "gain_normal", "bias_normal", "crosstalk")  # fmt: skip
 
@@ -177,7 +185,7 @@ def test_without_the_load_cell_s_correlations_the_halves_would_say_too_much():
 def test_a_widened_prior_gives_the_product_of_its_density_and_the_likelihood():
     data, widen = some_runs(1), 2.0
     earlier = EarlierPosterior(last_year(), widen, "last year")
-    fit = fitted(data, StatedPriors(earlier=earlier))
+    fit = unsheared(fitted(data, StatedPriors(earlier=earlier)))  # Gaussian in plain coordinates
     posterior = fit.posterior
     base = default_priors(THESIS_LAW, posterior.blocks, LoadCell())
     names = [p.name for p in posterior.free]

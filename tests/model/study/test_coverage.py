@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from model.bayes.walks.importance import Effort
 from model.errors import FitError
 from model.study import weighted_fit
 from model.study.coverage import (
@@ -41,7 +40,7 @@ def test_the_band_is_the_exact_binomial_one(n, share):
 
 def test_a_replicate_compares_every_parameter_with_its_truth(monkeypatch):
     monkeypatch.setattr(weighted_fit, "ENOUGH", 400.0)
-    monkeypatch.setattr(weighted_fit, "FURTHER", Effort(500, 400.0, 10))
+    monkeypatch.setattr("model.bayes.weighted.FURTHER_DRAWS", 500)
     study = CoverageStudy(design(), TRUE)
     found = coverage_replicate(study, Replicate(2, 5))
     assert found == coverage_replicate(study, Replicate(2, 5))

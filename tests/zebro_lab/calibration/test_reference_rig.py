@@ -17,10 +17,11 @@ from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
 from model.bayes.estimate import Agreement
 from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell
-from model.bayes.laplace import find_mode, importance_draws
+from model.bayes.laplace import find_mode
 from model.bayes.residuals import Residuals, analyse_residuals
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.verdict import Verdict, judge
+from model.bayes.weighted import importance_draws
 from model.slip.magic_formula import MagicFormula
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 
@@ -169,7 +170,7 @@ def test_virtual_rig_of_which_nothing_is_known_has_the_truth_near_its_mode(read)
              "curvature": 0.0, "radius_error": 0.0, "rolling_resistance": 0.0}  # fmt: skip
     best = dict(zip((p.name for p in posterior.parameters),
                     posterior.values(fit.laplace.mode[None])[0], strict=True))  # fmt: skip
-    held = replace(posterior, fixed={**posterior.fixed, **truth})
+    held = replace(posterior, fixed={**posterior.fixed, **truth}, shear=None)
     rest = find_mode(held.log_density, held.coordinates(best)[None]).mode
     values = dict(zip(best, held.values(rest[None])[0], strict=True))
     (there,) = posterior.log_density(posterior.coordinates(values)[None])

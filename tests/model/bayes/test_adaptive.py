@@ -4,21 +4,18 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.importance import Mode, weighted_draws
-from model.bayes.walks.prior import WrongLeg
+from model.bayes.adaptive import Mode, adaptive_draws
 
 D = 4
-CASES = (None, WrongLeg(1))
 
 
 def modes(log_evidence):
-    guesses = zip(CASES, log_evidence, strict=True)
-    return [Mode(case, np.zeros(D), np.eye(D), log) for case, log in guesses]
+    return [Mode(np.zeros(D), np.eye(D), log) for log in log_evidence]
 
 
 def drawn(log_density, *, log_evidence=(0.0, 0.0), seed=1):
     rng = np.random.default_rng(seed)
-    return weighted_draws(modes(log_evidence), log_density, rng=rng, progress=lambda _: None)
+    return adaptive_draws(modes(log_evidence), log_density, rng=rng, progress=lambda _: None)
 
 
 def test_a_gaussian_comes_back_from_a_wrong_start():
@@ -63,23 +60,23 @@ def kinked(z, case):
 
 
 def test_a_kink_comes_back_from_a_narrow_start():
-    narrow = [Mode(None, np.full(D, 0.3), 0.05 * np.eye(D), 0.0)]
+    narrow = [Mode(np.full(D, 0.3), 0.05 * np.eye(D), 0.0)]
     rng = np.random.default_rng(5)
     grid = rng.standard_normal((400_000, D))
     weight = np.exp(kinked(grid, None) + 0.5 * (grid**2).sum(axis=1))
     truth = weight @ grid / weight.sum()
-    result = weighted_draws(narrow, kinked, rng=rng, progress=lambda _: None)
+    result = adaptive_draws(narrow, kinked, rng=rng, progress=lambda _: None)
     assert 1 / (result.weight @ result.weight) > 60
     np.testing.assert_allclose(result.weight @ result.z, truth, atol=0.25)
 
 
 def test_bumps_around_draws_leave_the_weights_right(monkeypatch):
-    monkeypatch.setattr("model.bayes.walks.importance.PATIENCE", 1)
-    monkeypatch.setattr("model.bayes.walks.importance.ENOUGH", 1e9)
+    monkeypatch.setattr("model.bayes.adaptive.PATIENCE", 1)
+    monkeypatch.setattr("model.bayes.adaptive.ENOUGH", 1e9)
     density = lambda z, case: -0.5 * (z**2).sum(axis=1) + np.log(np.where(case == 1, 0.75, 0.25))  # noqa: E731
-    wide = [Mode(case, np.ones(D), 0.3 * np.eye(D), 0.0) for case in CASES]
+    wide = [Mode(np.ones(D), 0.3 * np.eye(D), 0.0) for _ in range(2)]
     results = [
-        weighted_draws(wide, density, rng=np.random.default_rng(seed), progress=lambda _: None)
+        adaptive_draws(wide, density, rng=np.random.default_rng(seed), progress=lambda _: None)
         for seed in range(8)
     ]
     shares = [result.weight[result.case == 1].sum() for result in results]

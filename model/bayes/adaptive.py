@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
-r"""Adaptive importance sampling of the posterior of walks, from the Gaussians at its modes.
+r"""Adaptive importance sampling of a posterior that is not Gaussian, from Gaussians at its modes.
 
-The posterior of a gait whose legs take over from each other at equal heights has a kink: a common
-offset or a longer arc lengthens the steps in one direction and has no effect in the opposite one.
-The posterior is therefore not Gaussian. In the first round draws are made from Student's t around
-each mode, in later rounds around the mean of the weighted draws of each case and around some of the
-draws. All draws are weighted by the posterior density over the proposal density of all rounds,
+Such is a slip law's where one parameter makes up for another along a curved ridge. That of walks
+has a kink: where legs take over from each other at equal heights, a common offset or a longer arc
+lengthens the steps in one direction and has no effect in the opposite one. It is also a mixture of
+cases, one for each leg that may be mounted wrongly.
+
+In the first round draws are made from Student's t around each mode, in later rounds around the mean
+of the weighted draws of each case and around some of the draws. All draws are weighted by the
+posterior density over the proposal density of all rounds,
 
 .. math::
     w_i \propto p(x_i) / \sum_k q_k(x_i) .
@@ -19,7 +22,6 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.spatial.distance import cdist
 
-from model.bayes.walks.prior import Case
 from model.slip.law import Array
 
 TAIL = 5  # degrees of freedom of the proposals
@@ -55,13 +57,11 @@ class Mode:
     """The posterior in one case as a Gaussian, in standard normal coordinates.
 
     Attributes:
-        case: The wrongly mounted leg; None for no leg.
         z: Mode or mean of the posterior in this case, shape (d,).
         covariance: Covariance of the posterior in this case, shape (d, d).
         log_evidence: Log of the case's prior probability times its evidence, up to a constant.
     """
 
-    case: Case
     z: Array
     covariance: Array
     log_evidence: float
@@ -80,16 +80,18 @@ class WeightedCaseDraws:
         z: Draws in standard normal coordinates, shape (n, d).
         case: Index of each draw's case among those that were sampled, shape (n,).
         weight: Weight of each draw, with sum one, shape (n,) [-].
+        log_density: Log posterior density at each draw up to a constant, shape (n,).
         log_proposal: Log proposal density at each draw up to a constant, shape (n,).
     """
 
     z: Array
     case: NDArray[np.intp]
     weight: Array
+    log_density: Array
     log_proposal: Array
 
 
-def weighted_draws(
+def adaptive_draws(
     modes: Sequence[Mode],
     log_density: Callable[[Array, NDArray[np.intp]], Array],
     *,
@@ -122,7 +124,7 @@ def weighted_draws(
         weight = _weights(log_p - log_q)
         progress(len(rounds) / effort.rounds)
         if 1 / (weight @ weight) >= effort.wanted or len(rounds) == effort.rounds:
-            return WeightedCaseDraws(z, case, weight, log_q)
+            return WeightedCaseDraws(z, case, weight, log_p, log_q)
         flat = _tempered(log_p - log_q)
         modes = _adapted(modes, z, case, flat)
         bumps = _around_modes(modes)

@@ -24,6 +24,7 @@ instead of counted. The engine's walks are kept in ZEBRO_LAB_SCRATCH, or where t
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from unittest import mock
@@ -31,7 +32,7 @@ from unittest import mock
 import numpy as np
 
 from benchmarks.accuracy.lab_walks import Bench, Scored, short
-from model.bayes.walks import importance, modes
+from model.bayes.walks import fit, modes
 from model.bayes.walks.misfit import middle
 from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.tilt import SD, MeasuredTilt, TiltMisfit
@@ -106,7 +107,7 @@ def straight(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
 
 def fast_walk(bench: Bench, fits: Sequence[int] = range(3)) -> Iterator[Scored]:
     """Predict the walk of one second a cycle alone, by few draws and no climbs of cases: quick."""
-    few = mock.patch.multiple(importance, MOST_ROUNDS=2)
+    few = mock.patch.multiple(fit, EFFORT=replace(fit.EFFORT, rounds=2))
     quick = mock.patch.multiple(modes, CLIMBED=0, SCANNED=np.radians(np.linspace(-12, 12, 5)))
     n = len(HALF_CIRCLES)
     for i in (2 + each for each in fits):

@@ -31,7 +31,7 @@ from model.bayes.rig_errors import (
     RigErrors,
     radius_ratio_sd,
 )
-from model.bayes.weighted import importance_draws
+from model.bayes.weighted import weighted_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import (
     BIAS_SD,
@@ -123,7 +123,7 @@ def _intervals(
     rng: np.random.Generator,
 ) -> Intervals:
     """Compute the intervals of the parameters in `truth` by importance weighted draws."""
-    weighted = importance_draws(posterior.log_density, modes, n=N_DRAWS, rng=rng)
+    weighted = weighted_draws(posterior.log_density, modes, n=N_DRAWS, rng=rng)
     names = [parameter.name for parameter in posterior.parameters]
     values = posterior.values(weighted.resample(RESAMPLED, rng=rng))
     held, score, half = {}, {}, {}

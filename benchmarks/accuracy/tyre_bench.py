@@ -33,7 +33,7 @@ from model.bayes.likelihood import predict_blocks
 from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import load_levels, nearest_level
 from model.bayes.rig_errors import RigErrors
-from model.bayes.weighted import importance_draws
+from model.bayes.weighted import weighted_draws
 from model.slip.law import Array, SlipLaw
 from model.slip.magic_formula import MagicFormula, magic_formula
 from model.slip.sided import SidedLaw
@@ -172,7 +172,7 @@ def chosen(data: RigData, choice: BlockChoice) -> tuple[str, PreparedFit]:
 def judged(name: str, data: RigData, fit: PreparedFit) -> str:
     """Return a line of the table: R², chi-square of the groups, and the verdict's own check."""
     posterior, rng = fit.posterior, np.random.default_rng(3)
-    weighted = importance_draws(posterior.log_density, fit.approximation, n=N_DRAWS, rng=rng)
+    weighted = weighted_draws(posterior.log_density, fit.approximation, n=N_DRAWS, rng=rng)
     z = weighted.resample(RESAMPLED, rng=rng)
     blocks = posterior.blocks
     force = predict_blocks(blocks, posterior.law, posterior.values(z)).force.mean(axis=0)

@@ -31,7 +31,7 @@ from model.bayes.estimate import Agreement
 from model.bayes.fit import prepare_fit, scaled_load_cell
 from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, Verdict, judge
-from model.bayes.weighted import importance_draws
+from model.bayes.weighted import weighted_draws
 from model.errors import ModelError
 from model.slip.law import Array
 from model.slip.magic_formula import MagicFormula
@@ -153,7 +153,7 @@ def judged(data: Data, *, seed: int = 1) -> Judged:
     except (ZebroLabError, ModelError) as error:
         return Judged(f"refused: {error}", None)
     posterior = fit.posterior
-    weighted = importance_draws(posterior.log_density, fit.approximation, n=2000, rng=rng)
+    weighted = weighted_draws(posterior.log_density, fit.approximation, n=2000, rng=rng)
     z = weighted.resample(DRAWS, rng=rng)
     values = posterior.values(z)
     verdict = judge(

@@ -48,10 +48,6 @@ class Effort:
     rounds: int
 
 
-FOR_WALKS = Effort(200, 150.0, 10)
-"""Rounds of walks, of which a draw costs tens of milliseconds."""
-
-
 @dataclass(frozen=True)
 class Mode:
     """The posterior in one case as a Gaussian, in standard normal coordinates.
@@ -97,7 +93,7 @@ def adaptive_draws(
     *,
     rng: np.random.Generator,
     progress: Callable[[float], None],
-    effort: Effort = FOR_WALKS,
+    effort: Effort,
 ) -> WeightedCaseDraws:
     """Draw weighted samples of the posterior by adaptive importance sampling.
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.bayes.adaptive import Effort, Mode, adaptive_draws
-from model.bayes.convergence import MAX_PARETO_K
+from model.bayes.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.laplace import LaplaceMixture, LogDensity
 from model.slip.law import Array
 
@@ -81,7 +81,7 @@ def weighted_draws(
     proposal: LaplaceMixture,
     *,
     n: int,
-    wanted: float,
+    wanted: float = MIN_ESS,
     rng: np.random.Generator,
     threads: int = 1,
 ) -> WeightedDraws:

@@ -32,7 +32,7 @@ from model.bayes.laplace import LaplaceMixture, find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.rig_errors import USUAL
 from model.bayes.samples import SlipSamples
-from model.bayes.weighted import importance_draws
+from model.bayes.weighted import weighted_draws
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
@@ -118,7 +118,7 @@ def conclude(
     rng: np.random.Generator,
     began: float,
 ) -> Fit:
-    weighted = importance_draws(in_chunks(posterior.log_density), modes, n=n, rng=rng)
+    weighted = weighted_draws(in_chunks(posterior.log_density), modes, n=n, rng=rng)
     values = posterior.values(weighted.resample(N_INTERVAL_DRAWS, rng=rng))
     read = quantities(values[:, : len(LAW_SYMBOLS)])
     ends = {name: np.quantile(draws, [0.05, 0.95]) for name, draws in read.items()}

@@ -26,7 +26,7 @@ from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.posterior import LoadCell
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
-from model.bayes.weighted import importance_draws
+from model.bayes.weighted import weighted_draws
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
@@ -131,9 +131,7 @@ def recover(seed: int, errors: RigErrors) -> Recovery:
         sweep.samples, THESIS_LAW, load_cell=LOAD_CELL, rig_errors=errors, rng=rng, validate=False
     )
     posterior = fit.posterior
-    weighted = importance_draws(
-        posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
-    )
+    weighted = weighted_draws(posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng)
     law_values = posterior.values(weighted.resample(IMPORTANCE_DRAWS, rng=rng))[:, : len(LAW)]
     miss = np.log(law_values).mean(axis=0) - np.log(TRUTH)
     covariance = np.cov(np.log(law_values), rowvar=False)

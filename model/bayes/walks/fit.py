@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.adaptive import WeightedCaseDraws, adaptive_draws
+from model.bayes.adaptive import Effort, WeightedCaseDraws, adaptive_draws
 from model.bayes.walks.misfit import TrackedWalk, WalkMisfit
 from model.bayes.walks.modes import ModeSearch
 from model.bayes.walks.posterior import WalkPosterior, state_in
@@ -26,6 +26,8 @@ from model.slip.law import Array
 from model.walk.traction import TractionTable
 
 Progress = Callable[[float], None]
+
+EFFORT = Effort(draws=200, wanted=150.0, rounds=10)  # a draw costs tens of milliseconds
 
 
 def fit_walks(
@@ -67,7 +69,9 @@ def fit_walks(
     modes = search.modes(progress=lambda done: report(0.05 + 0.25 * done))
     density = _Density(misfits, prior, threads)
     inner = [mode.within(WALKED) for mode in modes]
-    drawn = adaptive_draws(inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done))
+    drawn = adaptive_draws(
+        inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done), effort=EFFORT
+    )
     return WalkFit(density, drawn, tuple(walk.name for walk in walks), rng)
 
 

@@ -49,5 +49,5 @@ def test_a_program_is_walked_by_command_and_engine(rows):
     assert number == "1"
     assert float(path.split()[0]) < 1.5
     assert float(heading.split()[0]) < 2.0
-    assert float(finer.split()[0]) < 0.5
+    assert float(finer.split()[0]) < 1.0
     assert float(wrong_heading.split()[0]) > 2.0

@@ -4,9 +4,14 @@
 import numpy as np
 import pytest
 
-from model.bayes.adaptive import Mode, adaptive_draws
+from model.bayes.adaptive import Effort, Mode, adaptive_draws
 
 D = 4
+EFFORT = Effort(200, 150.0, 10)
+
+
+def ignored(_fraction):
+    """Take note of no progress."""
 
 
 def modes(log_evidence):
@@ -15,7 +20,9 @@ def modes(log_evidence):
 
 def drawn(log_density, *, log_evidence=(0.0, 0.0), seed=1):
     rng = np.random.default_rng(seed)
-    return adaptive_draws(modes(log_evidence), log_density, rng=rng, progress=lambda _: None)
+    return adaptive_draws(
+        modes(log_evidence), log_density, rng=rng, progress=ignored, effort=EFFORT
+    )
 
 
 def test_a_gaussian_comes_back_from_a_wrong_start():
@@ -65,7 +72,7 @@ def test_a_kink_comes_back_from_a_narrow_start():
     grid = rng.standard_normal((400_000, D))
     weight = np.exp(kinked(grid, None) + 0.5 * (grid**2).sum(axis=1))
     truth = weight @ grid / weight.sum()
-    result = adaptive_draws(narrow, kinked, rng=rng, progress=lambda _: None)
+    result = adaptive_draws(narrow, kinked, rng=rng, progress=ignored, effort=EFFORT)
     assert 1 / (result.weight @ result.weight) > 60
     np.testing.assert_allclose(result.weight @ result.z, truth, atol=0.25)
 
@@ -76,7 +83,9 @@ def test_bumps_around_draws_leave_the_weights_right(monkeypatch):
     density = lambda z, case: -0.5 * (z**2).sum(axis=1) + np.log(np.where(case == 1, 0.75, 0.25))  # noqa: E731
     wide = [Mode(np.ones(D), 0.3 * np.eye(D), 0.0) for _ in range(2)]
     results = [
-        adaptive_draws(wide, density, rng=np.random.default_rng(seed), progress=lambda _: None)
+        adaptive_draws(
+            wide, density, rng=np.random.default_rng(seed), progress=ignored, effort=EFFORT
+        )
         for seed in range(8)
     ]
     shares = [result.weight[result.case == 1].sum() for result in results]

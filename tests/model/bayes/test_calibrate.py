@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """From samples to a calibration: where the sampler is judged, and how it is stopped."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from model.bayes.calibrate import CHUNK, FitStopped, SamplerSettings, calibrate, next_look
 from model.bayes.posterior import LoadCell
+from model.errors import FitError
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
@@ -58,6 +61,18 @@ def test_a_fit_that_was_stopped_goes_on_to_the_same_calibration(samples, uninter
     np.testing.assert_array_equal(resumed.draws.flat, whole.draws.flat)
     assert [e.mean for e in resumed.parameters] == [e.mean for e in whole.parameters]
     assert whole.comparison is None
+
+
+def test_chains_of_another_posterior_are_not_gone_on_from(samples):
+    with pytest.raises(FitStopped) as stopped:
+        fitted(samples, Watcher(stop_at=4))
+    chains = stopped.value.chains
+    for wrong in (
+        replace(chains, log_density=chains.log_density + 0.1),
+        replace(chains, z=chains.z[..., 1:]),
+    ):
+        with pytest.raises(FitError, match=r"another posterior.*without --resume"):
+            fitted(samples, Watcher(), earlier=wrong)
 
 
 def test_a_fit_stopped_before_sampling_has_no_chains(samples):

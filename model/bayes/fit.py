@@ -8,16 +8,16 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from model.bayes.approximation import starting_points, straightened
 from model.bayes.blocks import SlipBlocks, block_means
 from model.bayes.checks.raw import opposed_runs
 from model.bayes.cross_validation import CrossValidation, cross_validate
 from model.bayes.laplace import Laplace, LaplaceMixture
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
+from model.bayes.preliminary import BlockChoice, choose_block_length
 from model.bayes.priors import Prior
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
-from model.bayes.shear import find_shear
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.bayes.tail_choice import choose_tail
 from model.bayes.tails import approximate
@@ -26,12 +26,9 @@ from model.slip.law import SlipLaw
 
 Noise: TypeAlias = Literal["gauss", "student"]
 
-FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 UNSTATED_GAIN_SD = 0.01  # of a load cell that nobody has weighed: cells, mounts and wiring differ
 MOST_OPPOSED = 0.9  # share of the runs that slip, from which it is the data's sign that is wrong
-PRIOR_DRAWS = 400
-PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
 CLEAR_WIN = 2.0  # standard errors by which a later law must predict better to be preferred
 
 
@@ -128,28 +125,6 @@ def prepare_fit(
         return _prepared(
             samples, law, load_cell, rig_errors, rng, block_choice, validate, threads, stated, noise
         )
-
-
-def straightened(
-    posterior: SlipPosterior, approximation: LaplaceMixture, rng: np.random.Generator
-) -> tuple[SlipPosterior, LaplaceMixture]:
-    """Shear the coordinates of a posterior with one mode that lies along a curved ridge.
-
-    Args:
-        posterior: The posterior.
-        approximation: Its Laplace approximations.
-        rng: Source of randomness of the points that the shear is fitted to.
-
-    Returns:
-        The same posterior in straightened coordinates, and its Laplace approximations there; both
-        as given where the posterior is straight or has several modes.
-    """
-    mode, *others = approximation.modes
-    shear = None if others else find_shear(posterior.log_density, mode, rng)
-    if shear is None:
-        return posterior, approximation
-    sheared = replace(posterior, shear=shear)
-    return sheared, approximate(sheared.log_density, mode.mode[None])
 
 
 @contextmanager
@@ -313,38 +288,6 @@ def not_identified(blocks: SlipBlocks) -> dict[str, float]:
         **(single if len(blocks) == blocks.n_runs else {}),
         **({} if erring else {"slip_error_scale": 1.0}),
     }
-
-
-def starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
-    """Choose starting points of the optimisation in coordinates z, shape (m, d).
-
-    Two are at the least-squares curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks 12 to
-    23 of 400 prior draws follow, evenly from the best to the worst within the support (fewer if it
-    has fewer than 12): few data allow several shapes, and one start finds one mode.
-
-    Args:
-        posterior: The posterior density.
-        rng: Source of randomness.
-
-    Raises:
-        FitError: No prior draw is valid at the measured loads, or a residual overflowed.
-    """
-    blocks, law = posterior.blocks, posterior.law
-    values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
-    force = law.force(blocks.slip, blocks.normal_force, values)
-    size = float(np.std(blocks.traction_force - force))
-    names = [parameter.name for parameter in law.parameters]
-    known = dict(zip(names, map(float, values), strict=True))
-    near = [
-        posterior.coordinates({**known, "noise_floor": size * share, "noise_slope": 0.01})
-        for share in (0.3, 1.0)
-    ]
-    if len(blocks) > FEW_BLOCKS:
-        return np.stack(near)
-    drawn = rng.standard_normal((PRIOR_DRAWS, len(posterior.free)))
-    heights = posterior.log_density(drawn)
-    ranked = drawn[np.argsort(-heights)][: np.isfinite(heights).sum()]
-    return np.vstack([*near, ranked[:: max(1, len(ranked) // PRIOR_STARTS)]])
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.bayes.approximation import starting_points, straightened
 from model.bayes.blocks import SlipBlocks
-from model.bayes.fit import starting_points, straightened
 from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import SlipPosterior
 from model.bayes.tails import approximate

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""Where searches for a slip posterior's modes start, and its straightening along a curved ridge."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from model.bayes.laplace import LaplaceMixture
+from model.bayes.posterior import SlipPosterior
+from model.bayes.preliminary import least_squares_values
+from model.bayes.shear import find_shear
+from model.bayes.tails import approximate
+
+FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
+PRIOR_DRAWS = 400
+PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
+
+
+def starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
+    """Choose starting points of the optimisation in coordinates z, shape (m, d).
+
+    Two are at the least-squares curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks 12 to
+    23 of 400 prior draws follow, evenly from the best to the worst within the support (fewer if it
+    has fewer than 12): few data allow several shapes, and one start finds one mode.
+
+    Args:
+        posterior: The posterior density.
+        rng: Source of randomness.
+
+    Raises:
+        FitError: No prior draw is valid at the measured loads, or a residual overflowed.
+    """
+    blocks, law = posterior.blocks, posterior.law
+    values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
+    force = law.force(blocks.slip, blocks.normal_force, values)
+    size = float(np.std(blocks.traction_force - force))
+    names = [parameter.name for parameter in law.parameters]
+    known = dict(zip(names, map(float, values), strict=True))
+    near = [
+        posterior.coordinates({**known, "noise_floor": size * share, "noise_slope": 0.01})
+        for share in (0.3, 1.0)
+    ]
+    if len(blocks) > FEW_BLOCKS:
+        return np.stack(near)
+    drawn = rng.standard_normal((PRIOR_DRAWS, len(posterior.free)))
+    heights = posterior.log_density(drawn)
+    ranked = drawn[np.argsort(-heights)][: np.isfinite(heights).sum()]
+    return np.vstack([*near, ranked[:: max(1, len(ranked) // PRIOR_STARTS)]])
+
+
+def straightened(
+    posterior: SlipPosterior, approximation: LaplaceMixture, rng: np.random.Generator
+) -> tuple[SlipPosterior, LaplaceMixture]:
+    """Shear the coordinates of a posterior with one mode that lies along a curved ridge.
+
+    Args:
+        posterior: The posterior.
+        approximation: Its Laplace approximations.
+        rng: Source of randomness of the points that the shear is fitted to.
+
+    Returns:
+        The same posterior in straightened coordinates, and its Laplace approximations there; both
+        as given where the posterior is straight or has several modes.
+    """
+    mode, *others = approximation.modes
+    shear = None if others else find_shear(posterior.log_density, mode, rng)
+    if shear is None:
+        return posterior, approximation
+    sheared = replace(posterior, shear=shear)
+    return sheared, approximate(sheared.log_density, mode.mode[None])

@@ -30,6 +30,7 @@ MOST_WIDE = 8  # directions that shift others
 LOOK = 1.5  # distance from the mode at which shifts are looked for [sd]
 BENT = 1.0  # shift there, over the narrow direction's sd, from which a posterior counts as curved
 CUBIC = 0.3  # the same, from which a direction has terms of third degree
+MOST_CUBIC = 4  # directions with such terms, those that shift most
 SPREAD = 1.2  # of the points that the polynomial is fitted to [sd]
 POINTS = 2.5  # of these for each term
 LIKELY = 15.0  # fall of log density up to which a point is used [nat]
@@ -106,7 +107,8 @@ def find_shear(log_density: LogDensity, mode: Laplace, rng: np.random.Generator)
     largest = np.abs(shifts).max(axis=1).reshape(2, m).max(axis=0)
     if largest.max() < BENT:
         return None
-    cubic = np.flatnonzero(largest > CUBIC).tolist()
+    most = np.argsort(-largest)[:MOST_CUBIC]
+    cubic = sorted(most[largest[most] > CUBIC].tolist())
     terms = (
         *combinations_with_replacement(range(m), 2),
         *combinations_with_replacement(cubic, 3),
@@ -157,20 +159,27 @@ class _Ridge:
         Returns:
             Narrow coordinates and log densities, shapes (k, n) and (k,).
         """
-        rows, n, step = np.arange(len(v)), s.shape[1], 1e-3
-        height = self.density(v, s[:, None])[:, 0]
-        differences = step * np.concatenate([np.eye(n), -np.eye(n)])
+        s, height = s.copy(), self.density(v, s[:, None])[:, 0]
+        moving = np.arange(len(v))
         for _ in range(STEPS):
-            ahead, behind = np.split(self.density(v, s[:, None] + differences), 2, axis=1)
-            with np.errstate(invalid="ignore"):  # infinities across the edge of the support
-                slope = (ahead - behind) / (2 * step)
-            moves = np.where(np.isfinite(slope), slope, 0.0)
-            trials = s[:, None] + moves[:, None] * SHARES[:, None]
-            heights = self.density(v, trials)
-            best = np.argmax(heights, axis=1)
-            with np.errstate(invalid="ignore"):
-                gain = heights[rows, best] - height
-            s, height = trials[rows, best], heights[rows, best]
-            if not np.nanmax(gain) > SETTLED:
+            found, top = self._step(v[moving], s[moving])
+            with np.errstate(invalid="ignore"):  # infinite outside the support
+                gain = top - height[moving]
+            s[moving], height[moving] = found, top
+            moving = moving[gain > SETTLED]
+            if len(moving) == 0:
                 break
         return s, height
+
+    def _step(self, v: Array, s: Array) -> tuple[Array, Array]:
+        """Make one damped Newton step of each point's narrow coordinates, as `settle`."""
+        rows, n, step = np.arange(len(v)), s.shape[1], 1e-3
+        differences = step * np.concatenate([np.eye(n), -np.eye(n)])
+        ahead, behind = np.split(self.density(v, s[:, None] + differences), 2, axis=1)
+        with np.errstate(invalid="ignore"):  # infinities across the edge of the support
+            slope = (ahead - behind) / (2 * step)
+        moves = np.where(np.isfinite(slope), slope, 0.0)
+        trials = s[:, None] + moves[:, None] * SHARES[:, None]
+        heights = self.density(v, trials)
+        best = np.argmax(heights, axis=1)
+        return trials[rows, best], heights[rows, best]

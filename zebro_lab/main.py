@@ -12,6 +12,7 @@ from zebro_lab.report import command as report
 from zebro_lab.runs import command as runs
 from zebro_lab.runs import plot_command
 from zebro_lab.study import command as study
+from zebro_lab.suggest import command as suggest
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.ending import run
 from zebro_lab.terminal.version import Version
@@ -44,6 +45,7 @@ app.command(epilog=track.EPILOG)(track.track)
 app.command(epilog=annotate_command.EPILOG)(annotate_command.annotate)
 app.command(epilog=doctor.EPILOG)(doctor.doctor)
 app.add_typer(camera.app, name="camera")
+rig.app.command(epilog=suggest.EPILOG)(suggest.suggest)
 app.add_typer(rig.app, name="rig")
 app.add_typer(simulate_command.app, name="sim")
 app.add_typer(study.app, name="study")

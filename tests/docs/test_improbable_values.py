@@ -15,6 +15,7 @@ from zebro_lab.robot.leg_gaps import LONGEST_BRIDGED
 from zebro_lab.robot.leg_log import LONGEST_TURN, LONGEST_WRAPPED
 from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.robot.robot_file import HEAVIEST, LARGEST
+from zebro_lab.suggest.request import HIGHEST_RATE, LONGEST_TIME
 from zebro_lab.tables.columns_file import LARGEST_LOAD_CELL_ERROR, LARGEST_RIG_ERROR
 from zebro_lab.tables.mapped_columns import INTERVALS
 from zebro_lab.track.photo_sequence import MOST_APART
@@ -34,6 +35,8 @@ LIMITS = {
     "`--slip coulomb:MU`": (MOST_FRICTION,),
     "lengths in `robot.toml`": (LARGEST,),
     "mass in `robot.toml`": (HEAVIEST,),
+    "`--time` of `rig suggest`": (LONGEST_TIME,),
+    "`--rate` of `rig suggest`": (HIGHEST_RATE,),
     "angles of a gait": (0, LEAST_DEG),
     "`--dt` with slip": (LONGEST_SLIPPING_STEP,),
     "`--dt` without slip": (LONGEST_STEP,),

@@ -45,6 +45,7 @@ REFUSED_TEXTS = {
     "KG,KG…": ("heavy", "1,nan", "1,-1", "0", ","),
     "A,B,C,D,E,F": ("a", "a,b,c,d,e,a", "a,b,c,d,e,"),
     "tcp://HOST:PORT": ("here", "127.0.0.1:8786", "http://here:1", "tcp://here:0"),
+    "TARGET": ("1", "force@", "force@0", "force@0.1:-1", "walk:"),
     "SLIP": ("coulomb:38", "coulomb:", "coulomb:nan", "coulomb:0.4:0", "coulomb:0.4:1:2"),
 }
 """Texts that options of a metavar refuse."""
@@ -53,6 +54,7 @@ REFUSED_TEXTS = {
 NEEDED_TOO = {
     "walk": {"--duration": "1", "--slip": "thesis"},
     "reach": {"--goal": "1,0", "--slip": "thesis"},
+    "suggest": {"--target": "friction"},
     "annotate": {"--photo": "a.jpg", "--corners": "1,1 2,1 2,2 1,2"},
 }
 """Options that are required by rules of a command, not of the parser."""

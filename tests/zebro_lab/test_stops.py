@@ -25,6 +25,7 @@ from support.command_tree import LEAVES, named
 from support.commands import COMMAND, started
 from support.compared_folders import calibration
 from support.experiment_plans import short_plan
+from support.made_studies import calibration_folder
 from support.other_labs import write_walk_tables
 from support.written_runs import make_run
 from zebro_lab.experiment.journal import read_journal
@@ -138,6 +139,9 @@ WORK = {
     "zebro-lab rig say": Work("status --data data"),
     "zebro-lab rig weigh": Work("--rig sim --fast --masses 0.2,1 --data weighed"),
     "zebro-lab rig check": Work("data/rig --slip one"),
+    "zebro-lab rig suggest": Work(
+        "plan.toml --calibration fitted --target slip_stiffness --rate 40 --time 300"
+    ),
     "zebro-lab sim zebro": SERVED,
     "zebro-lab sim rig": SERVED,
     "zebro-lab sim imu": SERVED,
@@ -172,6 +176,7 @@ def prepared(tmp_path_factory, sweep) -> Path:
     folder = tmp_path_factory.mktemp("prepared")
     calibration(folder / "one")
     calibration(folder / "other", friction=0.5)
+    calibration_folder(folder / "fitted")
     shutil.copytree(sweep, folder / "rig")
     shutil.copy(sweep / "sweep.csv", folder / "bench.csv")
     short_plan(folder)

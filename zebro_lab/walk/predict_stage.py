@@ -55,13 +55,13 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         ModelError: The walk cannot be computed.
     """
     settle(request.log)
-    request = _with_own_robot(request)
+    request = with_own_robot(request)
     out = prediction_folder(request)
     require_replaceable(out, WALKED["predict"], inputs=request.inputs)
-    described, is_walk = robot_of(request.model), _is_walk(request.log)
+    described, is_walk = robot_of(request.model), is_walk_folder(request.log)
     ground = ground_of(request.model)
     if is_walk:
-        described = _without_offsets(described)
+        described = without_offsets(described)
     log = read_leg_log(
         request.log, columns=request.columns, leg_sign=described.leg_sign,
         names=LegNames(joint_names(request.joints), request.topic),
@@ -100,19 +100,20 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     return walked
 
 
-def _with_own_robot(request: PredictRequest) -> PredictRequest:
+def with_own_robot(request: PredictRequest) -> PredictRequest:
+    """Return a request with the `robot.toml` of the run it reads, if it names no other."""
     own = request.log / ROBOT_FILE
     if request.model.robot is not None or not is_recorded(request.log) or not own.is_file():
         return request
     return replace(request, model=replace(request.model, robot=own))
 
 
-def _is_walk(log: Path) -> bool:
+def is_walk_folder(log: Path) -> bool:
     """Return whether leg angles are read from a walk folder: a folder or `path.csv`, no run."""
     return (log.is_dir() or log.name == PATH_CSV) and not (is_recorded(log) or is_ros_log(log))
 
 
-def _without_offsets(described: RobotFile) -> RobotFile:
+def without_offsets(described: RobotFile) -> RobotFile:
     """Return the robot with leg signs 1 and leg offsets 0: angles in a walk folder are exact."""
     robot = replace(described.robot, leg_offset=np.zeros(N_LEGS))
     return replace(described, robot=robot, leg_sign=(1,) * N_LEGS)

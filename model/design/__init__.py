@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Design of further rig runs: which slips, loads and durations tell most of a target."""

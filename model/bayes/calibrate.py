@@ -38,7 +38,7 @@ FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
 FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `max_steps` says
 DRAWS_PER_ENSEMBLE = 1000  # at most
 IMPORTANCE_DRAWS = 10_000
-EFFECTIVE_DRAWS = 1_000.0  # below, the weighted draws are adapted to the posterior
+EFFECTIVE_DRAWS = 2_000.0  # below, the weighted draws are adapted to the posterior
 FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 

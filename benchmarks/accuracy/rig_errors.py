@@ -24,7 +24,7 @@ from scipy.stats import binom
 
 from model.bayes.fit import prepare_fit
 from model.bayes.laplace import LaplaceMixture, find_mode
-from model.bayes.posterior import LoadCell, SlipPosterior
+from model.bayes.posterior import SlipPosterior
 from model.bayes.rig_errors import (
     RADIUS_TOLERANCE,
     ROLLING_RESISTANCE,
@@ -33,16 +33,10 @@ from model.bayes.rig_errors import (
 )
 from model.bayes.weighted import weighted_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.imperfections import (
-    BIAS_SD,
-    CROSSTALK_SD,
-    GAIN_SD,
-    RigImperfections,
-    draw_imperfections,
-)
+from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from zebro_lab.study.layout import TWIN_CELL
 
-CELL = LoadCell(zero_stability=0.1, gain_sd=GAIN_SD, bias_sd=BIAS_SD, crosstalk_sd=CROSSTALK_SD)
 LAW_NAMES = tuple(parameter.name for parameter in THESIS_LAW.parameters)
 TERMS = ("radius_error", "rolling_resistance")
 SLIPS = {True: np.linspace(0.0, 1.0, 62), False: np.linspace(-0.5, 0.5, 62)}
@@ -102,7 +96,7 @@ def fit_seed(
         rig = with_everything(rig, plan, rng)
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
     fit = prepare_fit(
-        sweep.samples, THESIS_LAW, load_cell=CELL, rig_errors=errors, rng=rng, validate=False
+        sweep.samples, THESIS_LAW, load_cell=TWIN_CELL, rig_errors=errors, rng=rng, validate=False
     )
     posterior = fit.posterior
     truth = dict(zip(LAW_NAMES, map(float, THESIS_VALUES), strict=True))

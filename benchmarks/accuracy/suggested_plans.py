@@ -25,7 +25,7 @@ from scipy.stats import binom
 
 from benchmarks.tables import print_table
 from model.bayes.fit import prepare_fit
-from model.bayes.posterior import LoadCell, SlipPosterior
+from model.bayes.posterior import SlipPosterior
 from model.bayes.rig_errors import (
     RADIUS_TOLERANCE,
     ROLLING_RESISTANCE,
@@ -39,19 +39,13 @@ from model.design.targets import Target, force_target, parameter_target
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.plan import Plan
-from rig.slip_rig.imperfections import (
-    BIAS_SD,
-    CROSSTALK_SD,
-    GAIN_SD,
-    RigImperfections,
-    draw_imperfections,
-)
+from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.study.layout import TWIN_CELL
 from zebro_lab.suggest.proposal import knowledge_of, most_slips, propose, seconds_of
 
 PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
-CELL = LoadCell(zero_stability=0.1, gain_sd=GAIN_SD, bias_sd=BIAS_SD, crosstalk_sd=CROSSTALK_SD)
 ERRORS = RigErrors(radius_ratio_sd(0.035, 0.12, RADIUS_TOLERANCE), ROLLING_RESISTANCE)
 SLIPS, LOAD = np.array([0.02, 0.05, 0.2]), 8.13
 RATE = SweepPlan().rate
@@ -105,7 +99,13 @@ def joined(one: SlipSamples, other: SlipSamples) -> SlipSamples:
 def fitted(samples: SlipSamples, rng: np.random.Generator) -> tuple[SlipPosterior, Array, float]:
     """Fit samples; return the posterior, equally weighted draws of z, and Pareto k of the draws."""
     fit = prepare_fit(
-        samples, THESIS_LAW, load_cell=CELL, rig_errors=ERRORS, rng=rng, validate=False, threads=1
+        samples,
+        THESIS_LAW,
+        load_cell=TWIN_CELL,
+        rig_errors=ERRORS,
+        rng=rng,
+        validate=False,
+        threads=1,
     )
     draws = weighted_draws(fit.posterior.log_density, fit.approximation, n=N_DRAWS, rng=rng)
     return fit.posterior, draws.resample(RESAMPLED, rng=rng), draws.pareto_k

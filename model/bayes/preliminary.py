@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from model.bayes.blocks import SlipBlocks, block_means, slip_noise_variance
+from model.bayes.blocks import SlipBlocks, block_means
 from model.bayes.priors import Prior
 from model.bayes.samples import SlipSamples
+from model.bayes.slip_noise import slip_noise_variance
 from model.errors import FitError
 from model.slip.law import Array, SlipLaw
 

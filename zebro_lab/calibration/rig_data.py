@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.blocks import slip_noise_variance
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
+from model.bayes.slip_noise import slip_noise_variance
 from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtr
 
-from model.bayes.blocks import slip_noise_variance
 from model.bayes.samples import SlipSamples
+from model.bayes.slip_noise import slip_noise_variance
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import Array, SlipLaw
 

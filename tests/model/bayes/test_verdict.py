@@ -315,7 +315,7 @@ def test_failed_fit_keeps_its_weak_parameters_in_the_headline():
 def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) -> Verdict:
     """Fit a simulated sweep of one set-point a run by the second engine and judge it."""
     rng = np.random.default_rng(seed)
-    plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.9, 12) ** 1.5), loads=(4.0, 12.0), rate=100.0)
+    plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.9, 14) ** 1.5), loads=(4.0, 12.0), rate=100.0)
     rig = replace(TYPICAL_RIG, offset_sd=offset_sd)
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
     fit = prepare_fit(

@@ -40,7 +40,7 @@ from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
 pytestmark = pytest.mark.long
 
 N_REPLICATES = 100
-N_INDEPENDENT = 40  # of them; its fit costs four times the others, and is nowhere near its limit
+N_INDEPENDENT = 15  # of them; its fit costs four times the others, and is nowhere near its limit
 RHO = 0.98
 PLAN = SweepPlan(duration=4.0, rate=1000.0)
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)

@@ -131,8 +131,9 @@ def _suspected(found: list[Found]) -> tuple[Found, ...]:
 
 
 def _explained(fit: Linearised, suspected: tuple[Found, ...]) -> Array:
-    """Return the force of the best term where it is beyond chance, shape (n,) [N]."""
+    """Return what the best term explains beside the fit where it is beyond chance, (n,) [N]."""
     if suspected and suspected[0].term.p < TERM_P:
         best = suspected[0]
-        return best.term.size * {**ZERO, **SIDES, **TIME, **LOAD}[best.name].force(fit)
+        force = {**ZERO, **SIDES, **TIME, **LOAD}[best.name].force(fit)
+        return best.term.size * fit.beyond_fit(force)
     return np.zeros(len(fit.blocks))

@@ -15,7 +15,7 @@ and a = D·r/|D|^2 with the variance 1/|D|^2. That is the estimate a full fit wi
 give, at the cost of a few predictions.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -25,9 +25,10 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import PredictedForces, predict_blocks
 from model.bayes.posterior import SlipPosterior
 from model.bayes.residuals import covariance_factors
-from model.slip.law import Array
+from model.slip.law import Array, SlipLaw
 
 STEP = 1e-3  # of a coordinate, whose prior has unit scale
+SLIP_STEP = 1e-5  # of the slip ratio
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,9 @@ class Linearised:
     Attributes:
         blocks: The block means, n of them.
         predicted: Predictions at the centre, arrays of shape (n,).
+        per_slip: Derivative of the predicted force by a shift of all slip, shape (n,) [N]. It is
+            not `predicted.slope`, the slope across the spread of slip: where the curve is bent
+            the two differ, and a fitted shift moves the force by this.
         residual: Measured minus predicted traction, shape (n,) [N].
         factors: Lower Cholesky factor of each run's covariance [N].
         basis: Orthonormal basis of the columns of A, shape (n + d, d) [-].
@@ -67,6 +71,7 @@ class Linearised:
 
     blocks: SlipBlocks
     predicted: PredictedForces
+    per_slip: Array
     residual: Array
     factors: list[Array]
     basis: Array
@@ -79,6 +84,12 @@ class Linearised:
         white = whiten(self.blocks, terms, self.factors)
         padded = np.vstack([white, np.zeros((self.basis.shape[1], terms.shape[1]))])
         return padded - self.basis @ (self.basis.T @ padded)
+
+    def beyond_fit(self, term: Array) -> Array:
+        """Return a term, shape (n,) [N], less what the fit would absorb of it, shape (n,) [N]."""
+        left = self.project(term[:, None])[: len(self.blocks), 0]
+        parts = np.split(left, self.blocks.run_starts()[1:-1])
+        return np.concatenate([L @ part for L, part in zip(self.factors, parts, strict=True)])
 
     def test(self, term: Array) -> Term:
         """Estimate the multiple of a term, shape (n,) [N], that the data ask for beside the fit.
@@ -128,6 +139,7 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
     return Linearised(
         blocks,
         predicted,
+        _per_slip(blocks, law, values[:1]),
         residual,
         factors,
         basis,
@@ -135,6 +147,15 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
         values[0],
         centre,
     )
+
+
+def _per_slip(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
+    """Compute the derivative of predicted force by a shift of all slip, shape (n,) [N]."""
+    above, below = (
+        predict_blocks(replace(blocks, slip=blocks.slip + step), law, values).force[0]
+        for step in (SLIP_STEP, -SLIP_STEP)
+    )
+    return (above - below) / (2 * SLIP_STEP)
 
 
 def whiten(blocks: SlipBlocks, columns: Array, factors: list[Array]) -> Array:

@@ -72,7 +72,7 @@ def _log_load(fit: Linearised) -> Array:
 
 def _definition_change(fit: Linearised) -> Array:
     """Return the change of force where slip is in another definition, to first order, (n,) [N]."""
-    return fit.predicted.slope * fit.blocks.slip**2
+    return fit.per_slip * fit.blocks.slip**2
 
 
 def _radius_advice(found: str, size: float) -> Advice:
@@ -126,9 +126,7 @@ ZERO: Mapping[str, Suspect] = {
         _MEASURE_ZERO,
     ),
     "shift of slip": Suspect(
-        lambda fit: (
-            fit.predicted.slope * slip_per_radius_error(fit.blocks.slip, fit.blocks.definition)
-        ),
+        lambda fit: fit.per_slip * slip_per_radius_error(fit.blocks.slip, fit.blocks.definition),
         lambda a, s: (
             f"true slip is larger by {a:+.2g} ± {s:.1g} at zero slip (a ratio of radii wrong by "
             f"{abs(a):.2%}, or a wrong zero of slip)"
@@ -165,7 +163,7 @@ LOAD: Mapping[str, Suspect] = {
         _FREE_LOAD,
     ),
     "stiffness over load": Suspect(
-        lambda fit: fit.predicted.slope * fit.blocks.slip * _log_load(fit),
+        lambda fit: fit.per_slip * fit.blocks.slip * _log_load(fit),
         lambda a, s: f"stiffness over load changes with load to the power of {a:+.3f} ± {s:.2g}",
         _FREE_LOAD,
     ),

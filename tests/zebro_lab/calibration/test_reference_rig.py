@@ -13,6 +13,7 @@ from benchmarks.accuracy.tyre_bench import COLUMNS as TYRE
 from model.bayes.advice import TryLaws
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
+from model.bayes.checks.reach import RISE
 from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
 from model.bayes.estimate import Agreement
@@ -161,6 +162,11 @@ def test_virtual_rig_gives_back_its_law_where_its_radii_and_rolling_are_known(re
     assert pytest.approx(0.38, rel=0.02) == mu
     assert K / (C * mu) == pytest.approx(34.34, rel=0.15)
     assert found.verdict.weak == {} or "shape" not in found.verdict.weak
+
+
+def test_virtual_rig_has_no_other_fault_than_slips_far_apart(read):
+    found = judged(read("virtual-world/rig", SIMULATED_RIG), FREE)
+    assert [check.name for check in found.verdict.checks if check.failed] == [RISE]
 
 
 def test_virtual_rig_of_which_nothing_is_known_has_the_truth_near_its_mode(read):

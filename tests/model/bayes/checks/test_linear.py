@@ -6,8 +6,12 @@ import pytest
 from scipy.stats import kstest
 
 from model.bayes.checks.linear import whiten
-from model.bayes.likelihood import predict_blocks
+from model.bayes.likelihood import NUISANCE, predict_blocks
+from model.slip.definition import slip_per_radius_error
+from model.slip.thesis import THESIS_LAW
 from support.linearised_fits import linearised, with_force
+
+NAMES = [parameter.name for parameter in (*THESIS_LAW.parameters, *NUISANCE)]
 
 
 def test_what_the_fit_can_absorb_has_no_size():
@@ -40,3 +44,21 @@ def test_a_term_that_scatters_between_runs_is_no_more_sure_than_its_scatter():
     force = np.where(np.arange(fit.blocks.n_runs) % 2 == 0, 1.0, -1.0)[fit.blocks.run]
     model = 1 / np.linalg.norm(fit.project(force[:, None]))
     assert fit.test(force).sd >= 0.999 * model
+
+
+def test_a_shift_of_slip_is_nothing_but_the_radius_error_that_is_fitted():
+    posterior, fit, _ = linearised()
+    moved = np.tile(fit.values, (2, 1))
+    moved[:, NAMES.index("radius_error")] += [1e-5, -1e-5]
+    more, less = predict_blocks(fit.blocks, posterior.law, moved).force
+    shift = fit.per_slip * slip_per_radius_error(fit.blocks.slip, fit.blocks.definition)
+    np.testing.assert_allclose((less - more) / 2e-5, shift, rtol=1e-3, atol=1e-3 * shift.max())
+
+
+def test_a_term_that_the_fit_absorbs_leaves_no_force_and_another_leaves_itself():
+    _, fit, _ = linearised(fixed={})
+    rolling, alternating = fit.blocks.normal_force, (-1.0) ** np.arange(len(fit.blocks))
+    assert np.abs(fit.beyond_fit(rolling)).max() < 0.1 * rolling.min()
+    left = fit.beyond_fit(alternating)
+    assert np.corrcoef(left, alternating)[0, 1] > 0.95
+    np.testing.assert_allclose(left.std(), alternating.std(), rtol=0.1)

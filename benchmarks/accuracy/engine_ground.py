@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from itertools import repeat
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -253,7 +254,10 @@ def main(arguments: list[str] | None = None) -> None:
     cases = slopes_and_patches() + steps_and_roughness(asked.seeds)
     cases = [case for case in cases if asked.only in (None, case.kind)]
     all_compared = []
-    with tempfile.TemporaryDirectory() as scratch, ProcessPoolExecutor(asked.processes) as pool:
+    with (
+        tempfile.TemporaryDirectory() as scratch,
+        ProcessPoolExecutor(asked.processes, get_context("spawn")) as pool,
+    ):
         folder = asked.keep or Path(scratch)
         finer, cycle = repeat(asked.finer), repeat(asked.cycle)
         for one in pool.map(compare, cases, repeat(folder), finer, cycle):

@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from itertools import repeat
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -255,7 +256,10 @@ def main(arguments: list[str] | None = None) -> None:
     asked = parser.parse_args(arguments)
     programs = [random_program(number, asked.seed) for number in range(1, asked.programs + 1)]
     all_compared = []
-    with tempfile.TemporaryDirectory() as scratch, ProcessPoolExecutor(asked.processes) as pool:
+    with (
+        tempfile.TemporaryDirectory() as scratch,
+        ProcessPoolExecutor(asked.processes, get_context("spawn")) as pool,
+    ):
         folder = asked.keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
         for one in pool.map(compare, programs, repeat(folder), repeat(asked.finer)):

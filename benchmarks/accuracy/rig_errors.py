@@ -18,6 +18,7 @@ import sys
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
+from multiprocessing import get_context
 
 import numpy as np
 from scipy.stats import binom
@@ -143,7 +144,7 @@ def table(fits: list[Intervals]) -> list[str]:
 
 def main(seeds: int, *, one_sided: bool, everything: bool = False) -> None:
     """Print both tables."""
-    with ProcessPoolExecutor(2) as pool:
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         pairs = list(
             pool.map(partial(fit_seed, one_sided=one_sided, everything=everything), range(seeds))
         )

@@ -8,6 +8,7 @@ which measures the robot without a marker too, and composites are in `test_track
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
+from multiprocessing import get_context
 
 import cv2
 import numpy as np
@@ -118,7 +119,7 @@ def tracked(pixels: np.ndarray, case: Case, truth: DrawnPose) -> np.ndarray | No
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_whole_photographs_keep_the_promise(case):
     tasks = [(CASES.index(case), n) for n in range(PHOTOS)]
-    with ProcessPoolExecutor(2) as pool:
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         results = list(pool.map(one_photo, tasks, chunksize=5))
     error = np.array([error for error, _ in results if error is not None])
     recall, plain = len(error) / PHOTOS, float(np.mean([plain for _, plain in results]))

@@ -8,6 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
+from multiprocessing import get_context
 from pathlib import Path
 
 import cv2
@@ -285,7 +286,7 @@ def measure(case: Case) -> dict[str, Row]:
         for kind in range(len(KINDS))
         for n in range(case.walks)
     ]
-    with ProcessPoolExecutor(2) as pool:
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         results = list(pool.map(one_walk, tasks))
     rows = {}
     for number, kind in enumerate(KINDS):

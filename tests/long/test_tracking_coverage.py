@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -284,7 +285,7 @@ def measured(request) -> tuple[Kind, Row]:
     """Photograph and track every pose of a kind."""
     kind = request.param
     tasks = [(KINDS.index(kind), n) for n in range(kind.poses)]
-    with ProcessPoolExecutor(2) as pool:
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         row = Row.of(list(pool.map(one_pose, tasks, chunksize=10)))
     head = HEAD if kind is KINDS[0] else ""
     print(f"{head}\n{line(kind, row)}", flush=True)  # noqa: T201 `make test-long` is run for it

@@ -14,6 +14,7 @@ Usage: python -m benchmarks.accuracy.rigid_engine.references [--finer]
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -87,7 +88,7 @@ def main(arguments: list[str] | None = None) -> None:
         )
     head = ("walk", "path", "radius", "contacts agree", "angles kept to")
     head += ("half the step", "contacts four times as stiff") if finer else ()
-    with ProcessPoolExecutor(2) as processes:
+    with ProcessPoolExecutor(2, get_context("spawn")) as processes:
         rows = list(processes.map(figures, files, [finer] * len(files)))
     print_table(head, *rows)
 

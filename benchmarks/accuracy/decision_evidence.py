@@ -21,6 +21,7 @@ from scipy.stats import chi2
 
 from model.bayes import blocks as block_module
 from model.bayes import likelihood as likelihood_module
+from model.bayes import slip_noise
 from model.bayes.blocks import SlipBlocks
 from model.bayes.laplace import find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
@@ -155,12 +156,12 @@ def _block_noise(truth: RigImperfections) -> dict[str, float]:
 @contextmanager
 def _no_pooling() -> Iterator[None]:
     """Let every run keep its own estimate of slip noise and wander."""
-    pooled = block_module._shrink
-    block_module._shrink = lambda estimates, sampling_variance, typical: estimates
+    pooled = slip_noise.own_share
+    slip_noise.own_share = lambda estimates, sampling_variance, typical: np.ones_like(estimates)
     try:
         yield
     finally:
-        block_module._shrink = pooled
+        slip_noise.own_share = pooled
 
 
 @contextmanager

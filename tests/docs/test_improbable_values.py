@@ -35,7 +35,7 @@ LIMITS = {
     "`--slip coulomb:MU`": (MOST_FRICTION,),
     "lengths in `robot.toml`": (LARGEST,),
     "mass in `robot.toml`": (HEAVIEST,),
-    "`--time` of `rig suggest`": (LONGEST_TIME,),
+    "`--time` of `rig suggest`, `--budget` of `rig run`": (LONGEST_TIME,),
     "`--rate` of `rig suggest`": (HIGHEST_RATE,),
     "angles of a gait": (0, LEAST_DEG),
     "`--dt` with slip": (LONGEST_SLIPPING_STEP,),

@@ -26,7 +26,7 @@ app = Application(
     no_args_is_help=True,
 )
 
-EPILOG = """
+STOPS = """
 Ctrl-C once: soft stop (ramp to standstill, stay energised; r and Enter resume). Twice: safe stop
 (ramp to standstill, de-energise, end). Three times: emergency stop (de-energise at once, latched).
 SIGTERM, Ctrl-\\, Ctrl-Z and a lost connection or closed terminal (SIGHUP, unless started with
@@ -57,10 +57,8 @@ def plan(
     output.document("rig plan", {**content, **numbers})
 
 
-@app.command(epilog=EPILOG)
-@request_command()
-def run(request: RigRunRequest, output: Output = TEXT) -> None:
-    """Run a plan; record each point to a run folder, as calibrate-slip reads them."""
+def carry_out(request: RigRunRequest, output: Output) -> tuple["Outcome", bool]:
+    """Run a plan with keys and display; return its outcome and whether a stop is latched."""
     from rich.console import Console
 
     from rig.experiment.control import Control
@@ -76,7 +74,7 @@ def run(request: RigRunRequest, output: Output = TEXT) -> None:
     finally:
         if control.stop.latched:
             _say_latched(request.data)
-    _end(outcome, request.data, output, latched=control.stop.latched)
+    return outcome, control.stop.latched
 
 
 def _say_latched(data: Path) -> None:
@@ -89,7 +87,7 @@ def _say_latched(data: Path) -> None:
     )
 
 
-def _end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
+def end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
     """Print how an experiment ended, and exit with 0, `REFUSED` or `STOPPED`."""
     from model.counted import counted
     from zebro_lab.experiment.documents import experiment_in_numbers

@@ -69,7 +69,7 @@ def suggest(request: SuggestRequest, watcher: Watcher) -> Suggested:
     require_replaceable(request.out, SUGGESTED, inputs=request.inputs)
     watcher.step("reading", None)
     foreseen = foresee(request.plan, request.rig)
-    _require_points(request.plan, foreseen.plan)
+    require_points(request.plan, foreseen.plan)
     slip, layout = _calibration(request.calibration)
     posterior = layout.design.posterior(layout.design.blocks)
     z = _draws(slip.file.parent / POSTERIOR, posterior, seed=request.seed)
@@ -97,7 +97,8 @@ def suggest(request: SuggestRequest, watcher: Watcher) -> Suggested:
     return suggested
 
 
-def _require_points(file: Path, plan: Plan) -> None:
+def require_points(file: Path, plan: Plan) -> None:
+    """Raise `SettingsError` for a plan that glides through its slips, or has only one."""
     if plan.points.sweep:
         raise SettingsError(
             "glides through its slip ratios, and points are suggested; set sweep = false",

@@ -46,6 +46,7 @@ REFUSED_TEXTS = {
     "A,B,C,D,E,F": ("a", "a,b,c,d,e,a", "a,b,c,d,e,"),
     "tcp://HOST:PORT": ("here", "127.0.0.1:8786", "http://here:1", "tcp://here:0"),
     "TARGET": ("1", "force@", "force@0", "force@0.1:-1", "walk:"),
+    "TARGET[=WIDTH]": ("1", "friction=", "friction=0", "friction=x", "force@0=1"),
     "SLIP": ("coulomb:38", "coulomb:", "coulomb:nan", "coulomb:0.4:0", "coulomb:0.4:1:2"),
 }
 """Texts that options of a metavar refuse."""

@@ -25,8 +25,8 @@ zebro-lab rig run plan.toml --rig sim --fast --adaptive slip_stiffness=0.5 --bud
 zebro-lab rig run plan.toml --rig sim --fast --adaptive force@0.02,0.2=0.03
 
 With --adaptive PLAN is the first round. All rounds are fitted by the first answer of calibrate-slip
-while the rig stands de-energised, and the next is planned as by rig suggest. DIR gets round-01,
-round-02, ... and calibration; calibrate-slip DIR fits all rounds.
+while the rig stands de-energised, and the next is planned as by rig suggest. DIR gets a folder
+for each round, and calibration; calibrate-slip DIR fits all rounds.
 {STOPS}"""
 
 

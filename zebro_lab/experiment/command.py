@@ -32,7 +32,8 @@ Ctrl-C once: soft stop (ramp to standstill, stay energised; r and Enter resume).
 SIGTERM, Ctrl-\\, Ctrl-Z and a lost connection or closed terminal (SIGHUP, unless started with
 nohup): safe stop.
 
-Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 130 stopped.
+Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused
+or an interval is wider than asked, 130 stopped.
 """
 
 

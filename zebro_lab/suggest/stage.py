@@ -46,11 +46,6 @@ READ_DRAWS: Final = 200
 """Draws of the posterior that are read, of which the first that can be used are."""
 MOST_PLAN: Final = 1 << 20
 """Largest plan that is read [bytes]."""
-STIFFNESS: Final = "slip_stiffness"
-NARROW_STIFFNESS: Final = (
-    "WARNING: fits of points suggested for slip_stiffness claimed intervals of it that were too "
-    "narrow on simulated rigs (docs/experiments.md); those suggested for force@ were not"
-)
 _ADVICE = "calibrate again"
 
 
@@ -239,8 +234,6 @@ def _notes(
             f"the plan's slips go beyond those of the calibration, {low:.3g} to {high:.3g}; there "
             "the law is extrapolated"
         )
-    if ParameterText(STIFFNESS) in request.targets:
-        notes.append(NARROW_STIFFNESS)
     if slip.doubt is not None:
         notes.append(f"WARNING: the calibration is not trustworthy: {slip.doubt}")
     return tuple(notes)

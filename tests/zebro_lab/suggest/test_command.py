@@ -80,7 +80,6 @@ def test_a_suggestion_of_the_same_time_beats_the_plan_and_the_seed_decides_it(su
         ended = suggest("--target", "slip_stiffness", "--seed", "3", "--out", out)
         assert ended.code == 0, ended.err
     assert "after the plan" in ended.out
-    assert "claimed intervals of it that were too narrow" in " ".join(ended.out.split())
     (row,) = rows(tmp_path / "one")
     assert float(row["sd_suggested"]) < float(row["sd_plan"]) < float(row["sd_now"])
     assert (tmp_path / "one" / "plan.toml").read_text() == (

@@ -26,12 +26,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from model.bayes.approximation import straightened
 from model.bayes.blocks import block_means
 from model.bayes.fit import prepare_fit
-from model.bayes.laplace import LaplaceMixture, find_mode
+from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.rig_errors import USUAL
 from model.bayes.samples import SlipSamples
+from model.bayes.tails import approximate
 from model.bayes.weighted import weighted_draws
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
@@ -148,9 +150,10 @@ def refit(
 ) -> Fit:
     """Fit a variant of the calibration, from near its mode."""
     began = time.perf_counter()
-    density = in_chunks(posterior.log_density)
-    laplace = find_mode(density, posterior.coordinates(start)[None])
-    return conclude(posterior, LaplaceMixture((laplace,)), n=n, rng=rng, began=began)
+    start_at = posterior.coordinates(start)[None]
+    modes = approximate(in_chunks(posterior.log_density), start_at)
+    posterior, modes = straightened(posterior, modes, rng)
+    return conclude(posterior, modes, n=n, rng=rng, began=began)
 
 
 def replicate(seed: int) -> dict[str, Fit]:

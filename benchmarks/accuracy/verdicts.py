@@ -332,10 +332,10 @@ WRONG: Mapping[str, Way] = {
     "delay": Way(late, (0.02, 0.05, 0.1), ("late", "delay")),
     "run-out": Way(run_out, (5e-5, 1e-4, 2e-4), ("run-out", "turns")),
     "clipped cell": Way(clipped_cell, (0.05, 0.2, 0.4), ("clipped",)),
-    "wrong radius": Way(wrong_radius, (1e-4, 2e-4, 4e-4), ("radi",)),
-    "rolling resistance": Way(rolling_resistance, (0.01, 0.02, 0.04), ("rolling",)),
+    "wrong radius": Way(wrong_radius, (2e-4, 4e-4, 8e-4), ("radi",)),
+    "rolling resistance": Way(rolling_resistance, (0.02, 0.04, 0.08), ("rolling",)),
     "warming": Way(warming, (0.05, 0.1, 0.2), ("warming", "change")),
-    "uneven gain": Way(uneven_gain, (0.03, 0.06, 0.12), ("driving",)),
+    "uneven gain": Way(uneven_gain, (0.06, 0.12, 0.24), ("driving",)),
 }
 """Faults of rigs and tables."""
 
@@ -418,10 +418,10 @@ CURES: Mapping[str, tuple[float, Callable[[Data, Verdict, float, int], Data]]] =
     "delay": (0.05, _measured_again),
     "run-out": (2e-4, _measured_again),
     "clipped cell": (0.05, _runs_below_the_limit),
-    "wrong radius": (1e-4, _radius_corrected),
-    "rolling resistance": (0.02, _zero_slip_subtracted),
+    "wrong radius": (4e-4, _radius_corrected),
+    "rolling resistance": (0.08, _zero_slip_subtracted),
     "warming": (0.1, _measured_again),
-    "uneven gain": (0.06, _driving_alone),
+    "uneven gain": (0.24, _driving_alone),
 }
 """A size of each fault, and what its advice makes of the data."""
 

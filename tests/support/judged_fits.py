@@ -29,7 +29,7 @@ RIG_VALUES = (34.34 * 1.564 * 0.38, 1.564, 0.38, 0.0)
 WELL_INFORMED = dict.fromkeys(("slip_stiffness", "shape", "friction", "curvature"), 0.99)
 
 
-def blocks_at(set_points: np.ndarray, *, loads=(6.0, 12.0), per_run: int = 4) -> SlipBlocks:
+def blocks_at(set_points: np.ndarray, *, loads=(6.0, 12.0), per_run: int = 6) -> SlipBlocks:
     """Make two runs of each set-point of slip at each load."""
     loads = np.repeat(loads, 2)
     slip = np.repeat(np.tile(set_points, len(loads)), per_run)

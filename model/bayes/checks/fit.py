@@ -19,6 +19,7 @@ from model.bayes.residuals import MISFIT_P, Residuals, far_runs
 from model.slip.law import Array, SlipLaw
 
 MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
+FEWEST_IN_RUN = 6
 FEWEST_PAIRS = 27  # of successive blocks: with fewer the limit is above 0.5, which any noise meets
 INSIDE = 0.9  # expected share of run means inside their intervals
 MOST_NAMED = 3  # runs that evidence names
@@ -104,15 +105,17 @@ def whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
     """Check that whitened residuals of successive blocks are hardly correlated.
 
     The limit is `MAX_LAG_ONE`, or more for few blocks; not testable with fewer than `FEWEST_PAIRS`
-    pairs of successive blocks.
+    pairs of successive blocks, nor where runs have fewer than `FEWEST_IN_RUN`: noise that changes
+    slowly and the offset of a run are not told apart there.
     """
     name = "residuals are white"
-    pairs = len(blocks) - blocks.n_runs
-    if pairs < FEWEST_PAIRS:
+    pairs, in_run = len(blocks) - blocks.n_runs, float(np.median(np.diff(blocks.run_starts())))
+    if pairs < FEWEST_PAIRS or in_run < FEWEST_IN_RUN:
         return not_testable(
             name,
-            f"pairs of successive blocks: {pairs}; expected {FEWEST_PAIRS} or more; longer runs, "
-            "or a shorter block length, would make them",
+            f"pairs of successive blocks: {pairs}; expected {FEWEST_PAIRS} or more, and "
+            f"{FEWEST_IN_RUN} blocks in a run, found {in_run:.0f}; longer runs, or a shorter block "
+            "length, would make them",
             untested="noise in time (too short)",
             advice=MeasureAlso("runs are too short to show their noise", times=4.0),
         )

@@ -6,6 +6,7 @@ fit estimates the error of the radii and rolling resistance within their priors;
 found here is what lies beyond.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -25,11 +26,13 @@ class Suspect:
         force: Function of a linearised fit to the force of a unit of the term, shape (n,) [N].
         say: Function of size and standard deviation to what was found, as text.
         advice: Function of that text and the size to what to do.
+        matters: Size from which it would do harm; infinite where whatever does harm shows.
     """
 
     force: Callable[[Linearised], Array]
     say: Callable[[float, float], str]
     advice: Callable[[str, float], Advice]
+    matters: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,7 @@ class Found:
         gain: Twice the log density that the fit would gain by it, by the model's variances [-].
         text: What was found.
         advice: What to do.
+        matters: Size from which it would do harm.
     """
 
     name: str
@@ -49,6 +53,7 @@ class Found:
     gain: float
     text: str
     advice: Advice
+    matters: float = math.inf
 
 
 def run_times(fit: Linearised) -> Array:
@@ -143,6 +148,7 @@ SIDES: Mapping[str, Suspect] = {
             "the load cell by direction, or two curves)"
         ),
         _PART_SIDES,
+        matters=0.03,
     ),
     "slip definition": Suspect(
         _definition_change,
@@ -217,5 +223,6 @@ def find(fit: Linearised, suspects: Mapping[str, Suspect]) -> list[Found]:
         information = float(left @ left)
         gain = 0.0 if term.p == 1.0 else float(left @ fit.rest) ** 2 / information
         text = suspect.say(term.size, term.sd)
-        found.append(Found(name, term, gain, text, suspect.advice(text, term.size)))
+        advice = suspect.advice(text, term.size)
+        found.append(Found(name, term, gain, text, advice, suspect.matters))
     return sorted(found, key=lambda each: -each.gain)

@@ -50,6 +50,22 @@ def test_at_one_load_a_constant_force_and_one_of_the_load_cannot_be_told_apart()
     }  # fmt: skip
 
 
+def test_a_gain_by_direction_that_rolling_resistance_could_hide_is_untested():
+    found = inspect(*linearised(fixed={}), 5.0)
+    check = check_named(ONE_CURVE, found)
+    assert check.outcome is Outcome.NOT_TESTABLE
+    assert check.untested.startswith("driving and braking alike (a difference of ")
+    assert "weigh the load cell in both directions" in check.advice.step
+    assert check_named(ONE_CURVE, inspected()).passed  # no rolling resistance is allowed for
+
+
+def test_a_gain_by_direction_that_nothing_hides_is_a_failure_all_the_same():
+    uneven = with_force(lambda s: 0.4 * np.maximum(s.traction_force, 0.0))
+    check = check_named(ONE_CURVE, inspect(*linearised(uneven, fixed={}), 5.0))
+    assert check.failed
+    assert "driving forces are" in check.cause
+
+
 def test_slip_of_one_sign_tests_neither_the_crossing_nor_both_sides():
     found = inspected(lambda s: only(s, s.run % 12 >= 6))
     for name in (CROSSING, ONE_CURVE):

@@ -99,7 +99,10 @@ def test_a_widened_prior_gives_what_the_product_of_densities_gives(folders):
     sd = np.sqrt(np.diag(covariance))
     off, wider = (found - mean) / sd, np.sqrt(np.diag(found_covariance)) / sd - 1
     print(dict(zip(NAMES, zip(off.round(3), wider.round(3), strict=True), strict=True)))  # noqa: T201
-    assert (np.abs(off) < 0.2).all()
-    assert (np.abs(wider) < 0.15).all()
+    noise = np.isin(NAMES, sorted(NOISE))  # whose posterior is less Gaussian than the product
+    assert (np.abs(off)[~noise] < 0.15).all()
+    assert (np.abs(wider)[~noise] < 0.1).all()
+    assert (np.abs(off)[noise] < 0.25).all()
+    assert (np.abs(wider)[noise] < 0.25).all()
     _, both_covariance = gaussian("both-1")
     assert found_covariance[0, 0] > 1.1 * both_covariance[0, 0]  # of the slip stiffness

@@ -47,7 +47,7 @@ class Processes:
         )
         finished = False
         try:
-            with _interrupts_ignored():  # processes inherit it, and hear no Ctrl-C from the start
+            with _starting():
                 futures = [pool.submit(_compute, task) for task in tasks]
             for future in futures:
                 yield future.result()
@@ -82,13 +82,22 @@ def _compute(task: object) -> Any:
 
 
 @contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Ignore Ctrl-C within the body, in the main thread, where alone it is heard."""
+def _starting() -> Iterator[None]:
+    """Ignore Ctrl-C and hold SIGTERM back within the body, in the main thread, where it is heard.
+
+    A process that is stopped while it starts another one does not know of it yet, and would leave
+    it running.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    held: list[int] = []
+    interrupt = signal.signal(signal.SIGINT, signal.SIG_IGN)  # what processes inherit
+    terminate = signal.signal(signal.SIGTERM, lambda number, _frame: held.append(number))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, handler)
+        signal.signal(signal.SIGINT, interrupt or signal.SIG_DFL)
+        signal.signal(signal.SIGTERM, terminate or signal.SIG_DFL)
+        if held:
+            signal.raise_signal(signal.SIGTERM)

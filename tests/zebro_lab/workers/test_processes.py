@@ -4,6 +4,7 @@
 import multiprocessing
 import signal
 import time
+from multiprocessing.popen_spawn_posix import Popen
 
 import pytest
 
@@ -47,4 +48,29 @@ def test_a_map_that_is_given_up_ends_its_processes_at_once():
             next(tasks)
     finally:
         signal.signal(signal.SIGALRM, timer)
+    assert children_end()
+
+
+def test_a_stop_while_a_process_starts_is_heard_once_the_process_is_known(monkeypatch):
+    class Stopped(Exception):
+        pass
+
+    def stop(*_):
+        raise Stopped
+
+    def launch_while_stopped(popen, process):
+        launch(popen, process)
+        signal.raise_signal(signal.SIGTERM)
+        known.append(popen.pid)
+
+    known, launch = [], Popen._launch
+    monkeypatch.setattr(Popen, "_launch", launch_while_stopped)
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        with pytest.raises(Stopped):
+            list(Processes(2).map(slow, None, [0, 1]))
+        assert signal.getsignal(signal.SIGTERM) is stop
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert len(known) == 2
     assert children_end()

@@ -38,8 +38,8 @@ class AdaptiveRequest(RigRunRequest):
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` or `BadParameter` for values of another form."""
-        super().__post_init__()
         _ = self.wanted
+        super().__post_init__()
         if self.budget is not None and not self.adaptive:
             raise SettingsError(
                 "belongs to --adaptive; name a target, as in --adaptive slip_stiffness=0.3, or "

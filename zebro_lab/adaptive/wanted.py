@@ -41,10 +41,10 @@ def parse_wanted(text: str) -> Wanted:
     True
     """
     if text.startswith("walk:"):
-        return Wanted(text, parse_target(text), None)
+        return Wanted(text, parse_target(text, option=HINT), None)
     name, equals, width = text.partition("=")
     if not equals:
-        return Wanted(text, parse_target(text), None)
+        return Wanted(text, parse_target(text, option=HINT), None)
     try:
         number = float(width)
     except ValueError:
@@ -55,4 +55,4 @@ def parse_wanted(text: str) -> Wanted:
             "slip_stiffness=0.3 or, relative to the force, force@0.02=0.05",
             param_hint=HINT,
         )
-    return Wanted(name, parse_target(name), number)
+    return Wanted(name, parse_target(name, option=HINT), number)

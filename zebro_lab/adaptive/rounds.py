@@ -29,6 +29,7 @@ class Round:
         refused: Number of points of which every attempt was rejected.
         half_widths: Half width of the 90 % interval of each target after it, by the target's text;
             NaN for the end of a walk.
+        doubt: Headline of the fit's verdict if it cannot be trusted; else empty.
     """
 
     number: int
@@ -36,6 +37,7 @@ class Round:
     points: int
     refused: int
     half_widths: dict[str, float]
+    doubt: str = ""
 
 
 def folder_of(data: Path, number: int) -> Path:
@@ -120,7 +122,7 @@ def _round(found: dict[str, Any]) -> Round:
     }
     return Round(
         int(found["number"]), float(found["seconds"]), int(found["points"]),
-        int(found["refused"]), widths,
+        int(found["refused"]), widths, str(found["doubt"]),
     )  # fmt: skip
 
 

@@ -18,9 +18,10 @@ from zebro_lab.terminal.tables import plain_table
 def told(round_: Round, wanted: Sequence[Wanted]) -> str:
     """Return a line on a finished round: its points, and the interval of each target."""
     widths = "; ".join(_width(each, round_) for each in wanted)
+    doubt = f"; the fit: {round_.doubt}" if round_.doubt else ""
     return (
         f"round {round_.number}: {counted(round_.points, 'point')} in {round_.seconds:.0f} s; "
-        f"90 % intervals: {widths}"
+        f"90 % intervals: {widths}{doubt}"
     )
 
 
@@ -65,6 +66,7 @@ def in_numbers(rounds: Sequence[Round]) -> list[Mapping[str, Any]]:
                 name: None if math.isnan(width) else width
                 for name, width in each.half_widths.items()
             },
+            "doubt": each.doubt,
         }
         for each in rounds
     ]

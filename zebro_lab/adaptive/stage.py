@@ -112,10 +112,10 @@ def adapt(
         if not outcome.completed:
             stopped = folder_of(request.data, number)
             return Adapted(tuple(rounds), False, outcome.reason, outcome, stopped)
-        widths = _fit(request, foreseen.plan, working)
+        widths, doubt = _fit(request, foreseen.plan, working)
         estimate = foresee(plan, request.rig).estimate
         rounds.append(
-            Round(number, estimate.seconds, estimate.points, len(outcome.refused), widths)
+            Round(number, estimate.seconds, estimate.points, len(outcome.refused), widths, doubt)
         )
         write_rounds(request.data, settings, rounds)
         tell(rounds[-1])
@@ -133,20 +133,22 @@ def _experiment(request: AdaptiveRequest, plan: Path, number: int) -> RigRunRequ
     )  # fmt: skip
 
 
-def _fit(request: AdaptiveRequest, plan: Plan, working: Working) -> dict[str, float]:
-    """Fit all rounds by the first answer; return the half width of each target, by its text."""
+def _fit(request: AdaptiveRequest, plan: Plan, working: Working) -> tuple[dict[str, float], str]:
+    """Fit all rounds by the first answer; return half widths by target, and the fit's doubt."""
     folder = request.data / CALIBRATION
     asked = CalibrationRequest(data=(request.data,), out=folder, engine="laplace")
     with working() as watcher:
         calibration.calibrate(asked, watcher)
-    curve = read_slip_file(folder).curve
+    slip = read_slip_file(folder)
+    curve = slip.curve
     values = law_draws(
         parse_slip(str(folder), with_walks=False), curve, DRAWS, rng=np.random.default_rng(1)
     )
-    return {
+    widths = {
         each.text: half_width(each.target, curve.law, values, plan.points.loads)
         for each in request.wanted
     }
+    return widths, slip.doubt or ""
 
 
 def _missed(request: AdaptiveRequest, last: Round) -> list[str]:

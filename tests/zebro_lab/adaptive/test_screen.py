@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 import io
 import math
+from dataclasses import replace
 
 from rich.console import Console
 
@@ -22,6 +23,12 @@ def test_a_round_is_told_with_its_intervals_and_what_was_wanted():
         "round 1: 16 points in 115 s; 90 % intervals: slip_stiffness ± 1.41 (wanted ± 0.5); "
         "force@0.02 ± 5.2 % (wanted ± 3 %); walk:run not known"
     )
+
+
+def test_a_fit_that_cannot_be_trusted_is_told_with_its_round():
+    doubted = replace(ROUNDS[0], doubt="NOT CONVERGED: do not use these numbers")
+    assert told(doubted, WANTED).endswith("; the fit: NOT CONVERGED: do not use these numbers")
+    assert in_numbers([doubted])[0]["doubt"] == doubted.doubt
 
 
 def test_the_table_has_a_row_for_each_round_with_the_time_in_all():

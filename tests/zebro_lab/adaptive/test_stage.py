@@ -25,10 +25,12 @@ class Rig:
         self.widths, self.experiments, self.suggested = list(widths), [], []
         self.outcomes: list[Outcome] = []
         monkeypatch.setattr(stage.calibration, "calibrate", lambda *_: None)
-        monkeypatch.setattr(stage, "_fit", lambda request, *_: {
-            each.text: self.widths[len(self.experiments) - 1] for each in request.wanted
-        })  # fmt: skip
+        monkeypatch.setattr(stage, "_fit", self.fit)
         monkeypatch.setattr(stage.suggestion, "suggest", self.suggest)
+
+    def fit(self, request, *_):
+        width = self.widths[len(self.experiments) - 1]
+        return {each.text: width for each in request.wanted}, ""
 
     def suggest(self, request, _watcher):
         if request.time < LEAST:

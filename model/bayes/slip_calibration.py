@@ -35,8 +35,17 @@ def calibrate_slip(
 
     A spread that noise alone could make counts as none. A wrong :math:`\lambda` would bias the
     slope by as much: where its own relative error is above `MOST_ERROR`, every block has the run's
-    mean, with the errors :math:`\omega^2` and :math:`\sigma^2/N`. Returns the slips (n,), their own
-    (n,) and shared (n_runs,) variances.
+    mean, with the errors :math:`\omega^2` and :math:`\sigma^2/N`.
+
+    Args:
+        slip: Mean measured slip of each block, shape (n,) [-].
+        count: Number of samples in each block, shape (n,).
+        run: Run of each block, shape (n,).
+        noise: Variance of one sample's noise, shape (n_runs,) [-].
+        noise_freedom: Degrees of freedom of that variance, shape (n_runs,).
+
+    Returns:
+        The slips (n,), and the variances of their own errors (n,) and shared ones (n_runs,).
     """
     n_blocks, n_samples = np.bincount(run), np.bincount(run, count)
     middle = np.bincount(run, slip * count) / n_samples
@@ -70,8 +79,18 @@ def calibrate_covariance(
     :math:`\sigma^2` gives the covariance a variance of :math:`v\sigma^2/n`, and true slip that
     follows load, or wanders while load changes, one of :math:`vt`. As for the slips themselves,
     :math:`E[c|\hat c] = \lambda\hat c`, :math:`\lambda = t/(t + \sigma^2/n)`; t is that of the
-    run, blocks weighted by :math:`v`. Returns the covariances and the variances of their errors,
-    shape (n,) each [N], [N^2].
+    run, blocks weighted by :math:`v`.
+
+    Args:
+        covariance: Measured covariance of slip and load within each block, shape (n,) [N].
+        load_variance: Variance of the load within each block, shape (n,) [N^2].
+        count: Number of samples in each block, shape (n,).
+        run: Run of each block, shape (n,).
+        noise: Variance of one sample's noise of slip, shape (n_runs,) [-].
+        noise_freedom: Degrees of freedom of that variance, shape (n_runs,).
+
+    Returns:
+        The covariances [N] and the variances of their errors [N^2], shape (n,) each.
     """
     amount = np.maximum(np.bincount(run, load_variance), 1e-300)
     total = np.bincount(run, covariance**2) / amount

@@ -19,7 +19,7 @@ from model.bayes.residuals import MISFIT_P, Residuals, far_runs
 from model.slip.law import Array, SlipLaw
 
 MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
-FEWEST_IN_RUN = 6
+FEWEST_IN_RUN = 6  # blocks; with fewer, slow noise is not told from the offset of a run
 FEWEST_PAIRS = 27  # of successive blocks: with fewer the limit is above 0.5, which any noise meets
 INSIDE = 0.9  # expected share of run means inside their intervals
 MOST_NAMED = 3  # runs that evidence names

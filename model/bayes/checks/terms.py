@@ -148,7 +148,7 @@ SIDES: Mapping[str, Suspect] = {
             "the load cell by direction, or two curves)"
         ),
         _PART_SIDES,
-        matters=0.03,
+        matters=0.03,  # 6 % between the sides
     ),
     "slip definition": Suspect(
         _definition_change,

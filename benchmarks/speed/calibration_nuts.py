@@ -50,22 +50,22 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
     blocks = posterior.blocks
     shape = (blocks.n_runs, -1)
     rule = load_rule(blocks)
-    spread = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
-    slip, load, traction, slip_error, spread = (
+    variance = np.maximum(blocks.slip_variance(), 1e-12)
+    slip, load, traction, slip_error, half = (
         jnp.asarray(x.reshape(shape))
         for x in (
             blocks.slip,
             blocks.normal_force,
             blocks.traction_force,
             blocks.slip_error,
-            spread,
+            np.sqrt(3 * variance),
         )
     )
-    light, heavy, share, slip_light, slip_heavy, slip_per_load = (
+    light, heavy, share, slip_per_load, follow, along = (
         jnp.asarray(x.reshape(shape))
         for x in (
-            rule.light, rule.heavy, rule.heavy_share,
-            rule.slip_light, rule.slip_heavy, rule.slip_per_load,
+            rule.light, rule.heavy, rule.heavy_share, rule.slip_per_load,
+            variance / rule.followed, rule.variance / variance,
         )
     )  # fmt: skip
     lag = np.abs(np.subtract.outer(np.arange(slip.shape[1]), np.arange(slip.shape[1])))
@@ -89,11 +89,14 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
             f = mu * true_load * jnp.sin(C * jnp.arctan(Bk - E * (Bk - jnp.arctan(Bk))))
             return (1 + g_t) * (f - c_r * true_load)
 
-        above, centre, below = (force(slip + s * spread, load) for s in (1, 0, -1))
-        at_light, at_heavy = force(slip_light, light), force(slip_heavy, heavy)
-        slope = (above - below) / (2 * spread)
-        mean = at_light + share * (at_heavy - at_light) + (above - 2 * centre + below) / 6
-        slope_in_load = (at_heavy - at_light) / (heavy - light) - slope * slip_per_load
+        above, centre, below = (force(slip + s * half, load) for s in (1, 0, -1))
+        slope = (above - below) / (2 * half)
+        per_load = slip_per_load + c * slope * follow
+        at_light, at_heavy = (force(slip + per_load * (x - load), x) for x in (light, heavy))
+        at_one_load = jnp.maximum(1 - per_load**2 * along, 0.0)
+        mean = at_light + share * (at_heavy - at_light)
+        mean = mean + at_one_load * (above - 2 * centre + below) / 6
+        slope_in_load = (force(slip, heavy) - centre) / (heavy - load)
         mean = mean + slope_in_load / (1 + g_n) * c * mean
         noise = s_0 + s_1 * jnp.abs(mean)
         dense = (

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from model.bayes.arviz_import import import_arviz
 from model.bayes.sampler import Chains, autocorrelation_times
 from model.slip.law import Array
 
@@ -130,7 +131,7 @@ def assess(chains: Chains) -> Convergence:
     Args:
         chains: Chains of at least 8 steps.
     """
-    import arviz as az  # imported late: it takes longer than most commands run
+    az = import_arviz()
 
     times = autocorrelation_times(chains.z)
     burn_in = int(min(np.ceil(BURN_IN * times.max()), chains.n_steps // 2))
@@ -161,7 +162,7 @@ def assess_weighted(draws: Array, weighted: Array, weights: Array, pareto_k: flo
         weights: Their weights, with sum one, shape (w,).
         pareto_k: Tail index of the weights [-].
     """
-    import arviz as az
+    az = import_arviz()
 
     quantiles = np.quantile(draws.reshape(-1, draws.shape[-1]), [0.05, 0.95], axis=0)
     tails = [_effective_size((weighted <= q).astype(float), weights) for q in quantiles]

@@ -23,28 +23,30 @@ from model.slip.law import Array
     GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, SCALE, SCATTER, FLOOR, GROWTH, RHO, TAU,
 ) = range(ROWS, ROWS + 12)  # fmt: skip
 (
-    LOAD, CENTRE, ABOVE, BELOW, LIGHT_LOAD, LIGHT, HEAVY_LOAD, HEAVY, HALF_WIDTH, HEAVY_SHARE,
-    LOAD_STEP, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
-) = range(15)  # fmt: skip
+    LOAD, CENTRE, ABOVE, BELOW, LIGHT_LOAD, HEAVY_LOAD, DOWN, UP, HALF_WIDTH, HEAVY_SHARE,
+    FOLLOW, ALONG_LOAD, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
+) = range(16)  # fmt: skip
 """Columns of `block_table`."""
 LOG_2PI = math.log(2 * math.pi)
 
 
 def block_table(blocks: SlipBlocks) -> Array:
-    """Compute what the likelihood needs of each block, shape (n, 15).
+    """Compute what the likelihood needs of each block, shape (n, 16).
 
-    Load with its slip and that above and below it by sqrt(3) standard deviations, light load with
-    slip, heavy load with slip, half the distance of the outer slips, the share of the heavy load,
-    the difference of the two loads, slip over load, slip over radius error, traction and the
-    variance of slip's own error.
+    Load with its slip and that above and below it by sqrt(3) standard deviations, light and heavy
+    load, their differences from the load, half the distance of the outer slips, the share of the
+    heavy load, the variance of slip over that of the load that it follows, the variance of load
+    over that of slip, slip over load, slip over radius error, traction and the variance of slip's
+    own error.
     """
-    rule, slip = load_rule(blocks), blocks.slip
-    half = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
+    rule, slip, load = load_rule(blocks), blocks.slip, blocks.normal_force
+    variance = np.maximum(blocks.slip_variance(), 1e-12)
+    half = np.sqrt(3 * variance)
     return np.column_stack(
         [
-            blocks.normal_force, slip, slip + half, slip - half,
-            rule.light, rule.slip_light, rule.heavy, rule.slip_heavy,
-            half, rule.heavy_share, rule.heavy - rule.light, rule.slip_per_load,
+            load, slip, slip + half, slip - half, rule.light, rule.heavy,
+            rule.light - load, rule.heavy - load, half, rule.heavy_share,
+            variance / rule.followed, rule.variance / variance, rule.slip_per_load,
             slip_per_radius_error(slip, blocks.definition),
             blocks.traction_force, blocks.slip_error,
         ]
@@ -80,7 +82,7 @@ def _fill(kind, sensitive, reference, sided, rows, table, starts, run_slip_error
     """Fill the log densities `found`, shape (groups, n_runs, LANES); see `lane_log_likelihood`.
 
     The filter is that of `model.bayes.likelihood.filter_runs`. `rows` has shape (groups, values,
-    LANES), `table` (n, 15), `starts` (n_runs + 1,), `run_slip_error` (n_runs,), `zero` (1, LANES).
+    LANES), `table` (n, 16), `starts` (n_runs + 1,), `run_slip_error` (n_runs,), `zero` (1, LANES).
     """
     for group in range(len(rows)):
         A, result = rows[group], found[group]
@@ -134,18 +136,31 @@ def _predicted(kind, sensitive, reference, sided, A, block):
     centre = g_t * (side_at_slip(sided, kind, A, at_load, block[CENTRE] - shift, load) - c_r * load)
     above = g_t * (side_at_slip(sided, kind, A, at_load, block[ABOVE] - shift, load) - c_r * load)
     below = g_t * (side_at_slip(sided, kind, A, at_load, block[BELOW] - shift, load) - c_r * load)
+    slope = (above - below) * (0.5 / block[HALF_WIDTH])
+    c = row(A, CROSSTALK)
+    per_load = block[SLIP_PER_LOAD] + c * slope * block[FOLLOW]
+    at_one_load = _at_least_zero(1.0 - per_load * per_load * block[ALONG_LOAD])
+    middle = block[CENTRE] - shift
     load = _true_load(g_n, b_n, block[LIGHT_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    light = g_t * (side_at_slip(sided, kind, A, at_load, block[LIGHT] - shift, load) - c_r * load)
+    slip = middle + per_load * block[DOWN]
+    light = g_t * (side_at_slip(sided, kind, A, at_load, slip, load) - c_r * load)
     load = _true_load(g_n, b_n, block[HEAVY_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    heavy = g_t * (side_at_slip(sided, kind, A, at_load, block[HEAVY] - shift, load) - c_r * load)
-    across = heavy - light
-    mean = light + block[HEAVY_SHARE] * across + (above - 2.0 * centre + below) * (1.0 / 6.0)
-    slope = (above - below) * (0.5 / block[HALF_WIDTH])
-    slope_in_load = across * (1.0 / block[LOAD_STEP]) - slope * block[SLIP_PER_LOAD]
-    force = mean + slope_in_load / g_n * row(A, CROSSTALK) * mean
+    slip = middle + per_load * block[UP]
+    heavy = g_t * (side_at_slip(sided, kind, A, at_load, slip, load) - c_r * load)
+    heavier = g_t * (side_at_slip(sided, kind, A, at_load, middle, load) - c_r * load)
+    mean = light + block[HEAVY_SHARE] * (heavy - light)
+    mean = mean + at_one_load * (above - 2.0 * centre + below) * (1.0 / 6.0)
+    slope_in_load = (heavier - centre) * (1.0 / block[UP])
+    force = mean + slope_in_load / g_n * c * mean
     return force, slope, row(A, FLOOR) + row(A, GROWTH) * size(force)
+
+
+@inlined
+def _at_least_zero(share):
+    """Return a share, 0 where it is negative."""
+    return select(share > 0.0, share, 0.0)
 
 
 @inlined

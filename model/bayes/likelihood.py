@@ -80,16 +80,20 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
     r"""Compute expected traction, its slope in slip and the standard deviation of noise by block.
 
     The mean of the law over a block is that over its loads, slip following load by regression, plus
-    what the spread of slip at one load, of standard deviation :math:`\omega`, adds to it,
-    :math:`(f_+ - 2 f_0 + f_-)/6` with the law's forces f at :math:`\kappa \pm \sqrt{3}\,\omega` and
-    :math:`\kappa` (three-point Gauss-Hermite, exact to fifth order in :math:`\omega`). The load's
-    rule has two points and the mean, variance and skewness of the block's loads: a bump on a disc
-    makes the loads skewed, and because peak slip depends on load the force is curved in load.
+    what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` with the law's
+    forces f at :math:`\kappa \pm \sqrt{3}\,\omega` and :math:`\kappa` (three-point Gauss-Hermite,
+    exact to fifth order), :math:`\omega^2` the variance of all slip in the block; the part of it
+    that follows load is left out of this sum. The load's rule has two points and the mean, variance
+    and skewness of the block's loads: a bump on a disc makes the loads skewed, and because peak
+    slip depends on load the force is curved in load.
 
     Crosstalk puts the expected traction into the load, by the slope of force in load. With the
     measured traction there, the density of the traction would have a Jacobian, and an error in that
     is multiplied by the number of blocks. The two differ by :math:`c\,f_n`, crosstalk times the
-    slope in load, a five-hundredth, of the noise. True loads below 1e-9 N count as 1e-9 N.
+    slope in load, a five-hundredth, of the noise. Where slip varies, crosstalk makes the measured
+    load fall as traction rises though the true load stays: slip follows the true load by
+    :math:`c\,f_\kappa\,\omega^2` over the variance of load more than it follows the measured one.
+    True loads below 1e-9 N count as 1e-9 N.
 
     Args:
         blocks: The block means, n of them.
@@ -109,14 +113,19 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
         force = law.force(slip - shift, true_load, law_values)
         return (1 + g_t) * (force - c_r * true_load)
 
-    half_width = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
+    variance = np.maximum(blocks.slip_variance(), 1e-12)
+    half_width = np.sqrt(3 * variance)
     offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: loads are computed once
     above, centre, below = force_at(blocks.slip + offsets * half_width, blocks.normal_force)
-    light = force_at(rule.slip_light, rule.light)
-    heavy = force_at(rule.slip_heavy, rule.heavy)
-    mean = light + rule.heavy_share * (heavy - light) + (above - 2 * centre + below) / 6
     slope = (above - below) / (2 * half_width)
-    slope_in_load = (heavy - light) / (rule.heavy - rule.light) - slope * rule.slip_per_load
+    per_load = rule.slip_per_load + c * slope * variance / rule.followed
+    at_one_load = np.maximum(1 - per_load**2 * rule.variance / variance, 0.0)
+    up, down = rule.heavy - blocks.normal_force, rule.light - blocks.normal_force
+    light = force_at(blocks.slip + per_load * down, rule.light)
+    heavy = force_at(blocks.slip + per_load * up, rule.heavy)
+    mean = light + rule.heavy_share * (heavy - light)
+    mean = mean + at_one_load * (above - 2 * centre + below) / 6
+    slope_in_load = (force_at(blocks.slip, rule.heavy) - centre) / up
     force = mean + slope_in_load / (1 + g_n) * c * mean
     return PredictedForces(force, slope, s_0 + s_1 * np.abs(force))
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.bayes.adaptive import Effort, Mode, adaptive_draws
+from model.bayes.arviz_import import import_arviz
 from model.bayes.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.laplace import LaplaceMixture, LogDensity
 from model.slip.law import Array
@@ -180,7 +181,7 @@ def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:
     Returns:
         Logarithms of the weights, whose sum is one, shape (n,), and the tail index of the ratios.
     """
-    import arviz as az  # late: takes seconds to import
+    az = import_arviz()
 
     smoothed, pareto_k = az.psislw(log_ratio)
     return np.asarray(smoothed, dtype=float), float(pareto_k)

@@ -309,7 +309,9 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
     samples and `BLOCK_MOMENTS` by block, and the variance of the slip error that its run shares.
     Attributes: source, slip definition, law, headline of the verdict.
     """
-    import arviz as az
+    from model.bayes.arviz_import import import_arviz
+
+    az = import_arviz()
 
     posterior, draws = calibration.posterior, calibration.draws
     blocks = posterior.blocks

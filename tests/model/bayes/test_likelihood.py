@@ -353,3 +353,24 @@ def test_a_bias_that_pushes_the_load_through_zero_leaves_a_finite_density():
 def test_noise_is_the_floor_plus_the_slope_times_the_model_force():
     predicted = predict_blocks(blocks(), LAW, parameters(noise_slope=0.2))
     np.testing.assert_allclose(predicted.noise, 0.1 + 0.2 * np.abs(predicted.force))
+
+
+@pytest.mark.parametrize("crosstalk", [-0.02, 0.02])
+def test_slip_that_wanders_under_crosstalk_does_not_pass_for_slip_that_follows_load(crosstalk):
+    """Traction that wanders moves the measured load, though the true load stays at 5 N."""
+    rng = np.random.default_rng(9)
+    slip = np.array([-0.02, 0.01, 0.02])[:, None] + 0.003 * rng.standard_normal((3, 4000))
+    force = LAW.force(slip, 5.0, LAW_VALUES)
+    load = 5.0 - crosstalk * force
+    deviation = slip - slip.mean(axis=1, keepdims=True)
+    data = replace(
+        blocks((3,)),
+        slip=slip.mean(axis=1),
+        normal_force=load.mean(axis=1),
+        slip_wander=slip.var(axis=1),
+        load_variance=load.var(axis=1),
+        load_skewness=skew(load, axis=1),
+        slip_load_covariance=np.mean(deviation * load, axis=1),
+    )
+    predicted = predict_blocks(data, LAW, parameters(crosstalk=crosstalk)).force[0]
+    np.testing.assert_allclose(predicted, force.mean(axis=1), rtol=5e-4)

@@ -32,14 +32,19 @@ def test_two_loads_have_the_mean_variance_and_skewness_of_all():
     np.testing.assert_allclose(third, blocks.load_skewness, atol=1e-12)
 
 
-def test_slip_at_the_two_loads_follows_load_by_its_regression():
+def test_slip_follows_load_by_its_regression():
     rng = np.random.default_rng(5)
     load = rng.uniform(4.0, 6.0, (20, 30))
-    slip = 0.1 + 0.03 * load
-    rule = load_rule(blocks_of(load, slip))
-    np.testing.assert_allclose(rule.slip_light, 0.1 + 0.03 * rule.light)
-    np.testing.assert_allclose(rule.slip_heavy, 0.1 + 0.03 * rule.heavy)
-    np.testing.assert_allclose(rule.slip_variance, slip.var(axis=1))
+    rule = load_rule(blocks_of(load, 0.1 + 0.03 * load))
+    np.testing.assert_allclose(rule.slip_per_load, 0.03)
+    np.testing.assert_allclose(rule.variance, load.var(axis=1))
+
+
+def test_slip_does_not_follow_a_load_that_hardly_varies():
+    rng = np.random.default_rng(6)
+    load = 5.0 + 1e-3 * rng.standard_normal((20, 30))
+    rule = load_rule(blocks_of(load, 0.1 + 0.03 * (load - 5.0)))
+    assert np.all(rule.slip_per_load < 0.03 * (1e-3 / 0.025) ** 2 * 3)
 
 
 def test_a_single_load_is_spread_by_a_thousandth_so_that_a_slope_in_load_is_defined():

@@ -51,6 +51,7 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
     shape = (blocks.n_runs, -1)
     rule = load_rule(blocks)
     variance = np.maximum(blocks.slip_variance(), 1e-12)
+    apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
     slip, load, traction, slip_error, half = (
         jnp.asarray(x.reshape(shape))
         for x in (
@@ -58,14 +59,14 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
             blocks.normal_force,
             blocks.traction_force,
             blocks.slip_error,
-            np.sqrt(3 * variance),
+            np.sqrt(3 * apart),
         )
     )
     light, heavy, share, slip_per_load, follow, along = (
         jnp.asarray(x.reshape(shape))
         for x in (
             rule.light, rule.heavy, rule.heavy_share, rule.slip_per_load,
-            variance / rule.followed, rule.variance / variance,
+            variance / rule.followed, rule.variance / apart,
         )
     )  # fmt: skip
     lag = np.abs(np.subtract.outer(np.arange(slip.shape[1]), np.arange(slip.shape[1])))
@@ -93,7 +94,7 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
         slope = (above - below) / (2 * half)
         per_load = slip_per_load + c * slope * follow
         at_light, at_heavy = (force(slip + per_load * (x - load), x) for x in (light, heavy))
-        at_one_load = jnp.maximum(1 - per_load**2 * along, 0.0)
+        at_one_load = jnp.maximum(1 - (per_load**2 - slip_per_load**2) * along, 0.0)
         mean = at_light + share * (at_heavy - at_light)
         mean = mean + at_one_load * (above - 2 * centre + below) / 6
         slope_in_load = (force(slip, heavy) - centre) / (heavy - load)

@@ -36,17 +36,18 @@ def block_table(blocks: SlipBlocks) -> Array:
     Load with its slip and that above and below it by sqrt(3) standard deviations, light and heavy
     load, their differences from the load, half the distance of the outer slips, the share of the
     heavy load, the variance of slip over that of the load that it follows, the variance of load
-    over that of slip, slip over load, slip over radius error, traction and the variance of slip's
-    own error.
+    over that of slip at one load, slip over load, slip over radius error, traction and the variance
+    of slip's own error.
     """
     rule, slip, load = load_rule(blocks), blocks.slip, blocks.normal_force
     variance = np.maximum(blocks.slip_variance(), 1e-12)
-    half = np.sqrt(3 * variance)
+    apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
+    half = np.sqrt(3 * apart)
     return np.column_stack(
         [
             load, slip, slip + half, slip - half, rule.light, rule.heavy,
             rule.light - load, rule.heavy - load, half, rule.heavy_share,
-            variance / rule.followed, rule.variance / variance, rule.slip_per_load,
+            variance / rule.followed, rule.variance / apart, rule.slip_per_load,
             slip_per_radius_error(slip, blocks.definition),
             blocks.traction_force, blocks.slip_error,
         ]
@@ -139,7 +140,9 @@ def _predicted(kind, sensitive, reference, sided, A, block):
     slope = (above - below) * (0.5 / block[HALF_WIDTH])
     c = row(A, CROSSTALK)
     per_load = block[SLIP_PER_LOAD] + c * slope * block[FOLLOW]
-    at_one_load = _at_least_zero(1.0 - per_load * per_load * block[ALONG_LOAD])
+    measured = block[SLIP_PER_LOAD]
+    more = (per_load * per_load - measured * measured) * block[ALONG_LOAD]
+    at_one_load = _at_least_zero(1.0 - more)
     middle = block[CENTRE] - shift
     load = _true_load(g_n, b_n, block[LIGHT_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)

@@ -82,10 +82,10 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
     The mean of the law over a block is that over its loads, slip following load by regression, plus
     what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` with the law's
     forces f at :math:`\kappa \pm \sqrt{3}\,\omega` and :math:`\kappa` (three-point Gauss-Hermite,
-    exact to fifth order), :math:`\omega^2` the variance of all slip in the block; the part of it
-    that follows load is left out of this sum. The load's rule has two points and the mean, variance
-    and skewness of the block's loads: a bump on a disc makes the loads skewed, and because peak
-    slip depends on load the force is curved in load.
+    exact to fifth order), :math:`\omega^2` the variance of the slip that does not follow the
+    measured load; the sum is scaled to that which does not follow the true one. The load's rule has
+    two points and the mean, variance and skewness of the block's loads: a bump on a disc makes the
+    loads skewed, and because peak slip depends on load the force is curved in load.
 
     Crosstalk puts the expected traction into the load, by the slope of force in load. With the
     measured traction there, the density of the traction would have a Jacobian, and an error in that
@@ -114,12 +114,13 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
         return (1 + g_t) * (force - c_r * true_load)
 
     variance = np.maximum(blocks.slip_variance(), 1e-12)
-    half_width = np.sqrt(3 * variance)
+    apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
+    half_width = np.sqrt(3 * apart)
     offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: loads are computed once
     above, centre, below = force_at(blocks.slip + offsets * half_width, blocks.normal_force)
     slope = (above - below) / (2 * half_width)
     per_load = rule.slip_per_load + c * slope * variance / rule.followed
-    at_one_load = np.maximum(1 - per_load**2 * rule.variance / variance, 0.0)
+    at_one_load = np.maximum(variance - per_load**2 * rule.variance, 0.0) / apart
     up, down = rule.heavy - blocks.normal_force, rule.light - blocks.normal_force
     light = force_at(blocks.slip + per_load * down, rule.light)
     heavy = force_at(blocks.slip + per_load * up, rule.heavy)

@@ -162,7 +162,7 @@ def judged(data: Data, *, seed: int = 1) -> Judged:
         convergence=CONVERGED, residuals=analyse_residuals(posterior.blocks, law, values),
         agreement=Agreement(0.0, 0.0, 0.0),
         inspection=inspect(
-            posterior, linearise(posterior, z), found.samples, fit.block_choice.correlation
+            posterior, linearise(posterior, z), found.samples, fit.block_choice
         ),
         offset_scale=cell.zero_stability,
     )  # fmt: skip

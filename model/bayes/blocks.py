@@ -106,7 +106,7 @@ _PER_BLOCK = (
 )  # fmt: skip
 
 
-def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
+def block_means(samples: SlipSamples, length: int, *, wander_share: float = 0.0) -> SlipBlocks:
     """Average the samples over blocks of about `length` samples, cut by `block_starts`.
 
     Every sample is used. Slip is not the plain mean but that of `calibrate_slip`.
@@ -114,9 +114,12 @@ def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
     Args:
         samples: The samples.
         length: Wanted number of samples in a block, at least 1.
+        wander_share: Share of the white part of measured slip that is wander of the true slip, as
+            `fast_wander` tells it [-].
     """
-    noise, noise_freedom = noise_and_freedom(samples)
-    starts, run = block_starts(samples, length, noise=noise)
+    white, noise_freedom = noise_and_freedom(samples)
+    starts, run = block_starts(samples, length, noise=white)
+    noise = (1 - wander_share) * white
     count = np.diff(starts)
     slip, load, force = (
         _mean(values, starts)

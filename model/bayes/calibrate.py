@@ -178,8 +178,7 @@ def _prepare(
     Raises `FitStopped` if a stop is requested before a law.
     """
     fits: dict[str, PreparedFit] = {}
-    asked = settings.block_length
-    choice = None if asked is None else BlockChoice(asked, None, "as asked for")
+    choice: BlockChoice | int | None = settings.block_length
     for name, law in laws.items():
         watcher.step(f"preparing: {name}", None)
         if watcher.stop_requested():

@@ -141,7 +141,7 @@ def conclude(
             convergence=convergence,
             residuals=residuals,
             agreement=compared,
-            inspection=inspect(checked, centred, samples, fit.block_choice.correlation),
+            inspection=inspect(checked, centred, samples, fit.block_choice),
             offset_scale=fit.load_cell.zero_stability,
         ),
         contraction=narrowed,

@@ -92,7 +92,7 @@ def prepare_fit(
     load_cell: LoadCell,
     rng: np.random.Generator,
     rig_errors: RigErrors = USUAL,
-    block_choice: BlockChoice | None = None,
+    block_choice: BlockChoice | int | None = None,
     validate: bool = True,
     threads: int = 2,
     stated: StatedPriors = UNSTATED,
@@ -106,7 +106,8 @@ def prepare_fit(
         load_cell: Prior knowledge of the load cell.
         rng: Source of randomness of the starting points.
         rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
-        block_choice: The block length; chosen from the residuals when None.
+        block_choice: How samples become blocks; found from the residuals when None, and for a
+            length that is given.
         validate: Whether to cross-validate, which a single run never is.
         threads: Folds of the cross-validation fitted at once.
         stated: Priors that replace default ones; the block length is chosen without them.
@@ -161,7 +162,7 @@ def _prepared(
     load_cell: LoadCell,
     rig_errors: RigErrors,
     rng: np.random.Generator,
-    block_choice: BlockChoice | None,
+    block_choice: BlockChoice | int | None,
     validate: bool,
     threads: int,
     stated: StatedPriors,
@@ -170,8 +171,10 @@ def _prepared(
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
     defaults = default_priors(law, everything, load_cell, rig_errors)
-    choice = block_choice or choose_block_length(samples, law, priors=defaults, rng=rng)
-    blocks = block_means(samples, choice.length)
+    choice = block_choice
+    if not isinstance(choice, BlockChoice):
+        choice = choose_block_length(samples, law, priors=defaults, rng=rng, length=choice)
+    blocks = block_means(samples, choice.length, wander_share=choice.wander_share)
     fixed = not_identified(blocks)
     priors, correlation = with_stated(defaults, stated, fixed=fixed)
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)

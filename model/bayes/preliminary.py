@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from model.bayes.blocks import SlipBlocks, block_means
+from model.bayes.fast_wander import FastWander, fast_wander
 from model.bayes.priors import Prior
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
@@ -111,22 +112,35 @@ def correlation_time(residual: Array, slices: list[slice], *, white: Array) -> f
 
 @dataclass(frozen=True)
 class BlockChoice:
-    """The block length and the reason for it.
+    """How samples become blocks: the length with the reason for it, and what their noise is.
 
     Attributes:
         length: Wanted number of samples in a block.
         correlation: Integrated autocorrelation time of the residuals; None if the length was
             given [samples].
         reason: Text of a few words: the criterion that determined the length.
+        wander: How much of the white part of slip is wander of the true slip, by the force; None
+            where nothing tells it.
     """
 
     length: int
     correlation: float | None
     reason: str
+    wander: FastWander | None = None
+
+    @property
+    def wander_share(self) -> float:
+        """Share of the white part of slip that blocks take for wander [-]."""
+        return 0.0 if self.wander is None else self.wander.used
 
 
 def choose_block_length(
-    samples: SlipSamples, law: SlipLaw, *, priors: dict[str, Prior], rng: np.random.Generator
+    samples: SlipSamples,
+    law: SlipLaw,
+    *,
+    priors: dict[str, Prior],
+    rng: np.random.Generator,
+    length: int | None = None,
 ) -> BlockChoice:
     """Choose how many samples to average in a block, from residuals of a preliminary fit.
 
@@ -142,6 +156,7 @@ def choose_block_length(
         law: The slip law of the preliminary fit.
         priors: Priors of the law's parameters by name.
         rng: Source of randomness of the preliminary fit.
+        length: The length where it is not to be chosen, but only the noise of slip looked at.
 
     Raises:
         FitError: The preliminary fit failed, as `least_squares_values` says.
@@ -153,6 +168,9 @@ def choose_block_length(
     residual = samples.traction_force - law.force(samples.slip, samples.normal_force, values)
     slip_noise = slip_noise_variance(samples)
     slope = law.slip_derivative(samples.slip, samples.normal_force, values)
+    wander = fast_wander(samples, residual, slope)
+    if length is not None:
+        return BlockChoice(length, None, "as asked for", wander)
     correlation = correlation_time(
         residual, samples.slices(), white=slope**2 * slip_noise[samples.run]
     )
@@ -163,13 +181,13 @@ def choose_block_length(
         "to average out the slip sensors' noise": int(np.ceil(noise * (10 / slip_scale) ** 2)),
         f"at most {MAX_BLOCKS} blocks": int(np.ceil(len(samples) / MAX_BLOCKS)),
     }
-    reason, length = max(wanted.items(), key=lambda item: item[1])
-    if length > longest:
-        reason, length = f"at least {MIN_BLOCKS_PER_RUN} blocks a run", longest
-    steady = _steady_length(samples, length, MAX_SLIP_SPREAD * slip_scale)
-    if steady < length:
-        reason, length = "so that slip changes little within a block", steady
-    return BlockChoice(length, correlation, reason)
+    reason, chosen = max(wanted.items(), key=lambda item: item[1])
+    if chosen > longest:
+        reason, chosen = f"at least {MIN_BLOCKS_PER_RUN} blocks a run", longest
+    steady = _steady_length(samples, chosen, MAX_SLIP_SPREAD * slip_scale)
+    if steady < chosen:
+        reason, chosen = "so that slip changes little within a block", steady
+    return BlockChoice(chosen, correlation, reason, wander)
 
 
 def _slip_scale(law: SlipLaw, values: Array, load: float) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from model.bayes.blocks import block_means
 from model.bayes.checks.linear import Linearised, linearise
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
+from model.bayes.preliminary import BlockChoice
 from model.bayes.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
@@ -24,6 +25,8 @@ MEASURED = {
     "noise_correlation": 0.1,
     "offset_spread": 0.05,
 }
+CHOICE = BlockChoice(12, 5.0, "as planned")
+"""How samples of `linearised` become blocks."""
 Change = Callable[[SlipSamples], SlipSamples]
 
 
@@ -51,10 +54,11 @@ def linearised(
     *,
     fixed: Mapping[str, float] = EXACT,
     found: Mapping[str, float] = EXACT,
+    choice: BlockChoice = CHOICE,
 ) -> tuple[SlipPosterior, Linearised, SlipSamples]:
     """Linearise around the truth, and what was found of the rig, the fit of changed samples."""
     samples = change(sound_sweep().samples)
-    blocks = block_means(samples, 12)
+    blocks = block_means(samples, choice.length, wander_share=choice.wander_share)
     posterior = SlipPosterior(
         blocks, THESIS_LAW, default_priors(THESIS_LAW, blocks, LoadCell(zero_stability=0.1)), fixed
     )

@@ -137,6 +137,18 @@ def _departure_lines(calibration: Calibration) -> list[str]:
 
 
 def _noise_lines(calibration: Calibration) -> list[str]:
+    """Say which share of slip's noise is wander, and which Student-t noise was chosen, if any."""
+    lines = []
+    wander = calibration.fit.block_choice.wander
+    if wander is not None and wander.used > 0:
+        lines.append(
+            f"fast part of slip: traction follows {wander.share:.0%} ± {wander.sd:.0%} of it, "
+            "which is taken for wander of the slip; the rest for noise of the speeds"
+        )
+    return lines + _tail_lines(calibration)
+
+
+def _tail_lines(calibration: Calibration) -> list[str]:
     """Say which Student-t noise was chosen, and how much better than Gaussian noise it is."""
     if not calibration.fit.tails:
         return []

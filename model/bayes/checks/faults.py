@@ -8,11 +8,13 @@ import numpy as np
 
 from model.bayes.advice import Advice, CorrectData, ExcludeRuns, MeasureAlso
 from model.bayes.checks.check import Check, decided, not_testable
+from model.bayes.checks.fast_noise import fast_noise
 from model.bayes.checks.linear import Linearised
 from model.bayes.checks.periodic import block_times, find_swing
 from model.bayes.checks.raw import clipped, delay, opposed_runs, outliers, raw_residuals
 from model.bayes.checks.scatter import friction_scatter
 from model.bayes.posterior import SlipPosterior
+from model.bayes.preliminary import BlockChoice
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
 
@@ -35,7 +37,7 @@ def faults(
     samples: SlipSamples,
     *,
     explained: Array,
-    correlation: float | None,
+    choice: BlockChoice,
 ) -> tuple[Check, ...]:
     """Make the checks of single samples, of runs and of the values against their priors.
 
@@ -44,7 +46,7 @@ def faults(
         fit: The fit, linearised.
         samples: The samples that were fitted.
         explained: Force of a term that has been found already, at each block, shape (n,) [N].
-        correlation: Integrated autocorrelation time of the residuals; None if not known [samples].
+        choice: How they became blocks, with the autocorrelation time of their residuals.
     """
     residual, slope = raw_residuals(samples, posterior.law, fit.values)
     return (
@@ -54,7 +56,8 @@ def faults(
         _delay(samples, residual, slope),
         *_friction(fit, explained),
         *_swing(fit, samples),
-        *_long_enough(samples, correlation),
+        *_long_enough(samples, choice.correlation),
+        *fast_noise(posterior, fit, samples, choice, residual, slope),
         _priors(posterior, fit),
     )
 

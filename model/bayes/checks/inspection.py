@@ -14,6 +14,7 @@ from model.bayes.checks.groups import groups
 from model.bayes.checks.linear import Linearised
 from model.bayes.checks.terms import LOAD, SIDES, TIME, ZERO, Found, Suspect, find
 from model.bayes.posterior import SlipPosterior
+from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import load_levels
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
@@ -48,7 +49,7 @@ class Inspection:
 
 
 def inspect(
-    posterior: SlipPosterior, fit: Linearised, samples: SlipSamples, correlation: float | None
+    posterior: SlipPosterior, fit: Linearised, samples: SlipSamples, choice: BlockChoice
 ) -> Inspection:
     """Make the checks of what may be wrong with the data.
 
@@ -56,7 +57,7 @@ def inspect(
         posterior: The posterior of the fit.
         fit: The fit, linearised.
         samples: The samples that were fitted.
-        correlation: Integrated autocorrelation time of the residuals; None if not known [samples].
+        choice: How they became blocks, with the autocorrelation time of their residuals.
     """
     two_sided = _is_two_sided(posterior, fit)
     n_runs = fit.blocks.n_runs
@@ -78,7 +79,7 @@ def inspect(
             fit,
             samples,
             explained=_explained(fit, suspected),
-            correlation=correlation,
+            choice=choice,
         ),
     )
     return Inspection(checks, suspected)

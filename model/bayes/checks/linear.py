@@ -64,6 +64,7 @@ class Linearised:
         residual: Measured minus predicted traction, shape (n,) [N].
         factors: Lower Cholesky factor of each run's covariance [N].
         basis: Orthonormal basis of the columns of A, shape (n + d, d) [-].
+        triangle: A in that basis, upper triangular, shape (d, d) [-].
         rest: r without what the fit could absorb, shape (n + d,) [-].
         values: Law and measurement parameters at the centre, shape (k + 12,).
         z: Coordinates of the centre, shape (d,).
@@ -75,6 +76,7 @@ class Linearised:
     residual: Array
     factors: list[Array]
     basis: Array
+    triangle: Array
     rest: Array
     values: Array
     z: Array
@@ -84,6 +86,19 @@ class Linearised:
         white = whiten(self.blocks, terms, self.factors)
         padded = np.vstack([white, np.zeros((self.basis.shape[1], terms.shape[1]))])
         return padded - self.basis @ (self.basis.T @ padded)
+
+    def absorbed(self, term: Array) -> Array:
+        """Compute how far coordinates move to follow a term in the forces, to first order, (d,).
+
+        Args:
+            term: A force added to each block, shape (n,) [N].
+        """
+        white = whiten(self.blocks, term[:, None], self.factors)[:, 0]
+        return np.linalg.solve(self.triangle, self.basis[: len(white)].T @ white)
+
+    def spread(self) -> Array:
+        """Compute the posterior standard deviation of each coordinate, shape (d,) [-]."""
+        return np.sqrt(np.sum(np.linalg.inv(self.triangle) ** 2, axis=1))
 
     def beyond_fit(self, term: Array) -> Array:
         """Return a term, shape (n,) [N], less what the fit would absorb of it, shape (n,) [N]."""
@@ -134,7 +149,7 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
     white = whiten(blocks, np.column_stack([residual, jacobian]), factors)
     prior = posterior.prior_coordinates(around)
     prior_jacobian = (prior[1 : d + 1] - prior[d + 1 :]).T / (2 * STEP)
-    basis = np.linalg.qr(np.vstack([white[:, 1:], prior_jacobian]))[0]
+    basis, triangle = np.linalg.qr(np.vstack([white[:, 1:], prior_jacobian]))
     right = np.append(white[:, 0], -prior[0])
     return Linearised(
         blocks,
@@ -143,6 +158,7 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
         residual,
         factors,
         basis,
+        triangle,
         right - basis @ (basis.T @ right),
         values[0],
         centre,

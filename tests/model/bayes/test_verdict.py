@@ -41,7 +41,7 @@ from support.judged_fits import (
     two_sided,
     verdict_on,
 )
-from support.linearised_fits import linearised
+from support.linearised_fits import CHOICE, linearised
 
 TYRE_VALUES = (20.0, 1.4, 1.2, 0.2)  # its peak lies at slip 0.16
 EVENLY = np.linspace(0.09, 1.0, 6)
@@ -244,7 +244,7 @@ def test_causes_are_named_only_where_a_check_failed_and_faults_before_terms():
             traction_force=s.traction_force + 4 * (np.arange(len(s)) % 97 == 50),
         )
     )
-    found = inspect(posterior, fit, samples, None)
+    found = inspect(posterior, fit, samples, CHOICE)
     headline = verdict_on(inspection=found).headline()
     assert "; probable cause: outliers: " in headline
     assert "or true slip is larger by +0.00" in headline
@@ -337,7 +337,7 @@ def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) 
             fit.posterior,
             linearise(fit.posterior, z),
             sweep.samples,
-            fit.block_choice.correlation,
+            fit.block_choice,
         ),
         residuals=analyse_residuals(fit.posterior.blocks, THESIS_LAW, values),
         offset_scale=zero_stability,

@@ -87,7 +87,7 @@ def judged(data: RigData, law: MagicFormula, rig_errors: RigErrors = USUAL) -> J
         residuals=residuals,
         agreement=Agreement(mean=0.0, spread=0.0, pareto_k=weighted.pareto_k),
         inspection=inspect(
-            posterior, linearise(posterior, z), data.samples, fit.block_choice.correlation
+            posterior, linearise(posterior, z), data.samples, fit.block_choice
         ),
         offset_scale=cell.zero_stability,
     )

@@ -8,13 +8,17 @@ import pytest
 
 from model.bayes.checks.check import Outcome
 from model.bayes.checks.faults import faults
-from support.linearised_fits import linearised, unchanged, with_force
+from support.linearised_fits import CHOICE, linearised, unchanged, with_force
 
 
 def checks_on(change=unchanged, correlation=5.0):
     posterior, fit, samples = linearised(change)
     made = faults(
-        posterior, fit, samples, explained=np.zeros(len(fit.blocks)), correlation=correlation
+        posterior,
+        fit,
+        samples,
+        explained=np.zeros(len(fit.blocks)),
+        choice=replace(CHOICE, correlation=correlation),
     )
     return {check.name: check for check in made}
 
@@ -65,7 +69,7 @@ def test_values_far_from_their_priors_are_implausible():
     posterior, fit, samples = linearised()
     far = replace(fit, z=fit.z + 6.0 * np.eye(len(fit.z))[2])
     made = faults(
-        posterior, far, samples, explained=np.zeros(len(fit.blocks)), correlation=None
+        posterior, far, samples, explained=np.zeros(len(fit.blocks)), choice=CHOICE
     )  # fmt: skip
     (check,) = [each for each in made if each.name == "values lie within their priors"]
     assert check.failed

@@ -8,11 +8,11 @@ import pytest
 
 from model.bayes.checks.check import Outcome
 from model.bayes.checks.inspection import CROSSING, ONE_CURVE, STEADY, TERMS, inspect
-from support.linearised_fits import linearised, unchanged, with_force
+from support.linearised_fits import CHOICE, linearised, unchanged, with_force
 
 
 def inspected(change=unchanged):
-    return inspect(*linearised(change), 5.0)
+    return inspect(*linearised(change), CHOICE)
 
 
 def check_named(name, found):
@@ -51,7 +51,7 @@ def test_at_one_load_a_constant_force_and_one_of_the_load_cannot_be_told_apart()
 
 
 def test_a_gain_by_direction_that_rolling_resistance_could_hide_is_untested():
-    found = inspect(*linearised(fixed={}), 5.0)
+    found = inspect(*linearised(fixed={}), CHOICE)
     check = check_named(ONE_CURVE, found)
     assert check.outcome is Outcome.NOT_TESTABLE
     assert check.untested.startswith("driving and braking alike (a difference of ")
@@ -61,7 +61,7 @@ def test_a_gain_by_direction_that_rolling_resistance_could_hide_is_untested():
 
 def test_a_gain_by_direction_that_nothing_hides_is_a_failure_all_the_same():
     uneven = with_force(lambda s: 0.4 * np.maximum(s.traction_force, 0.0))
-    check = check_named(ONE_CURVE, inspect(*linearised(uneven, fixed={}), 5.0))
+    check = check_named(ONE_CURVE, inspect(*linearised(uneven, fixed={}), CHOICE))
     assert check.failed
     assert "driving forces are" in check.cause
 

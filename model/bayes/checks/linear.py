@@ -94,7 +94,7 @@ class Linearised:
             term: A force added to each block, shape (n,) [N].
         """
         white = whiten(self.blocks, term[:, None], self.factors)[:, 0]
-        return np.linalg.solve(self.triangle, self.basis[: len(white)].T @ white)
+        return solve_triangular(self.triangle, self.basis[: len(white)].T @ white)
 
     def spread(self) -> Array:
         """Compute the posterior standard deviation of each coordinate, shape (d,) [-]."""

@@ -9,6 +9,7 @@ from model.bayes.convergence import MAX_PARETO_K, Convergence
 from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Chains
 from model.bayes.weighted import WeightedDraws
+from model.slip.covariate import reference_law
 from model.slip.discrepancy import LawWithDiscrepancy
 from model.slip.law import Array, Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
@@ -125,7 +126,8 @@ def curve_estimates(
 
     In order: B, C, D, E (of a Magic Formula only), peak slip (or infinity), largest traction within
     the tested slip (known even where data end before the peak, unlike D), slope at zero slip [N].
-    Of a law with its sides apart these are of driving, and the last three follow for braking.
+    Of a law with its sides apart these are of driving, and the last three follow for braking; of
+    one with a covariate they are those at the reference.
 
     Args:
         law: The slip law, of k parameters.
@@ -133,7 +135,8 @@ def curve_estimates(
         load: Normal force [N].
         slip_limit: Largest absolute slip ratio that was tested [-].
     """
-    columns = values.T
+    law, reference = reference_law(law, values.T)
+    columns = np.asarray(reference)
     quantities: list[tuple[Parameter, Array]] = []
     base = law.law if isinstance(law, LawWithDiscrepancy) else law
     if isinstance(base, MagicFormula):

@@ -9,6 +9,7 @@ from model.errors import DomainError
 from model.similar_name import similar_name
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
+from model.slip.covariate import Covariate, CovariateLaw
 from model.slip.discrepancy import NAME, LawWithDiscrepancy
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
@@ -17,6 +18,7 @@ from model.slip.sided import SidedLaw
 LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
 """Class of every slip law, by the law's name."""
 DISCREPANCY: Final = NAME
+COVARIATE: Final = "covariate"
 SIDES: Final = "sides"
 TOGETHER: Final = "together"
 APART: Final = "apart"
@@ -32,7 +34,8 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
         name: A key of `LAWS`.
         options: Fields of the law's class, such as `curvature` of the Magic Formula; their values
             are not checked. `sides="apart"` makes it a `SidedLaw`, `discrepancy`, the fields of
-            a `LawWithDiscrepancy` but its law, one of these.
+            a `LawWithDiscrepancy` but its law, one of these, and `covariate`, the fields of a
+            `Covariate` and the degree, a `CovariateLaw`.
 
     Returns:
         The law.
@@ -44,24 +47,34 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
     ['slip_stiffness', 'friction', 'kinetic_ratio']
     """
     _require_known("slip law", name, tuple(LAWS))
-    known = (*(field.name for field in fields(LAWS[name])), SIDES, DISCREPANCY)
+    known = (*(field.name for field in fields(LAWS[name])), SIDES, DISCREPANCY, COVARIATE)
     for option in options:
         _require_known(f"option of the slip law '{name}'", option, known)
-    own = {key: value for key, value in options.items() if key not in (SIDES, DISCREPANCY)}
-    law = LAWS[name](**own)
+    own = {
+        key: value for key, value in options.items() if key not in (SIDES, DISCREPANCY, COVARIATE)
+    }
+    law: SlipLaw = LAWS[name](**own)
     sides = options.get(SIDES, TOGETHER)
     _require_known(f"value of the option '{SIDES}'", sides, (TOGETHER, APART))
     if sides == APART:
         law = SidedLaw(law)
-    return LawWithDiscrepancy(law, **options[DISCREPANCY]) if DISCREPANCY in options else law
+    if DISCREPANCY in options:
+        law = LawWithDiscrepancy(law, **options[DISCREPANCY])
+    if COVARIATE in options:
+        stated = dict(options[COVARIATE])
+        law = CovariateLaw(law, degree=stated.pop("degree"), covariate=Covariate(**stated))
+    return law
 
 
 def law_options(law: SlipLaw) -> dict[str, Any]:
     """Return the options with which `slip_law` restores a law.
 
     Args:
-        law: A law of a class in `LAWS`, or such a law with its sides apart or a discrepancy.
+        law: A law of a class in `LAWS`, or such a law with its sides apart, a discrepancy or a
+            covariate.
     """
+    if isinstance(law, CovariateLaw):
+        return {**law_options(law.law), COVARIATE: {**asdict(law.covariate), "degree": law.degree}}
     if isinstance(law, LawWithDiscrepancy):
         own = {field.name: getattr(law, field.name) for field in fields(law)}
         return {**law_options(own.pop("law")), DISCREPANCY: own}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.slip.covariate import reference_law
 from model.slip.law import Array, Parameter, SlipLaw, Values
 
 N_SIDES = 2
@@ -124,6 +125,7 @@ def braking_peak_slip(law: SlipLaw, load: ArrayLike, values: Values) -> Array:
         load: Normal force, positive [N].
         values: Parameter values, one entry a parameter.
     """
+    law, values = reference_law(law, values)
     if isinstance(law, SidedLaw):
         return law.braking_peak_slip(load, values)
     return -law.peak_slip(load, values)
@@ -132,10 +134,13 @@ def braking_peak_slip(law: SlipLaw, load: ArrayLike, values: Values) -> Array:
 def middle_curve(law: SlipLaw, values: Values) -> tuple[SlipLaw, Values]:
     """Return a law's middle curve between driving and braking: its law and parameter values.
 
+    That of a law with a covariate is the one at the reference.
+
     Args:
         law: The slip law; one without sides is its own middle curve.
         values: Parameter values, one entry a parameter.
     """
+    law, values = reference_law(law, values)
     return (law.law, values[:-N_SIDES]) if isinstance(law, SidedLaw) else (law, values)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.special import gammaincinv, ndtri
 
 from model.bayes.blocks import SlipBlocks
+from model.slip.covariate import law_at
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array, SlipLaw
 
@@ -65,7 +66,7 @@ def _mean_traction(layout: SlipBlocks, law: SlipLaw, values: Array, slip: Array)
         values: Values of all parameters, shape (k + 12,).
         slip: True mean slip of each block by the stated radii, shape (n,) [-].
     """
-    k = len(law.parameters)
+    k, law = len(law.parameters), law_at(law, layout.coordinate)
     g_t, g_n, b_n, c, epsilon, c_r = values[k : k + 6]
     slips, loads = _within(layout, slip)
     true_slip = slip_of_true_radii(slips, epsilon, layout.definition)

@@ -10,6 +10,7 @@ from model.bayes.residuals import load_levels
 from model.bayes.samples import SlipSamples
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
+from model.slip.covariate import DEGREES, CovariateLaw
 from model.slip.discrepancy import with_discrepancy
 from model.slip.law import SlipLaw
 from model.slip.laws import APART, TOGETHER, slip_law
@@ -21,6 +22,7 @@ from zebro_lab.calibration.request import (
     CalibrationRequest,
     require_curvature,
 )
+from zebro_lab.calibration.run_covariate import levels
 from zebro_lab.files.errors import SettingsError
 
 ONE_CURVATURE: Final = "one curvature E at every load"
@@ -34,7 +36,8 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
 
     They are the Magic Formula's, with `--law compare` the others' too, else the one that is named;
     with `--sides apart` all with their sides apart, with `--sides auto` those behind the others;
-    with `--discrepancy` all with a departure over the tested slips.
+    with `--discrepancy` all with a departure over the tested slips; where runs have a covariate,
+    all without and with it.
 
     Args:
         request: Options: law, curvature, dependence on load, and sides.
@@ -51,7 +54,41 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
             name: with_discrepancy(law, sd, smallest=low, largest=high)
             for name, law in laws.items()
         }
+        if samples.covariate is not None:
+            raise SettingsError(
+                "a departure from the law and a covariate of runs cannot be fitted together; leave "
+                "out --discrepancy, or the [covariates] of columns.toml",
+                key="--discrepancy",
+            )
         return departing
+    return _with_covariate(_sided(laws, request, samples), request, samples)
+
+
+def _with_covariate(
+    laws: dict[str, SlipLaw], request: CalibrationRequest, samples: SlipSamples
+) -> dict[str, SlipLaw]:
+    """Add to each law those that follow the covariate of the runs, if they have one.
+
+    From three levels on they are two, of degree 1 and 2; with `--law compare` that of the higher
+    degree alone.
+    """
+    if samples.covariate is None:
+        return laws
+    covariate, values = samples.covariate
+    degrees = DEGREES[: len(levels(values)) - 1]
+    chosen = degrees[-1:] if request.law == COMPARE else degrees
+    following: dict[str, SlipLaw] = {
+        f"{name}, {covariate.name}{' squared' * (degree > 1)}": CovariateLaw(law, covariate, degree)
+        for name, law in laws.items()
+        for degree in chosen
+    }
+    return {**laws, **following}
+
+
+def _sided(
+    laws: dict[str, SlipLaw], request: CalibrationRequest, samples: SlipSamples
+) -> dict[str, SlipLaw]:
+    """Return laws with driving and braking together or apart, as asked for, or both."""
     if request.sides == TOGETHER:
         return laws
     both_signs = _has_both_signs(samples)

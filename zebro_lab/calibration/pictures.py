@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Draw the pictures of a calibration folder."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from model.bayes.blocks import SlipBlocks
 from model.bayes.calibration import Calibration
 from model.bayes.law_scores import LawScores
 from model.bayes.likelihood import predict_blocks
 from model.bayes.verdict import State
+from model.slip.covariate import Covariate, CovariateLaw
 from model.slip.discrepancy import LawWithDiscrepancy
+from model.slip.law import Array, SlipLaw
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
 
@@ -34,7 +38,9 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
     """
     from zebro_lab import plots  # matplotlib takes most of a second to import
 
-    blocks, law = calibration.posterior.blocks, calibration.posterior.law
+    law = calibration.posterior.law
+    centre = calibration.draws.flat.mean(axis=0)
+    blocks = _at_reference(calibration.posterior.blocks, law, centre)
     residuals, simulated = calibration.residuals, is_simulated(calibration.source)
     k = len(law.parameters)
     own = law.law.parameters if isinstance(law, LawWithDiscrepancy) else law.parameters
@@ -57,18 +63,40 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
         figures["discrepancy"] = plots.discrepancy(blocks, law, draws=draws, simulated=simulated)
     scores = calibration.comparison
     if isinstance(scores, LawScores):
-        centre = calibration.draws.flat.mean(axis=0)
-        expected = predict_blocks(blocks, law, centre[None]).force
+        own = calibration.posterior.blocks
+        residual = own.traction_force - predict_blocks(own, law, centre[None]).force[0]
         figures["laws"] = plots.slip_laws(
             blocks,
             {score.name: (score.law, score.values) for score in scores.laws},
             reference=scores.laws[scores.chosen].name,
-            residual=blocks.traction_force - expected[0],
+            residual=residual,
             load_levels=calibration.levels,
             simulated=simulated,
         )
     for name, figure in figures.items():
+        if isinstance(law, CovariateLaw) and name in ("curves", "surface", "laws"):
+            plots.add_to_title(figure, _at_text(law.covariate))
         mark = _MARKS.get(calibration.verdict.state)
         if mark is not None:
             plots.add_to_title(figure, mark)
         plots.save(figure, folder / f"{name}.{form}")
+
+
+def _at_text(covariate: Covariate) -> str:
+    """Return at which value of the covariate curves and points are drawn, for a title."""
+    return f"at {covariate.name} {covariate.reference:.4g} {covariate.unit}".rstrip()
+
+
+def _at_reference(blocks: SlipBlocks, law: SlipLaw, values: Array) -> SlipBlocks:
+    """Move measured forces to the reference of the covariate, if the law follows one.
+
+    Args:
+        blocks: The block means.
+        law: The slip law.
+        values: Values of all parameters, shape (k + 12,).
+    """
+    if not isinstance(law, CovariateLaw) or blocks.run_covariate is None:
+        return blocks
+    there = replace(blocks, run_covariate=None)
+    own, moved = (predict_blocks(each, law, values[None]).force[0] for each in (blocks, there))
+    return replace(there, traction_force=blocks.traction_force - own + moved)

@@ -15,6 +15,7 @@ from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.rig_part import RigPart, read_part
+from zebro_lab.calibration.run_covariate import covariate_note, joined_covariate
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.runs.counted_once import (
     content_hash,
@@ -113,6 +114,7 @@ def read_rig_data(
         source=_joined_source(parts),
         notes=(
             *_notes(parts),
+            *covariate_note(parts),
             *others,
             *skipped,
             *duplicates,
@@ -273,6 +275,7 @@ def _joined(parts: Sequence[RigPart]) -> SlipSamples:
         run_names=tuple(name for part in parts for name in part.runs.names),
         definition=parts[0].slip.definition,
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
+        covariate=joined_covariate(parts),
     )
 
 

@@ -21,6 +21,7 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
+from zebro_lab.tables.run_values import run_values
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
 
@@ -43,6 +44,8 @@ class RigPart:
         time: Time, shape (n,) [s]; None if the table has none or every row is a trial.
         notes: Notes on reading and unit conversion, one line each.
         files: Every file read, the column map last, if there is one.
+        covariate: Value of the covariate in each run, shape (n_runs,), in its unit; None where the
+            column map states none.
     """
 
     path: Path
@@ -57,6 +60,7 @@ class RigPart:
     time: Array | None
     notes: tuple[str, ...]
     files: tuple[Path, ...]
+    covariate: Array | None = None
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -81,6 +85,7 @@ class RigPart:
             traction_force=self.traction_force[rows],
             runs=replace(self.runs, index=index, names=names),
             time=None if self.time is None else self.time[rows],
+            covariate=None if self.covariate is None else self.covariate[chosen],
         )
 
 
@@ -121,6 +126,7 @@ def read_part(
         time=run_times(table, runs),
         notes=(*raw.notes, *table.conversions(), *doubts),
         files=files if columns.file is None else (*files, columns.file),
+        covariate=None if columns.covariate is None else run_values(table, runs, columns.covariate),
     )
 
 

@@ -9,6 +9,7 @@ from scipy.special import stdtr
 
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
+from model.slip.covariate import law_at
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import Array, SlipLaw
 
@@ -36,7 +37,7 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
     Returns:
         Residuals and slopes, shape (n,) each [N].
     """
-    k = len(law.parameters)
+    k, law = len(law.parameters), law_at(law, samples.coordinate)
     g_t, g_n, b_n, c, epsilon, c_r = values[k : k + 6]
     slip = samples.slip - epsilon * slip_per_radius_error(samples.slip, samples.definition)
     load = (1 + g_n) * samples.normal_force - b_n + c * samples.traction_force

@@ -86,9 +86,7 @@ def judged(data: RigData, law: MagicFormula, rig_errors: RigErrors = USUAL) -> J
         convergence=CONVERGED,
         residuals=residuals,
         agreement=Agreement(mean=0.0, spread=0.0, pareto_k=weighted.pareto_k),
-        inspection=inspect(
-            posterior, linearise(posterior, z), data.samples, fit.block_choice
-        ),
+        inspection=inspect(posterior, linearise(posterior, z), data.samples, fit.block_choice),
         offset_scale=cell.zero_stability,
     )
     by_name = {p.name: values[:, i] for i, p in enumerate(posterior.parameters)}

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from model.bayes.block_edges import block_starts
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_calibration import calibrate_covariance, calibrate_slip, wander_within
-from model.bayes.slip_noise import noise_and_freedom
+from model.bayes.slip_noise import noise_and_freedom, slip_noise_variance
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 
@@ -127,21 +127,15 @@ def block_means(samples: SlipSamples, length: int, *, wander_share: float = 0.0)
             `fast_wander` tells it [-].
     """
     white, noise_freedom = noise_and_freedom(samples)
-    starts, run = block_starts(samples, length, noise=white)
+    starts, run = block_starts(samples, length, noise=slip_noise_variance(samples))
     noise = (1 - wander_share) * white
-    count = np.diff(starts)
-    slip, load, force = (
-        _mean(values, starts)
-        for values in (samples.slip, samples.normal_force, samples.traction_force)
-    )
-    slip_deviation = samples.slip - np.repeat(slip, count)
-    load_deviation = samples.normal_force - np.repeat(load, count)
-    spread = np.add.reduceat(slip_deviation**2, starts[:-1]) / np.maximum(count - 1, 1)
-    load_variance = _mean(load_deviation**2, starts)
+    found = _moments(samples, starts)
+    slip, load, force, count = found.slip, found.load, found.force, found.count
+    spread = found.slip_square * count / np.maximum(count - 1, 1)
+    load_variance = found.load_square
     calibrated, slip_error, run_slip_error = calibrate_slip(slip, count, run, noise, noise_freedom)
     covariance, covariance_error = calibrate_covariance(
-        _mean(slip_deviation * load_deviation, starts),
-        load_variance, count, run, noise, noise_freedom,
+        found.product, load_variance, count, run, noise, noise_freedom,
     )  # fmt: skip
     # Slope times slip is about force, so that an error of the covariance is one of slip over load.
     slip_error = slip_error + covariance_error / np.maximum(load, 1e-9) ** 2
@@ -156,7 +150,7 @@ def block_means(samples: SlipSamples, length: int, *, wander_share: float = 0.0)
         slip_wander=wander_within(spread, count, run, noise),
         slip_error=slip_error,
         load_variance=load_variance,
-        load_skewness=_skewness(_mean(load_deviation**3, starts), load_variance),
+        load_skewness=_skewness(found.load_third, load_variance),
         slip_load_covariance=covariance,
         run_slip_error=run_slip_error,
         run_covariate=_coordinate_of_runs(samples),
@@ -171,9 +165,50 @@ def _coordinate_of_runs(samples: SlipSamples) -> Array | None:
     return covariate.coordinate(values)
 
 
-def _mean(values: Array, starts: NDArray[np.intp]) -> Array:
-    """Average sample values (n_samples,) over blocks from `starts`, which ends with n_samples."""
-    return np.add.reduceat(values, starts[:-1]) / np.diff(starts)
+@dataclass(frozen=True)
+class _Moments:
+    """Means of each block, and moments about them; shape (n,) each."""
+
+    slip: Array
+    load: Array
+    force: Array
+    count: NDArray[np.intp]
+    slip_square: Array
+    load_square: Array
+    load_third: Array
+    product: Array
+
+
+def _moments(samples: SlipSamples, starts: NDArray[np.intp]) -> _Moments:
+    """Compute the moments of blocks from `starts`, which ends with the number of samples.
+
+    Samples that are means of several are weighted by their number, and the moments within them are
+    added.
+    """
+    fine, size = samples.fine, np.diff(starts)
+    weight = None if fine is None else fine.count.astype(float)
+    count = size if fine is None else np.add.reduceat(fine.count, starts[:-1])
+
+    def mean(values: Array) -> Array:
+        total = np.add.reduceat(values if weight is None else weight * values, starts[:-1])
+        return total / count
+
+    slip, load, force = (
+        mean(values) for values in (samples.slip, samples.normal_force, samples.traction_force)
+    )
+    of_slip = samples.slip - np.repeat(slip, size)
+    of_load = samples.normal_force - np.repeat(load, size)
+    slip_square, load_square, load_third = of_slip**2, of_load**2, of_load**3
+    product = of_slip * of_load
+    if fine is not None:
+        load_third = load_third + 3 * of_load * fine.load_variance + fine.load_third
+        slip_square = slip_square + fine.slip_variance
+        load_square = load_square + fine.load_variance
+        product = product + fine.slip_load_covariance
+    return _Moments(
+        slip, load, force, count, mean(slip_square), mean(load_square), mean(load_third),
+        mean(product),
+    )  # fmt: skip
 
 
 def _skewness(third_moment: Array, variance: Array) -> Array:

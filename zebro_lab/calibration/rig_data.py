@@ -8,15 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
+from model.bayes.fine_means import joined_moments
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition
-from zebro_lab.calibration.rig_part import RigPart, read_part
+from zebro_lab.calibration.rig_part import RigPart, averaged_part, read_part
 from zebro_lab.calibration.run_covariate import covariate_note, joined_covariate
+from zebro_lab.calibration.streamed_part import read_streamed_part
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
+from zebro_lab.files.unpacking import MOST_CELLS
 from zebro_lab.runs.counted_once import (
     content_hash,
     duplicates_note,
@@ -28,8 +31,13 @@ from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
 from zebro_lab.tables.columns import Columns, parse_definition
 from zebro_lab.tables.columns_file import read_columns
+from zebro_lab.tables.parquet_files import parquet_rows
 from zebro_lab.tables.table_files import table_stem
 
+MOST_ROWS = 15_000_000
+"""Rows of Parquet tables that are held in memory all together."""
+MEANS = 2_000_000
+"""Means that more samples than these are averaged to."""
 _LEAST_SAMPLES = 20  # of a recording, to estimate its noise
 _LEAST_TRIALS = 8  # averages over trials: more than any law has parameters
 _CONSTANT_SLIP = 1e-6  # range of slip ratio below which slip is constant
@@ -94,7 +102,8 @@ def read_rig_data(
         wanted = parse_definition(wanted, file=None, key="slip definition")
     labels = dict(zip(named, _labels(named), strict=True))
     maps = _column_maps(named, columns)
-    parts, died = _read_parts(sources, maps, labels, wanted)
+    mean_of = _mean_of(sources, maps)
+    parts, died = _read_parts(sources, maps, labels, wanted, mean_of)
     if parts:  # the same forces under two definitions contradict each other
         _require_one_definition(parts)
     known = _known(excluded, maps, labels) if parts else {}
@@ -114,6 +123,7 @@ def read_rig_data(
         source=_joined_source(parts),
         notes=(
             *_notes(parts),
+            *_averaging_note(parts),
             *covariate_note(parts),
             *others,
             *skipped,
@@ -164,6 +174,7 @@ def _read_parts(
     maps: Mapping[DataSource, Columns],
     labels: Mapping[DataSource, str],
     wanted: SlipDefinition | None,
+    mean_of: int,
 ) -> tuple[list[RigPart], dict[DataSource, str]]:
     """Read tables and runs; return also why runs are left out that were cut short too early.
 
@@ -173,12 +184,40 @@ def _read_parts(
     parts, died = [], {}
     for source in sources:
         try:
-            parts.append(read_part(source, maps[source], labels[source], wanted))
+            parts.append(_read(source, maps[source], labels[source], wanted, mean_of))
         except DataError as error:
             if not (source.is_run_folder and _is_cut_short(source.path)):
                 raise
             died[source] = f"its recording was cut short, and cannot be used: {error}"
     return parts, died
+
+
+def _mean_of(sources: Sequence[DataSource], maps: Mapping[DataSource, Columns]) -> int:
+    """Return how many samples are averaged as they are read: 1 where all can be held in memory.
+
+    Counted are the rows of Parquet tables; others are limited by what can be read at once.
+    """
+    sizes = [parquet_rows(source.path) for source in sources if _streamable(source, maps[source])]
+    rows = sum(n for n, _ in sizes)
+    if rows <= MOST_ROWS and all(n * columns <= MOST_CELLS for n, columns in sizes):
+        return 1
+    return max(2, -(-rows // MEANS))
+
+
+def _streamable(source: DataSource, columns: Columns) -> bool:
+    is_parquet = not source.is_run_folder and source.path.name.lower().endswith(".parquet")
+    return is_parquet and source.path.is_file() and not columns.runs.each_row
+
+
+def _read(
+    source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None, mean_of: int
+) -> RigPart:
+    """Read a table or run, as means of samples if there are too many in all."""
+    if mean_of == 1:
+        return read_part(source, columns, label, wanted)
+    if _streamable(source, columns):
+        return read_streamed_part(source, columns, label, wanted, mean_of=mean_of)
+    return averaged_part(read_part(source, columns, label, wanted), mean_of)
 
 
 def _is_cut_short(run: Path) -> bool:
@@ -265,6 +304,7 @@ def _without_duplicates(
 def _joined(parts: Sequence[RigPart]) -> SlipSamples:
     first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
     timed = [part.time for part in parts if part.time is not None]
+    fine = [part.fine for part in parts if part.fine is not None]
     return SlipSamples(
         slip=np.concatenate([part.slip.ratio for part in parts]),
         normal_force=np.concatenate([part.normal_force for part in parts]),
@@ -276,6 +316,7 @@ def _joined(parts: Sequence[RigPart]) -> SlipSamples:
         definition=parts[0].slip.definition,
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
         covariate=joined_covariate(parts),
+        fine=joined_moments(fine) if len(fine) == len(parts) else None,
     )
 
 
@@ -369,6 +410,18 @@ def _notes(parts: Sequence[RigPart]) -> list[str]:
     return [*origins, *runs, *_rows_left_out(parts), *_time_note(parts), *others]
 
 
+def _averaging_note(parts: Sequence[RigPart]) -> list[str]:
+    fine = [part.fine for part in parts if part.fine is not None]
+    if not fine:
+        return []
+    samples = sum(int(each.length.sum()) for each in fine)
+    means = sum(len(each.count) for each in fine)
+    return [
+        f"{samples} samples are too many for memory: averaged as they were read, about "
+        f"{samples / means:.0f} at a time, with the moments within"
+    ]
+
+
 def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
     read: Counter[str] = Counter()
     kept: Counter[str] = Counter()
@@ -376,7 +429,8 @@ def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
         if part.columns.keep:
             conditions = " and ".join(map(str, part.columns.keep))
             read[conditions] += part.rows_read
-            kept[conditions] += len(part.normal_force)
+            own = len(part.normal_force) if part.fine is None else int(part.fine.length.sum())
+            kept[conditions] += own
     return [f"{read[c] - kept[c]} of {read[c]} rows left out; kept where {c}" for c in read]
 
 

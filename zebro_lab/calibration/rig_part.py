@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from model.bayes.fine_means import fine_moments, moments_of_runs, reduce_samples
 from model.bayes.rig_errors import RigErrors
+from model.bayes.samples import FineMoments, SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 from zebro_lab.calibration.plausible import require_plausible
@@ -46,6 +48,7 @@ class RigPart:
         files: Every file read, the column map last, if there is one.
         covariate: Value of the covariate in each run, shape (n_runs,), in its unit; None where the
             column map states none.
+        fine: Where samples are means of several, what was within them; None where they are not.
     """
 
     path: Path
@@ -61,6 +64,7 @@ class RigPart:
     notes: tuple[str, ...]
     files: tuple[Path, ...]
     covariate: Array | None = None
+    fine: FineMoments | None = None
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -86,7 +90,32 @@ class RigPart:
             runs=replace(self.runs, index=index, names=names),
             time=None if self.time is None else self.time[rows],
             covariate=None if self.covariate is None else self.covariate[chosen],
+            fine=None if self.fine is None else moments_of_runs(self.fine, rows, chosen),
         )
+
+
+def averaged_part(part: RigPart, mean_of: int) -> RigPart:
+    """Return a table or run with means of so many samples in place of the samples.
+
+    Args:
+        part: The table or run.
+        mean_of: Samples in a mean.
+    """
+    samples = SlipSamples(
+        part.slip.ratio, part.normal_force, part.traction_force, part.runs.index, part.runs.names,
+        part.slip.definition, part.time,
+    )  # fmt: skip
+    reduced = reduce_samples(samples, mean_of)
+    slip_ratio, pressed, traction, time = reduced.means
+    return replace(
+        part,
+        slip=replace(part.slip, ratio=slip_ratio),
+        normal_force=pressed,
+        traction_force=traction,
+        runs=replace(part.runs, index=reduced.run),
+        time=None if part.time is None else time,
+        fine=fine_moments([reduced], len(part.runs.names)),
+    )
 
 
 def read_part(

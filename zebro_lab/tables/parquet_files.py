@@ -4,9 +4,13 @@
 import io
 import os
 from collections import Counter
+from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
@@ -20,6 +24,9 @@ if TYPE_CHECKING:
 
 _ADVICE = "export the file again"
 _MOST_THRIFT = 1 << 26  # memory that a footer may ask for [bytes or entries]
+_LIMITS: Any = {
+    "thrift_string_size_limit": _MOST_THRIFT, "thrift_container_size_limit": _MOST_THRIFT
+}  # fmt: skip
 
 
 def read_parquet_file(path: Path) -> RawTable:
@@ -35,9 +42,67 @@ def read_parquet_file(path: Path) -> RawTable:
     """
     with _opened(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
         table = _read(file, path)
-        metadata = table.schema.metadata or {}
-        columns = {name: _cells(table.column(i)) for i, name in enumerate(table.column_names)}
-    source = metadata.get(b"source")
+        return _raw(path, table, table.schema.metadata)
+
+
+def parquet_rows(path: Path) -> tuple[int, int]:
+    """Return the numbers of rows and of columns that a Parquet file states.
+
+    Args:
+        path: The file, not gzipped.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: The file is not complete Parquet.
+    """
+    import pyarrow.parquet as pq
+
+    with (
+        _opened(path) as file,
+        parsing(path, "is not a complete Parquet file", advice=_ADVICE),
+        pq.ParquetFile(file, **_LIMITS) as opened,
+    ):
+        return opened.metadata.num_rows, opened.metadata.num_columns
+
+
+def parquet_parts(path: Path, *, rows: int, wanted: Collection[str]) -> Iterator[RawTable]:
+    """Read a Parquet file in parts of so many rows, each but the first with the row before it.
+
+    Args:
+        path: The file, not gzipped.
+        rows: Rows of a part.
+        wanted: Headers of the columns to read; those that the file lacks are passed over.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: The file is not complete Parquet, or would unpack to far more than its size.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    with _opened(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
+        with pq.ParquetFile(file, **_LIMITS) as opened:
+            _require_packed(opened.metadata, path, file.seek(0, os.SEEK_END))
+            schema = opened.schema_arrow
+            names = [name for name in dict.fromkeys(schema.names) if name in wanted]
+            texts = [name for name in names if _is_text(schema.field(name).type)]
+        with pq.ParquetFile(file, read_dictionary=texts, **_LIMITS) as opened:
+            before, row = None, 0
+            for batch in opened.iter_batches(rows, columns=names, use_threads=False):
+                table = pa.Table.from_batches([batch])
+                both = table if before is None else pa.concat_tables([before, table])
+                kept = np.arange(row - (before is not None), row + len(table))
+                yield _raw(path, both, schema.metadata, kept)
+                row += len(table)
+                before = table.slice(len(table) - 1)
+
+
+def _raw(
+    path: Path, table: "pa.Table", metadata: Any, kept: NDArray[np.intp] | None = None
+) -> RawTable:
+    """Return a table of Arrow as a raw table, perhaps of some rows of the file."""
+    columns = {name: _cells(table.column(i)) for i, name in enumerate(table.column_names)}
+    source = (metadata or {}).get(b"source")
     names = Counter(table.column_names)
     return RawTable(
         path,
@@ -47,6 +112,7 @@ def read_parquet_file(path: Path) -> RawTable:
         unreadable={field.name: str(field.type)[:80] for field in table.schema
                     if not _is_plain(field.type)},
         units={name: unit for name in columns if (unit := unit_in_header(name)) is not None},
+        kept=kept,
     )  # fmt: skip
 
 
@@ -59,15 +125,12 @@ def _opened(path: Path) -> AbstractContextManager[IO[bytes]]:
 def _read(file: IO[bytes], path: Path) -> "pa.Table":
     import pyarrow.parquet as pq
 
-    limits: Any = {
-        "thrift_string_size_limit": _MOST_THRIFT, "thrift_container_size_limit": _MOST_THRIFT
-    }  # fmt: skip
-    with pq.ParquetFile(file, **limits) as opened:
+    with pq.ParquetFile(file, **_LIMITS) as opened:
         metadata, schema = opened.metadata, opened.schema_arrow
         _require_bounded(metadata, path, file.seek(0, os.SEEK_END))
     # A long string that repeats in many rows is stored once, but unpacked it is copied to each row.
     texts = [field.name for field in schema if _is_text(field.type)]
-    with pq.ParquetFile(file, read_dictionary=texts, **limits) as opened:
+    with pq.ParquetFile(file, read_dictionary=texts, **_LIMITS) as opened:
         # In one thread: of several, a damaged column could abort the process at exit (pyarrow 17).
         return opened.read(use_threads=False)
 
@@ -82,6 +145,12 @@ def _require_bounded(metadata: Any, path: Path, size: int) -> None:
             " split the file, or drop columns that are not needed",
             file=path,
         )
+    _require_packed(metadata, path, size)
+
+
+def _require_packed(metadata: Any, path: Path, size: int) -> None:
+    """Raise `DataError` if a file would unpack to far more than its size."""
+    groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     # Not `group.column(i)`: pyarrow 26 aborts the process there if a column's statistics are wrong.
     unpacked = sum(group.total_byte_size for group in groups)
     if unpacked > FREELY + MOST_RATIO * size:

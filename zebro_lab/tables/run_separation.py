@@ -2,6 +2,7 @@
 """Assign the rows of a table to runs, and check their times."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 from model.slip.law import Array
 from zebro_lab.tables.mapped_columns import require_usual_steps
 from zebro_lab.tables.rig_table import RigTable
+
+ONE_RUN = "each file is one run"
 
 
 @dataclass(frozen=True)
@@ -39,19 +42,57 @@ def separate_runs(table: RigTable, label: str) -> Runs:
     Raises:
         DataError: A column to separate by, or the time for `gap`, is missing or cannot be read.
     """
-    rule, mapped_run = table.columns.runs, table.source_of("run")
-    if rule.each_row:
+    if table.columns.runs.each_row:
         names = tuple(f"{label} row {row + 1}" for row in table.rows)
         return Runs(np.arange(len(names)), names, "each row is one run")
+    starts, by, rule = run_starts(table)
+    number = np.cumsum(starts)[table.rows]
+    kept, index = np.unique(number, return_inverse=True)
+    first = table.rows[np.searchsorted(number, kept)]
+    return Runs(index, run_names([run_title(table, row, by) for row in first], label, rule), rule)
+
+
+def run_starts(table: RigTable) -> tuple[NDArray[np.bool_], tuple[str, ...], str]:
+    """Find where a run begins, but for the first row, on all rows.
+
+    Args:
+        table: The table, whose column map has another rule than `each_row`.
+
+    Returns:
+        Whether each row begins a run, the columns whose changes do, and the rule in words.
+
+    Raises:
+        DataError: As `separate_runs`.
+    """
+    rule, mapped_run = table.columns.runs, table.source_of("run")
     if rule.gap is not None:
-        starts = _after_pauses(table, rule.gap)
-        return _named(table, starts, label, None, f"separated by pauses of over {rule.gap:g} s")
+        return _after_pauses(table, rule.gap), (), f"separated by pauses of over {rule.gap:g} s"
     by = rule.by or ((mapped_run.name,) if mapped_run else ())
     if by:
-        starts = _at_changes(table, by)
         changes = f"separated by changes of {', '.join(map(repr, by))}"
-        return _named(table, starts, label, by, changes)
-    return Runs(np.zeros(len(table.rows), dtype=np.intp), (label,), "each file is one run")
+        return _at_changes(table, by), by, changes
+    return np.zeros(len(table.raw), dtype=bool), (), ONE_RUN
+
+
+def run_title(table: RigTable, row: int, by: Sequence[str]) -> str:
+    """Return what columns say of a run, such as "run=3", by one of its rows."""
+    cells = ((name, table.raw.column(name).iloc[row]) for name in by)
+    return " ".join(f"{name}={_shown(cell)}" for name, cell in cells)
+
+
+def run_names(titles: Sequence[str], label: str, rule: str) -> tuple[str, ...]:
+    """Return the name of each run of a table: its title, or its number where it has none.
+
+    Args:
+        titles: Title of each run by `run_title`.
+        label: Name of the table; prefix of every name.
+        rule: The rule in words.
+    """
+    if rule == ONE_RUN:
+        return (label,) * len(titles)
+    if not any(titles):
+        return tuple(f"{label} run {k}" for k in range(1, len(titles) + 1))
+    return _unique([f"{label} {title}" for title in titles])
 
 
 def run_times(table: RigTable, runs: Runs) -> Array | None:
@@ -117,26 +158,6 @@ def _at_changes(table: RigTable, names: tuple[str, ...]) -> NDArray[np.bool_]:
         codes, _ = pd.factorize(table.raw.column(name))
         starts[1:] |= codes[1:] != codes[:-1]
     return starts
-
-
-def _named(
-    table: RigTable,
-    starts: NDArray[np.bool_],
-    label: str,
-    by: tuple[str, ...] | None,
-    rule: str,
-) -> Runs:
-    run_of_row = np.cumsum(starts)[table.rows]
-    kept, index = np.unique(run_of_row, return_inverse=True)
-    if by is None:
-        return Runs(index, tuple(f"{label} run {k}" for k in range(1, len(kept) + 1)), rule)
-    first = table.rows[np.searchsorted(run_of_row, kept)]
-    columns = [table.raw.column(name).iloc[first] for name in by]
-    names = [
-        " ".join([label, *(f"{name}={_shown(cell)}" for name, cell in zip(by, cells, strict=True))])
-        for cells in zip(*columns, strict=True)
-    ]
-    return Runs(index, _unique(names), rule)
 
 
 def _shown(cell: object) -> str:

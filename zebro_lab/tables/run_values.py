@@ -45,13 +45,26 @@ def run_values(table: RigTable, runs: Runs, stated: StatedCovariate) -> Array:
         )  # fmt: skip
     found = np.empty(len(runs.names))
     for index, name in enumerate(runs.names):
-        low, middle, high = np.quantile(values[runs.index == index], [0.05, 0.5, 0.95])
-        if high - low > MOST_CHANGE * middle:
-            raise DataError(
-                f"{stated.name} goes from {low:.4g} to {high:.4g} {stated.unit}".rstrip()
-                + f" within run '{name}'; expected one value for each run, within "
-                f"{MOST_CHANGE:.0%}: separate runs where it changes, with [runs] by or gap",
-                file=table.raw.path, column=stated.header,
-            )  # fmt: skip
-        found[index] = middle
+        own = values[runs.index == index]
+        require_steady(table, stated, name, own)
+        found[index] = np.median(own)
     return found
+
+
+def require_steady(table: RigTable, stated: StatedCovariate, run: str, values: Array) -> None:
+    """Raise `DataError` if a covariate changes within a run by more than `MOST_CHANGE`.
+
+    Args:
+        table: Rig table, for the message.
+        stated: The covariate.
+        run: Name of the run.
+        values: Its values in the run, shape (n,).
+    """
+    low, middle, high = np.quantile(values, [0.05, 0.5, 0.95])
+    if high - low > MOST_CHANGE * middle:
+        raise DataError(
+            f"{stated.name} goes from {low:.4g} to {high:.4g} {stated.unit}".rstrip()
+            + f" within run '{run}'; expected one value for each run, within "
+            f"{MOST_CHANGE:.0%}: separate runs where it changes, with [runs] by or gap",
+            file=table.raw.path, column=stated.header,
+        )  # fmt: skip

@@ -85,7 +85,9 @@ def _counted(names: tuple[str, ...]) -> str:
 
 def _outliers(samples: SlipSamples, residual: Array, slope: Array, *, allowed: bool) -> Check:
     """Check that no samples leap so far that the fit suffers; it does not if they are allowed."""
-    found = outliers(samples, residual, slope)
+    fine = samples.fine
+    found = outliers(samples, residual, slope) if fine is None else fine.outliers
+    total = len(samples) if fine is None else int(fine.length.sum())
     cause = f"outliers: {found.count} samples leap by about {found.size:.3g} N"
     advice: Advice = CorrectData(
         cause,
@@ -97,7 +99,7 @@ def _outliers(samples: SlipSamples, residual: Array, slope: Array, *, allowed: b
         "no samples leap from their neighbours",
         allowed or not found.matter,
         f"samples that leap by more than 8 robust standard deviations: {found.count} of "
-        f"{len(samples)}"
+        f"{total}"
         + (f", most in run '{samples.run_names[found.run]}'" if found.count else "")
         + ("; Student-t noise allows for them" if found.count and allowed else ""),
         advice,
@@ -107,11 +109,9 @@ def _outliers(samples: SlipSamples, residual: Array, slope: Array, *, allowed: b
 
 def _clipped(samples: SlipSamples) -> Check:
     name = "no force stops at a limit"
-    for what, force in (
-        ("traction", samples.traction_force),
-        ("normal force", samples.normal_force),
-    ):
-        found = clipped(force)
+    both = (clipped(samples.traction_force), clipped(samples.normal_force))
+    both = both if samples.fine is None else samples.fine.clipped
+    for what, found in zip(("traction", "normal force"), both, strict=True):
         if found is not None:
             cause = f"{what} is clipped: {found.count} samples are exactly {found.limit:.4g} N"
             advice = CorrectData(

@@ -2,21 +2,23 @@
 """Faults that show in single samples and not in their means: outliers, clipping, delay, sign."""
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtr
 
+from model.bayes.faulty_samples import Clipped, Outliers
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.slip.covariate import law_at
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import Array, SlipLaw
 
+Levels: TypeAlias = tuple[tuple[float, int], ...]
+
 OUTLYING = 8.0  # robust standard deviations of a run, which no Gaussian sample reaches
-FEWEST_OUTLIERS = 3
 LONG_RUN = 50  # samples, from which a run shows its own scatter
-OUTLIER_SHARE = 1e-4  # of the samples
 FEWEST_CLIPPED = 8
 CLIPPED_EXCESS = 4.0  # samples at the extreme over samples at the next level
 SLIPPING = 0.3  # of the largest traction over load: beyond, a zero error hides no sign
@@ -45,28 +47,6 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
     force = (1 + g_t) * (law.force(slip, load, values[:k]) - c_r * load)
     slope = (1 + g_t) * law.slip_derivative(slip, load, values[:k])
     return samples.traction_force - force, np.broadcast_to(slope, force.shape)
-
-
-@dataclass(frozen=True)
-class Outliers:
-    """Samples that leap from both neighbours.
-
-    Attributes:
-        count: Number of such samples.
-        share: Their share of all samples [-].
-        size: Median leap [N].
-        run: Index of the run with the most of them; 0 if there are none.
-    """
-
-    count: int
-    share: float
-    size: float
-    run: int
-
-    @property
-    def matter(self) -> bool:
-        """Whether there are more than chance, or a single fault, makes."""
-        return self.count >= FEWEST_OUTLIERS and self.share >= OUTLIER_SHARE
 
 
 def outliers(samples: SlipSamples, residual: Array, slope: Array) -> Outliers:
@@ -107,17 +87,39 @@ def _is_peak(size: Array) -> NDArray[np.bool_]:
     return (size >= padded[:-2]) & (size >= padded[2:])
 
 
-@dataclass(frozen=True)
-class Clipped:
-    """Samples of a force that lie at its extreme.
+def top_levels(force: Array, n: int) -> Levels:
+    """Return the n largest values of a force with the number of samples at each, largest first.
 
-    Attributes:
-        limit: The extreme [N].
-        count: Number of samples exactly there.
+    Args:
+        force: Measured force of each sample, shape (m,) [N].
+        n: Number of values, of which there may be fewer.
     """
+    found, below = [], force
+    for _ in range(n):
+        if not len(below):
+            break
+        level = float(below.max())
+        rest = below[below < level]
+        found.append((level, len(below) - len(rest)))
+        below = rest
+    return tuple(found)
 
-    limit: float
-    count: int
+
+def clipped_at(levels: Levels, sign: float) -> Clipped | None:
+    """Return the limit that a force stops at, if its largest value is one.
+
+    Args:
+        levels: The three largest values of `sign` times the force, with their counts.
+        sign: 1 for an upper limit, -1 for a lower one.
+    """
+    if len(levels) < 3:
+        return None
+    (top, at_top), *others = levels
+    if at_top < FEWEST_CLIPPED or top <= 0:
+        return None
+    if at_top > CLIPPED_EXCESS * max(count for _, count in others):
+        return Clipped(sign * top, at_top)
+    return None
 
 
 def clipped(force: Array) -> Clipped | None:
@@ -129,13 +131,8 @@ def clipped(force: Array) -> Clipped | None:
     Args:
         force: Measured force of each sample, shape (n,) [N].
     """
-    for sign in (1.0, -1.0):
-        levels, counts = np.unique(sign * force, return_counts=True)
-        if len(levels) < 3 or counts[-1] < FEWEST_CLIPPED or levels[-1] <= 0:
-            continue
-        if counts[-1] > CLIPPED_EXCESS * max(counts[-2], counts[-3]):
-            return Clipped(sign * float(levels[-1]), int(counts[-1]))
-    return None
+    tried = (clipped_at(top_levels(sign * force, 3), sign) for sign in (1.0, -1.0))
+    return next((found for found in tried if found is not None), None)
 
 
 @dataclass(frozen=True)

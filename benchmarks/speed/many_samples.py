@@ -69,7 +69,7 @@ def fit(folder: Path) -> tuple[float, float, str]:
     process = os.fork()
     if process == 0:
         sys.argv = ["calibrate-slip", str(folder / "sweep.parquet"), "--out", str(out)]
-        sys.stdout = sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+        sys.stdout = sys.stderr = Path(os.devnull).open("w")  # noqa: SIM115
         try:
             run(slip_app)
         except SystemExit as ended:

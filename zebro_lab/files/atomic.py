@@ -75,8 +75,8 @@ def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
     folder = Path(target).absolute()
     _require_empty(folder, target)
     draft = nearest_folder(folder) / draft_name(folder)
-    draft.mkdir()
     try:
+        draft.mkdir()
         yield draft
         sync_files(draft)
         _require_empty(folder, target)

@@ -291,8 +291,8 @@ def _draft_of(folder: Path) -> Iterator[Path]:
             if is_stale:
                 shutil.rmtree(stale, ignore_errors=True)
     draft = ground / draft_name(folder)
-    draft.mkdir()
     try:
+        draft.mkdir()
         with _lock_of(draft):
             yield draft
     finally:

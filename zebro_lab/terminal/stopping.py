@@ -21,7 +21,12 @@ STOPPED: Final = 130
 """Exit code of a command that was stopped."""
 SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 PATIENCE: Final = 5.0
-"""Time after which a stopped process is ended where a library has caught the exception [s]."""
+"""Time after which a process is stopped again where a library has caught the exception [s].
+
+As long again after that, it is ended.
+"""
+
+_asked = False
 
 
 class StoppedBySignal(SystemExit):
@@ -42,12 +47,14 @@ class StoppedBySignal(SystemExit):
 
 
 def stop_at_once(number: int, _frame: FrameType | None = None) -> None:
-    """Handle a signal: raise `StoppedBySignal`, and end the process later if that was caught.
+    """Handle a signal: raise `StoppedBySignal`, and do so again later if that was caught.
 
     Raises:
         StoppedBySignal: Always.
     """
-    watchdog = threading.Timer(PATIENCE, _end, (number,))
+    global _asked  # noqa: PLW0603
+    watchdog = threading.Timer(PATIENCE, _end if _asked else _ask_again, (number,))
+    _asked = True
     watchdog.daemon = True
     watchdog.start()
     raise StoppedBySignal(number)
@@ -112,6 +119,14 @@ def _raise_again(unraisable: Any) -> None:
         again.start()
     else:
         sys.__unraisablehook__(unraisable)
+
+
+def _ask_again(number: int) -> None:
+    """Send the signal again, so that drafts are removed; end the process if it is not heard."""
+    if callable(signal.getsignal(number)):
+        os.kill(os.getpid(), number)
+    else:
+        _end(number)
 
 
 def _end(number: int) -> None:

@@ -49,6 +49,29 @@ def test_a_process_that_catches_the_exception_ends_a_little_later(swallow):
     assert process.stderr == "stopped by SIGTERM; nothing was left half-written\n"
 
 
+def test_a_process_that_catches_the_exception_is_stopped_again_and_removes_its_drafts():
+    process = ended(f"""
+    try: {RAISE["SIGTERM"]}
+    except BaseException: pass
+    try:
+        time.sleep(20)
+    finally:
+        print("closed")""")
+    assert (process.returncode, process.stdout) == (130, "closed\n")
+    assert process.stderr == "stopped by SIGTERM; nothing was left half-written\n"
+
+
+def test_a_process_that_catches_it_twice_is_ended():
+    process = ended(f"""
+    for _ in range(2):
+        try:
+            {RAISE["SIGTERM"]} if not _ else time.sleep(20)
+        except BaseException: pass
+    time.sleep(20)""")
+    assert process.returncode == 130
+    assert process.stderr == "stopped by SIGTERM; nothing was left half-written\n"
+
+
 def test_a_finaliser_that_swallows_the_exception_is_quiet_and_does_not_keep_it():
     body = f"""
     class Closing:

@@ -52,7 +52,7 @@ def stop_at_once(number: int, _frame: FrameType | None = None) -> None:
     Raises:
         StoppedBySignal: Always.
     """
-    global _asked  # noqa: PLW0603
+    global _asked
     watchdog = threading.Timer(PATIENCE, _end if _asked else _ask_again, (number,))
     _asked = True
     watchdog.daemon = True

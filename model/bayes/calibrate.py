@@ -24,7 +24,7 @@ from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.preview import Preview, preview, weighted_posterior
 from model.bayes.rig_errors import USUAL, RigErrors
-from model.bayes.sampler import Chains, advance, start_chains
+from model.bayes.sampler import JUMP_SHARE, MANY_JUMPS, Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
 from model.bayes.weighted import weighted_draws
@@ -147,7 +147,8 @@ def calibrate(
         first(preview(posterior, weighted, rng=judging))
         chains = None
         if settings.sampled:
-            chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep)
+            share = JUMP_SHARE if weighted.adapted else MANY_JUMPS
+            chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep, share)
             draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
         else:
             draws, convergence = weighted_posterior(
@@ -233,6 +234,7 @@ def _sample(
     rng: np.random.Generator,
     watcher: Watcher,
     keep: Callable[[Chains], object],
+    jump_share: float,
 ) -> tuple[Chains, Convergence]:
     """Sample, from `earlier` if given, until convergence or the largest number of steps.
 
@@ -262,8 +264,9 @@ def _sample(
         if watcher.stop_requested():
             raise FitStopped(chains)
         chains = advance(
-            density, chains, steps=CHUNK, approximation=fit.approximation, threads=threads
-        )
+            density, chains, steps=CHUNK, approximation=fit.approximation, jump_share=jump_share,
+            threads=threads,
+        )  # fmt: skip
         keep(chains)
 
 

@@ -166,16 +166,24 @@ def _driving_coefficients(
     return h * B, C, m * D, E
 
 
+MAX_MEAN = 0.1  # difference of two computed means, in standard deviations
+MAX_SPREAD = 0.05  # relative difference of two computed standard deviations
+ERRORS = 4.0  # Monte Carlo errors that the largest of a dozen differences may reach by chance
+
+
 @dataclass(frozen=True)
 class Agreement:
-    """Difference between sampler and importance sampling, the largest over the free parameters.
+    """Difference between sampler and importance sampling in the free parameters.
+
+    Of means, and of spreads, it is that of the parameter that differs most for what it may differ
+    by: the larger of `MAX_MEAN`, or `MAX_SPREAD`, and `ERRORS` Monte Carlo errors.
 
     Attributes:
-        mean: Largest absolute difference of means of z over the sampler's standard deviation [-].
-        spread: Largest absolute difference of standard deviations of z over the sampler's [-].
+        mean: Absolute difference of means of z over the sampler's standard deviation [-].
+        spread: Absolute difference of standard deviations of z over the sampler's [-].
         pareto_k: Tail index of the importance weights; from 0.7 on they are not reliable [-].
-        mean_error: Largest Monte Carlo error of the difference of means, as `mean` [-].
-        spread_error: Largest Monte Carlo error of that of spreads, as `spread` [-].
+        mean_error: Monte Carlo error of the difference of means, as `mean` [-].
+        spread_error: Monte Carlo error of that of spreads, as `spread` [-].
     """
 
     mean: float
@@ -193,6 +201,8 @@ class Agreement:
 def agreement(draws: Draws, weighted: WeightedDraws, convergence: Convergence) -> Agreement:
     """Compute differences between the sampler's and importance-weighted means and spreads of z.
 
+    The Monte Carlo error of a weighted mean of h is the root of the sum of w² (h - E h)².
+
     Args:
         draws: Draws of the sampler.
         weighted: Draws of the Laplace approximations, in the same coordinates z, with importance
@@ -202,16 +212,24 @@ def agreement(draws: Draws, weighted: WeightedDraws, convergence: Convergence) -
     z = draws.z.reshape(-1, draws.z.shape[-1])
     centre, scale = z.mean(axis=0), z.std(axis=0)
     mean = weighted.weights @ weighted.z
-    sd = np.sqrt(weighted.weights @ (weighted.z - mean) ** 2)
+    away = weighted.z - mean
+    sd = np.sqrt(weighted.weights @ away**2)
     kurtosis = np.mean(((z - centre) / scale) ** 4, axis=0)
     independent = np.minimum(convergence.ess_bulk, len(z))
-    fraction = 1 / independent + np.sum(weighted.weights**2)
+    square = weighted.weights**2
+    mean_error = np.sqrt(1 / independent + square @ away**2 / scale**2)
+    spread_error = 0.5 * np.sqrt(
+        (kurtosis - 1) / independent + square @ ((away / sd) ** 2 - 1) ** 2
+    )
+    of_means, of_spreads = np.abs(centre - mean) / scale, np.abs(sd / scale - 1)
+    i = np.argmax(of_means / np.maximum(MAX_MEAN, ERRORS * mean_error))
+    j = np.argmax(of_spreads / np.maximum(MAX_SPREAD, ERRORS * spread_error))
     return Agreement(
-        mean=float(np.max(np.abs(centre - mean) / scale)),
-        spread=float(np.max(np.abs(sd / scale - 1))),
+        mean=float(of_means[i]),
+        spread=float(of_spreads[j]),
         pareto_k=weighted.pareto_k,
-        mean_error=float(np.sqrt(fraction.max())),
-        spread_error=float(np.sqrt(np.max(fraction * (kurtosis - 1))) / 2),
+        mean_error=float(mean_error[i]),
+        spread_error=float(spread_error[j]),
     )
 
 

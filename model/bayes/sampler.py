@@ -28,7 +28,10 @@ The snooker move is not used: emcee's, up to 3.1.6, lacks half of the exponent o
 ratio and narrows every spread by 7 %.
 """
 
-JUMP_SHARE = 0.3  # of all moves: to a draw of the Laplace approximations, possibly at another mode
+JUMP_SHARE = 0.3
+"""Share of moves that jump to a draw of the Laplace approximations, possibly at another mode."""
+MANY_JUMPS = 0.6
+"""The same where the approximations are close to the posterior."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +117,7 @@ def advance(
     *,
     steps: int,
     approximation: LaplaceMixture | None = None,
+    jump_share: float = JUMP_SHARE,
     threads: int = 2,
 ) -> Chains:
     """Continue sampling every ensemble from its last kept step, the ensembles shared among threads.
@@ -126,8 +130,9 @@ def advance(
             in it.
         chains: Chains so far.
         steps: Number of kept steps to add, each of `chains.thin` moves.
-        approximation: Mixture that proposes `JUMP_SHARE` of the moves, so that walkers jump between
-            modes; None for no such moves.
+        approximation: Mixture that proposes some of the moves, so that walkers jump between modes;
+            None for no such moves.
+        jump_share: Share of the moves that it proposes.
         threads: Number of ensembles that are sampled at once.
 
     Returns:
@@ -140,7 +145,8 @@ def advance(
         raise DomainError(f"steps is {steps}; expected 1 or more")
 
     def walk(ensemble: int) -> EnsembleSampler:
-        return _walk(log_density, chains, approximation, ensemble=ensemble, steps=steps)
+        moves = _moves(approximation, jump_share)
+        return _walk(log_density, chains, moves, ensemble=ensemble, steps=steps)
 
     with ThreadPoolExecutor(threads) as pool:
         walked = list(pool.map(walk, range(len(chains.z))))
@@ -159,22 +165,25 @@ def advance(
     )
 
 
+def _moves(approximation: LaplaceMixture | None, jump_share: float) -> list[tuple[Any, float]]:
+    """Return the moves of an ensemble with their shares; they have state, and serve one only."""
+    rest = 1.0 if approximation is None else 1 - jump_share
+    moves: list[tuple[Any, float]] = [(move(), rest * share) for move, share in MOVES]
+    if approximation is not None:
+        moves.append((MHMove(_jump_to(approximation)), jump_share))
+    return moves
+
+
 def _walk(
     log_density: Callable[[Array], Array],
     chains: Chains,
-    approximation: LaplaceMixture | None,
+    moves: list[tuple[Any, float]],
     *,
     ensemble: int,
     steps: int,
 ) -> EnsembleSampler:
     """Sample one ensemble for a number of kept steps from its last state; return its sampler."""
     _, _, walkers, d = chains.z.shape
-    moves: list[tuple[Any, float]] = [  # a move has state: one for each ensemble
-        (move(), share) for move, share in MOVES
-    ]
-    if approximation is not None:
-        moves = [(move, (1 - JUMP_SHARE) * share) for move, share in moves]
-        moves.append((MHMove(_jump_to(approximation)), JUMP_SHARE))
     sampler = EnsembleSampler(walkers, d, log_density, moves=moves, vectorize=True)
     state = State(
         chains.z[ensemble, -1],

@@ -2,7 +2,7 @@
 """Draws of a posterior with importance weights, adapted where the first approximation is poor."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,8 @@ from model.bayes.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.laplace import LaplaceMixture, LogDensity
 from model.slip.law import Array
 
+MOST_MORE = 2.0  # draws of the first distribution that are added, over the first ones
+ENOUGH_MORE = 1.1  # effective draws that are aimed at, over the wanted ones
 FURTHER_DRAWS = 2000  # of each round of adapted draws
 FURTHER_ROUNDS = 15  # at most
 OUTSIDE = -1e6  # log weight, less the largest one's, of a draw outside the support
@@ -27,12 +29,14 @@ class WeightedDraws:
         weights: Pareto-smoothed weights, with sum one, shape (n,).
         pareto_k: Tail index of the raw weights; above 0.7 the weights are not reliable [-].
         log_density: Log posterior density up to a constant, shape (n,).
+        adapted: Whether the draws are of distributions that were adapted to the posterior.
     """
 
     z: Array
     weights: Array
     pareto_k: float
     log_density: Array
+    adapted: bool = False
 
     @property
     def reliable(self) -> bool:
@@ -52,8 +56,9 @@ class WeightedDraws:
         """
         weights = self.weights[chosen]
         return WeightedDraws(
-            self.z[chosen], weights / weights.sum(), self.pareto_k, self.log_density[chosen]
-        )
+            self.z[chosen], weights / weights.sum(), self.pareto_k, self.log_density[chosen],
+            self.adapted,
+        )  # fmt: skip
 
     def resampled(self, n: int, *, rng: np.random.Generator) -> NDArray[np.intp]:
         """Resample draws by their weights, with replacement; return their indices, shape (n,).
@@ -88,9 +93,10 @@ def weighted_draws(
 ) -> WeightedDraws:
     """Draw from a posterior with importance weights that are reliable, if need be by adaptation.
 
-    Draws from the mixture of Laplace approximations come first. If their tail index is
-    `MAX_PARETO_K` or more or fewer than the wanted number are effective, as of posteriors along a
-    curved ridge, rounds of draws follow from Student-t distributions that adapt to those before.
+    Draws from the mixture of Laplace approximations come first, and up to `MOST_MORE` times as many
+    again if so many are wanted. If their tail index is `MAX_PARETO_K` or more or still fewer than
+    the wanted number are effective, as of posteriors along a curved ridge, rounds of draws follow
+    from Student-t distributions that adapt to those before.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
@@ -105,6 +111,11 @@ def weighted_draws(
         reliable, more of them are effective; in random order.
     """
     first = importance_draws(log_density, proposal, n=n, rng=rng, threads=threads)
+    missing = ENOUGH_MORE * wanted / first.effective_size - 1
+    if first.reliable and 0 < missing <= MOST_MORE:
+        first = importance_draws(
+            log_density, proposal, n=int(missing * n), rng=rng, threads=threads, earlier=first
+        )
     if first.reliable and first.effective_size >= wanted:
         return first
     adapted = adaptive_draws(
@@ -115,7 +126,10 @@ def weighted_draws(
         effort=Effort(FURTHER_DRAWS, wanted, FURTHER_ROUNDS),
     )
     order = rng.permutation(len(adapted.z))
-    further = _weighted(adapted.z[order], adapted.log_density[order], adapted.log_proposal[order])
+    further = replace(
+        _weighted(adapted.z[order], adapted.log_density[order], adapted.log_proposal[order]),
+        adapted=True,
+    )
     if first.reliable and further.reliable:
         return max(first, further, key=lambda draws: draws.effective_size)
     return min(first, further, key=lambda draws: draws.pareto_k)
@@ -128,6 +142,7 @@ def importance_draws(
     n: int,
     rng: np.random.Generator,
     threads: int = 1,
+    earlier: WeightedDraws | None = None,
 ) -> WeightedDraws:
     """Draw from a mixture of Laplace approximations and weight the draws by the posterior.
 
@@ -140,9 +155,14 @@ def importance_draws(
         n: Number of draws.
         rng: Source of randomness.
         threads: Number of batches of draws whose density is computed at once.
+        earlier: Earlier draws of the same mixture, which are kept.
     """
     z = proposal.draw(n, rng=rng)
-    return _weighted(z, _in_batches(log_density, z, threads), proposal.log_pdf(z))
+    height = _in_batches(log_density, z, threads)
+    if earlier is not None:
+        z = np.concatenate([earlier.z, z])
+        height = np.concatenate([earlier.log_density, height])
+    return _weighted(z, height, proposal.log_pdf(z))
 
 
 def _in_batches(log_density: LogDensity, z: Array, threads: int) -> Array:

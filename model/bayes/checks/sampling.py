@@ -4,12 +4,9 @@
 from model.bayes.advice import SampleAgain, SampleLonger, SamplePosterior
 from model.bayes.checks.check import Check, Outcome, decided, not_testable
 from model.bayes.convergence import MAX_PARETO_K, Convergence
-from model.bayes.estimate import Agreement
+from model.bayes.estimate import ERRORS, MAX_MEAN, MAX_SPREAD, Agreement
 
 ENGINES = "two computations of the posterior agree"
-MAX_MEAN = 0.1  # difference of means, in standard deviations
-MAX_SPREAD = 0.05  # relative difference of standard deviations
-ERRORS = 4.0  # Monte Carlo errors that the largest of a dozen differences may reach by chance
 MOST_ERROR = 3.0  # times the limits: with more the comparison says nothing
 
 

@@ -106,6 +106,17 @@ def test_a_good_approximation_is_drawn_from_once():
     np.testing.assert_array_equal(drawn.z, plain.z)
 
 
+def test_more_are_drawn_from_a_good_approximation_before_it_is_adapted():
+    modes = LaplaceMixture(find_modes(two_hills, np.array([[-2.2], [2.3]])))
+    first = importance_draws(two_hills, modes, n=1000, rng=np.random.default_rng(1))
+    wanted = 1.5 * first.effective_size
+    drawn = weighted_draws(two_hills, modes, n=1000, wanted=wanted, rng=np.random.default_rng(1))
+    np.testing.assert_array_equal(drawn.z[:1000], first.z)
+    assert not drawn.adapted
+    assert drawn.effective_size >= wanted
+    assert drawn.weights[drawn.z[:, 0] > 0].sum() == pytest.approx(0.75, abs=0.02)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_curved_ridge_is_followed_by_the_gaussians_in_its_tails(seed):
     rng, start = np.random.default_rng(seed), np.array([[0.1, -0.4]])
@@ -128,6 +139,7 @@ def test_a_poor_start_is_mended_by_its_own_draws():
     poor = narrow(gaussian, [0.1, 0.1, 0.1], share=0.1, shift=2.0)
     drawn = weighted_draws(gaussian, poor, n=500, wanted=1000, rng=np.random.default_rng(3))
     assert drawn.reliable
+    assert drawn.adapted
     sd = np.sqrt(drawn.weights @ drawn.z**2)
     np.testing.assert_allclose(sd, [1, 1 / 2, 1 / 3], rtol=0.1)
 

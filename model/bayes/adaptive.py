@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.spatial.distance import cdist
+from scipy.special import gammaln
 
 from model.slip.law import Array
 
@@ -87,6 +88,28 @@ class WeightedCaseDraws:
     log_proposal: Array
 
 
+@dataclass(frozen=True)
+class EarlierDraws:
+    """Draws of case 0 from another distribution, which stay among those of the rounds.
+
+    They keep tails that no round reaches: rounds are adapted to the weighted draws before them, and
+    a tail without draws stays one.
+
+    Attributes:
+        z: Draws in standard normal coordinates, shape (n, d).
+        log_density: Log posterior density at each, up to a constant, shape (n,).
+        log_pdf: Log density of their distribution at points, shape (m, d) to (m,).
+    """
+
+    z: Array
+    log_density: Array
+    log_pdf: Callable[[Array], Array]
+
+    def log_proposal(self, z: Array, draws: int) -> Array:
+        """Compute the log proposal density at points z (m, d), as of rounds of so many draws."""
+        return np.log(len(self.z) / draws) + self.log_pdf(z)
+
+
 def adaptive_draws(
     modes: Sequence[Mode],
     log_density: Callable[[Array, NDArray[np.intp]], Array],
@@ -94,6 +117,7 @@ def adaptive_draws(
     rng: np.random.Generator,
     progress: Callable[[float], None],
     effort: Effort,
+    earlier: EarlierDraws | None = None,
 ) -> WeightedCaseDraws:
     """Draw weighted samples of the posterior by adaptive importance sampling.
 
@@ -106,14 +130,19 @@ def adaptive_draws(
         rng: Source of randomness.
         progress: Called with the fraction of the largest number of rounds done.
         effort: Size and number of the rounds.
+        earlier: Draws that come before those of the rounds; None for none.
     """
     rounds = [_around_modes(modes)]
-    z, case = np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
-    log_p, log_q = np.empty(0), np.empty(0)
+    z = np.empty((0, len(modes[0].z))) if earlier is None else earlier.z
+    log_p = np.empty(0) if earlier is None else earlier.log_density
+    log_q = np.empty(0) if earlier is None else earlier.log_proposal(z, effort.draws)
+    case = np.zeros(len(z), dtype=np.intp)
     while True:
         more, of_case = _draw(rounds[-1], effort.draws, rng)
         log_q = np.logaddexp(log_q, _log_proposal(rounds[-1], z, case))
         before = [_log_proposal(each, more, of_case) for each in rounds]
+        if earlier is not None:
+            before.append(earlier.log_proposal(more, effort.draws))
         log_q = np.concatenate([log_q, np.logaddexp.reduce(before, axis=0)])
         z, case = np.concatenate([z, more]), np.concatenate([case, of_case])
         log_p = np.concatenate([log_p, log_density(more, of_case)])
@@ -207,13 +236,14 @@ def _draw(
 
 
 def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> Array:
-    """Compute a round's log proposal density at points (n, d) of cases (n,), up to a constant.
+    """Compute a round's log proposal density at points (n, d) of cases (n,), shape (n,).
 
     -inf at points of a case without proposals in the round.
     """
     log = np.full(len(z), -np.inf)
     total = sum(each.shares.sum() for each in bumps)
     d = z.shape[1]
+    constant = gammaln(0.5 * (TAIL + d)) - gammaln(0.5 * TAIL) - 0.5 * d * np.log(TAIL * np.pi)
     for each in bumps:
         rows = np.flatnonzero(case == each.case)
         if len(rows) == 0:
@@ -221,7 +251,8 @@ def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> 
         points = solve_triangular(each.root, z[rows].T, lower=True).T
         centres = solve_triangular(each.root, each.means.T, lower=True).T
         square = cdist(points, centres, "sqeuclidean")
-        t = -0.5 * (TAIL + d) * np.log1p(square / TAIL) - np.log(np.diag(each.root)).sum()
+        t = constant - 0.5 * (TAIL + d) * np.log1p(square / TAIL)
+        t -= np.log(np.diag(each.root)).sum()
         here = np.logaddexp.reduce(t + np.log(each.shares / total), axis=1)
         log[rows] = np.logaddexp(log[rows], here)
     return log

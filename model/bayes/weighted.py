@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.adaptive import Effort, Mode, adaptive_draws
+from model.bayes.adaptive import EarlierDraws, Effort, Mode, adaptive_draws
 from model.bayes.arviz_import import import_arviz
 from model.bayes.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.laplace import LaplaceMixture, LogDensity
@@ -29,7 +29,7 @@ class WeightedDraws:
         weights: Pareto-smoothed weights, with sum one, shape (n,).
         pareto_k: Tail index of the raw weights; above 0.7 the weights are not reliable [-].
         log_density: Log posterior density up to a constant, shape (n,).
-        adapted: Whether the draws are of distributions that were adapted to the posterior.
+        adapted: Whether some are of distributions that were adapted to the posterior.
     """
 
     z: Array
@@ -96,7 +96,7 @@ def weighted_draws(
     Draws from the mixture of Laplace approximations come first, and up to `MOST_MORE` times as many
     again if so many are wanted. If their tail index is `MAX_PARETO_K` or more or still fewer than
     the wanted number are effective, as of posteriors along a curved ridge, rounds of draws follow
-    from Student-t distributions that adapt to those before.
+    from Student-t distributions that adapt to those before; the first draws stay among them.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
@@ -107,8 +107,8 @@ def weighted_draws(
         threads: Number of batches of draws whose density is computed at once.
 
     Returns:
-        The first draws, or the adapted ones if their tail index is smaller or, both being
-        reliable, more of them are effective; in random order.
+        The first draws, or these with the adapted ones if their tail index is smaller or, both
+        being reliable, more of them are effective; in random order.
     """
     first = importance_draws(log_density, proposal, n=n, rng=rng, threads=threads)
     missing = ENOUGH_MORE * wanted / first.effective_size - 1
@@ -124,6 +124,7 @@ def weighted_draws(
         rng=rng,
         progress=lambda _: None,
         effort=Effort(FURTHER_DRAWS, wanted, FURTHER_ROUNDS),
+        earlier=EarlierDraws(first.z, first.log_density, proposal.log_pdf),
     )
     order = rng.permutation(len(adapted.z))
     further = replace(

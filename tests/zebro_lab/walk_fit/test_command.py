@@ -50,7 +50,7 @@ def test_walks_that_cannot_be_fitted_are_refused_before_the_fit_of_rig_data(
     case, tmp_path, monkeypatch, capsys
 ):
     arguments, problem = case(tmp_path)
-    monkeypatch.setattr(command, "fit_and_report", lambda *_: pytest.fail("the fit began"))
+    monkeypatch.setattr(command, "fit_and_report", lambda *_, **__: pytest.fail("the fit began"))
     given = ("calibrate-slip", tmp_path, *arguments, "--out", tmp_path / "calibration")
     monkeypatch.setattr("sys.argv", [*map(str, given)])
     with pytest.raises(SystemExit) as ended:

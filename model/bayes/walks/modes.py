@@ -128,8 +128,13 @@ class ModeSearch:
         values = z * self.prior.scale
         states = [legs_of(values, case, walk=w) for w in self.numbers]
         walked = walk_states(self.misfits, states, mapper=self.mapper)
-        found = zip(self.misfits, states, walked, strict=True)
-        return np.concatenate([misfit.residuals(*each) for misfit, *each in found], axis=1)
+        return np.concatenate(
+            [
+                misfit.residuals(state, each)
+                for misfit, state, each in zip(self.misfits, states, walked, strict=True)
+            ],
+            axis=1,
+        )
 
     def cost(self, z: Array, case: Case) -> float:
         """Compute twice the negative log posterior density at a point, up to a constant.

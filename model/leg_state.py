@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Draws of how legs and floor differ from the description of the robot and its slip law."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -38,6 +38,14 @@ class LegState:
     def __len__(self) -> int:
         """Return the number of draws."""
         return len(self.grip)
+
+    def part(self, chosen: slice) -> "LegState":
+        """Return some of the draws.
+
+        Args:
+            chosen: Which draws.
+        """
+        return LegState(**{each.name: getattr(self, each.name)[chosen] for each in fields(self)})
 
     @staticmethod
     def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":

@@ -24,6 +24,8 @@ from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, render_robot_file
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.walk_fit.prediction import fit_walks_on_file, predict_from
 from zebro_lab.walk_fit.tracked_walks import WalkOnFile, read_walk_on_file
+from zebro_lab.workers.choice import cores_of
+from zebro_lab.workers.request import CoresRequest
 
 ENGINE = Path(__file__).parents[2] / "datasets" / "walk-sim"
 KEPT = Path(os.environ.get("ZEBRO_LAB_SCRATCH", tempfile.gettempdir())) / "walks-with-a-leg-off"
@@ -161,7 +163,11 @@ class Bench:
         """Fit walks, and say how long it took."""
         began = time.monotonic()
         fit = fit_walks_on_file(
-            walks, self.slip, prior=WalkPrior(), rng=np.random.default_rng(1), threads=2
+            walks,
+            self.slip,
+            prior=WalkPrior(),
+            rng=np.random.default_rng(1),
+            mapper=cores_of(CoresRequest()),
         )
         note = f"{len(walks)} walks fitted in {time.monotonic() - began:.0f} s"
         print(f"{note}, {fit.posterior.effective:.0f} effective draws", file=sys.stderr)

@@ -105,7 +105,6 @@ def fitted(samples: SlipSamples, rng: np.random.Generator) -> tuple[SlipPosterio
         rig_errors=ERRORS,
         rng=rng,
         validate=False,
-        threads=1,
     )
     draws = weighted_draws(fit.posterior.log_density, fit.approximation, n=N_DRAWS, rng=rng)
     return fit.posterior, draws.resample(RESAMPLED, rng=rng), draws.pareto_k

@@ -62,4 +62,4 @@ def _ends(values: Array) -> Array:
     draws = walk_draws(robot, walk().legs, tables, state, rng=rng)
     t = np.linspace(0.0, DURATION, 101)
     exact = ModelSpread(0.0, 0.0, 0.0)
-    return predict_paths(draws, t, state=state, error=exact, rng=rng, threads=1).states[:, -1]
+    return predict_paths(draws, t, state=state, error=exact, rng=rng).states[:, -1]

@@ -29,7 +29,7 @@ from model.bayes.checks.groups import groups
 from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
 from model.bayes.fit import PreparedFit, compare, prepare_fit, scaled_load_cell, validated
-from model.bayes.law_scores import choose_law, load_groups, score_law
+from model.bayes.law_scores import choose_law, load_groups, score_laws, weigh_law
 from model.bayes.likelihood import predict_blocks
 from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import load_levels, nearest_level
@@ -43,6 +43,8 @@ from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.law_table import sentence
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
+from zebro_lab.workers.choice import cores_of
+from zebro_lab.workers.request import CoresRequest
 
 COLUMNS = """
 source = "real"
@@ -163,7 +165,8 @@ def chosen(data: RigData, choice: BlockChoice) -> tuple[str, PreparedFit]:
     laws = candidates(CalibrationRequest(law="compare"), data.samples)
     fits = {name: _fit(data, law, data.rig_errors, choice) for name, law in laws.items()}
     rng = np.random.default_rng(2)
-    scores = [score_law(name, fit, rng=rng) for name, fit in fits.items()]
+    weighed = [weigh_law(name, fit, rng=rng) for name, fit in fits.items()]
+    scores = score_laws(weighed, mapper=cores_of(CoresRequest()))
     found = choose_law(scores, load_groups(next(iter(fits.values())).posterior.blocks)[1])
     best = validated(fits[found.laws[found.chosen].name])
     apart = validated(_fit(data, _apart(best.posterior.law), data.rig_errors, choice))

@@ -148,7 +148,7 @@ def judged(data: Data, *, seed: int = 1) -> Judged:
         law = MagicFormula("peak")
         fit = prepare_fit(
             found.samples, law, load_cell=cell, rig_errors=found.rig_errors, rng=rng,
-            validate=False, threads=1,
+            validate=False,
         )  # fmt: skip
     except (ZebroLabError, ModelError) as error:
         return Judged(f"refused: {error}", None)

@@ -27,6 +27,7 @@ from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
 from model.walk.program import Segment, Until, lay_out
+from zebro_lab.workers.threads import Threads
 
 LOG_RATE = 100.0  # Hz
 DURATION = 30.0  # s
@@ -134,7 +135,7 @@ def grown(kind: str, draws: int, length: float, segments: int) -> tuple[float, f
         legs, _ = lay_out(plan, ROBOT, law, options=options)
         length, made = legs.end, make_draws(draws, legs.reference())[0]
     t = np.linspace(0.0, length, max(2, round(10 * length) + 1))
-    walk_ensemble(made, t, options=options)
+    walk_ensemble(made, t, options=options, mapper=Threads(2))
     took = time.perf_counter() - began, time.process_time() - before
     return *took, peak_memory()
 

@@ -26,6 +26,7 @@ from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.path import turning_radius
 from model.walk.traction import TractionTable, VelocityCoulomb, law_table
+from zebro_lab.workers.threads import Threads
 
 SEED = 2020
 ROBOT = Robot()
@@ -238,7 +239,7 @@ def ensemble_row(name: str, n: int, duration: float, reference: LegReference) ->
     t = np.linspace(0.0, duration, 301)
     options = DynamicsOptions(dt=LARGE_STEP)
     took = timed(
-        lambda: walk_ensemble(draws, t, options=options, threads=THREADS),
+        lambda: walk_ensemble(draws, t, options=options, mapper=Threads(THREADS)),
         repeats=ENSEMBLE_REPEATS,
     )
     both = tables.wall + took.wall

@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from model.bayes.fit import (
     require_forces,
     validated,
 )
-from model.bayes.law_scores import LawScores, choose_law, load_groups, score_law
+from model.bayes.law_scores import LawScores, choose_law, load_groups, score_laws, weigh_law
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.preview import Preview, preview, weighted_posterior
@@ -29,6 +30,7 @@ from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
 from model.bayes.weighted import weighted_draws
 from model.errors import FitError
+from model.mapping import HERE, Mapper
 from model.progress import Watcher
 from model.slip.law import SlipLaw
 
@@ -63,8 +65,7 @@ class SamplerSettings:
         max_steps: Number of sampler moves after which a fit ends without convergence, at the next
             multiple of `THIN * CHUNK`; `FEWEST_MOVES` moves are made at least.
         block_length: Samples in a block; chosen by `choose_block_length` when None.
-        threads: Number of folds of the cross-validation fitted, and of ensembles sampled, at once;
-            below `FEW_BLOCKS` blocks one ensemble is sampled at a time.
+        threads: Number of ensembles sampled at once; below `FEW_BLOCKS` blocks one at a time.
         seed: Seed of the random generators.
         sampled: Whether the posterior is sampled by emcee; else its draws are weighted ones of the
             Laplace approximation.
@@ -94,6 +95,7 @@ def calibrate(
     scored: bool = False,
     noise: Noise = "gauss",
     first: Callable[[Preview], object] = lambda _: None,
+    mapper: Mapper = HERE,
 ) -> tuple[Calibration, Chains | None]:
     """Choose a slip law for rig samples, sample its posterior and check the result.
 
@@ -116,6 +118,7 @@ def calibrate(
             loads by the whole posterior, instead of by `compare`.
         noise: Distribution of the noise, as `prepare_fit` has it.
         first: Called with the parameters by weighted draws, before sampling.
+        mapper: Where fits without left-out runs and loads are computed.
 
     Returns:
         The calibration, converged or not (see its verdict), and the chains it was computed from;
@@ -132,9 +135,10 @@ def calibrate(
     rng = np.random.default_rng(settings.seed)
     require_forces(samples, load_cell)
     known = load_cell, rig_errors, stated
-    fits = _prepare(samples, laws, known, settings, rng, watcher, validate=not scored, noise=noise)
+    prepare = partial(_prepare, samples, laws, known, settings, rng, watcher, mapper)
+    fits = prepare(validate=not scored, noise=noise)
     fit, comparison = (
-        _by_scores(samples, fits, settings, rng, watcher) if scored else _by_comparison(fits)
+        _by_scores(samples, fits, rng, watcher, mapper) if scored else _by_comparison(fits)
     )
     began = clock()
     posterior, judging = fit.posterior, rng.spawn(1)[0]  # the same draws where a fit was resumed
@@ -170,6 +174,7 @@ def _prepare(
     settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
+    mapper: Mapper,
     *,
     validate: bool,
     noise: Noise,
@@ -186,7 +191,7 @@ def _prepare(
             raise FitStopped(None)
         fit = prepare_fit(
             samples, law, load_cell=known[0], rig_errors=known[1], stated=known[2], rng=rng,
-            block_choice=choice, threads=settings.threads, validate=validate, noise=noise,
+            block_choice=choice, mapper=mapper, validate=validate, noise=noise,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks
         fits[name] = fit
@@ -207,24 +212,35 @@ def _by_comparison(
 def _by_scores(
     samples: SlipSamples,
     fits: Mapping[str, PreparedFit],
-    settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
+    mapper: Mapper,
 ) -> tuple[PreparedFit, LawScores]:
     """Return the fit that `choose_law` chooses, cross-validated, and the scores of all.
 
-    Raises `FitStopped` if a stop is requested before a law.
+    Raises `FitStopped` if a stop is requested before a law or after a refit.
     """
-    scores = []
+    weighed = []
     for name, fit in fits.items():
         watcher.step(f"comparing: {name}", None)
         if watcher.stop_requested():
             raise FitStopped(None)
         with explain_numerical_errors(samples, fit.posterior.law):
-            scores.append(score_law(name, fit, rng=rng, threads=settings.threads))
+            weighed.append(weigh_law(name, fit, rng=rng))
+
+    def progress(share: float) -> None:
+        watcher.step("comparing laws without runs and loads", share)
+        if watcher.stop_requested():
+            raise FitStopped(None)
+
+    progress(0.0)
+    scores = score_laws(
+        weighed, mapper=mapper, progress=progress,
+        explaining=partial(explain_numerical_errors, samples),
+    )  # fmt: skip
     found = choose_law(scores, load_groups(next(iter(fits.values())).posterior.blocks)[1])
     chosen = fits[found.laws[found.chosen].name]
-    return validated(chosen, threads=settings.threads), found
+    return validated(chosen, mapper=mapper), found
 
 
 def _sample(

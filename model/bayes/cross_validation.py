@@ -4,7 +4,6 @@
 The run is the unit of replication.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +12,14 @@ from numpy.typing import NDArray
 from model.bayes.laplace import Laplace, climb
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
+from model.mapping import HERE, Mapper
 from model.slip.covariate import law_at
 from model.slip.definition import SlipDefinition, slip_per_radius_error
 from model.slip.law import Array, SlipLaw
 
 MAX_SINGLE_FOLDS = 20  # runs up to which each is left out alone
 N_GROUPED_FOLDS = 10  # groups in which more runs are left out
+INTERPRETED = 0.1  # time that a fold's fit takes outside of compiled loops [s]
 
 
 @dataclass(frozen=True)
@@ -103,8 +104,23 @@ def r_squared(measured: Array, predicted: Array) -> float:
     )
 
 
+@dataclass(frozen=True)
+class _Folds:
+    """What the fits without each fold share.
+
+    Attributes:
+        posterior: The posterior of all runs.
+        laplace: Approximation at its mode.
+        fold: Index of each run's fold, shape (n_runs,).
+    """
+
+    posterior: SlipPosterior
+    laplace: Laplace
+    fold: NDArray[np.intp]
+
+
 def cross_validate(
-    posterior: SlipPosterior, laplace: Laplace, *, threads: int = 2
+    posterior: SlipPosterior, laplace: Laplace, *, mapper: Mapper = HERE
 ) -> CrossValidation:
     """Find the posterior's mode without each fold of runs, and predict the runs left out.
 
@@ -113,7 +129,7 @@ def cross_validate(
     Args:
         posterior: The posterior of all runs, at least two.
         laplace: Approximation at the mode of all runs, where each search starts.
-        threads: Number of folds that are fitted at once.
+        mapper: Where the folds are fitted.
 
     Raises:
         FitError: Without a fold's runs the mode lies outside the posterior's support.
@@ -121,13 +137,16 @@ def cross_validate(
     n_runs = posterior.blocks.n_runs
     n_folds = n_runs if n_runs <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS
     fold = np.arange(n_runs) % n_folds
-
-    def fit(index: int) -> Array:
-        kept = posterior.without_runs(fold == index)
-        top = climb(kept.log_density, laplace.mode[None], laplace.covariance)
-        return posterior.values(top[None])[0]
-
-    with ThreadPoolExecutor(threads) as pool:
-        values = np.stack(list(pool.map(fit, range(n_folds))))
+    shared = _Folds(posterior, laplace, fold)
+    interpreted = n_folds * INTERPRETED
+    found = mapper.map(_fit_without, shared, range(n_folds), interpreted=interpreted)
+    values = np.stack(list(found))
     density = posterior.run_log_likelihood_of(values)
     return CrossValidation(fold, values, density[fold, np.arange(n_runs)])
+
+
+def _fit_without(folds: _Folds, index: int) -> Array:
+    """Return the values of all parameters at the mode without a fold's runs, shape (k + 12,)."""
+    kept = folds.posterior.without_runs(folds.fold == index)
+    top = climb(kept.log_density, folds.laplace.mode[None], folds.laplace.covariance)
+    return folds.posterior.values(top[None])[0]

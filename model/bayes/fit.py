@@ -22,6 +22,7 @@ from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.bayes.tail_choice import choose_tail
 from model.bayes.tails import approximate
 from model.errors import DomainError, FitError, InsufficientData
+from model.mapping import HERE, Mapper
 from model.slip.law import SlipLaw
 
 Noise: TypeAlias = Literal["gauss", "student"]
@@ -94,7 +95,7 @@ def prepare_fit(
     rig_errors: RigErrors = USUAL,
     block_choice: BlockChoice | int | None = None,
     validate: bool = True,
-    threads: int = 2,
+    mapper: Mapper = HERE,
     stated: StatedPriors = UNSTATED,
     noise: Noise = "gauss",
 ) -> PreparedFit:
@@ -109,7 +110,7 @@ def prepare_fit(
         block_choice: How samples become blocks; found from the residuals when None, and for a
             length that is given.
         validate: Whether to cross-validate, which a single run never is.
-        threads: Folds of the cross-validation fitted at once.
+        mapper: Where the folds of the cross-validation are fitted.
         stated: Priors that replace default ones; the block length is chosen without them.
         noise: Distribution of the noise: "student" has the tails that explain the data best.
 
@@ -124,7 +125,7 @@ def prepare_fit(
     require_forces(samples, load_cell)
     with explain_numerical_errors(samples, law):
         return _prepared(
-            samples, law, load_cell, rig_errors, rng, block_choice, validate, threads, stated, noise
+            samples, law, load_cell, rig_errors, rng, block_choice, validate, mapper, stated, noise
         )
 
 
@@ -164,7 +165,7 @@ def _prepared(
     rng: np.random.Generator,
     block_choice: BlockChoice | int | None,
     validate: bool,
-    threads: int,
+    mapper: Mapper,
     stated: StatedPriors,
     noise: Noise,
 ) -> PreparedFit:
@@ -188,19 +189,19 @@ def _prepared(
     fit = PreparedFit(
         posterior, approximation, None, choice, load_cell, rig_errors, defaults, stated, tails
     )
-    return validated(fit, threads=threads) if validate else fit
+    return validated(fit, mapper=mapper) if validate else fit
 
 
-def validated(fit: PreparedFit, *, threads: int = 2) -> PreparedFit:
+def validated(fit: PreparedFit, *, mapper: Mapper = HERE) -> PreparedFit:
     """Return a fit with its cross-validation; a single run is not cross-validated.
 
     Args:
         fit: The fit, with or without cross-validation.
-        threads: Number of folds fitted at once.
+        mapper: Where the folds are fitted.
     """
     if fit.cross_validation is not None or fit.posterior.blocks.n_runs < 2:
         return fit
-    validation = cross_validate(fit.posterior, fit.laplace, threads=threads)
+    validation = cross_validate(fit.posterior, fit.laplace, mapper=mapper)
     return replace(fit, cross_validation=validation)
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Comparison of slip laws by their predictions of left-out runs and of left-out loads."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,10 +10,21 @@ from numpy.typing import NDArray
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.fit import CLEAR_WIN, PreparedFit
-from model.bayes.left_out import DRAWS, ENOUGH, LeftOut, leave_out
+from model.bayes.left_out import (
+    DRAWS,
+    ENOUGH,
+    INTERPRETED,
+    ByWeights,
+    LeftOut,
+    Refit,
+    Refitted,
+    by_weights,
+    refit_without,
+)
 from model.bayes.residuals import load_levels, nearest_level
 from model.bayes.weighted import weighted_draws
 from model.errors import InsufficientData
+from model.mapping import HERE, Mapper
 from model.slip.law import Array, SlipLaw
 
 SMALL = 4.0
@@ -122,20 +134,46 @@ def load_groups(blocks: SlipBlocks) -> tuple[NDArray[np.intp], Array]:
     return np.asarray(group, dtype=np.intp), np.array(loads)
 
 
-def score_law(
-    name: str, fit: PreparedFit, *, rng: np.random.Generator, threads: int = 2
-) -> LawScore:
-    """Predict each run, and each load, by a law that was fitted to the others.
+@dataclass(frozen=True)
+class WeighedLaw:
+    """A law whose predictions of left-out runs and loads are known but for the refits they need.
+
+    Attributes:
+        name: Name that the law is reported under.
+        law: The law, of k parameters.
+        runs: Predictions of each run without it.
+        loads: Predictions of each run without all runs at its load; None for one load.
+        values: Posterior draws of the law's parameters, shape (`CURVES`, k).
+    """
+
+    name: str
+    law: SlipLaw
+    runs: ByWeights
+    loads: ByWeights | None
+    values: Array
+
+    @property
+    def refits(self) -> tuple[Refit, ...]:
+        """The refits, of left-out runs first."""
+        return (*self.runs.refits, *(() if self.loads is None else self.loads.refits))
+
+    def scored(self, found: Sequence[Refitted]) -> LawScore:
+        """Return the score with the results of `refits`, in their order."""
+        n = len(self.runs.refits)
+        loads = None if self.loads is None else self.loads.with_refits(found[n:])
+        return LawScore(self.name, self.law, self.runs.with_refits(found[:n]), loads, self.values)
+
+
+def weigh_law(name: str, fit: PreparedFit, *, rng: np.random.Generator) -> WeighedLaw:
+    """Predict each run, and each load, by weighted draws of a law that was fitted to all.
 
     Args:
         name: Name that the law is reported under.
         fit: The fit of the law to all runs.
-        rng: Source of randomness of the weighted draws.
-        threads: Number of fits without a run or load that are made at once.
+        rng: Source of randomness of the weighted draws, of which each refit has its own.
 
     Raises:
         InsufficientData: There is one run.
-        FitError: A fit without a run or load failed.
     """
     posterior, approximation = fit.posterior, fit.approximation
     blocks, k = posterior.blocks, len(posterior.law.parameters)
@@ -146,19 +184,51 @@ def score_law(
         )
     draws = weighted_draws(posterior.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=rng)
 
-    def predicted(group: NDArray[np.intp]) -> LeftOut:
-        return leave_out(
-            posterior, draws, group, approximation=approximation, rng=rng, threads=threads
-        )
+    def predicted(group: NDArray[np.intp]) -> ByWeights:
+        return by_weights(posterior, draws, group, approximation=approximation, rng=rng)
 
     group, loads = load_groups(blocks)
-    return LawScore(
+    return WeighedLaw(
         name=name,
         law=posterior.law,
         runs=predicted(np.arange(blocks.n_runs)),
         loads=predicted(group) if len(loads) > 1 else None,
         values=posterior.values(draws.resample(CURVES, rng=rng))[:, :k],
     )
+
+
+def score_laws(
+    weighed: Sequence[WeighedLaw],
+    *,
+    mapper: Mapper = HERE,
+    progress: Callable[[float], object] = lambda _: None,
+    explaining: Callable[[SlipLaw], AbstractContextManager[None]] = lambda _: nullcontext(),
+) -> list[LawScore]:
+    """Refit all laws without the runs and loads whose weights are bad, as tasks side by side.
+
+    Args:
+        weighed: The laws.
+        mapper: Where the refits are computed.
+        progress: Called with the share of the refits done, after each.
+        explaining: Context in which the refits of a law are awaited, for its errors.
+
+    Raises:
+        FitError: A fit without a run or load failed.
+    """
+    tasks = [refit for each in weighed for refit in each.refits]
+    interpreted = INTERPRETED * len(tasks)
+    found: list[Refitted] = []
+    with closing(mapper.map(refit_without, None, tasks, interpreted=interpreted)) as results:
+        for task in tasks:
+            with explaining(task.posterior.law):
+                found.append(next(results))
+            progress(len(found) / len(tasks))
+    scores = []
+    for each in weighed:
+        n = len(each.refits)
+        scores.append(each.scored(found[:n]))
+        found = found[n:]
+    return scores
 
 
 def choose_law(scores: Sequence[LawScore], levels: Array) -> LawScores:

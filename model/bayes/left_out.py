@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Predictive density of left-out runs, or of all runs at a load, by weighted draws (PSIS-LOO)."""
 
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +14,12 @@ from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import SlipPosterior
 from model.bayes.tails import approximate
 from model.bayes.weighted import WeightedDraws, pareto_smoothed, weighted_draws
+from model.mapping import HERE, Mapper
 from model.slip.law import Array
 
 DRAWS = 2_000  # of a posterior, at first
 ENOUGH = 200.0  # effective draws of the posterior without a group
+INTERPRETED = 0.15  # time that a refit takes outside of compiled loops [s]
 _NEGLIGIBLE = 1e-12  # weight of a draw that is left out
 
 
@@ -45,6 +47,63 @@ class LeftOut:
         return int(np.sum(~(self.pareto_k < MAX_PARETO_K)))
 
 
+@dataclass(frozen=True)
+class Refit:
+    """A fit to the runs of all groups but some: an independent task.
+
+    Attributes:
+        posterior: The posterior of all runs.
+        left_out: Whether each run is left out, shape (n_runs,).
+        starts: Coordinates at which searches for modes start, shape (n, d).
+        rng: Source of randomness of its own.
+    """
+
+    posterior: SlipPosterior
+    left_out: NDArray[np.bool_]
+    starts: Array
+    rng: np.random.Generator
+
+
+@dataclass(frozen=True)
+class Refitted:
+    """Result of a `Refit`.
+
+    Attributes:
+        log_density: Log density of each run that was left out, shape (runs left out,) [-].
+        pareto_k: Tail index of the weights of the draws that it averages [-].
+    """
+
+    log_density: Array
+    pareto_k: float
+
+
+@dataclass(frozen=True)
+class ByWeights:
+    """Predictions of left-out groups by weights alone, and the fits that those need that are bad.
+
+    Attributes:
+        by_weights: The predictions, as far as weights tell them.
+        folds: Indices of the groups that each refit leaves out.
+        refits: The refits, one for each fold.
+    """
+
+    by_weights: LeftOut
+    folds: tuple[NDArray[np.intp], ...]
+    refits: tuple[Refit, ...]
+
+    def with_refits(self, found: Sequence[Refitted]) -> LeftOut:
+        """Return the predictions with those of the refits in place of the bad ones.
+
+        Args:
+            found: Results of `refits`, in their order.
+        """
+        group = self.by_weights.group
+        log_density, pareto_k = self.by_weights.log_density.copy(), self.by_weights.pareto_k.copy()
+        for fold, each in zip(self.folds, found, strict=True):
+            log_density[np.isin(group, fold)], pareto_k[fold] = each.log_density, each.pareto_k
+        return LeftOut(group, log_density, pareto_k, self.by_weights.refitted)
+
+
 def leave_out(
     posterior: SlipPosterior,
     draws: WeightedDraws,
@@ -52,9 +111,37 @@ def leave_out(
     *,
     approximation: LaplaceMixture,
     rng: np.random.Generator,
-    threads: int = 2,
+    mapper: Mapper = HERE,
 ) -> LeftOut:
-    r"""Compute the density of each run's blocks given the runs of the other groups.
+    """Compute the density of each run's blocks given the runs of the other groups.
+
+    Args:
+        posterior: The posterior of all runs.
+        draws: Weighted draws of it.
+        group: Group of each run, from 0, shape (n_runs,). At least two groups.
+        approximation: Its Laplace approximations; searches for modes start at theirs.
+        rng: Source of randomness of draws that are made anew.
+        mapper: Where fits without a group are computed.
+
+    Raises:
+        FitError: Without a group's runs all modes lie outside the posterior's support.
+    """
+    weighed = by_weights(posterior, draws, group, approximation=approximation, rng=rng)
+    refits = weighed.refits
+    interpreted = INTERPRETED * len(refits)
+    found = mapper.map(refit_without, None, refits, interpreted=interpreted)
+    return weighed.with_refits(list(found))
+
+
+def by_weights(
+    posterior: SlipPosterior,
+    draws: WeightedDraws,
+    group: NDArray[np.intp],
+    *,
+    approximation: LaplaceMixture,
+    rng: np.random.Generator,
+) -> ByWeights:
+    r"""Weight draws for each left-out group, and tell which groups need a fit without them.
 
     .. math::
         \log p(y_i | y_{-G}) = \log \frac{\sum_s w_s p(y_i|\theta_s)}{\sum_s w_s}, \qquad
@@ -71,11 +158,7 @@ def leave_out(
         draws: Weighted draws of it.
         group: Group of each run, from 0, shape (n_runs,). At least two groups.
         approximation: Its Laplace approximations; searches for modes start at theirs.
-        rng: Source of randomness of draws that are made anew.
-        threads: Number of groups that are computed anew at once.
-
-    Raises:
-        FitError: Without a group's runs all modes lie outside the posterior's support.
+        rng: Source of randomness, of which each refit has its own.
     """
     kept = draws.weights > _NEGLIGIBLE
     z, weights = draws.z[kept], draws.weights[kept]
@@ -90,15 +173,11 @@ def leave_out(
     refitted = ~(pareto_k < MAX_PARETO_K)
     starts = np.stack([laplace.mode for laplace in approximation.modes])
     folds = _folds(np.flatnonzero(refitted))
-
-    def refit(fold: NDArray[np.intp], own_rng: np.random.Generator) -> tuple[Array, float]:
-        return _refit(posterior, np.isin(group, fold), starts, own_rng)
-
-    with ThreadPoolExecutor(threads) as pool:
-        found = list(pool.map(refit, folds, rng.spawn(len(folds))))
-    for fold, (densities, k) in zip(folds, found, strict=True):
-        log_density[np.isin(group, fold)], pareto_k[fold] = densities, k
-    return LeftOut(group, log_density, pareto_k, refitted)
+    refits = tuple(
+        Refit(posterior, np.isin(group, fold), starts, own)
+        for fold, own in zip(folds, rng.spawn(len(folds)), strict=True)
+    )
+    return ByWeights(LeftOut(group, log_density, pareto_k, refitted), tuple(folds), refits)
 
 
 def _folds(groups: NDArray[np.intp]) -> list[NDArray[np.intp]]:
@@ -107,19 +186,24 @@ def _folds(groups: NDArray[np.intp]) -> list[NDArray[np.intp]]:
     return [groups[index::n_folds] for index in range(n_folds)]
 
 
-def _refit(
-    posterior: SlipPosterior, left_out: NDArray[np.bool_], starts: Array, rng: np.random.Generator
-) -> tuple[Array, float]:
-    """Compute log densities of the left-out runs by draws of the posterior without them.
+def refit_without(_: None, task: Refit) -> Refitted:
+    """Compute log densities of left-out runs by draws of the posterior without them.
 
-    Returns them, shape (runs left out,), and the tail index of the weights of the draws.
+    Args:
+        _: Nothing that refits share.
+        task: The refit.
+
+    Raises:
+        FitError: Without these runs all modes lie outside the posterior's support.
     """
+    posterior, left_out = task.posterior, task.left_out
     without = posterior.without_runs(left_out)
-    approximation = approximate(without.log_density, starts)
-    draws = weighted_draws(without.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=rng)
+    approximation = approximate(without.log_density, task.starts)
+    draws = weighted_draws(without.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=task.rng)
     likely = draws.weights > _NEGLIGIBLE
     valid = likely & np.isfinite(posterior.log_prior(draws.z))
     used = valid if valid.any() else likely
     density = posterior.without_runs(~left_out).run_log_likelihood(draws.z[used])
     weights = np.log(draws.weights[used] / draws.weights[used].sum())
-    return np.asarray(logsumexp(weights[:, None] + density, axis=0)), draws.pareto_k
+    log_density = np.asarray(logsumexp(weights[:, None] + density, axis=0))
+    return Refitted(log_density, draws.pareto_k)

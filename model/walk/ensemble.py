@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Ensembles of walks, each with its own law and robot, for the spread of a path."""
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
+from model.mapping import HERE, Mapper
 from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
@@ -97,12 +98,32 @@ class PlanarWalk:
     tilt: Array | None = None
 
 
+@dataclass(frozen=True)
+class WalkedTimes:
+    """How all draws of an ensemble are walked.
+
+    Attributes:
+        t: Times of the poses, increasing, none before zero, shape (n,) [s].
+        options: Step length and contacts, before the draws' factors.
+        tilt: Whether roll and pitch are wanted too.
+    """
+
+    t: Array
+    options: DynamicsOptions
+    tilt: bool = False
+
+    @property
+    def duration(self) -> float:
+        """Time that is walked, a step at least [s]."""
+        return max(float(self.t[-1]), self.options.dt)
+
+
 def walk_ensemble(
     draws: Sequence[WalkDraw],
     t: Array,
     *,
     options: DynamicsOptions = DEFAULT_OPTIONS,
-    threads: int = 2,
+    mapper: Mapper = HERE,
     tilt: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PlanarWalk:
@@ -112,9 +133,9 @@ def walk_ensemble(
         draws: The draws to walk.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
         options: Step length and contacts, the same for all draws but for the draws' factors.
-        threads: Number of draws computed at once.
+        mapper: Where draws are walked; a task is as many as are walked side by side.
         tilt: Return roll and pitch too; not available where strides are repeated.
-        progress: Called after each draw with the fraction of draws done, from 0 to 1.
+        progress: Called after each task with the fraction of draws done, from 0 to 1.
 
     Returns:
         The paths of all draws, from their starts, interpolated linearly at `t`, constant after
@@ -126,29 +147,65 @@ def walk_ensemble(
         WalkError: A walk failed (the message says of which draw), or `tilt` with a periodic gait.
     """
     _require_draws(draws, t)
-    duration = max(float(t[-1]), options.dt)
-
-    def walk(batch: list[int]) -> Array:
-        try:
-            if len(batch) > 1:
-                together = [draws[i] for i in batch]
-                return _walked_together(together, t, duration, options, tilt=tilt)
-            path = planar_walk(draws[batch[0]], duration=duration, options=options, tilt=tilt)
-        except WalkError as error:
-            number = batch[error.walk if isinstance(error, OneOfSeveralError) else 0] + 1
-            raise WalkError(f"draw {number} of {len(draws)}: {error}") from error
-        columns = [*path.poses.states.T, *(_tilt_of(path) if tilt else ())]
-        return np.stack([np.interp(t, path.poses.t, a) for a in columns], axis=-1)[None]
-
+    times = WalkedTimes(t, options, tilt)
     states, done = np.empty((len(draws), len(t), 5 if tilt else 3)), 0
     batches = _batches(draws)
-    with ThreadPoolExecutor(threads) as pool:
-        for batch, paths in zip(batches, pool.map(walk, batches), strict=True):
-            states[batch] = paths
+    tasks = [[draws[i] for i in batch] for batch in batches]
+    with closing(mapper.map(walk_batch, times, tasks)) as results:
+        for batch in batches:
+            states[batch] = _next_paths(results, batch, len(draws))
             done += len(batch)
             if progress is not None:
                 progress(done / len(draws))
-    return PlanarWalk(Poses.of_states(t, states[..., :3]), states[..., 3:] if tilt else None)
+    return planar(t, states)
+
+
+def _next_paths(results: Iterator[Array], batch: Sequence[int], n: int) -> Array:
+    """Return the next result; raise `WalkError` that names a draw, of n, by its own number."""
+    try:
+        return next(results)
+    except OneOfSeveralError as error:
+        raise WalkError(f"draw {batch[error.walk] + 1} of {n}: {error}") from error
+
+
+def planar(t: Array, states: Array) -> PlanarWalk:
+    """Return paths of draws from x, y, yaw, and perhaps roll and pitch, shape (draws, n, 3 or 5).
+
+    Args:
+        t: Times, shape (n,) [s].
+        states: The states [m, rad].
+    """
+    return PlanarWalk(
+        Poses.of_states(t, states[..., :3]), states[..., 3:] if states.shape[-1] > 3 else None
+    )
+
+
+def walk_batch(times: WalkedTimes, draws: Sequence[WalkDraw]) -> Array:
+    """Walk a few draws, side by side where they can be: an independent task.
+
+    Args:
+        times: How they are walked.
+        draws: The draws, up to `MOST`.
+
+    Returns:
+        x, y, yaw, and roll and pitch if wanted, shape (draws, n, 3 or 5) [m, rad].
+
+    Raises:
+        OneOfSeveralError: A walk failed.
+    """
+    if len(draws) > 1 and all(draw.walks_beside_others for draw in draws):
+        return _walked_together(draws, times)
+    return np.stack([_walked_alone(i, draw, times) for i, draw in enumerate(draws)])
+
+
+def _walked_alone(number: int, draw: WalkDraw, times: WalkedTimes) -> Array:
+    """Walk one of several draws; return its states at the times, shape (n, 3 or 5) [m, rad]."""
+    try:
+        path = planar_walk(draw, duration=times.duration, options=times.options, tilt=times.tilt)
+        columns = [*path.poses.states.T, *(_tilt_of(path) if times.tilt else ())]
+    except WalkError as error:
+        raise OneOfSeveralError(number, str(error)) from error
+    return np.stack([np.interp(times.t, path.poses.t, a) for a in columns], axis=-1)
 
 
 def _batches(draws: Sequence[WalkDraw]) -> list[list[int]]:
@@ -158,15 +215,14 @@ def _batches(draws: Sequence[WalkDraw]) -> list[list[int]]:
     return [together[i : i + MOST] for i in range(0, len(together), MOST)] + alone
 
 
-def _walked_together(
-    draws: Sequence[WalkDraw], t: Array, duration: float, options: DynamicsOptions, *, tilt: bool
-) -> Array:
-    """Compute x, y, yaw, and roll and pitch if `tilt`, of draws that are walked side by side.
+def _walked_together(draws: Sequence[WalkDraw], wanted: WalkedTimes) -> Array:
+    """Compute x, y, yaw, and roll and pitch if wanted, of draws that are walked side by side.
 
     Returns:
-        Interpolated linearly at `t`, shape (draws, n, 3 or 5) [m, rad].
+        Interpolated linearly at the wanted times, shape (draws, n, 3 or 5) [m, rad].
     """
-    times = step_times(duration, options.dt)
+    t, options = wanted.t, wanted.options
+    times = step_times(wanted.duration, options.dt)
     walks = [
         LevelWalk(
             draw.robot, draw.table, draw.options(options),
@@ -180,7 +236,7 @@ def _walked_together(
     for each in pose:
         q = each[:, 3:]
         columns = [each[:, 0], each[:, 1], unwrapped_yaw(q)]
-        columns += [*roll_pitch_yaw(q)[:, :2].T] if tilt else []
+        columns += [*roll_pitch_yaw(q)[:, :2].T] if wanted.tilt else []
         found.append(np.stack([np.interp(t, times[needed], a) for a in columns], axis=-1))
     return np.stack(found)
 

@@ -37,6 +37,10 @@ class OneOfSeveralError(WalkError):
         super().__init__(message)
         self.walk = walk
 
+    def __reduce__(self) -> tuple[type["OneOfSeveralError"], tuple[int, str]]:
+        """Return class and arguments, so that a worker can send the error."""
+        return type(self), (self.walk, str(self))
+
 
 @dataclass(frozen=True)
 class LevelWalk:

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from model.leg_state import scaled_table
+from model.leg_state import LegState, scaled_table
 from model.slip.magic_formula import MagicFormula
 from model.walk.traction import VelocityCoulomb, law_table
 from model.walk.traction_lookup import table_value
@@ -41,3 +41,10 @@ def test_without_its_fall_traction_keeps_its_peak():
 def test_friction_that_does_not_fall_has_no_fall():
     scaled = scaled_table(TABLE, grip=1.0, stiffness=1.0, fall=0.0)
     np.testing.assert_allclose(scaled.phi, TABLE.phi)
+
+
+def test_parts_of_draws_are_the_draws_in_order():
+    state = LegState.of_prior(5, offset_sd=0.1, rng=np.random.default_rng(1))
+    parts = [state.part(slice(i, i + 2)) for i in (0, 2, 4)]
+    assert [len(part) for part in parts] == [2, 2, 1]
+    np.testing.assert_array_equal(np.concatenate([part.offset for part in parts]), state.offset)

@@ -25,7 +25,7 @@ def short_calibration() -> Calibration:
     samples = simulate_sweep(
         THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=TYPICAL_RIG, rng=rng
     ).samples
-    fit = prepare_fit(samples, THESIS_LAW, load_cell=LoadCell(), rng=rng, threads=1)
+    fit = prepare_fit(samples, THESIS_LAW, load_cell=LoadCell(), rng=rng)
     density = fit.posterior.log_density
     chains = start_chains(density, fit.approximation, ensembles=2, thin=5, rng=rng)
     chains = advance(density, chains, steps=100, approximation=fit.approximation, threads=1)

@@ -43,6 +43,7 @@ from zebro_lab.files.opening import read_text
 from zebro_lab.suggest import stage as suggestion
 from zebro_lab.suggest.folder import PLAN
 from zebro_lab.suggest.request import SuggestRequest
+from zebro_lab.workers.choice import cores_of
 
 DRAWS: Final = 4000
 """Draws of the law that half widths are of."""
@@ -138,7 +139,7 @@ def _fit(request: AdaptiveRequest, plan: Plan, working: Working) -> tuple[dict[s
     folder = request.data / CALIBRATION
     asked = CalibrationRequest(data=(request.data,), out=folder, engine="laplace")
     with working() as watcher:
-        calibration.calibrate(asked, watcher)
+        calibration.calibrate(asked, watcher, mapper=cores_of(asked.workers))
     slip = read_slip_file(folder)
     curve = slip.curve
     values = law_draws(

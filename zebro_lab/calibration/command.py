@@ -8,14 +8,20 @@ from pathlib import Path
 
 import typer
 
+from model.mapping import Mapper
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.stopping import STOPPED
 
 
-def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
+def fit_and_report(request: CalibrationRequest, output: Output = TEXT, *, mapper: Mapper) -> bool:
     """Fit a slip law, write its folder, print the results; return whether the fit converged.
+
+    Args:
+        request: Options of the fit.
+        output: How to print.
+        mapper: Where fits without left-out runs and loads are computed.
 
     Raises:
         Exit: The fit was stopped (exit code 130); a line on stderr says so.
@@ -42,6 +48,7 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT) -> bool:
                 request, watcher, data,
                 (lambda found: print_preview(console, found)) if request.engine == "auto"
                 else (lambda _: None),
+                mapper=mapper,
             )  # fmt: skip
     except Stopped as stopped:
         if stopped.checkpoint is None:

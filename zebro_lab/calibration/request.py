@@ -2,7 +2,7 @@
 """Options of a calibration."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -11,6 +11,7 @@ from typer import Argument, Option
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
+from zebro_lab.workers.request import CoresRequest
 
 COMPARE: Final = "compare"
 """Value of `--law` that compares all laws."""
@@ -147,7 +148,7 @@ class CalibrationRequest:
         ),
     ] = 30_000
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
-    threads: Annotated[int, Option(min=1, help="Ensembles advanced in parallel.")] = 2
+    workers: CoresRequest = field(default_factory=CoresRequest)
     resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
     form: FormatOption = "png"
 
@@ -240,7 +241,7 @@ class CalibrationRequest:
         """Return the options that a resumed fit must share with the stopped one, JSON-serialisable.
 
         Left out are data and column map, whose content is hashed, and `out`, `max_steps`,
-        `threads`, `resume` and `form`.
+        `workers`, `resume` and `form`.
         """
         return {
             "slip_definition": self.slip_definition,

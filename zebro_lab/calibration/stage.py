@@ -12,6 +12,7 @@ from model.bayes.calibration import Calibration
 from model.bayes.fit import scaled_load_cell
 from model.bayes.preview import Preview
 from model.bayes.sampler import Chains
+from model.mapping import HERE, Mapper
 from model.progress import Watcher
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
@@ -67,6 +68,8 @@ def calibrate(
     watcher: Watcher,
     data: RigData | None = None,
     first: Callable[[Preview], object] = lambda _: None,
+    *,
+    mapper: Mapper = HERE,
 ) -> tuple[Calibration, RigData]:
     """Fit a slip law to rig data; write the calibration folder, with a checkpoint if not converged.
 
@@ -75,6 +78,7 @@ def calibrate(
         watcher: Receives progress and may request a stop.
         data: What `read` returned for the same request; None to read it here.
         first: Called with the first answer, before sampling.
+        mapper: Where fits without left-out runs and loads are computed.
 
     Returns:
         The finished fit and the rig data that were fitted.
@@ -107,6 +111,7 @@ def calibrate(
             scored=request.law == COMPARE,
             noise=request.noise,
             first=first,
+            mapper=mapper,
         )
         watcher.step("drawing", None)
         _write(request, calibration, inputs, stated)
@@ -163,7 +168,7 @@ def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
         ensembles=request.ensembles,
         max_steps=request.max_steps,
         block_length=stated.block_length,
-        threads=request.threads,
+        threads=request.workers.cores,
         seed=request.seed,
         sampled=request.engine != "laplace",
     )

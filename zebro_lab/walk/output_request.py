@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Options of what a walk writes beside its path: band, pictures and contact states."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Final
 
 from typer import BadParameter, Option
@@ -14,6 +14,7 @@ from zebro_lab.terminal.picture_options import (
     parse_instants,
     parse_window,
 )
+from zebro_lab.workers.request import CoresRequest
 
 LEAST_CONTACT: Final = 0.01
 """Contact states that last less are joined to the next: five steps of the model dynamics [s]."""
@@ -21,7 +22,7 @@ LEAST_CONTACT: Final = 0.01
 
 @dataclass(frozen=True)
 class BandRequest:
-    """Options of the band of a path: draws, seed, threads, spread of leg offsets and start."""
+    """Options of the band of a path: draws, seed, workers, spread of leg offsets and start."""
 
     draws: Annotated[
         int,
@@ -47,16 +48,21 @@ class BandRequest:
             min=0.0,
         ),
     ] = (0.0, 0.0, 0.0)
-    threads: Annotated[int, Option(min=1, help="Draws computed in parallel.")] = 2
+    workers: CoresRequest = field(default_factory=CoresRequest)
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for one or negative draws, or a negative sd for some draws."""
+        """Raise `SettingsError` for one or negative draws, their negative sd, or none to share."""
         if self.draws < 2 and self.draws != 0:
             raise SettingsError(
                 f"is {self.draws}; expected 2 or more, or 0 for no band", key="--draws"
             )
         if self.draws and any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
             raise SettingsError("expected standard deviations of 0 or more", key="--start-sd")
+        if self.workers.scheduler is not None and not self.draws:
+            raise SettingsError(
+                "hands the draws of a band to a cluster; give --draws too, or leave it out",
+                key="--scheduler",
+            )
 
 
 @dataclass(frozen=True)

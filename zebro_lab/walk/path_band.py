@@ -10,6 +10,7 @@ import numpy as np
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import LegState
+from model.mapping import HERE, Mapper
 from model.path_draws import LEVELS, STATES, anchored, quantiles
 from model.poses import Poses
 from model.predict import ModelSpread, on_terrain, predict_paths, walk_draws
@@ -34,8 +35,13 @@ _ADVICE = f"delete {DRAWS} if it is there, and run walk or predict again with --
 
 
 def band_settings(request: BandRequest) -> dict[str, object]:
-    """Return the options of a band and the model's spread for the manifest, JSON-serialisable."""
-    return {**asdict(request), "spread": asdict(ModelSpread())}
+    """Return the options of a band and the model's spread for the manifest, JSON-serialisable.
+
+    Where the draws were walked is left out: it changes nothing.
+    """
+    options = asdict(request)
+    del options["workers"]
+    return {**options, "spread": asdict(ModelSpread())}
 
 
 def predict_band(
@@ -46,6 +52,7 @@ def predict_band(
     duration: float,
     toe: ToeLaw,
     watcher: Watcher,
+    mapper: Mapper = HERE,
 ) -> Poses:
     """Compute paths of a walk with slip law, leg offsets, floor and start pose drawn at random.
 
@@ -56,6 +63,7 @@ def predict_band(
         duration: Duration of the walk [s].
         toe: Traction law of a leg on its toe: "saturated", "peak" or "bristle".
         watcher: Receives progress.
+        mapper: Where draws are walked.
 
     Returns:
         `request.draws` paths from time zero to `duration`, sampled about every 0.1 s.
@@ -90,7 +98,7 @@ def predict_band(
         draws = on_terrain(draws, terrain, laws, starts)
     t = np.linspace(0.0, duration, max(round(duration / SAMPLING), 1) + 1)
     paths = predict_paths(
-        draws, t, state=state, error=ModelSpread(), rng=rng, threads=request.threads,
+        draws, t, state=state, error=ModelSpread(), rng=rng, mapper=mapper,
         progress=_every(_STEPS_SHOWN, watcher),
     )  # fmt: skip
     if not terrain.is_alike_everywhere:

@@ -14,8 +14,13 @@ zebro-lab predict legs.csv --slip calibration --draws 500 --out prediction
 
 zebro-lab predict legs.csv --columns legs.toml --slip coulomb:0.38 --arc-deg 200 --out prediction
 
+zebro-lab predict legs.csv --slip calibration --draws 5000 --scheduler tcp://127.0.0.1:8786
+
 LEGLOG holds t [s] and theta1 to theta6 [rad], pi/2 with the toe straight down, wrapped or not;
 other names and units through a columns.toml beside it. docs/formats.md says more.
+
+Draws are the same on this machine's cores and on a Dask cluster. --scheduler needs the extra
+"cluster"; whoever reaches a scheduler can run any program on its workers: docs/cluster.md.
 """
 
 

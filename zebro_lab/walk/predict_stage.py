@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from model.gait.inexact_log import InexactLog
+from model.mapping import Mapper
 from model.progress import Watcher
 from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
@@ -26,6 +27,7 @@ from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.request import PredictRequest
 from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
+from zebro_lab.workers.choice import open_workers
 
 
 def prediction_folder(request: PredictRequest) -> Path:
@@ -50,10 +52,16 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         The predicted walk with its notes.
 
     Raises:
-        ZebroLabError: A file is missing or has invalid content, or the folder cannot be replaced.
+        ZebroLabError: A file is missing or has invalid content, the folder cannot be replaced, or
+            a scheduler cannot be used.
         WalkStopped: The watcher requested a stop; nothing was written.
         ModelError: The walk cannot be computed.
     """
+    with open_workers(request.model.band.workers) as workers:  # a wrong address is told at once
+        return _predict(request, watcher, workers)
+
+
+def _predict(request: PredictRequest, watcher: Watcher, mapper: Mapper) -> Walked:
     settle(request.log)
     request = with_own_robot(request)
     out = prediction_folder(request)
@@ -89,7 +97,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     if request.model.band.draws:
         band = predict_band(
             request.model.band, walked, legs,
-            duration=end - start, toe=request.model.toe, watcher=watcher,
+            duration=end - start, toe=request.model.toe, watcher=watcher, mapper=mapper,
         )  # fmt: skip
         walked = replace(walked, band=band)
     walked = with_contacts(walked.delayed(start), request.model.contact, watcher)

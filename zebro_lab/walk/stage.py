@@ -4,6 +4,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+from model.mapping import Mapper
 from model.progress import Watcher
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, SettingsError
@@ -19,6 +20,7 @@ from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
+from zebro_lab.workers.choice import open_workers
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
@@ -32,10 +34,15 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         The walk with its notes.
 
     Raises:
-        ZebroLabError: An option or file is invalid, the folder cannot be replaced, or a stop was
-            requested.
+        ZebroLabError: An option or file is invalid, a scheduler cannot be used, the folder cannot
+            be replaced, or a stop was requested.
         ModelError: The gait is impossible, or the walk cannot be computed.
     """
+    with open_workers(request.model.band.workers) as workers:  # a wrong address is told at once
+        return _walk(request, watcher, workers)
+
+
+def _walk(request: WalkRequest, watcher: Watcher, mapper: Mapper) -> Walked:
     inputs = request.model.inputs if request.program is None else (
         request.program, *request.model.inputs
     )  # fmt: skip
@@ -55,7 +62,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
     if request.model.band.draws:
         band = predict_band(
             request.model.band, walked, asked.reference,
-            duration=duration, toe=request.model.toe, watcher=watcher,
+            duration=duration, toe=request.model.toe, watcher=watcher, mapper=mapper,
         )  # fmt: skip
         walked = replace(walked, band=band)
     walked = replace(

@@ -3,6 +3,7 @@
 
 import typer
 
+from model.mapping import Mapper
 from zebro_lab.calibration.command import fit_and_report
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.source_names import is_simulated
@@ -10,6 +11,7 @@ from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.version import Version
 from zebro_lab.walk_fit.request import WalksRequest
+from zebro_lab.workers.choice import open_workers
 
 NOT_CONVERGED = 3
 
@@ -32,8 +34,14 @@ calibrate-slip data/ --walks data/RUN1 --walks data/RUN2
 
 calibrate-slip --walks data/RUN1 --walks data/RUN2 --out calibration
 
+calibrate-slip data/ --law compare --scheduler tcp://127.0.0.1:8786
+
 Tracked walks inform legs and floor: leg offsets, leg arc, steering, grip and slip stiffness.
 Without DATA they are added to the finished calibration in --out.
+
+--scheduler hands fits without left-out runs and loads, and the walks of --walks, to a Dask cluster,
+with the same numbers (extra "cluster"; whoever reaches a scheduler can run any program on its
+workers: docs/cluster.md).
 
 Exit codes: 0 converged (read the verdict), 1 error, 2 usage, 3 not converged (results are written
 and marked), 130 stopped (a checkpoint is kept for --resume).
@@ -53,11 +61,12 @@ def calibrate(
         raise typer.BadParameter(
             "missing: rig data, or --walks and the --out of a finished calibration"
         )
-    if request.data and tracked.walks:
-        _require_walks(tracked, request, output)
-    converged = fit_and_report(request, output) if request.data else True
-    if tracked.walks:
-        _fit_walks(tracked, request, output)
+    with open_workers(request.workers) as workers:  # first, so that a wrong address is told at once
+        if request.data and tracked.walks:
+            _require_walks(tracked, request, output)
+        converged = fit_and_report(request, output, mapper=workers) if request.data else True
+        if tracked.walks:
+            _fit_walks(tracked, request, output, workers)
     if output.as_json:
         content = _document(request, with_walks=bool(tracked.walks))
         code = 0 if converged else NOT_CONVERGED
@@ -87,11 +96,13 @@ def _require_walks(tracked: WalksRequest, calibration: CalibrationRequest, outpu
         require_walks(tracked, calibration, watcher)
 
 
-def _fit_walks(tracked: WalksRequest, calibration: CalibrationRequest, output: Output) -> None:
+def _fit_walks(
+    tracked: WalksRequest, calibration: CalibrationRequest, output: Output, mapper: Mapper
+) -> None:
     """Fit leg offsets and floor parameters to tracked walks, write `walks/`, print the results."""
     from zebro_lab.walk_fit.screen import print_walks
     from zebro_lab.walk_fit.stage import calibrate_walks
 
     with output.progress() as watcher:
-        done = calibrate_walks(tracked, calibration, watcher)
+        done = calibrate_walks(tracked, calibration, watcher, mapper=mapper)
     print_walks(output.console(), done)

@@ -12,6 +12,7 @@ from model.bayes.walks.prior import WalkPrior
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.judgement import Prediction
+from model.mapping import HERE, Mapper
 from model.predict import FINE, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.walk_models import baseline_paths
@@ -35,7 +36,7 @@ def fit_walks_on_file(
     *,
     prior: WalkPrior,
     rng: np.random.Generator,
-    threads: int = 2,
+    mapper: Mapper = HERE,
     progress: Progress | None = None,
 ) -> WalkFit:
     """Fit legs and floor to walks of one robot, with the slip law at its posterior mean.
@@ -45,7 +46,7 @@ def fit_walks_on_file(
         slip: Slip law named by `--slip`.
         prior: Prior of legs and floor.
         rng: Random number generator.
-        threads: Number of walks computed in parallel.
+        mapper: Where draws are walked.
         progress: Called with the fraction done, 0 to 1 [-].
 
     Raises:
@@ -61,7 +62,7 @@ def fit_walks_on_file(
         [walk.tracked for walk in walks],
         prior=prior,
         rng=rng,
-        threads=threads,
+        mapper=mapper,
         progress=progress,
     )
 
@@ -72,7 +73,7 @@ def judge_left_out(
     slip: NamedSlip,
     *,
     rng: np.random.Generator,
-    threads: int = 2,
+    mapper: Mapper = HERE,
     progress: Progress = lambda _: None,
 ) -> tuple[JudgedRun, ...]:
     """Predict each walk from a fit of the others, and compute errors of prediction and baselines.
@@ -82,7 +83,7 @@ def judge_left_out(
         walks: The fitted walks, in the order of the fit; a single one is not predicted.
         slip: Slip law of the fit.
         rng: Random number generator.
-        threads: Number of walks computed in parallel.
+        mapper: Where draws are walked.
         progress: Called with the fraction done, 0 to 1 [-].
 
     Returns:
@@ -95,7 +96,7 @@ def judge_left_out(
     judged = []
     for i, walk in enumerate(walks if len(walks) > 1 else ()):
         progress(i / len(walks))
-        prediction = predict_from(fit.without(i), walk, slip, rng=rng, threads=threads)
+        prediction = predict_from(fit.without(i), walk, slip, rng=rng, mapper=mapper)
         judged.append(judge_run(walk.name, prediction, walk.track, anchor=True, rng=rng))
     return tuple(judged)
 
@@ -112,7 +113,7 @@ def predict_from(
     *,
     rng: np.random.Generator,
     index: int | None = None,
-    threads: int = 2,
+    mapper: Mapper = HERE,
 ) -> PredictionFile:
     """Predict path, band and baselines of a walk from its leg angles, without using its track.
 
@@ -122,7 +123,7 @@ def predict_from(
         slip: Slip law.
         rng: Random number generator.
         index: Index of the walk in the posterior if it was fitted, else None.
-        threads: Number of draws computed in parallel.
+        mapper: Where draws are walked.
 
     Returns:
         The prediction, from time zero on; its band has 300 draws.
@@ -133,12 +134,10 @@ def predict_from(
     state = posterior.draw(DRAWS, rng=rng, walk=index)
     tables = slip_tables(slip, DRAWS, weight=weight, rng=rng)
     drawn = walk_draws(robot, walk.legs, tables, state, rng=rng)
-    band = predict_paths(drawn, t, state=state, error=spread, rng=rng, threads=threads)
+    band = predict_paths(drawn, t, state=state, error=spread, rng=rng, mapper=mapper)
     likely = posterior.most_likely(walk=index)
     drawn = walk_draws(robot, angles, [slip.traction_table(weight=weight)], likely, rng=rng)
-    single = predict_paths(
-        drawn, t, state=likely, error=EXACT, rng=rng, threads=1, options=FINE
-    ).draws(0)
+    single = predict_paths(drawn, t, state=likely, error=EXACT, rng=rng, options=FINE).draws(0)
     reference = SampledReference(t, angles.angles(t))
     direction = "left" if single.yaw[-1] >= single.yaw[0] else "right"
     baselines, notes = baseline_paths(robot, reference, direction=direction)

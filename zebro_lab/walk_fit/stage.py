@@ -9,6 +9,7 @@ import numpy as np
 
 from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import WalkPrior
+from model.mapping import HERE, Mapper
 from model.progress import Watcher
 from zebro_lab.calibration.folder import CALIBRATION, SLIP_TOML
 from zebro_lab.calibration.request import CalibrationRequest
@@ -70,15 +71,20 @@ def require_walks(request: WalksRequest, calibration: CalibrationRequest, watche
 
 
 def calibrate_walks(
-    request: WalksRequest, calibration: CalibrationRequest, watcher: Watcher
+    request: WalksRequest,
+    calibration: CalibrationRequest,
+    watcher: Watcher,
+    *,
+    mapper: Mapper = HERE,
 ) -> WalksCalibrated:
     """Fit legs and floor to walks, predict each from the others, and write `walks/`.
 
     Args:
         request: Run folders of the walks, robot, and whether to estimate clock offsets.
         calibration: Options with the folder of the finished calibration, into which `walks/` is
-            written, seed and number of threads.
+            written, and seed.
         watcher: Receives progress.
+        mapper: Where draws are walked.
 
     Raises:
         ZebroLabError: No walk is named; a walk or the calibration is missing or cannot be used; or
@@ -91,7 +97,7 @@ def calibrate_walks(
     watcher.step("reading walks", None)
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
     walks = read_walks(request.walks, robot=request.robot, clock=clock)
-    posterior, left_out = _fit(calibration, slip, walks, watcher)
+    posterior, left_out = _fit(calibration, slip, walks, watcher, mapper)
     notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
     source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
     watcher.step("drawing", None)
@@ -115,16 +121,20 @@ def calibrate_walks(
 
 
 def _fit(
-    request: CalibrationRequest, slip: NamedSlip, walks: Sequence[WalkOnFile], watcher: Watcher
+    request: CalibrationRequest,
+    slip: NamedSlip,
+    walks: Sequence[WalkOnFile],
+    watcher: Watcher,
+    mapper: Mapper,
 ) -> tuple[WalkPosterior, tuple[JudgedRun, ...]]:
     """Fit all walks; return the posterior, and each walk predicted from a fit of the others."""
     rng = np.random.default_rng(request.seed)
     fit = fit_walks_on_file(
-        walks, slip, prior=WalkPrior(), rng=rng, threads=request.threads,
+        walks, slip, prior=WalkPrior(), rng=rng, mapper=mapper,
         progress=lambda done: watcher.step("fitting walks", 0.7 * done),
     )  # fmt: skip
     left_out = judge_left_out(
-        fit, walks, slip, rng=rng, threads=request.threads,
+        fit, walks, slip, rng=rng, mapper=mapper,
         progress=lambda done: watcher.step("fitting walks", 0.7 + 0.3 * done),
     )  # fmt: skip
     return fit.posterior, left_out

@@ -5,16 +5,16 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from model.mapping import Here, Mapper
-from zebro_lab.workers.request import WorkersRequest
+from model.mapping import HERE, Mapper
+from zebro_lab.workers.request import CoresRequest, WorkersRequest
 
 
 @contextmanager
-def open_workers(request: WorkersRequest) -> Iterator[Mapper]:
-    """Open the workers of a request: a cluster, processes of this machine, or this process alone.
+def open_workers(request: WorkersRequest | CoresRequest) -> Iterator[Mapper]:
+    """Open the workers of a request: a cluster, this machine's cores, or this process alone.
 
     Args:
-        request: Number of processes, or address of a scheduler.
+        request: Number of processes or cores, or address of a scheduler.
 
     Yields:
         The mapper over them.
@@ -28,10 +28,22 @@ def open_workers(request: WorkersRequest) -> Iterator[Mapper]:
         with open_cluster(request.scheduler) as cluster:
             yield cluster
         return
+    yield cores_of(request) if isinstance(request, CoresRequest) else _processes(request)
+
+
+def cores_of(request: CoresRequest) -> Mapper:
+    """Return the mapper over the cores of this machine that a request names."""
+    if request.cores == 1:
+        return HERE
+    from zebro_lab.workers.machine import Cores
+
+    return Cores(request.cores)
+
+
+def _processes(request: WorkersRequest) -> Mapper:
     count = request.processes or os.cpu_count() or 1
     if count == 1:
-        yield Here()
-        return
+        return HERE
     from zebro_lab.workers.processes import Processes
 
-    yield Processes(count)
+    return Processes(count)

@@ -43,7 +43,12 @@ class Cluster:
     versions: Mapping[str, str]
 
     def map(
-        self, function: Callable[[Shared, Task], Result], shared: Shared, tasks: Sequence[Task]
+        self,
+        function: Callable[[Shared, Task], Result],
+        shared: Shared,
+        tasks: Sequence[Task],
+        *,
+        interpreted: float = 0.0,
     ) -> Generator[Result]:
         """Yield the results in order; see `model.mapping.Mapper.map`.
 

@@ -31,7 +31,12 @@ class Processes:
     count: int
 
     def map(
-        self, function: Callable[[Shared, Task], Result], shared: Shared, tasks: Sequence[Task]
+        self,
+        function: Callable[[Shared, Task], Result],
+        shared: Shared,
+        tasks: Sequence[Task],
+        *,
+        interpreted: float = 0.0,
     ) -> Generator[Result]:
         """Yield the results in order; see `model.mapping.Mapper.map`.
 
@@ -55,7 +60,7 @@ class Processes:
         except BrokenProcessPool as error:
             raise WorkerDied(
                 "a process ended before its task was done, perhaps for want of memory; try again "
-                "with fewer --processes"
+                "with fewer --processes or --threads"
             ) from error
         finally:
             pool.shutdown(wait=finished, cancel_futures=True)

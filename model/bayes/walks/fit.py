@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.bayes.adaptive import Effort, WeightedCaseDraws, adaptive_draws
-from model.bayes.walks.misfit import TrackedWalk, WalkMisfit
+from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, walk_states
 from model.bayes.walks.modes import ModeSearch
 from model.bayes.walks.posterior import WalkPosterior, state_in
 from model.bayes.walks.prior import LINEAR, WALKED, WRONG, WalkPrior, all_cases
 from model.bayes.walks.terms import Terms
 from model.errors import InsufficientData
+from model.mapping import HERE, Mapper
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.traction import TractionTable
@@ -37,7 +38,7 @@ def fit_walks(
     *,
     prior: WalkPrior,
     rng: np.random.Generator,
-    threads: int = 2,
+    mapper: Mapper = HERE,
     progress: Progress | None = None,
 ) -> "WalkFit":
     """Fit leg offsets and floor to tracked walks of one robot on one floor.
@@ -48,7 +49,7 @@ def fit_walks(
         walks: The tracked walks, one or more.
         prior: The prior.
         rng: Source of randomness of all draws, also of leg angles between encoder counts.
-        threads: Number of walks computed at once.
+        mapper: Where draws are walked.
         progress: Called with the fraction done, from 0; ends below 1 if few rounds suffice.
 
     Raises:
@@ -63,11 +64,11 @@ def fit_walks(
     for i, walk in enumerate(walks):
         report(0.05 * i / len(walks))
         misfits.append(
-            WalkMisfit.of(robot, table, walk, spread=prior.spread, rng=rng, threads=threads)
+            WalkMisfit.of(robot, table, walk, spread=prior.spread, rng=rng, mapper=mapper)
         )
-    search = ModeSearch(misfits, prior, threads)
+    search = ModeSearch(misfits, prior, mapper)
     modes = search.modes(progress=lambda done: report(0.05 + 0.25 * done))
-    density = _Density(misfits, prior, threads)
+    density = _Density(misfits, prior, mapper)
     inner = [mode.within(WALKED) for mode in modes]
     drawn = adaptive_draws(
         inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done), effort=EFFORT
@@ -78,8 +79,8 @@ def fit_walks(
 class _Density:
     """Posterior density with steering and stride integrated out; stores the terms of each call."""
 
-    def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, threads: int) -> None:
-        self.misfits, self.prior, self.threads = misfits, prior, threads
+    def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, mapper: Mapper) -> None:
+        self.misfits, self.prior, self.mapper = misfits, prior, mapper
         self.cases = all_cases(len(misfits))
         self.rounds: list[Terms] = []
 
@@ -109,12 +110,11 @@ class _Density:
         values = np.zeros((len(z), WRONG + 1))
         values[:, WALKED] = z * self.prior.scale[WALKED]
         steering, stride = self.prior.scale[LINEAR]
+        states = [state_in(values, case, self.cases, walk=w) for w in range(len(self.misfits))]
+        walked = walk_states(self.misfits, states, mapper=self.mapper)
         return Terms.concat_walks([
-            misfit.terms(
-                state_in(values, case, self.cases, walk=w),
-                steering=steering, stride=stride, threads=self.threads,
-            )
-            for w, misfit in enumerate(self.misfits)
+            misfit.terms(each, steering=steering, stride=stride)
+            for misfit, each in zip(self.misfits, walked, strict=True)
         ])  # fmt: skip
 
 
@@ -215,7 +215,7 @@ class WalkFit:
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]
         search, finer = (
-            ModeSearch(walks, density.prior, density.threads, numbers=keep)
+            ModeSearch(walks, density.prior, density.mapper, numbers=keep)
             for walks in (misfits, [each.finer() for each in misfits])
         )
         tops = [search.climb(which, start)[0].z for start in starts]

@@ -11,24 +11,34 @@ model's errors are the same all along a walk, so the walk's poses are strongly c
     r \sim N(0,\; V + J_0 V_0 J_0^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + H + Q) .
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from model.bayes.walks.terms import Terms
 from model.bayes.walks.tilt import MeasuredTilt, TiltMisfit
-from model.errors import InsufficientData
+from model.errors import InsufficientData, WalkError
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import LegState, law_in, robot_in
+from model.mapping import HERE, Mapper
 from model.path_draws import bent, states_at
 from model.poses import Poses, moved_onto, wrap
 from model.predict import FINE, ModelSpread, ensemble_step, motions
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
-from model.walk.ensemble import PlanarWalk, WalkDraw, walk_ensemble
+from model.walk.ensemble import (
+    PlanarWalk,
+    WalkDraw,
+    WalkedTimes,
+    planar,
+    walk_batch,
+    walk_ensemble,
+)
+from model.walk.side_by_side import MOST, OneOfSeveralError
 from model.walk.traction import TractionTable
 
 RECONSTRUCTIONS = 16  # motions drawn from counted angles; or walks that show the step's error
@@ -104,7 +114,7 @@ class WalkMisfit:
         *,
         spread: ModelSpread,
         rng: np.random.Generator,
-        threads: int,
+        mapper: Mapper = HERE,
     ) -> "WalkMisfit":
         """Build the misfit of a walk: choose the time step and compute the whitening matrix.
 
@@ -114,7 +124,7 @@ class WalkMisfit:
             walk: The walk.
             spread: Errors of the walking model in one walk.
             rng: Source of randomness, for leg angles that encoder counts leave undetermined.
-            threads: Number of walks computed at once.
+            mapper: Where walks are computed.
 
         Raises:
             WalkError: A walk diverged, the robot cannot stand at its start, or there is an IMU and
@@ -128,7 +138,7 @@ class WalkMisfit:
         if walk.tilt is not None:
             tilt = TiltMisfit.of(walk.tilt, misfit._times(), walk.legs)
             misfit = replace(misfit, tilt=tilt)
-        covariance = misfit._covariance(spread, rng, threads)
+        covariance = misfit._covariance(spread, rng, mapper)
         # With L L^T the covariance, L^-1 makes the residuals' covariance the identity.
         return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
 
@@ -149,38 +159,29 @@ class WalkMisfit:
         """
         return len(self.root) + (0.0 if self.tilt is None else self.tilt.count)
 
-    def residuals(self, state: LegState, *, threads: int) -> Array:
+    def residuals(self, state: LegState, walked: PlanarWalk) -> Array:
         """Compute the whitened residuals, predicted minus tracked, for m states of the legs.
 
         Args:
             state: The m states.
-            threads: Number of walks computed at once.
+            walked: Their walks, by `walk_states`.
 
         Returns:
             Residuals of the poses after the first, then of roll and pitch if there is an IMU, shape
             (m, size) [-].
-
-        Raises:
-            WalkError: A walk diverged, or the robot cannot stand at its start.
         """
-        walked = self._walked_with(state, threads)
         paths = bent(walked.poses, distance=state.stride, curvature=state.steering)
         return self._with_tilt(self._difference(paths) @ self.root.T, walked)
 
-    def terms(self, state: LegState, *, steering: float, stride: float, threads: int) -> Terms:
+    def terms(self, walked: PlanarWalk, *, steering: float, stride: float) -> Terms:
         """Compute the likelihood terms of this walk for m states of the legs.
 
         Args:
-            state: The m states, whose steering and stride are ignored.
+            walked: The walks of the states, by `walk_states`, without steering and stride.
             steering: Prior standard deviation of steering, its unit in the terms [rad/m].
             stride: Prior standard deviation of stride, its unit in the terms [-].
-            threads: Number of walks computed at once.
-
-        Raises:
-            WalkError: A walk diverged, or the robot cannot stand at its start.
         """
-        walked = self._walked_with(state, threads)
-        no = np.zeros(len(state))
+        no = np.zeros(len(walked.poses.states))
         here = self._difference(walked.poses)
         bends = [
             self._difference(bent(walked.poses, distance=no, curvature=no + steering)) - here,
@@ -198,19 +199,29 @@ class WalkMisfit:
             return residuals
         return np.concatenate([residuals, self.tilt.residuals(walked.tilt)], axis=1)
 
-    def _walked_with(self, state: LegState, threads: int) -> PlanarWalk:
-        """Walk the middle leg angles with m states of the legs, without steering and stride."""
-        legs = middle(self.walk.legs)
-        draws = [
-            WalkDraw(robot_in(self.robot, state, i), legs, law_in(self.table, state, i))
-            for i in range(len(state))
-        ]
-        return self._walked(draws, threads)
+    def tasks(self, state: LegState) -> "list[StatesToWalk]":
+        """Return the tasks that walk m states of the legs, without steering and stride.
 
-    def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PlanarWalk:
+        Args:
+            state: The m states.
+        """
+        times = WalkedTimes(self._times(), self.options, self.tilt is not None)
+        legs = middle(self.walk.legs)
+        parts = [state.part(slice(i, i + MOST)) for i in range(0, len(state), MOST)]
+        return [StatesToWalk(self.robot, legs, self.table, times, part) for part in parts]
+
+    def joined(self, walked: Sequence[Array]) -> PlanarWalk:
+        """Join what the tasks of m states have walked, in their order.
+
+        Args:
+            walked: Results of `tasks`, by `walk_few_states`.
+        """
+        return planar(self._times(), np.concatenate(walked))
+
+    def _walked(self, draws: Sequence[WalkDraw], mapper: Mapper) -> PlanarWalk:
         """Compute every draw's walk at `_times`, with roll and pitch if there is an IMU."""
         return walk_ensemble(
-            draws, self._times(), options=self.options, threads=threads, tilt=self.tilt is not None
+            draws, self._times(), options=self.options, mapper=mapper, tilt=self.tilt is not None
         )
 
     def _times(self) -> Array:
@@ -230,20 +241,20 @@ class WalkMisfit:
         difference[..., 2] = wrap(difference[..., 2])
         return difference.reshape(len(states), -1)
 
-    def _covariance(self, spread: ModelSpread, rng: np.random.Generator, threads: int) -> Array:
+    def _covariance(self, spread: ModelSpread, rng: np.random.Generator, mapper: Mapper) -> Array:
         """Compute the covariance (k, k) of predicted minus tracked poses: the module's equation."""
         several = motions(self.walk.legs, RECONSTRUCTIONS, rng)
         draws = [WalkDraw(self.robot, each, self.table) for each in several]
-        paths = self._walked(draws, threads).poses
+        paths = self._walked(draws, mapper).poses
         one = paths.draws(slice(1))
         total = self._of_tracker(self._difference(one)[0])
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
-        total += self._of_contacts(spread, threads)
+        total += self._of_contacts(spread, mapper)
         if len(several) > 1:  # their spread includes the error of the step
             return total + np.cov(self._difference(paths).T)
-        return total + self._of_step(several[0], rng, threads)
+        return total + self._of_step(several[0], rng, mapper)
 
-    def _of_step(self, legs: LegReference, rng: np.random.Generator, threads: int) -> Array:
+    def _of_step(self, legs: LegReference, rng: np.random.Generator, mapper: Mapper) -> Array:
         """Compute the covariance (k, k) of the time step's error, from walks at it and at half.
 
         The walks have small random leg offsets, since the error differs from path to path.
@@ -254,7 +265,7 @@ class WalkMisfit:
         ]
         half = replace(self, options=replace(self.options, dt=0.5 * self.options.dt))
         coarse, fine = (
-            each._difference(each._walked(draws, threads).poses) for each in (self, half)
+            each._difference(each._walked(draws, mapper).poses) for each in (self, half)
         )
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
@@ -286,7 +297,7 @@ class WalkMisfit:
         c = (self._difference(bent(path, distance=no, curvature=small))[0] - here) / _BEND
         return spread.distance**2 * np.outer(d, d) + spread.curvature**2 * np.outer(c, c)
 
-    def _of_contacts(self, spread: ModelSpread, threads: int) -> Array:
+    def _of_contacts(self, spread: ModelSpread, mapper: Mapper) -> Array:
         """Compute the covariance (k, k) due to uncertain stiffness and damping of contacts.
 
         Each is moved by one standard deviation of its logarithm up and down, and half the
@@ -297,9 +308,79 @@ class WalkMisfit:
         factors = np.exp(spread.contacts * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
         plain = WalkDraw(self.robot, middle(self.walk.legs), self.table)
         draws = [replace(plain, stiffness=k, damping=c) for k, c in factors]
-        paths = self._difference(self._walked(draws, threads).poses)
+        paths = self._difference(self._walked(draws, mapper).poses)
         moved = 0.5 * (paths[::2] - paths[1::2])
         return moved.T @ moved
+
+
+@dataclass(frozen=True)
+class StatesToWalk:
+    """A few states of the legs in one walk, to be walked: an independent task.
+
+    Attributes:
+        robot: The robot as described.
+        legs: Leg angles.
+        table: The slip law as calibrated.
+        times: How they are walked.
+        state: The states, up to `MOST`.
+    """
+
+    robot: Robot
+    legs: LegReference
+    table: TractionTable
+    times: WalkedTimes
+    state: LegState
+
+    @property
+    def draws(self) -> list[WalkDraw]:
+        """The states as draws of a walk, without steering and stride."""
+        return [
+            WalkDraw(
+                robot_in(self.robot, self.state, i), self.legs, law_in(self.table, self.state, i)
+            )
+            for i in range(len(self.state))
+        ]
+
+
+def walk_few_states(_: None, task: StatesToWalk) -> Array:
+    """Walk a few states of the legs; see `model.walk.ensemble.walk_batch`.
+
+    Args:
+        _: Nothing that tasks share.
+        task: The states.
+    """
+    return walk_batch(task.times, task.draws)
+
+
+def walk_states(
+    misfits: Sequence[WalkMisfit], states: Sequence[LegState], *, mapper: Mapper = HERE
+) -> list[PlanarWalk]:
+    """Walk states of the legs in each of several walks, as tasks of all walks side by side.
+
+    Args:
+        misfits: The walks.
+        states: The states of the legs in each of them, at least one.
+        mapper: Where states are walked.
+
+    Raises:
+        WalkError: A walk diverged, or the robot cannot stand at its start.
+    """
+    pairs = zip(misfits, states, strict=True)
+    tasks = [misfit.tasks(state) for misfit, state in pairs]
+    each = [task for of_walk in tasks for task in of_walk]
+    with closing(mapper.map(walk_few_states, None, each)) as results:
+        return [
+            misfit.joined([_next_states(results, misfit.walk.name) for _ in of_walk])
+            for misfit, of_walk in zip(misfits, tasks, strict=True)
+        ]
+
+
+def _next_states(results: Iterator[Array], name: str) -> Array:
+    """Return the next result; raise `WalkError` that names the walk."""
+    try:
+        return next(results)
+    except OneOfSeveralError as error:
+        raise WalkError(f"walk '{name}': {error}") from error
 
 
 def middle(legs: LegReference | InexactLog) -> LegReference:

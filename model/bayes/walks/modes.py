@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.bayes.adaptive import Mode
-from model.bayes.walks.misfit import WalkMisfit
+from model.bayes.walks.misfit import WalkMisfit, walk_states
 from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
+from model.mapping import HERE, Mapper
 from model.robot import N_LEGS
 from model.slip.law import Array
 
@@ -62,7 +63,7 @@ class ModeSearch:
     Args:
         misfits: Misfit of each walk.
         prior: The prior.
-        threads: Number of walks computed at once.
+        mapper: Where walks are computed.
         numbers: Index by which cases refer to each of these walks; 0, 1, ... when None.
     """
 
@@ -70,10 +71,10 @@ class ModeSearch:
         self,
         misfits: Sequence[WalkMisfit],
         prior: WalkPrior,
-        threads: int,
+        mapper: Mapper = HERE,
         numbers: Sequence[int] | None = None,
     ) -> None:
-        self.misfits, self.prior, self.threads = misfits, prior, threads
+        self.misfits, self.prior, self.mapper = misfits, prior, mapper
         self.numbers = range(len(misfits)) if numbers is None else numbers
         self.ends = np.cumsum([misfit.size for misfit in misfits])
 
@@ -125,10 +126,12 @@ class ModeSearch:
             WalkError: A walk diverged, or the robot cannot stand at its start.
         """
         values = z * self.prior.scale
+        states = [legs_of(values, case, walk=w) for w in self.numbers]
+        walked = walk_states(self.misfits, states, mapper=self.mapper)
         return np.concatenate(
             [
-                misfit.residuals(legs_of(values, case, walk=w), threads=self.threads)
-                for w, misfit in zip(self.numbers, self.misfits, strict=True)
+                misfit.residuals(state, each)
+                for misfit, state, each in zip(self.misfits, states, walked, strict=True)
             ],
             axis=1,
         )

@@ -8,7 +8,7 @@ import pytest
 
 from model.bayes.blocks import block_means
 from model.bayes.fit import prepare_fit, scaled_load_cell
-from model.bayes.law_scores import LawScore, choose_law, load_groups, score_law
+from model.bayes.law_scores import LawScore, choose_law, load_groups, score_laws, weigh_law
 from model.bayes.left_out import LeftOut
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.errors import InsufficientData
@@ -81,15 +81,15 @@ def simulated(law, truth, seed=3):
 
 
 def compared(samples, laws):
-    rng, choice, scores = np.random.default_rng(1), None, []
+    rng, choice, weighed = np.random.default_rng(1), None, []
     for law in laws:
         fit = prepare_fit(
             samples, law, load_cell=scaled_load_cell(samples, {}), rng=rng, block_choice=choice,
-            validate=False, threads=1,
+            validate=False,
         )  # fmt: skip
         choice = fit.block_choice
-        scores.append(score_law(str(law), fit, rng=rng, threads=1))
-    return choose_law(scores, load_groups(fit.posterior.blocks)[1])
+        weighed.append(weigh_law(str(law), fit, rng=rng))
+    return choose_law(score_laws(weighed), load_groups(fit.posterior.blocks)[1])
 
 
 SENSITIVE = MagicFormula("constant", True, 8.0)
@@ -121,4 +121,4 @@ def test_one_run_cannot_be_left_out():
     posterior = SlipPosterior(blocks, Brush(), default_priors(Brush(), blocks, LoadCell()))
     fit = SimpleNamespace(posterior=posterior, approximation=None)
     with pytest.raises(InsufficientData, match="these data are one run"):
-        score_law("brush", fit, rng=np.random.default_rng(1))
+        weigh_law("brush", fit, rng=np.random.default_rng(1))

@@ -7,7 +7,7 @@ import pytest
 from model.bayes import left_out
 from model.bayes.blocks import block_means
 from model.bayes.laplace import LaplaceMixture, find_modes
-from model.bayes.left_out import leave_out
+from model.bayes.left_out import Refitted, leave_out
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.rig_errors import RigErrors
 from model.bayes.weighted import importance_draws
@@ -46,7 +46,7 @@ def draws(posterior, approximation):
 def left_out_by_groups(posterior, approximation, draws):
     def leave(group):
         return leave_out(
-            posterior, draws, group, approximation=approximation, threads=1,
+            posterior, draws, group, approximation=approximation,
             rng=np.random.default_rng(6),
         )  # fmt: skip
 
@@ -75,11 +75,11 @@ def test_many_bad_weights_are_mended_in_ten_folds(left_out_by_groups, monkeypatc
     monkeypatch.setattr(left_out, "MAX_SINGLE_FOLDS", 3)
     monkeypatch.setattr(left_out, "N_GROUPED_FOLDS", 2)
 
-    def without(_posterior, mask, _starts, _rng):
-        folds.append(np.flatnonzero(mask).tolist())
-        return np.full(int(mask.sum()), float(len(folds))), 0.1
+    def without(_, task):
+        folds.append(np.flatnonzero(task.left_out).tolist())
+        return Refitted(np.full(int(task.left_out.sum()), float(len(folds))), 0.1)
 
-    monkeypatch.setattr(left_out, "_refit", without)
+    monkeypatch.setattr(left_out, "refit_without", without)
     found = left_out_by_groups(np.arange(8))
     assert folds == [[0, 2, 4, 6], [1, 3, 5, 7]]
     np.testing.assert_array_equal(found.log_density, [1, 2] * 4)

@@ -320,7 +320,7 @@ def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) 
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
     fit = prepare_fit(
         sweep.samples, THESIS_LAW, load_cell=LoadCell(zero_stability=zero_stability), rng=rng,
-        block_choice=BlockChoice(20, None, "as planned"), threads=1,
+        block_choice=BlockChoice(20, None, "as planned"),
     )  # fmt: skip
     weighted = importance_draws(fit.posterior.log_density, fit.approximation, n=1000, rng=rng)
     z = weighted.resample(400, rng=rng)

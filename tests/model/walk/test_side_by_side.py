@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -43,3 +44,8 @@ def test_the_walk_that_fails_is_named(row, said):
     with pytest.raises(OneOfSeveralError, match=said) as caught:
         walk_side_by_side(several)
     assert caught.value.walk == 1
+
+
+def test_an_error_of_a_worker_comes_back_with_its_walk():
+    back = pickle.loads(pickle.dumps(OneOfSeveralError(2, "diverged")))  # noqa: S301
+    assert (back.walk, str(back)) == (2, "diverged")

@@ -21,6 +21,8 @@ from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.stage import Stopped, calibrate
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.terminal.stopping import StoppedBySignal
+from zebro_lab.workers.request import CoresRequest
+from zebro_lab.workers.threads import Threads
 
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
 TABLES = {"slip.toml", "summary.csv", "posterior.nc", "manifest.json"}
@@ -69,7 +71,12 @@ def request_for(sweep):
 
     def make(out: Path, **changes) -> CalibrationRequest:
         asked = CalibrationRequest(
-            (sweep,), out, curvature="peak", block_length=30, max_steps=400, threads=1
+            (sweep,),
+            out,
+            curvature="peak",
+            block_length=30,
+            max_steps=400,
+            workers=CoresRequest(1),
         )
         return replace(asked, **changes)
 
@@ -109,7 +116,8 @@ def test_fit_writes_its_files_and_a_checkpoint_while_it_has_not_converged(uninte
 
 
 def test_fit_is_the_same_with_two_threads(uninterrupted, request_for, tmp_path, no_pictures):
-    calibrate(request_for(tmp_path / "out", threads=2), Watcher())
+    asked = request_for(tmp_path / "out", workers=CoresRequest(2))
+    calibrate(asked, Watcher(), mapper=Threads(2))
     assert_same_fit(tmp_path / "out", uninterrupted)
 
 

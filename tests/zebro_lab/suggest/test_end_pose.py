@@ -25,7 +25,7 @@ def test_a_walk_ends_where_its_linear_prediction_says(posterior, tmp_path):
     assert (target.parts, target.rows.shape) == (("x", "y", "heading"), (2, 3, z.shape[1]))
     of_law = [p.name in ("slip_stiffness", "friction") for p in posterior.free]
     assert np.abs(target.rows[..., ~np.array(of_law)]).max() == 0
-    walked, poses = end_poses(walk, posterior, z, threads=1)
+    walked, poses = end_poses(walk, posterior, z)
     predicted = walked @ target.rows[0].T
     rest = (poses - poses.mean(axis=0)) - (predicted - predicted.mean(axis=0))
     assert rest.std(axis=0) == pytest.approx(0.0, abs=0.2 * poses.std(axis=0).max())

@@ -9,6 +9,7 @@ import typer
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.picture_options import parse_instants
 from zebro_lab.walk.output_request import BandRequest, ContactRequest, PictureRequest
+from zebro_lab.workers.request import CoresRequest
 
 
 def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
@@ -22,6 +23,13 @@ def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
     for options in negative:
         with pytest.raises(SettingsError, match="deviations of 0 or more"):
             BandRequest(2, **options)
+
+
+def test_a_scheduler_without_draws_to_share_is_wrong_usage():
+    workers = CoresRequest(scheduler="tcp://127.0.0.1:8786")
+    assert BandRequest(2, workers=workers).workers == workers
+    with pytest.raises(SettingsError, match="--scheduler: hands the draws of a band"):
+        BandRequest(workers=workers)
 
 
 def test_times_of_snapshots_without_figures_and_a_least_state_without_contacts_are_refused():

@@ -53,3 +53,21 @@ def test_a_band_without_a_model_of_slip_and_a_missing_law_are_named(run_command,
     assert "--draws: a band is predicted by the model 'dynamics' only" in ended.err
     assert run_command(*given).code == 2
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("address", "problem"),
+    [("here", "expected tcp://HOST:PORT"), ("tcp://8.8.8.8:8786", "outside of this machine")],
+)
+@pytest.mark.parametrize("name", ["predict none.csv", "walk --duration 2"])
+def test_a_scheduler_that_cannot_be_used_is_told_before_anything_is_read(
+    run_command, tmp_path, name, address, problem
+):
+    out = tmp_path / "out"
+    ended = run_command(
+        *name.split(), "--slip", "none.toml", "--draws", 2, "--out", out, "--scheduler", address
+    )
+    assert ended.code == 2
+    assert "--scheduler" in ended.err
+    assert problem in ended.err
+    assert not out.exists()

@@ -50,10 +50,24 @@ def test_walks_that_cannot_be_fitted_are_refused_before_the_fit_of_rig_data(
     case, tmp_path, monkeypatch, capsys
 ):
     arguments, problem = case(tmp_path)
-    monkeypatch.setattr(command, "fit_and_report", lambda *_: pytest.fail("the fit began"))
+    monkeypatch.setattr(command, "fit_and_report", lambda *_, **__: pytest.fail("the fit began"))
     given = ("calibrate-slip", tmp_path, *arguments, "--out", tmp_path / "calibration")
     monkeypatch.setattr("sys.argv", [*map(str, given)])
     with pytest.raises(SystemExit) as ended:
         run_app(app)
     assert ended.value.code == 1
     assert problem in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("address", "problem"),
+    [("here", "expected tcp://HOST:PORT"), ("tcp://8.8.8.8:8786", "outside of this machine")],
+)
+def test_a_scheduler_that_cannot_be_used_is_told_before_anything_is_read(
+    run_command, tmp_path, address, problem
+):
+    out = tmp_path / "calibration"
+    ended = run_command("calibrate-slip", "none", "--out", out, "--scheduler", address)
+    assert ended.code == 2
+    assert problem in ended.err
+    assert not out.exists()

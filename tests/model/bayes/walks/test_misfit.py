@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.misfit import TrackedWalk, WalkMisfit
+from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, walk_states
 from model.bayes.walks.prior import WRONG, legs_of
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
@@ -31,7 +31,7 @@ def walk():
 def misfit(walk):
     rng = np.random.default_rng(1)
     spread = ModelSpread(0.002, 0.002)
-    return WalkMisfit.of(Robot(), TABLE, walk, spread=spread, rng=rng, threads=1)
+    return WalkMisfit.of(Robot(), TABLE, walk, spread=spread, rng=rng)
 
 
 def legs(*, steering=0.0, stride=0.0):
@@ -42,22 +42,26 @@ def legs(*, steering=0.0, stride=0.0):
     return state
 
 
+def residuals(misfit, state):
+    return misfit.residuals(state, *walk_states([misfit], [state]))
+
+
 def squares(residuals):
     return float((residuals**2).sum())
 
 
 def test_the_walk_as_it_was_has_the_least_residuals(misfit):
     assert misfit.size == 3 * 5
-    here = squares(misfit.residuals(legs(), threads=1))
+    here = squares(residuals(misfit, legs()))
     assert here < 1.0
     for bend in ({"steering": 0.2}, {"steering": -0.2}, {"stride": 0.1}, {"stride": -0.1}):
-        assert squares(misfit.residuals(legs(**bend), threads=1)) > here + 10
+        assert squares(residuals(misfit, legs(**bend))) > here + 10
 
 
 def test_terms_say_what_residuals_do_for_small_steering_and_stride(misfit):
-    terms = misfit.terms(legs(), steering=1e-3, stride=1e-3, threads=1)
+    terms = misfit.terms(*walk_states([misfit], [legs()]), steering=1e-3, stride=1e-3)
     y = np.array([[0.7, -0.4]])
-    bent = misfit.residuals(legs(steering=0.7e-3, stride=-0.4e-3), threads=1)
+    bent = residuals(misfit, legs(steering=0.7e-3, stride=-0.4e-3))
     assert terms.squares_at(y)[0, 0] == pytest.approx(squares(bent), rel=0.02, abs=1e-3)
 
 

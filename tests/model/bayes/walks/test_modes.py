@@ -20,12 +20,18 @@ class LinearMisfit:
         self.A = np.random.default_rng(4).standard_normal((K, N_LEGS)) / np.radians(0.3)
         self.offset = np.asarray(offset)
 
-    def residuals(self, legs, *, threads):
+    def tasks(self, _state):
+        return []
+
+    def joined(self, _walked):
+        return None
+
+    def residuals(self, legs, _walked):
         return (legs.offset - self.offset) @ self.A.T
 
 
 def search(offset):
-    return ModeSearch([LinearMisfit(offset)], WalkPrior(), threads=1)
+    return ModeSearch([LinearMisfit(offset)], WalkPrior())
 
 
 def test_a_climb_ends_where_the_gradient_is_zero():

@@ -96,7 +96,8 @@ def lateral_sums(
         there, known, known**2, known / pressed, np.where(there, np.abs(traction), 0.0),
         np.ones(len(force)),
     )  # fmt: skip
-    return np.column_stack([np.bincount(run, values, minlength=n_runs) for values in each])
+    sums = [np.bincount(run, values, minlength=n_runs) for values in each]
+    return np.column_stack(sums).astype(np.float64)
 
 
 def no_sums(samples: NDArray[np.intp]) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from model.bayes.fine_means import Reduced, fine_moments, reduce_samples
 from model.bayes.samples import SlipSamples
@@ -168,7 +169,9 @@ def _read_rows(
     return rule
 
 
-def _add_lateral(reading: _Reading, table: RigTable, samples: SlipSamples, numbers: Array) -> None:
+def _add_lateral(
+    reading: _Reading, table: RigTable, samples: SlipSamples, numbers: NDArray[np.signedinteger]
+) -> None:
     """Add the lateral force of samples to the sums of their runs, if the table has one."""
     sums = lateral_sums(
         table, samples.normal_force, samples.traction_force, samples.run, len(numbers)

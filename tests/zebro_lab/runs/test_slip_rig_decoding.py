@@ -40,6 +40,7 @@ def test_forces_outside_the_speeds_are_left_out(tmp_path):
 
 def test_the_third_axis_is_the_lateral_force(tmp_path):
     table, _ = derive(tmp_path, [0.15, 0.2], [[1e6, 2e6, -5e6, 0, 0, 0]] * 2)
+    assert table.lateral_force is not None
     np.testing.assert_allclose(table.lateral_force, [2.0, 2.0], rtol=1e-12)
     np.testing.assert_allclose(table.normal_force, [5.0, 5.0], rtol=1e-12)
     assert table.rows().shape == (2, 5)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from model.lateral_spread import log_spread
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.bend import Bend
@@ -22,6 +23,8 @@ class LegState:
         grip: Factor on traction, shape (m,) [-].
         stiffness: Factor on slip stiffness, shape (m,) [-].
         fall: Factor on the post-peak drop; 0 removes the drop, shape (m,) [-].
+        lateral_grip: Grip across the legs' rolling direction over that along it, shape (m,) [-].
+        lateral_stiffness: Slip stiffness across it over that along it, shape (m,) [-].
         arc: Angle added to `Robot.leg_arc`, shape (m,) [rad].
         steering: Constant curvature added to the path, positive to the left, shape (m,) [rad/m].
         stride: Relative error of distance: the path is 1 + stride times as long, shape (m,) [-].
@@ -31,6 +34,8 @@ class LegState:
     grip: Array
     stiffness: Array
     fall: Array
+    lateral_grip: Array
+    lateral_stiffness: Array
     arc: Array
     steering: Array
     stride: Array
@@ -48,20 +53,30 @@ class LegState:
         return LegState(**{each.name: getattr(self, each.name)[chosen] for each in fields(self)})
 
     @staticmethod
-    def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw leg offsets from a uniform prior of mean zero; leave all else as described.
+    def of_prior(
+        n: int, *, offset_sd: float, anisotropy: float = 1.0, rng: np.random.Generator
+    ) -> "LegState":
+        """Draw leg offsets and lateral traction from a prior; leave all else as described.
 
         An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
 
         Args:
             n: Number of draws.
-            offset_sd: Standard deviation of an offset [rad].
-            rng: Source of randomness.
+            offset_sd: Standard deviation of an offset, which is uniform about zero [rad].
+            anisotropy: Factor by which lateral grip and lateral stiffness differ from 1: each is
+                log-normal with this factor as standard deviation; 1 for no difference [-].
+            rng: Source of randomness. Factors come from a generator of their own, so that all
+                other draws are the same with any `anisotropy`.
+
+        Raises:
+            DomainError: `anisotropy` is below 1 or not finite.
         """
+        spread = log_spread(anisotropy)
         reach = np.sqrt(3.0) * offset_sd
         offset = rng.uniform(-reach, reach, (n, N_LEGS))
         one, no = np.ones(n), np.zeros(n)
-        return LegState(offset, one, one, one, no, no, no)
+        grip, stiffness = np.exp(spread * rng.spawn(1)[0].standard_normal((2, n)))
+        return LegState(offset, one, one, one, grip, stiffness, no, no, no)
 
 
 def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
@@ -82,19 +97,35 @@ def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
 
 
 def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
-    """Return a slip law's table scaled by the grip, stiffness and fall factors of one draw.
+    """Return a slip law's table scaled by the factors of one draw, lateral traction included.
 
     Args:
         table: The slip law as calibrated.
         state: Draws of the legs' state.
         i: Index of the draw.
     """
-    return scaled_table(
+    scaled = scaled_table(
         table,
         grip=float(state.grip[i]),
         stiffness=float(state.stiffness[i]),
         fall=float(state.fall[i]),
     )
+    return with_anisotropy(
+        scaled, grip=float(state.lateral_grip[i]), stiffness=float(state.lateral_stiffness[i])
+    )
+
+
+def with_anisotropy(table: TractionTable, *, grip: float, stiffness: float) -> TractionTable:
+    """Return a slip law's table with lateral grip and stiffness, over longitudinal ones.
+
+    Args:
+        table: The law.
+        grip: Lateral over longitudinal grip [-].
+        stiffness: Lateral over longitudinal slip stiffness [-].
+    """
+    if (grip, stiffness) == (table.lateral_grip, table.lateral_stiffness):
+        return table
+    return table._replace(lateral_grip=grip, lateral_stiffness=stiffness)
 
 
 def bend_in(state: LegState, i: int) -> Bend:

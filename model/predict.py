@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Predict paths with uncertainty from a robot, its leg log and its slip law.
 
-Four uncertainties spread a path: the slip law's posterior; the legs' angles (each leg's constant
-offset, and the angle between two counts of a coarse encoder); the pose it starts from; and the
-error of the walking model, stated here as an error of distance and one of curvature.
+Five uncertainties spread a path: the slip law's posterior; how much traction across the legs'
+rolling direction differs from that along it; the legs' angles (each leg's constant offset, and the
+angle between two counts of a coarse encoder); the pose it starts from; and the error of the walking
+model, stated here as an error of distance and one of curvature.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,7 +16,7 @@ import numpy as np
 from model.errors import DomainError
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
-from model.leg_state import LegState, law_in, robot_in
+from model.leg_state import LegState, law_in, robot_in, with_anisotropy
 from model.mapping import HERE, Mapper
 from model.path_draws import bent
 from model.poses import Poses
@@ -84,7 +85,8 @@ def walk_draws(
             drawn, and repeated in turn beyond.
         tables: Draws of the slip law, repeated in turn when fewer than those of the state.
         state: Draws of the legs' state. Offsets and arc change the robot; grip, slip stiffness and
-            post-peak drop scale the law; steering and stride are for `predict_paths`.
+            post-peak drop scale the law, lateral grip and stiffness its traction across the legs'
+            rolling direction; steering and stride are for `predict_paths`.
         rng: Source of randomness of the motions.
     """
     drawn = motions(legs, min(len(state), MOST_MOTIONS), rng)
@@ -107,7 +109,8 @@ def on_terrain(
     """Put draws on a terrain, each with laws of its areas and from a pose of its own.
 
     The legs' corrections to the slip law, which walks on one floor were fitted to, are those of the
-    ground outside of the areas; laws of the areas are not scaled.
+    ground outside of the areas; laws of the areas are not scaled. How much traction differs across
+    the legs is taken to be of the feet, and the same in areas.
 
     Args:
         draws: Inputs of m walks.
@@ -117,8 +120,9 @@ def on_terrain(
     """
     placed = []
     for i, (draw, (x, y, yaw)) in enumerate(zip(draws, starts.tolist(), strict=True)):
+        grip, stiffness = draw.table.lateral_grip, draw.table.lateral_stiffness
         areas = tuple(
-            Area(area.polygon, laws[i % len(laws)])
+            Area(area.polygon, with_anisotropy(laws[i % len(laws)], grip=grip, stiffness=stiffness))
             for area, laws in zip(terrain.areas, tables, strict=True)
         )
         start = Start(x=x, y=y, yaw=yaw)

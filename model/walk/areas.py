@@ -33,6 +33,8 @@ class AreaTractions(NamedTuple):
         toe: Shape (k, m) [-].
         by_velocity: Shape (k,).
         speed_scale: Shape (k,) [m/s].
+        lateral_grip: Shape (k,) [-].
+        lateral_stiffness: Shape (k,) [-].
     """
 
     corners: Array
@@ -46,6 +48,8 @@ class AreaTractions(NamedTuple):
     toe: Array
     by_velocity: NDArray[np.bool_]
     speed_scale: Array
+    lateral_grip: Array
+    lateral_stiffness: Array
 
 
 @dataclass(frozen=True)
@@ -145,6 +149,8 @@ def with_areas(table: TractionTable, areas: Sequence[Area]) -> TractionTable | A
         toe=np.stack([np.broadcast_to(each.toe, (rows,)) for each in tables]),
         by_velocity=np.array([each.by_velocity for each in tables]),
         speed_scale=np.array([each.speed_scale for each in tables]),
+        lateral_grip=np.array([each.lateral_grip for each in tables]),
+        lateral_stiffness=np.array([each.lateral_stiffness for each in tables]),
     )
 
 
@@ -203,7 +209,8 @@ def _law(areas, k):
     """Return the law of index k of an `AreaTractions` as a `TractionTable`."""
     return TractionTable(
         areas.log_load, areas.scale[k], areas.step[k], areas.phi[k], areas.slope[k], areas.toe[k],
-        areas.by_velocity[k], areas.speed_scale[k], areas.bristle,
+        areas.by_velocity[k], areas.speed_scale[k], areas.bristle, areas.lateral_grip[k],
+        areas.lateral_stiffness[k],
     )  # fmt: skip
 
 

@@ -74,6 +74,10 @@ class Work(NamedTuple):
             shape (14, 3) [m/s].
         normal: Normal of the ground, shape (14, 3) [-].
         gap: Distance over the ground, negative below it, shape (14,) [m].
+        across: Direction along the ground and across the leg's rolling direction, filled where
+            traction differs by direction, shape (14, 3) [-].
+        lateral: By how much traction differs by direction, see `model.walk.anisotropy`; zero where
+            it does not, shape (14, 2) [-].
         flow: Radius of the arc where a leg rolls, else zero, shape (14,) [m].
         kind: HIP, ROLLING or TOE; TOE for corners, shape (14,).
         load: Normal force, zero in the air, shape (14,) [N].
@@ -96,6 +100,8 @@ class Work(NamedTuple):
     velocity: Array
     normal: Array
     gap: Array
+    across: Array
+    lateral: Array
     flow: Array
     kind: NDArray[np.int64]
     load: Array
@@ -127,10 +133,10 @@ def new_work():
     """Allocate the work arrays of a step; loads, secants, kinds and gains are zero."""
     n = N_CONTACTS
     return Work(
-        np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
-        np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n), np.empty((3, 3)),
-        np.empty((6, 6)), np.empty(6), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
-        np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.zeros(6),
+        np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.zeros((n, 3)),
+        np.zeros((n, 2)), np.empty(n), np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n),
+        np.empty((3, 3)), np.empty((6, 6)), np.empty(6), np.empty(3), np.empty(3), np.empty(3),
+        np.empty(3), np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.zeros(6),
     )  # fmt: skip
 
 

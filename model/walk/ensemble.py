@@ -209,10 +209,18 @@ def _walked_alone(number: int, draw: WalkDraw, times: WalkedTimes) -> Array:
 
 
 def _batches(draws: Sequence[WalkDraw]) -> list[list[int]]:
-    """Group the indices of draws: those walked side by side, up to `MOST`, and others alone."""
-    together = [i for i, draw in enumerate(draws) if draw.walks_beside_others]
+    """Group the indices of draws: those walked side by side, up to `MOST`, and others alone.
+
+    Laws that are the same in all directions have a loop of their own, and so groups of their own:
+    a walk depends on no neighbour.
+    """
+    beside = [i for i, draw in enumerate(draws) if draw.walks_beside_others]
     alone = [[i] for i, draw in enumerate(draws) if not draw.walks_beside_others]
-    return [together[i : i + MOST] for i in range(0, len(together), MOST)] + alone
+    groups = []
+    for directed in (False, True):
+        together = [i for i in beside if draws[i].table.is_directed == directed]
+        groups += [together[i : i + MOST] for i in range(0, len(together), MOST)]
+    return groups + alone
 
 
 def _walked_together(draws: Sequence[WalkDraw], wanted: WalkedTimes) -> Array:

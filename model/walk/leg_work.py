@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.compiled import inlined
+from model.walk.anisotropy import sideways
 from model.walk.contact_points import point_velocity
 from model.walk.path import WalkPath
 from model.walk.step import BRISTLE_STIFFNESS
@@ -79,10 +80,15 @@ def add_work(contacts, state, work, dt, out):
         m, u = work.normal[i], work.velocity[i]
         point_velocity(state.v, state.w, work.place[i], u, point)
         rise = point[0] * m[0] + point[1] * m[1] + point[2] * m[2]
+        for a in range(3):
+            point[a] -= rise * m[a]
+        lateral, across = work.lateral[i], work.across[i]
+        more = work.secant[i] * sideways(lateral, across, point)
+        more += bristle * sideways(lateral, across, state.stretch[i])
         power, slip = 0.0, 0.0
         for a in range(3):
-            along = point[a] - rise * m[a]
-            traction = -work.secant[i] * along - bristle * state.stretch[i, a]
+            along = point[a]
+            traction = -work.secant[i] * along - bristle * state.stretch[i, a] - more * across[a]
             power -= (work.load[i] * m[a] + traction) * u[a]
             slip -= traction * along
         add_powers(out, power, slip, -work.load[i] * rise, dt)

@@ -9,6 +9,7 @@ from model.compiled import borrowing, compiled, inlined
 from model.leg import ROLLING
 from model.robot import N_LEGS
 from model.slip.law import Array
+from model.walk.anisotropy import sideways
 from model.walk.areas import AreaTractions
 from model.walk.arrays import (
     N_CONTACTS,
@@ -180,8 +181,12 @@ def _keep_legs(out, contacts, state, work, speed, energy):
         out[i, 0] = work.load[i]
         for a in range(3):
             point[a] -= rise * m[a]
+        lateral, across = work.lateral[i], work.across[i]
+        more = work.secant[i] * sideways(lateral, across, point)
+        more += bristle * sideways(lateral, across, state.stretch[i])
         for a in range(2):
             out[i, 1 + a] = -work.secant[i] * point[a] - bristle * state.stretch[i, a]
+            out[i, 1 + a] -= more * across[a]
             out[i, 3 + a] = point[a]
         if work.kind[i] == ROLLING:
             tilt = R[0, 0] * m[0] + R[1, 0] * m[1] + R[2, 0] * m[2]  # of the body over the ground

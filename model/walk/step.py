@@ -10,9 +10,10 @@ and traction of every contact are taken there, linear in them,
 
 with stiffness k of contact i, gap g, normal n, contact Jacobian J, the leg's own velocity u at its
 contact, and the secant G of the slip law. A prime marks the step's end, v' stands for v and w
-there, and the index t for the part along the ground. Taking the gap at the step's end damps as a
-damping of k dt does; c' is what the contact's damping c leaves beyond that, or zero. A step of up
-to c/k therefore damps as much as any shorter one.
+there, and the index t for the part along the ground. Where grip differs along and across a leg's
+rolling direction, G has a further part across it, see `model.walk.anisotropy`. Taking the gap at
+the step's end damps as a damping of k dt does; c' is what the contact's damping c leaves beyond
+that, or zero. A step of up to c/k therefore damps as much as any shorter one.
 
 This gives a symmetric positive definite 6x6 system. Iterations determine which contacts press and
 what G is, from the velocities that the step before leads to. One is enough where motion is even.
@@ -27,6 +28,7 @@ import numpy as np
 from model.compiled import inlined
 from model.leg import ROLLING
 from model.robot import N_LEGS
+from model.walk.anisotropy import effective_size, find_across, sideways
 from model.walk.areas import law_at
 from model.walk.arrays import N_CONTACTS
 from model.walk.contact_points import find_contacts, point_velocity
@@ -172,16 +174,20 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         if load <= 0.0:
             continue
         law = law_at(table, state.p, work.place[i])
+        find_across(law, work, i)
+        lateral, across = work.lateral[i], work.across[i]
         x, y, z = point[0] - rise * m0, point[1] - rise * m1, point[2] - rise * m2
         if table.bristle and work.kind[i] != ROLLING:
-            pull = bristle_pull(law, contacts, state.stretch[i], load, dt * x, dt * y, dt * z)
+            pull = bristle_pull(
+                law, contacts, state.stretch[i], load, dt * x, dt * y, dt * z, lateral, across
+            )
             G = pull * dt
         else:
-            slip = np.sqrt(x * x + y * y + z * z)
+            slip = effective_size(lateral, across, x, y, z)
             flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
             G, pull = traction_secant(law, work.kind[i], load, slip, flow), 0.0
             work.secant[i] = G
-        held += G
+        held += G * (1.0 + max(lateral[0], 0.0))
         push = -k * work.gap[i] - c * u_n
         for a in range(3):
             m_a = work.normal[i, a]
@@ -190,12 +196,19 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
             for d in range(3):
                 P[a, d] = (k * dt + c - G) * m_a * work.normal[i, d]
             P[a, a] += G
+        if lateral[0] != 0.0:
+            more = G * sideways(lateral, across, work.velocity[i])
+            more += pull * sideways(lateral, across, state.stretch[i])
+            for a in range(3):
+                force[a] -= more * across[a]
+                for d in range(3):
+                    P[a, d] += G * lateral[0] * across[a] * across[d]
         add_contact(work.A, work.b, dt, work.place[i], P, force)
     return held
 
 
 @inlined
-def bristle_pull(table, contacts, stretch, load, x, y, z):
+def bristle_pull(table, contacts, stretch, load, x, y, z, lateral, across):
     """Compute the force over stretch of a toe's bristle after a further slip of (x, y, z).
 
     It is the bristle's stiffness, 0.1 of the contact's, or less where the force would exceed the
@@ -209,12 +222,14 @@ def bristle_pull(table, contacts, stretch, load, x, y, z):
         x: Further slip along x [m].
         y: Further slip along y [m].
         z: Further slip along z [m].
+        lateral: By how much traction differs by direction, see `find_across`, shape (2,) [-].
+        across: Direction across the leg's rolling direction, shape (3,) [-].
 
     Returns:
-        Force over stretch [N/m].
+        Force over stretch along the rolling direction [N/m].
     """
     stiffness = BRISTLE_STIFFNESS * contacts.stiffness
-    size = np.sqrt((stretch[0] + x) ** 2 + (stretch[1] + y) ** 2 + (stretch[2] + z) ** 2)
+    size = effective_size(lateral, across, stretch[0] + x, stretch[1] + y, stretch[2] + z)
     most = load * toe_traction(table, load)
     return most / size if stiffness * size > most else stiffness
 
@@ -273,16 +288,17 @@ def _stretch_bristle(table, contacts, state, work, i, dt):
     point, m = work.point, work.normal[i]
     point_velocity(state.v, state.w, work.place[i], work.velocity[i], point)
     rise = point[0] * m[0] + point[1] * m[1] + point[2] * m[2]
-    stretched = 0.0
+    stretch = state.stretch[i]
     for a in range(3):
-        state.stretch[i, a] += dt * (point[a] - rise * m[a])
-        stretched += state.stretch[i, a] ** 2
+        stretch[a] += dt * (point[a] - rise * m[a])
+    lateral, across = work.lateral[i], work.across[i]
+    stretched = effective_size(lateral, across, stretch[0], stretch[1], stretch[2])
     law = law_at(table, state.p, work.place[i])
     longest = work.load[i] * toe_traction(law, work.load[i])
     longest /= BRISTLE_STIFFNESS * contacts.stiffness
-    if np.sqrt(stretched) > longest:
+    if stretched > longest:
         for a in range(3):
-            state.stretch[i, a] *= longest / np.sqrt(stretched)
+            stretch[a] *= longest / stretched
 
 
 @inlined

@@ -41,6 +41,8 @@ class TractionTable(NamedTuple):
         speed_scale: Slip velocity over which traction on a toe (or a velocity law) sets in, and
             least speed of the arc that a slip velocity is divided by [m/s].
         bristle: Whether a toe sticks like a spring until its force reaches `toe` times load.
+        lateral_grip: Grip across the rolling direction of a leg over that along it [-].
+        lateral_stiffness: Slip stiffness across the rolling direction over that along it [-].
     """
 
     log_load: Array
@@ -52,6 +54,13 @@ class TractionTable(NamedTuple):
     by_velocity: bool
     speed_scale: float
     bristle: bool
+    lateral_grip: float = 1.0
+    lateral_stiffness: float = 1.0
+
+    @property
+    def is_directed(self) -> bool:
+        """Whether traction differs along and across a leg's rolling direction."""
+        return not self.lateral_grip == self.lateral_stiffness == 1.0
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from zebro_lab.tables.columns_file import LARGEST_LOAD_CELL_ERROR, LARGEST_RIG_E
 from zebro_lab.tables.mapped_columns import INTERVALS
 from zebro_lab.track.photo_sequence import MOST_APART
 from zebro_lab.track.trajectory.table import FASTEST
+from zebro_lab.walk.output_request import MOST_ANISOTROPY
 from zebro_lab.walk.request import LONGEST_SLIPPING_STEP, LONGEST_STEP
 from zebro_lab.walk.walking import MOST_STEPS
 
@@ -38,6 +39,7 @@ LIMITS = {
     "`--time` of `rig suggest`, `--budget` of `rig run`": (LONGEST_TIME,),
     "`--rate` of `rig suggest`": (HIGHEST_RATE,),
     "angles of a gait": (0, LEAST_DEG),
+    "`--anisotropy`": (1, MOST_ANISOTROPY),
     "`--dt` with slip": (LONGEST_SLIPPING_STEP,),
     "`--dt` without slip": (LONGEST_STEP,),
     "duration over `--dt`": (MOST_STEPS,),

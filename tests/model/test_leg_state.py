@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from model.leg_state import LegState, scaled_table
+from model.leg_state import LegState, law_in, scaled_table
 from model.slip.magic_formula import MagicFormula
 from model.walk.traction import VelocityCoulomb, law_table
 from model.walk.traction_lookup import table_value
@@ -48,3 +48,21 @@ def test_parts_of_draws_are_the_draws_in_order():
     parts = [state.part(slice(i, i + 2)) for i in (0, 2, 4)]
     assert [len(part) for part in parts] == [2, 2, 1]
     np.testing.assert_array_equal(np.concatenate([part.offset for part in parts]), state.offset)
+
+
+def test_draws_of_lateral_traction_are_lognormal_and_change_no_other_draw():
+    alike, spread = (
+        LegState.of_prior(4000, offset_sd=0.01, anisotropy=factor, rng=np.random.default_rng(1))
+        for factor in (1.0, 1.3)
+    )
+    np.testing.assert_array_equal(alike.offset, spread.offset)
+    np.testing.assert_array_equal(alike.lateral_grip, 1.0)
+    np.testing.assert_array_equal(alike.lateral_stiffness, 1.0)
+    for each in (spread.lateral_grip, spread.lateral_stiffness):
+        assert np.log(each).std() == pytest.approx(np.log(1.3), rel=0.05)
+        assert np.log(each).mean() == pytest.approx(0.0, abs=0.02)
+    assert law_in(TABLE, alike, 0) is TABLE
+    drawn = law_in(TABLE, spread, 5)
+    assert drawn.is_directed
+    assert drawn.lateral_grip == spread.lateral_grip[5]
+    assert drawn.lateral_stiffness == spread.lateral_stiffness[5]

@@ -22,13 +22,14 @@ from model.predict import (
     with_contacts,
 )
 from model.robot import Robot
+from model.slip import MagicFormula
 from model.travel import path_length
 from model.walk.bend import Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.ground import FLAT, with_slope
 from model.walk.terrain import Terrain
-from model.walk.traction import VelocityCoulomb
+from model.walk.traction import VelocityCoulomb, law_table
 
 T = np.linspace(0.0, 4.0, 41)
 T_LOG = np.arange(0.0, 12.2, 0.01)
@@ -137,3 +138,22 @@ def test_on_a_slope_a_path_is_bent_while_it_is_walked_and_not_afterwards():
     straight = Poses.of_states(T, paths.states[:1])
     after = bent(straight, distance=np.zeros(1), curvature=np.full(1, 1.5))
     assert np.linalg.norm(after.position[0, -1] - paths.position[1, -1]) > 1e-3
+
+
+def test_lateral_traction_widens_the_band_of_a_turn_and_hardly_that_of_a_straight_walk():
+    t, widths = np.linspace(0.0, 6.0, 7), {}
+    curve = law_table(MagicFormula(curvature=0.0), (20.4, 1.564, 0.38), weight=21.0)
+    for name, steering in (("straight", 1.0), ("turn", 1.3)):
+        gait = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0)
+        log = SampledReference(T_LOG, gait.angles(T_LOG))
+        for factor in (1.0, 1.3):
+            rng = np.random.default_rng(1)
+            state = LegState.of_prior(40, offset_sd=0.0, anisotropy=factor, rng=rng)
+            draws = walk_draws(Robot(), log, [curve], state, rng=rng)
+            paths = predict_paths(
+                draws, t, state=state, error=EXACT, rng=rng, options=DynamicsOptions(dt=0.005)
+            )
+            widths[name, factor] = paths.states[:, -1].std(axis=0)
+    np.testing.assert_allclose(widths["turn", 1.0], 0.0, atol=1e-9)
+    assert widths["turn", 1.3][2] > 3 * widths["straight", 1.3][2]
+    assert widths["turn", 1.3][2] > np.radians(0.02)

@@ -88,6 +88,7 @@ def write_tables(
     *,
     inputs: Mapping[str, str],
     priors: Mapping[str, Any] | None = None,
+    lateral: Mapping[str, object] | None = None,
 ) -> None:
     """Write `slip.toml`, `summary.csv` and `posterior.nc` of a fit, and `laws.csv` of a comparison.
 
@@ -96,10 +97,11 @@ def write_tables(
         calibration: The finished fit.
         inputs: SHA-256 of each file that was read, by path.
         priors: What was stated beforehand, for the table `priors`; None or empty for nothing.
+        lateral: Content of the table `lateral_force`; None or empty for none.
     """
     from model.bayes.law_scores import LawScores
 
-    (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs, priors or {}))
+    (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs, priors or {}, lateral or {}))
     (folder / "summary.csv").write_text(summary_csv(calibration))
     if isinstance(calibration.comparison, LawScores):
         (folder / LAWS_CSV).write_text(laws_csv(calibration.comparison))
@@ -180,7 +182,10 @@ def _numbers(key: str, found: object, shape: tuple[int, ...]) -> np.ndarray:
 
 
 def _slip_toml(
-    calibration: "Calibration", inputs: Mapping[str, str], priors: Mapping[str, Any]
+    calibration: "Calibration",
+    inputs: Mapping[str, str],
+    priors: Mapping[str, Any],
+    lateral: Mapping[str, object],
 ) -> str:
     import tomlkit
 
@@ -197,6 +202,7 @@ def _slip_toml(
         "tested": _tested_content(calibration),
         **_comparison_content(calibration),
         **_noise_content(calibration),
+        **({"lateral_force": dict(lateral)} if lateral else {}),
         **({"priors": dict(priors)} if priors else {}),
         "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
     })  # fmt: skip

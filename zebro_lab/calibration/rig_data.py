@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.bayes.fine_means import joined_moments
 from model.bayes.rig_errors import USUAL, RigErrors
@@ -15,6 +16,7 @@ from model.bayes.slip_noise import slip_noise_variance
 from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition
+from zebro_lab.calibration.lateral_force import LateralForce, lateral_force, no_sums
 from zebro_lab.calibration.rig_part import RigPart, averaged_part, read_part
 from zebro_lab.calibration.run_covariate import covariate_note, joined_covariate
 from zebro_lab.calibration.streamed_part import read_streamed_part
@@ -63,6 +65,7 @@ class RigData:
         repeated: The notes on duplicate data, which `notes` has too.
         priors: Priors from `[priors]` of `columns.toml`, as texts such as "friction = 0.4 ± 0.05".
         priors_file: The `columns.toml` that they are in; None without.
+        lateral: Mean and scatter of the lateral force; None if no sample has one.
     """
 
     samples: SlipSamples
@@ -74,6 +77,7 @@ class RigData:
     repeated: tuple[str, ...] = ()
     priors: tuple[str, ...] = ()
     priors_file: Path | None = None
+    lateral: LateralForce | None = None
 
 
 def read_rig_data(
@@ -117,6 +121,7 @@ def read_rig_data(
     samples = _joined(parts)
     _require_informative(samples, parts)
     priors, priors_file = _joined_priors(parts)
+    lateral = _joined_lateral(parts)
     return RigData(
         samples=samples,
         files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
@@ -124,6 +129,7 @@ def read_rig_data(
         notes=(
             *_notes(parts),
             *_averaging_note(parts),
+            *(() if lateral is None else (lateral.text,)),
             *covariate_note(parts),
             *others,
             *skipped,
@@ -135,6 +141,7 @@ def read_rig_data(
         repeated=duplicates,
         priors=priors,
         priors_file=priors_file,
+        lateral=lateral,
     )
 
 
@@ -388,6 +395,22 @@ def _joined_priors(parts: Sequence[RigPart]) -> tuple[tuple[str, ...], Path | No
                 file=file, key="priors",
             )  # fmt: skip
     return (maps[0][1], maps[0][0]) if maps else ((), None)
+
+
+def _joined_lateral(parts: Sequence[RigPart]) -> LateralForce | None:
+    """Return mean and scatter of the lateral force over all parts; None if none has one."""
+    return lateral_force(
+        [
+            no_sums(_samples_of_runs(part)) if part.lateral is None else part.lateral
+            for part in parts
+        ]
+    )
+
+
+def _samples_of_runs(part: RigPart) -> NDArray[np.intp]:
+    if part.fine is not None:
+        return part.fine.length
+    return np.bincount(part.runs.index, minlength=len(part.runs.names))
 
 
 def _joined_rig_errors(parts: Sequence[RigPart]) -> RigErrors:

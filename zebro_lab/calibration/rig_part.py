@@ -12,6 +12,7 @@ from model.bayes.rig_errors import RigErrors
 from model.bayes.samples import FineMoments, SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
+from zebro_lab.calibration.lateral_force import lateral_sums
 from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.runs.counted_once import run_keys
 from zebro_lab.runs.data_paths import DataSource
@@ -49,6 +50,7 @@ class RigPart:
         covariate: Value of the covariate in each run, shape (n_runs,), in its unit; None where the
             column map states none.
         fine: Where samples are means of several, what was within them; None where they are not.
+        lateral: Sums of the lateral force of each run, see `lateral_sums`; None without one.
     """
 
     path: Path
@@ -65,6 +67,7 @@ class RigPart:
     files: tuple[Path, ...]
     covariate: Array | None = None
     fine: FineMoments | None = None
+    lateral: Array | None = None
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -91,6 +94,7 @@ class RigPart:
             time=None if self.time is None else self.time[rows],
             covariate=None if self.covariate is None else self.covariate[chosen],
             fine=None if self.fine is None else moments_of_runs(self.fine, rows, chosen),
+            lateral=None if self.lateral is None else self.lateral[chosen],
         )
 
 
@@ -156,6 +160,7 @@ def read_part(
         notes=(*raw.notes, *table.conversions(), *doubts),
         files=files if columns.file is None else (*files, columns.file),
         covariate=None if columns.covariate is None else run_values(table, runs, columns.covariate),
+        lateral=lateral_sums(table, pressed, traction, runs.index, len(runs.names)),
     )
 
 
@@ -169,7 +174,7 @@ def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns
     import pandas as pd
 
     run, notes, rule = read_slip_rig_run(folder), (), RunRule()
-    columns_read = dict(vars(run.table))
+    columns_read = {name: each for name, each in vars(run.table).items() if each is not None}
     if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # raw device samples: not segmented yet
         number, notes = recorded_sweeps(run)
         rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule

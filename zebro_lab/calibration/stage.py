@@ -18,6 +18,7 @@ from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
 from zebro_lab.calibration.checkpoint import load_checkpoint, save_checkpoint
 from zebro_lab.calibration.folder import CALIBRATION, write_tables
+from zebro_lab.calibration.lateral_force import LateralForce
 from zebro_lab.calibration.pictures import draw_calibration
 from zebro_lab.calibration.request import COMPARE, CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
@@ -114,7 +115,7 @@ def calibrate(
             mapper=mapper,
         )
         watcher.step("drawing", None)
-        _write(request, calibration, inputs, stated)
+        _write(request, calibration, inputs, stated, data.lateral)
     except FitStopped as stopped:
         raise Stopped(checkpoint.save(stopped.chains)) from stopped
     except StoppedBySignal as stopped:  # at once, in a step that hears no wish to stop
@@ -175,12 +176,19 @@ def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
 
 
 def _write(
-    request: CalibrationRequest, calibration: Calibration, inputs: dict[str, str], stated: Stated
+    request: CalibrationRequest,
+    calibration: Calibration,
+    inputs: dict[str, str],
+    stated: Stated,
+    lateral: LateralForce | None,
 ) -> None:
     priors, fit = priors_content(stated, calibration), calibration.fit
     known = {"load_cell": asdict(fit.load_cell), "rig_errors": asdict(fit.rig_errors)}
     settings = {**request.decisive(), **known, "priors": priors}
     content = {"source": calibration.source, "settings": settings, "inputs": inputs}
     with result_folder(request.out, CALIBRATION, content=content) as folder:
-        write_tables(folder, calibration, inputs=inputs, priors=priors)
+        write_tables(
+            folder, calibration, inputs=inputs, priors=priors,
+            lateral=None if lateral is None else lateral.content(),
+        )  # fmt: skip
         draw_calibration(folder, calibration, request.form)

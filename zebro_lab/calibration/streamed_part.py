@@ -6,11 +6,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from model.bayes.fine_means import Reduced, fine_moments, reduce_samples
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
+from zebro_lab.calibration.lateral_force import lateral_sums
 from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.calibration.rig_part import RigPart
 from zebro_lab.files.errors import DataError
@@ -37,6 +39,7 @@ class _Reading:
         every: Its samples, averaged, by part.
         covariate: Value of the covariate in each run, by part, with its number of samples.
         thin: Evenly spread rows.
+        lateral: Sums of the lateral force of each run; of runs without a lateral force none.
         last: Run of the last row, counted from 0; -1 before the first.
     """
 
@@ -44,6 +47,7 @@ class _Reading:
     every: list[Reduced] = field(default_factory=list)
     covariate: dict[int, list[tuple[float, int]]] = field(default_factory=dict)
     thin: list[RawTable] = field(default_factory=list)
+    lateral: dict[int, Array] = field(default_factory=dict)
     last: int = -1
 
 
@@ -150,6 +154,7 @@ def _read_rows(
     )  # fmt: skip
     reduced = reduce_samples(samples, mean_of)
     numbers = ids[own]
+    _add_lateral(reading, RigTable(raw, columns, rows[new]), samples, numbers)
     pieces = tuple((int(numbers[run]), piece) for run, piece in reduced.pieces)
     reading.every.append(replace(reduced, run=numbers[reduced.run], pieces=pieces))
     for each in own:
@@ -162,6 +167,18 @@ def _read_rows(
                 (float(found[each]), int(sizes[each]))
             )
     return rule
+
+
+def _add_lateral(
+    reading: _Reading, table: RigTable, samples: SlipSamples, numbers: NDArray[np.signedinteger]
+) -> None:
+    """Add the lateral force of samples to the sums of their runs, if the table has one."""
+    sums = lateral_sums(
+        table, samples.normal_force, samples.traction_force, samples.run, len(numbers)
+    )
+    if sums is not None:
+        for number, each in zip(numbers.tolist(), sums, strict=True):
+            reading.lateral[number] = reading.lateral.get(number, 0.0) + each
 
 
 def _part(
@@ -197,6 +214,9 @@ def _part(
         files=files if columns.file is None else (*files, columns.file),
         covariate=_covariate(table, reading, numbers, names),
         fine=fine_moments(every, len(numbers)),
+        lateral=np.array([reading.lateral[n] for n in numbers.tolist()])
+        if reading.lateral
+        else None,
     )
 
 

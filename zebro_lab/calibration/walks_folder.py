@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from model.bayes.walks.posterior import FEW, WalkPosterior
-from model.bayes.walks.prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
+from model.bayes.walks.prior import ACROSS, UNITS, WRONG, WalkPrior, WrongLeg, all_cases
 from model.counted import counted
 from model.predict import ModelSpread
 from zebro_lab.files.arrays import read_arrays
@@ -29,7 +29,9 @@ from zebro_lab.robot.robot_file import RobotFile
 Metrics: TypeAlias = Mapping[str, float]
 """Metrics of one model's path, by the names of columns in `left_out.csv`."""
 
-SCHEMA = 2  # schema 1 defined the post-peak drop with another reference point
+SCHEMA = 3
+ISOTROPIC = 2  # fitted with traction alike in all directions
+# Schema 1 defined the post-peak drop with another reference point.
 FOLDER = "walks"
 WALKS_TOML, DRAWS, LEFT_OUT = "walks.toml", "draws.npz", "left_out.csv"
 _ANEW = "fit the walks again with calibrate-slip --walks"
@@ -172,7 +174,7 @@ def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
     remedy = f"delete {folder}, then {_ANEW} if they are to be used"
     content = read_toml_document(file, remedy=remedy, fault=DataError)
     with parsing(file, "cannot be read", advice=remedy):
-        if content["schema"] != SCHEMA:
+        if content["schema"] not in (SCHEMA, ISOTROPIC):
             raise DataError(
                 f"has schema {content['schema']}, this version reads {SCHEMA}; {_ANEW}, or update "
                 "zebro-lab where it is the older",
@@ -203,6 +205,9 @@ def _posterior(content: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> 
     prior = dict(content["prior"])
     names = tuple(each["name"] for each in content["walk"])
     values, case, weight, best = (arrays[key] for key in ("values", "case", "weight", "best"))
+    if content["schema"] == ISOTROPIC:
+        values, best = (_with_lateral(each) for each in (values, best))
+        prior["lateral_sd"] = 0.0
     n = len(weight)
     cases = all_cases(len(names))
     if values.shape != (n, WRONG + 1) or case.shape != (n,) or best.shape != (WRONG + 1,):
@@ -218,6 +223,11 @@ def _posterior(content: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> 
         best_case=cases[int(content["likeliest_case"])],
         misfit=tuple(float(each["misfit"]) for each in content["walk"]),
     )
+
+
+def _with_lateral(values: np.ndarray) -> np.ndarray:
+    """Insert columns of zeros, lateral traction as longitudinal, into parameters without them."""
+    return np.insert(values, [ACROSS[0]] * len(ACROSS), 0.0, axis=-1)
 
 
 def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:

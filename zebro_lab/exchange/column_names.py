@@ -54,6 +54,7 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
             rf"((avg|mean)_)?((ft|fx|f_t|f_x){_CELL}|(traction|tangential|longitudinal|friction|drive|driving)"
             r"(_?force)?|zugkraft|traktionskraft|tangentialkraft|l(ä|ae)ngskraft|umfangskraft|"
             r"reibkraft|kraft_?(x|t|tangential)|force_?(x|t))",
+        "lateral_force": r"(lateral|side|transverse)_?force|seitenkraft|querkraft",
         "run": r"run(_?(id|nr|no|number))?|versuch(s?_?(nr|nummer))?|lauf(_?nr)?",
         "slip_definition": r"slip_definition",
     },

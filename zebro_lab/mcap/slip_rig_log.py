@@ -4,9 +4,9 @@
 New runs contain only raw samples (`raw_log`); logs with this message can still be read.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,10 @@ float64[] traction_force  # positive when driving [N]
 """
 
 
+COLUMNS: Final = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
+"""Columns of the message, in its order."""
+
+
 @dataclass(frozen=True)
 class SlipRigTable:
     """Samples of one run of the slip rig, SI; each attribute has shape (n,).
@@ -40,6 +44,7 @@ class SlipRigTable:
         omega_ground: Angular speed of the ground disc [rad/s].
         normal_force: Normal force, positive when pressed together [N].
         traction_force: Traction force, positive when driving [N].
+        lateral_force: Force on the load cell's third axis, with its sign; None if not measured [N].
     """
 
     t: NDArray[np.float64]
@@ -47,14 +52,15 @@ class SlipRigTable:
     omega_ground: NDArray[np.float64]
     normal_force: NDArray[np.float64]
     traction_force: NDArray[np.float64]
+    lateral_force: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.t)
 
     def rows(self) -> NDArray[np.float64]:
-        """Return the samples by rows, columns in the order of the attributes, shape (n, 5)."""
-        return np.column_stack([getattr(self, field.name) for field in fields(self)])
+        """Return the samples by rows with the columns `COLUMNS`, shape (n, 5)."""
+        return np.column_stack([getattr(self, name) for name in COLUMNS])
 
 
 @dataclass(frozen=True)
@@ -77,13 +83,13 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
         data: The message.
 
     Returns:
-        Samples by rows, columns in the order of the attributes of `SlipRigTable`, shape (m, 5).
+        Samples by rows with the columns `COLUMNS`, shape (m, 5).
 
     Raises:
         ValueError: The message is not CDR, truncated or empty, or sequences differ in length.
     """
     reader = CdrReader(data)
-    columns = [reader.array("<f8") for _ in fields(SlipRigTable)]
+    columns = [reader.array("<f8") for _ in COLUMNS]
     if len({len(column) for column in columns}) > 1 or not len(columns[0]):
         raise ValueError("a message has columns of different lengths, or no samples")
     return np.column_stack(columns)

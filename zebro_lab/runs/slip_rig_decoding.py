@@ -11,7 +11,12 @@ from model.slip.law import Array
 from rig.clock_watch import sample_times
 from rig.errors import RigError
 from rig.sample_columns import SampleColumns
-from rig.slip_rig.decode import decode_board, decode_forces, decode_speeds
+from rig.slip_rig.decode import (
+    decode_board,
+    decode_forces,
+    decode_further_loads,
+    decode_speeds,
+)
 from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, load_rig_profile
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic
@@ -40,7 +45,8 @@ def derive_table(
             0 if absent [N].
 
     Returns:
-        The samples with strictly increasing time, and the note, if any.
+        The samples with strictly increasing time, and the note, if any. The lateral force, of which
+        no zero is known, is as measured; a board has none.
 
     Raises:
         DataError: A stream or a drive has no samples, no sample has speeds and forces, or the
@@ -76,7 +82,8 @@ def _of_two(
 ) -> Array:
     t = sample_times(forces)
     decoded = decode_forces(cell, forces)
-    force = np.vstack([decoded.normal, decoded.traction])
+    lateral, _ = decode_further_loads(cell, forces)
+    force = np.vstack([decoded.normal, decoded.traction, lateral])
     disc = decode_speeds(drives.leg, drives.ground, speeds)
     speed = np.vstack([disc.leg, disc.ground])
     if len(t) > _MANY * len(disc.time):

@@ -59,6 +59,7 @@ CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
         CanonicalColumn("slip_ratio", "dimensionless", "slip ratio, with its definition"),
         CanonicalColumn("normal_force", "N", "normal force, positive when pressed together"),
         CanonicalColumn("traction_force", "N", "traction force, positive when driving"),
+        CanonicalColumn("lateral_force", "N", "force across the discs, if the cell measures it"),
         CanonicalColumn("run", None, "name or number of the run"),
         CanonicalColumn("slip_definition", None, "material, travel or larger; one in each file"),
     )

@@ -67,6 +67,8 @@ class InformedLegs:
             "grip": float(legs.grip[0]),
             "slip_stiffness": float(legs.stiffness[0]),
             "fall": float(legs.fall[0]),
+            "lateral_grip": float(legs.lateral_grip[0]),
+            "lateral_stiffness": float(legs.lateral_stiffness[0]),
             "steering": float(legs.steering[0]),
             "stride": float(legs.stride[0]),
         }

@@ -71,7 +71,7 @@ def write_walk(
         "walks": None if walked.informed is None else walked.informed.settings(),
         **({} if walked.ground is None else {"ground": walked.ground.settings}),
         **settings,
-        **({} if walked.band is None else {"band": band_settings(request.band)}),
+        **({} if walked.band is None else {"band": band_settings(request.band, walked.informed)}),
     }
     source, inputs = f"sim:{walked.model}", file_hashes(read)
     with walk_folder(

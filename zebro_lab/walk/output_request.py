@@ -6,7 +6,9 @@ from typing import Annotated, Final
 
 from typer import BadParameter, Option
 
+from model.lateral_spread import ANISOTROPY
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import (
     FormatOption,
     Instants,
@@ -16,13 +18,18 @@ from zebro_lab.terminal.picture_options import (
 )
 from zebro_lab.workers.request import CoresRequest
 
+MOST_ANISOTROPY: Final = 3.0
+"""Largest factor by which lateral traction may be said to differ from longitudinal [-]."""
 LEAST_CONTACT: Final = 0.01
 """Contact states that last less are joined to the next: five steps of the model dynamics [s]."""
 
 
+ANISOTROPY_LIMITS: Final = Limits(least=1, most=MOST_ANISOTROPY)
+
+
 @dataclass(frozen=True)
 class BandRequest:
-    """Options of the band of a path: draws, seed, workers, spread of leg offsets and start."""
+    """Options of the band: draws, seed, workers, spread of leg offsets, lateral traction, start."""
 
     draws: Annotated[
         int,
@@ -39,6 +46,16 @@ class BandRequest:
             help="Standard deviation of the unknown leg offsets [deg]; default: encoder step / "
             "sqrt(12), or 0.3 for angles that are not in encoder steps.",
         ),
+    ] = None
+    anisotropy: Annotated[
+        float | None,
+        Option(
+            metavar="FACTOR",
+            help="Lateral over longitudinal grip, and lateral over longitudinal slip stiffness of "
+            "the legs: 1 ×/÷ this factor each, one standard deviation; 1 for alike. Default: "
+            f"{ANISOTROPY:g}.",
+        ),
+        ANISOTROPY_LIMITS,
     ] = None
     start_sd: Annotated[
         tuple[float, float, float],
@@ -62,6 +79,10 @@ class BandRequest:
             raise SettingsError(
                 "hands the draws of a band to a cluster; give --draws too, or leave it out",
                 key="--scheduler",
+            )
+        if self.anisotropy is not None and not ANISOTROPY_LIMITS.hold(self.anisotropy):
+            raise SettingsError(
+                f"found {self.anisotropy:g}; expected {ANISOTROPY_LIMITS}", key="--anisotropy"
             )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
+from model.lateral_spread import ANISOTROPY
 from model.leg_state import LegState
 from model.mapping import HERE, Mapper
 from model.path_draws import LEVELS, STATES, anchored, quantiles
@@ -34,14 +35,23 @@ _STEPS_SHOWN = 50  # progress reports
 _ADVICE = f"delete {DRAWS} if it is there, and run walk or predict again with --draws 500"
 
 
-def band_settings(request: BandRequest) -> dict[str, object]:
+def band_settings(request: BandRequest, informed: InformedLegs | None) -> dict[str, object]:
     """Return the options of a band and the model's spread for the manifest, JSON-serialisable.
 
     Where the draws were walked is left out: it changes nothing.
+
+    Args:
+        request: Settings of the band.
+        informed: Posterior of fitted walks, which has lateral traction as well: `anisotropy` is
+            then None, or 1 if the walks were fitted with traction alike in all directions.
     """
+    if informed is None:
+        factor = _anisotropy(request)
+    else:
+        factor = 1.0 if informed.posterior.prior.lateral_sd == 0 else None
     options = asdict(request)
     del options["workers"]
-    return {**options, "spread": asdict(ModelSpread())}
+    return {**options, "anisotropy": factor, "spread": asdict(ModelSpread())}
 
 
 def predict_band(
@@ -54,7 +64,7 @@ def predict_band(
     watcher: Watcher,
     mapper: Mapper = HERE,
 ) -> Poses:
-    """Compute paths of a walk with slip law, leg offsets, floor and start pose drawn at random.
+    """Compute paths of a walk with slip law, legs, floor and start pose drawn at random.
 
     Args:
         request: Settings of the band.
@@ -69,8 +79,8 @@ def predict_band(
         `request.draws` paths from time zero to `duration`, sampled about every 0.1 s.
 
     Raises:
-        SettingsError: The model is not "dynamics", or a standard deviation of leg offsets is given
-            although fitted walks determine them.
+        SettingsError: The model is not "dynamics", or a standard deviation of leg offsets or of
+            lateral traction is given although fitted walks determine them.
         DataError: The posterior draws of the slip law cannot be read.
         ModelError: A walk diverged, or no slip law is valid at the robot's loads.
     """
@@ -127,14 +137,24 @@ def _leg_state(
 ) -> LegState:
     if informed is None:
         offset_sd = np.radians(offset_sd_deg(request, legs))
-        return LegState.of_prior(request.draws, offset_sd=offset_sd, rng=rng)
-    if request.offset_sd_deg is not None:
-        raise SettingsError(
-            f"the fit of walks in {informed.folder} gives the spread of the legs' offsets; leave "
-            "the option out, or choose a slip.toml with no walks/ in its folder",
-            key="--offset-sd-deg",
+        return LegState.of_prior(
+            request.draws, offset_sd=offset_sd, anisotropy=_anisotropy(request), rng=rng
         )
+    for given, what, key in (
+        (request.offset_sd_deg, "the legs' offsets", "--offset-sd-deg"),
+        (request.anisotropy, "lateral grip and stiffness", "--anisotropy"),
+    ):
+        if given is not None:
+            raise SettingsError(
+                f"the fit of walks in {informed.folder} gives the spread of {what}; leave the "
+                "option out, or choose a slip.toml with no walks/ in its folder",
+                key=key,
+            )
     return informed.draw(request.draws, rng=rng)
+
+
+def _anisotropy(request: BandRequest) -> float:
+    return ANISOTROPY if request.anisotropy is None else request.anisotropy
 
 
 def offset_sd_deg(request: BandRequest, legs: LegReference | InexactLog) -> float:

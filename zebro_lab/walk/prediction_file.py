@@ -29,6 +29,8 @@ from zebro_lab.walk.folder import (
 )
 from zebro_lab.walk.path_band import read_draws
 
+NOT_SAID = "not said"  # by the manifest of an earlier version
+
 
 @dataclass(frozen=True)
 class WalkedPath:
@@ -85,9 +87,24 @@ def read_prediction(path: Path) -> PredictionFile:
             *changed,
             *doubts(manifest),
             *notes,
+            *(_anisotropy(manifest) if has_draws else ()),
             *(() if has_draws else ("no draws, so no band: run predict with --draws 500",)),
         ),
         walk,
+    )
+
+
+def _anisotropy(manifest: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return a note on the lateral traction that a band allows for; none of earlier versions."""
+    settings = manifest["settings"]
+    factor = (settings.get("band") or {}).get("anisotropy", NOT_SAID)
+    if factor in (NOT_SAID, 1):
+        return ("the band takes grip and slip stiffness to be alike along and across the legs",)
+    if factor is None:
+        return ("the band has lateral grip and slip stiffness as walks inform them",)
+    return (
+        "the band has grip and slip stiffness across the legs, over those along them, as "
+        f"1 ×/÷ {factor:g} each",
     )
 
 

@@ -7,6 +7,9 @@ from typing import Annotated
 
 from typer import Option
 
+from model.lateral_spread import ANISOTROPY
+from zebro_lab.walk.output_request import ANISOTROPY_LIMITS
+
 
 @dataclass(frozen=True)
 class WalksRequest:
@@ -31,3 +34,12 @@ class WalksRequest:
             "log, and add it to the track's times.",
         ),
     ] = False
+    anisotropy: Annotated[
+        float,
+        Option(
+            metavar="FACTOR",
+            help="Prior of lateral over longitudinal grip, and of lateral over longitudinal slip "
+            "stiffness of the legs: 1 ×/÷ this factor each, one standard deviation; 1 for alike.",
+        ),
+        ANISOTROPY_LIMITS,
+    ] = ANISOTROPY

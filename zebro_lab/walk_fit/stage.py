@@ -9,6 +9,7 @@ import numpy as np
 
 from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import WalkPrior
+from model.lateral_spread import log_spread
 from model.mapping import HERE, Mapper
 from model.progress import Watcher
 from zebro_lab.calibration.folder import CALIBRATION, SLIP_TOML
@@ -97,7 +98,8 @@ def calibrate_walks(
     watcher.step("reading walks", None)
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
     walks = read_walks(request.walks, robot=request.robot, clock=clock)
-    posterior, left_out = _fit(calibration, slip, walks, watcher, mapper)
+    prior = WalkPrior(lateral_sd=log_spread(request.anisotropy))
+    posterior, left_out = _fit(calibration, slip, walks, prior, watcher, mapper)
     notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
     source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
     watcher.step("drawing", None)
@@ -109,7 +111,11 @@ def calibrate_walks(
             robot=walks[0].robot,
             logs=tuple(walk.files[0] for walk in walks),
             inputs=(slip_toml, *(file for walk in walks for file in walk.files)),
-            settings={"seed": calibration.seed, "estimate_offset": request.estimate_offset},
+            settings={
+                "seed": calibration.seed,
+                "estimate_offset": request.estimate_offset,
+                "anisotropy": request.anisotropy,
+            },
             source=source,
             notes=notes,
         ),
@@ -124,13 +130,14 @@ def _fit(
     request: CalibrationRequest,
     slip: NamedSlip,
     walks: Sequence[WalkOnFile],
+    prior: WalkPrior,
     watcher: Watcher,
     mapper: Mapper,
 ) -> tuple[WalkPosterior, tuple[JudgedRun, ...]]:
     """Fit all walks; return the posterior, and each walk predicted from a fit of the others."""
     rng = np.random.default_rng(request.seed)
     fit = fit_walks_on_file(
-        walks, slip, prior=WalkPrior(), rng=rng, mapper=mapper,
+        walks, slip, prior=prior, rng=rng, mapper=mapper,
         progress=lambda done: watcher.step("fitting walks", 0.7 * done),
     )  # fmt: skip
     left_out = judge_left_out(

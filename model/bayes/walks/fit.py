@@ -18,7 +18,7 @@ from model.bayes.adaptive import Effort, WeightedCaseDraws, adaptive_draws
 from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, walk_states
 from model.bayes.walks.modes import ModeSearch
 from model.bayes.walks.posterior import WalkPosterior, state_in
-from model.bayes.walks.prior import LINEAR, WALKED, WRONG, WalkPrior, all_cases
+from model.bayes.walks.prior import ACROSS, LINEAR, WALKED, WRONG, WalkPrior, all_cases
 from model.bayes.walks.terms import Terms
 from model.errors import InsufficientData
 from model.mapping import HERE, Mapper
@@ -88,7 +88,7 @@ class _Density:
         """Compute the log posterior density up to a constant at m points, and store their terms.
 
         Args:
-            z: Standard normal coordinates of the parameters `WALKED`, shape (m, 12).
+            z: Standard normal coordinates of the parameters `WALKED`, shape (m, 14).
             case: Index into `cases` of each point, shape (m,).
 
         Returns:
@@ -98,7 +98,7 @@ class _Density:
         return self.log_prior(z, case) + self.rounds[-1].log_likelihood()
 
     def log_prior(self, z: Array, case: NDArray[np.intp]) -> Array:
-        """Compute the log prior density at points z (m, 12) of cases (m,), up to a constant, (m,).
+        """Compute the log prior density at points z (m, 14) of cases (m,), up to a constant, (m,).
 
         It includes the probability of each point's case.
         """
@@ -106,7 +106,7 @@ class _Density:
         return np.array(logs)[case] - 0.5 * (z**2).sum(axis=1)
 
     def terms(self, z: Array, case: NDArray[np.intp]) -> Terms:
-        """Compute all walks at points z (m, 12) of cases (m,); return their likelihood terms."""
+        """Compute all walks at points z (m, 14) of cases (m,); return their likelihood terms."""
         values = np.zeros((len(z), WRONG + 1))
         values[:, WALKED] = z * self.prior.scale[WALKED]
         steering, stride = self.prior.scale[LINEAR]
@@ -174,9 +174,9 @@ class WalkFit:
         )
 
     def _values(self, z: Array, mean: Array, covariance: Array) -> Array:
-        """Draw steering and stride given all else; return all parameters, shape (m, 14).
+        """Draw steering and stride given all else; return all parameters, shape (m, 16).
 
-        `z` (m, 12), `mean` (m, 2) and `covariance` (m, 2, 2) are in standard normal coordinates;
+        `z` (m, 14), `mean` (m, 2) and `covariance` (m, 2, 2) are in standard normal coordinates;
         the result is in the units of the parameters, the further offset of a wrongly mounted leg
         last.
         """
@@ -190,7 +190,7 @@ class WalkFit:
         return values
 
     def _starts(self, weight: Array, case: int, densest: int) -> list[Array]:
-        """Return two starting points z (14,) of a case's optimisation: zero, and its densest draw.
+        """Return two starting points z (16,) of a case's optimisation: zero, and its densest draw.
 
         In the first, a wrongly mounted leg's further offset is its weighted mean: a scan over the
         offset has several maxima, and the draws show which of them is the highest.
@@ -199,6 +199,7 @@ class WalkFit:
         if self._density.cases[case] is not None:
             plain[WRONG] = (weight @ self._drawn.z / weight.sum())[WALKED.index(WRONG)]
         drawn[WALKED] = self._drawn.z[densest]
+        drawn[ACROSS] = 0.0
         return [plain, drawn]
 
     def _best(
@@ -206,16 +207,16 @@ class WalkFit:
     ) -> tuple[Array, tuple[float, ...]]:
         """Maximise a case's posterior from several starts; return the mode and all walks' misfits.
 
-        Only the walks `keep` are fitted. The mean is not used. On a kink of the posterior the mean
-        lies on the side on which the walk does not change, and its walk differs from the draws'
-        walks. On a kink an optimisation may also end early, so the best of several is refined at
-        the finer step. The mode is in the units of the parameters; a misfit is the mean squared
-        whitened residual [-].
+        Only the walks `keep` are fitted, with traction across the legs as along them. The mean is
+        not used. On a kink of the posterior the mean lies on the side on which the walk does not
+        change, and its walk differs from the draws' walks. On a kink an optimisation may also end
+        early, so the best of several is refined at the finer step. The mode is in the units of the
+        parameters; a misfit is the mean squared whitened residual [-].
         """
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]
         search, finer = (
-            ModeSearch(walks, density.prior, density.mapper, numbers=keep)
+            ModeSearch(walks, density.prior, density.mapper, numbers=keep, held=ACROSS)
             for walks in (misfits, [each.finer() for each in misfits])
         )
         tops = [search.climb(which, start)[0].z for start in starts]

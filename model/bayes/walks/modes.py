@@ -30,8 +30,8 @@ from model.slip.law import Array
 
 # Steps of differences: offsets 0.1 degree, factors 5 %. Below, contacts are not smooth.
 DIFFERENCE = np.array([
-    *[np.radians(0.1)] * N_LEGS, 0.05, 0.05, 0.1, np.radians(0.1), np.radians(1.0), 1e-3, 1e-3,
-    np.radians(0.2),
+    *[np.radians(0.1)] * N_LEGS, 0.05, 0.05, 0.1, 0.05, 0.05, np.radians(0.1), np.radians(1.0),
+    1e-3, 1e-3, np.radians(0.2),
 ])  # fmt: skip
 MOST_MOVES = 8
 SETTLED = 0.05  # of a prior's standard deviation: a smaller move ends the optimisation
@@ -65,6 +65,7 @@ class ModeSearch:
         prior: The prior.
         mapper: Where walks are computed.
         numbers: Index by which cases refer to each of these walks; 0, 1, ... when None.
+        held: Indices of parameters that are not varied: they end at the middle of their prior.
     """
 
     def __init__(
@@ -73,10 +74,13 @@ class ModeSearch:
         prior: WalkPrior,
         mapper: Mapper = HERE,
         numbers: Sequence[int] | None = None,
+        held: Sequence[int] = (),
     ) -> None:
         self.misfits, self.prior, self.mapper = misfits, prior, mapper
         self.numbers = range(len(misfits)) if numbers is None else numbers
         self.ends = np.cumsum([misfit.size for misfit in misfits])
+        self.varied = prior.scale > 0
+        self.varied[list(held)] = False
 
     def modes(self, *, progress: Callable[[float], None]) -> list[CaseMode]:
         """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
@@ -116,7 +120,7 @@ class ModeSearch:
         """Compute the whitened residuals of all walks at m points.
 
         Args:
-            z: Points in standard normal coordinates, shape (m, 14).
+            z: Points in standard normal coordinates, shape (m, 16).
             case: The wrongly mounted leg, or None.
 
         Returns:
@@ -140,7 +144,7 @@ class ModeSearch:
         """Compute twice the negative log posterior density at a point, up to a constant.
 
         Args:
-            z: The point in standard normal coordinates, shape (14,).
+            z: The point in standard normal coordinates, shape (16,).
             case: The wrongly mounted leg, or None.
         """
         return float((self.residuals(z[None], case)[0] ** 2).sum() + z @ z)
@@ -150,10 +154,10 @@ class ModeSearch:
 
         Args:
             case: The wrongly mounted leg, or None.
-            z: Starting point in standard normal coordinates, shape (14,).
+            z: Starting point in standard normal coordinates, shape (16,).
 
         Returns:
-            The mode as a Gaussian, and the Jacobian of the residuals at the mode, shape (n, 14).
+            The mode as a Gaussian, and the Jacobian of the residuals at the mode, shape (n, 16).
 
         Raises:
             WalkError: A walk diverged, or the robot cannot stand at its start.
@@ -182,7 +186,7 @@ class ModeSearch:
 
         Args:
             plain: Point without a wrongly mounted leg about which the scan is made.
-            J: Jacobian of the residuals at that point, shape (n, 14).
+            J: Jacobian of the residuals at that point, shape (n, 16).
 
         Returns:
             The Gaussians in the order of `all_cases`; the first is `plain`.
@@ -203,7 +207,7 @@ class ModeSearch:
         return modes
 
     def _moved(self, leg: int, z: Array) -> Array:
-        """Compute residuals at z (14,) with a leg's further offset at each of `FINE`, (241, n).
+        """Compute residuals at z (16,) with a leg's further offset at each of `FINE`, (241, n).
 
         Walks are computed at the offsets `SCANNED`; residuals are interpolated between them.
         """
@@ -220,7 +224,7 @@ class ModeSearch:
         Args:
             case: The wrongly mounted leg.
             r: Residuals at each of the offsets `FINE`, all else moved to zero by `J`, (241, n).
-            J: Jacobian of the residuals, shape (n, 14).
+            J: Jacobian of the residuals, shape (n, 16).
             follow: Inverse of I + J J^T, shape (n, n).
         """
         wrong = FINE / self.prior.wrong_sd
@@ -245,16 +249,18 @@ class ModeSearch:
         return CaseMode(z, np.asarray(covariance, dtype=float), evidence + log_probability, case)
 
     def _linearised(self, z: Array, case: Case) -> tuple[Array, Array]:
-        """Compute residuals (n,) at z (14,), and their Jacobian (n, 14) by central differences.
+        """Compute residuals (n,) at z (16,), and their Jacobian (n, 16) by central differences.
 
-        Without a wrongly mounted leg the column of its further offset is zero.
+        Without a wrongly mounted leg the column of its further offset is zero, and so are those of
+        parameters that are held.
         """
-        step = DIFFERENCE / self.prior.scale
-        if case is None:  # without a wrongly mounted leg its offset moves nothing
-            step = step[:WRONG]
-        steps = np.eye(len(step), len(z)) * step[:, None]
+        varied = self.varied.copy()
+        varied[WRONG] &= case is not None  # without a wrongly mounted leg its offset moves nothing
+        columns = np.flatnonzero(varied)
+        step = DIFFERENCE[columns] / self.prior.scale[columns]
+        steps = np.eye(len(z))[columns] * step[:, None]
         rows = self.residuals(np.concatenate([z[None], z + steps, z - steps]), case)
         k = len(step)
         J = np.zeros((rows.shape[1], len(z)))
-        J[:, :k] = ((rows[1 : k + 1] - rows[k + 1 :]) / (2 * step[:, None])).T
+        J[:, columns] = ((rows[1 : k + 1] - rows[k + 1 :]) / (2 * step[:, None])).T
         return rows[0], J

@@ -30,7 +30,7 @@ class Contraction:
 
     Attributes:
         name: One of `NAMES`; grip and slip stiffness are logarithms of factors.
-        prior_sd: Prior standard deviation.
+        prior_sd: Prior standard deviation; 0 for a parameter that is not fitted.
         mean: Posterior mean.
         sd: Posterior standard deviation.
     """
@@ -43,7 +43,7 @@ class Contraction:
     @property
     def contraction(self) -> float:
         """1 minus posterior over prior variance; negative where the variance grew [-]."""
-        return 1 - (self.sd / self.prior_sd) ** 2
+        return 0.0 if self.prior_sd == 0 else 1 - (self.sd / self.prior_sd) ** 2
 
     @property
     def informed(self) -> bool:
@@ -81,11 +81,12 @@ class WalkPosterior:
             indices.
         cases: The cases: each a wrongly mounted leg, or None.
         values: Draws of the parameters in the order of `NAMES`, then the further offset of a
-            wrongly mounted leg, shape (n, 14), in the units of `model.bayes.walks.prior.UNITS` and
+            wrongly mounted leg, shape (n, 16), in the units of `model.bayes.walks.prior.UNITS` and
             rad.
         case: Index into `cases` of each draw, shape (n,).
         weight: Weight of each draw, with sum one, shape (n,) [-].
-        best: Parameters at the mode of the likeliest case, in the order of `values`, shape (14,).
+        best: Parameters at the mode of the likeliest case with lateral traction as longitudinal,
+            in the order of `values`, shape (16,).
         best_case: The likeliest case.
         misfit: Mean squared whitened residual of each walk, one left out included, at `best`; about
             1 or less if the model holds [-].
@@ -133,7 +134,7 @@ class WalkPosterior:
         return legs_of(self.best[None], self.best_case, walk=walk)
 
     def with_wrong_legs(self) -> Array:
-        """Return all draws in the order of `NAMES`, shape (n, 13).
+        """Return all draws in the order of `NAMES`, shape (n, 15).
 
         A leg's offset includes the further offset of a leg that is wrongly mounted in every walk.
         """
@@ -198,7 +199,7 @@ def state_in(
     """Convert draws of several cases to m draws of the legs' state in a walk.
 
     Args:
-        values: Draws of the parameters, as those of `WalkPosterior`, shape (m, 14).
+        values: Draws of the parameters, as those of `WalkPosterior`, shape (m, 16).
         case: Index into `cases` of each draw, shape (m,).
         cases: The cases: each a wrongly mounted leg, or None.
         walk: Index of the walk; None for a walk to come.

@@ -8,13 +8,15 @@ from typing import TypeAlias
 import numpy as np
 
 from model.errors import DomainError
+from model.lateral_spread import ANISOTROPY, log_spread
 from model.leg_state import LegState
 from model.predict import ModelSpread
 from model.robot import N_LEGS
 from model.slip.law import Array
 
 OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
-FLOOR = ("grip", "slip_stiffness", "fall")
+LATERAL = ("lateral_grip", "lateral_stiffness")  # across the legs over along them
+FLOOR = ("grip", "slip_stiffness", "fall", *LATERAL)
 # Whether a stepping leg's traction has the post-peak drop of a rig's steady slip (1), or none
 # (0), as friction by velocity, has not been measured. Mean and standard deviation of the two,
 # equally likely:
@@ -22,8 +24,9 @@ FALL, FALL_SD = 0.5, 0.5
 # Traction does not rise beyond its peak; a larger drop has not been observed.
 FALLS = (0.0, 1.5)
 NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
-UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "rad", "rad", "rad/m", "-")
+UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "log", "log", "rad", "rad", "rad/m", "-")
 WRONG = len(NAMES)  # index of a wrongly mounted leg's further offset, after `NAMES`
+ACROSS = [NAMES.index(name) for name in LATERAL]
 LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # residuals are linear in them
 WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # parameters that need a new walk
 
@@ -77,13 +80,15 @@ class WalkPrior:
         grip_sd: Sd of the natural logarithm of the factor on traction: floor and rig differ [-].
         stiffness_sd: Sd of the natural logarithm of the factor on slip stiffness [-].
         fall_sd: Sd of the factor on the post-peak drop, about `FALL` [-].
+        lateral_sd: Sd of the natural logarithms of lateral over longitudinal grip and of lateral
+            over longitudinal slip stiffness; 0 to hold both at 1 [-].
         steering_sd: Sd of the constant curvature that the legs do not explain [rad/m].
         stride_sd: Sd of the relative error of distance [-].
         spread: Standard deviations of the walking model's errors, drawn anew in each walk.
 
     Raises:
-        DomainError: A standard deviation is not positive, or `wrong` is not between 0 and 1, both
-            excluded.
+        DomainError: A standard deviation is not positive, that of lateral traction negative, or
+            `wrong` is not between 0 and 1, both excluded.
     """
 
     offset_sd: float = float(np.radians(0.2))
@@ -94,6 +99,7 @@ class WalkPrior:
     grip_sd: float = 0.3
     stiffness_sd: float = 0.5
     fall_sd: float = FALL_SD
+    lateral_sd: float = log_spread(ANISOTROPY)
     steering_sd: float = 0.01
     stride_sd: float = 0.005
     spread: ModelSpread = field(default_factory=ModelSpread)
@@ -101,7 +107,11 @@ class WalkPrior:
     def __post_init__(self) -> None:
         """Check that standard deviations are positive, and `wrong` is above 0 and below 1."""
         names = (*NAMES, "wrong_leg")
-        bad = [f"{name} {sd:g}" for name, sd in zip(names, self.scale, strict=True) if not sd > 0]
+        bad = [
+            f"{name} {sd:g}"
+            for name, sd in zip(names, self.scale, strict=True)
+            if not (sd > 0 or (sd == 0 and name in LATERAL))
+        ]
         if bad:
             raise DomainError(
                 f"standard deviations of the prior: found {', '.join(bad)}; expected above 0"
@@ -114,10 +124,11 @@ class WalkPrior:
 
     @property
     def scale(self) -> Array:
-        """Standard deviations in the order of `NAMES`, then `wrong_sd`, shape (14,)."""
+        """Standard deviations in the order of `NAMES`, then `wrong_sd`, shape (16,)."""
         return np.array([
             *[self.offset_sd] * N_LEGS, self.grip_sd, self.stiffness_sd, self.fall_sd,
-            self.common_sd, self.arc_sd, self.steering_sd, self.stride_sd, self.wrong_sd,
+            self.lateral_sd, self.lateral_sd, self.common_sd, self.arc_sd, self.steering_sd,
+            self.stride_sd, self.wrong_sd,
         ])  # fmt: skip
 
     def log_probability(self, case: Case, *, walks: int) -> float:
@@ -138,7 +149,7 @@ class WalkPrior:
         return float(np.log(self.wrong / 2 / N_LEGS / among))
 
     def sd(self, walks: int) -> Array:
-        """Compute standard deviations over all cases in the order of `NAMES`, shape (13,).
+        """Compute standard deviations over all cases in the order of `NAMES`, shape (15,).
 
         A leg's offset includes the further offset of a leg wrongly mounted in all walks, by its
         probability.
@@ -163,7 +174,7 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
 
     Args:
         values: Parameters in the order of `NAMES`, then the further offset of a wrongly mounted
-            leg, shape (m, 14); grip and slip stiffness as logarithms, post-peak drop about `FALL`.
+            leg, shape (m, 16); factors as logarithms, but the post-peak drop's about `FALL`.
         case: The wrongly mounted leg, or None.
         walk: Index of the walk; None for a walk to come, in which only a leg wrongly mounted in all
             walks has its further offset.
@@ -172,12 +183,15 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
         The state; offsets include the common one, the post-peak drop is held within `FALLS`.
     """
     offset = leg_offsets(values, case, walk=walk)
-    grip, stiffness, fall, common, arc, steering, stride = values[:, N_LEGS:WRONG].T
+    grip, stiffness, fall, across, across_stiffness, *others = values[:, N_LEGS:WRONG].T
+    common, arc, steering, stride = others
     return LegState(
         offset=offset + common[:, None],
         grip=np.exp(grip),
         stiffness=np.exp(stiffness),
         fall=np.clip(FALL + fall, *FALLS),
+        lateral_grip=np.exp(across),
+        lateral_stiffness=np.exp(across_stiffness),
         arc=arc,
         steering=steering,
         stride=stride,
@@ -190,7 +204,7 @@ def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
     The offset that all legs share is not included.
 
     Args:
-        values: Parameters in the order of `NAMES`, then the further offset, shape (m, 14).
+        values: Parameters in the order of `NAMES`, then the further offset, shape (m, 16).
         case: The wrongly mounted leg, or None.
         walk: Index of the walk; None for a walk to come, in which only a leg wrongly mounted in all
             walks has its further offset.

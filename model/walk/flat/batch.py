@@ -11,7 +11,7 @@ from model.lanes import LANES
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.areas import AreaTractions
-from model.walk.arrays import Contacts, State, body_arrays
+from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
 from model.walk.flat import rows
 from model.walk.flat.loop import run_flat
 from model.walk.ground import Ground, is_level
@@ -27,12 +27,15 @@ class Laws(NamedTuple):
         toe: Largest traction over load of a leg on its toe, shape (walks, loads) [-].
         loads: Number of loads, at least two.
         slips: Number of slips.
+        directed: True where a law differs along and across the legs' rolling direction, else None,
+            of which numba compiles a loop of its own, without what directions need.
     """
 
     phi: Array
     toe: Array
     loads: float
     slips: float
+    directed: bool | None
 
 
 @dataclass(frozen=True)
@@ -112,8 +115,13 @@ def _fill(column: Array, walk: FlatWalk, height: float) -> None:
         body.half_size, [walk.contacts.stiffness, walk.contacts.damping, height],
         [float(table.by_velocity), 1 / table.scale, 1 / table.step, table.speed_scale],
         [table.log_load[0], per_load_step],
+        *(
+            [each] * N_LEGS + [1.0] * (N_CONTACTS - N_LEGS)
+            for each in (table.lateral_stiffness, table.lateral_stiffness / table.lateral_grip)
+        ),
     ]  # fmt: skip
     column[: rows.GIVEN] = np.concatenate(given)
+    column[rows.HEADING_COS] = 1.0
     state = np.concatenate(walk.state[:4])
     column[rows.STATE : rows.STATE + rows.N_STATE] = state
 
@@ -126,4 +134,5 @@ def _laws(tables: Sequence[TractionTable]) -> Laws:
     for i, table in enumerate(tables):
         phi[i, ..., 0], phi[i, ..., 1] = table.phi, table.slope * table.step
         toe[i] = table.toe
-    return Laws(phi.reshape(len(tables), -1), toe, float(loads), float(slips))
+    directed = True if any(table.is_directed for table in tables) else None
+    return Laws(phi.reshape(len(tables), -1), toe, float(loads), float(slips), directed)

@@ -144,10 +144,14 @@ def keep_legs(each, walk, out):
     """
     for k in range(N_LEGS, N_CONTACTS):
         out[N_LEGS, 0] += each[rows.LOAD + k, walk]
-    v, w, R = rows.V, rows.OMEGA, rows.R
+    v0, v1, w0, w1 = motion_in_axes(each, walk)
+    w2, R = each[rows.OMEGA + 2, walk], rows.R
     about_y = 0.0
-    for a in range(3):
-        about_y += each[R + 3 * a + 1, walk] * each[w + a, walk]
+    about_y += each[R + 1, walk] * w0
+    about_y += each[R + 4, walk] * w1
+    about_y += each[R + 7, walk] * w2
+    c, s = each[rows.HEADING_COS, walk], each[rows.HEADING_SIN, walk]
+    b = each[rows.LATERAL_SECANT, walk]
     for i in range(N_LEGS):
         out[i, :] = 0.0
         out[i, 5] = np.nan
@@ -155,13 +159,14 @@ def keep_legs(each, walk, out):
             continue
         place, velocity = rows.PLACE + 3 * i, rows.VELOCITY + 3 * i
         x, y, z = each[place, walk], each[place + 1, walk], each[place + 2, walk]
-        slip_x = each[v, walk] + each[w + 1, walk] * z - each[w + 2, walk] * y
-        slip_y = each[v + 1, walk] + each[w + 2, walk] * x - each[w, walk] * z
+        slip_x = v0 + w1 * z - w2 * y
+        slip_y = v1 + w2 * x - w0 * z
         slip_x, slip_y = slip_x + each[velocity, walk], slip_y + each[velocity + 1, walk]
         out[i, 0] = each[rows.LOAD + i, walk]
-        out[i, 1] = -each[rows.SECANT + i, walk] * slip_x
-        out[i, 2] = -each[rows.SECANT + i, walk] * slip_y
-        out[i, 3], out[i, 4] = slip_x, slip_y
+        along, across = -each[rows.SECANT + i, walk] * slip_x, -each[rows.SECANT + i, walk] * slip_y
+        across *= b
+        out[i, 1], out[i, 2] = c * along - s * across, c * across + s * along
+        out[i, 3], out[i, 4] = c * slip_x - s * slip_y, c * slip_y + s * slip_x
         if each[rows.ROLLS + i, walk] == 1.0:
             along = slip_x * each[R, walk] + slip_y * each[R + 3, walk]
             forward = along / np.sqrt(1 - each[R + 6, walk] ** 2)
@@ -172,7 +177,8 @@ def keep_legs(each, walk, out):
 @inlined
 def add_work(each, walk, out):
     """Add the energies of one walk's step, shape (4,) [J], see `model.walk.leg_work.add_work`."""
-    v, w = rows.V, rows.OMEGA
+    v0, v1, w0, w1 = motion_in_axes(each, walk)
+    v2, w2 = each[rows.V + 2, walk], each[rows.OMEGA + 2, walk]
     for i in range(N_CONTACTS):
         load = each[rows.LOAD + i, walk]
         if load == 0.0:
@@ -180,12 +186,22 @@ def add_work(each, walk, out):
         place, velocity = rows.PLACE + 3 * i, rows.VELOCITY + 3 * i
         x, y, z = each[place, walk], each[place + 1, walk], each[place + 2, walk]
         u0, u1, u2 = each[velocity, walk], each[velocity + 1, walk], each[velocity + 2, walk]
-        s0 = each[v, walk] + each[w + 1, walk] * z - each[w + 2, walk] * y + u0
-        s1 = each[v + 1, walk] + each[w + 2, walk] * x - each[w, walk] * z + u1
-        rise = each[v + 2, walk] + each[w, walk] * y - each[w + 1, walk] * x + u2
+        s0 = v0 + w1 * z - w2 * y + u0
+        s1 = v1 + w2 * x - w0 * z + u1
+        rise = v2 + w0 * y - w1 * x + u2
         G = each[rows.SECANT + i, walk]
-        power = G * (s0 * u0 + s1 * u1) - load * u2
-        add_powers(out, power, G * (s0 * s0 + s1 * s1), -load * rise, each[rows.DT, walk])
+        b1 = s1 * each[rows.LATERAL_SECANT + i, walk]
+        power = G * (s0 * u0 + b1 * u1) - load * u2
+        add_powers(out, power, G * (s0 * s0 + b1 * s1), -load * rise, each[rows.DT, walk])
+
+
+@inlined
+def motion_in_axes(each, walk):
+    """Return horizontal velocity and angular velocity of one walk in the axes of its last step."""
+    c, s = each[rows.HEADING_COS, walk], each[rows.HEADING_SIN, walk]
+    v0, v1 = each[rows.V, walk], each[rows.V + 1, walk]
+    w0, w1 = each[rows.OMEGA, walk], each[rows.OMEGA + 1, walk]
+    return c * v0 + s * v1, c * v1 - s * v0, c * w0 + s * w1, c * w1 - s * w0
 
 
 @inlined

@@ -29,6 +29,8 @@ BY_VELOCITY = _rows(1)  # 1 where the law is one of slip velocity, else 0
 PER_SCALE, PER_STEP = _rows(1), _rows(1)  # 1 over `scale` and `step` of the law's table
 SPEED_SCALE = _rows(1)  # of the law's table
 FIRST_LOAD, PER_LOAD_STEP = _rows(1), _rows(1)  # its first log load, and 1 over their step
+# Across the legs' rolling direction, 1 for corners: secant over that along it, factor on slip
+LATERAL_SECANT, LATERAL_SLIP = _rows(N_CONTACTS), _rows(N_CONTACTS)
 GIVEN = _next
 # State: position, quaternion, velocity, angular velocity; in world axes
 P, Q, V, OMEGA = _rows(3), _rows(4), _rows(3), _rows(3)
@@ -41,10 +43,11 @@ BEFORE = _rows(N_SAVED)  # at a step's start
 DT = _rows(1)
 DAMPING_LEFT = _rows(1)  # beyond that of the step itself
 ANGLE, SPEED = _rows(N_LEGS), _rows(N_LEGS)  # of the legs, angle at the step's end
-PLACE, VELOCITY = _rows(3 * N_CONTACTS), _rows(3 * N_CONTACTS)
+HEADING_COS, HEADING_SIN = _rows(1), _rows(1)  # of the axes of a step
+PLACE, VELOCITY = _rows(3 * N_CONTACTS), _rows(3 * N_CONTACTS)  # in the axes of the step
 GAP, SECANT = _rows(N_CONTACTS), _rows(N_CONTACTS)
 ROLLS = _rows(N_CONTACTS)  # 1 where a leg rolls, else 0
-R = _rows(9)  # rotation of the body, row by row
+R = _rows(9)  # rotation of the body to the axes of the step, row by row
 # Of the loop
 FROM, TO = _rows(N_LEGS), _rows(N_LEGS)  # leg angles at the long step's start and end
 LONG_STEP, PART, PARTS = _rows(1), _rows(1), _rows(1)

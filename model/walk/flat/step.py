@@ -10,12 +10,17 @@ velocity is diagonal. The velocity is eliminated; three equations in the angular
     \begin{pmatrix} f \\ m \end{pmatrix}, \qquad (B - C D^{-1} C^T)\, w = m - C D^{-1} f .
 
 There are no bristles here; walks with them are computed by `model.walk.step`.
+
+Where traction differs along and across the legs' rolling direction, which is that of all legs, the
+step is computed in axes along and across it. There a contact's matrix is diag(G, b G, k dt + c)
+and all of the above holds. Other walks stay in world axes, at a heading of zero.
 """
 
 from model.compiled import inlined
 from model.elementary import sin_cos
 from model.lanes import any_of, negated, put, root, row, select, size
 from model.robot import GRAVITY, N_LEGS
+from model.walk.anisotropy import ALONG_ONLY
 from model.walk.arrays import N_CONTACTS
 from model.walk.contact_points import NEAR
 from model.walk.flat import rows
@@ -33,11 +38,14 @@ def flat_step(A, laws):
         laws: The slip laws.
     """
     put_rotation(A)
+    if laws.directed is not None:
+        put_heading(A)
     find_legs(A)
     n = find_corners(A)
     dt, mass = row(A, rows.DT), row(A, rows.MASS)
-    v0, v1, v2 = row(A, rows.V), row(A, rows.V + 1), row(A, rows.V + 2)
-    w0, w1, w2 = row(A, rows.OMEGA), row(A, rows.OMEGA + 1), row(A, rows.OMEGA + 2)
+    v0, v1 = in_axes(A, laws, row(A, rows.V), row(A, rows.V + 1))
+    w0, w1 = in_axes(A, laws, row(A, rows.OMEGA), row(A, rows.OMEGA + 1))
+    v2, w2 = row(A, rows.V + 2), row(A, rows.OMEGA + 2)
     I = world_inertia(A)  # noqa: E741 as in the equations
     L0 = I[0] * w0 + I[1] * w1 + I[3] * w2
     L1 = I[1] * w0 + I[2] * w1 + I[4] * w2
@@ -50,8 +58,10 @@ def flat_step(A, laws):
     left = row(A, rows.DAMPING) - dt * row(A, rows.STIFFNESS)
     put(A, rows.DAMPING_LEFT, select(left > 0.0, left, 0.0))
     g, done = rows.GAIN, dt < 0.0
-    v0, v1, v2 = v0 + dt * row(A, g), v1 + dt * row(A, g + 1), v2 + dt * row(A, g + 2)
-    w0, w1, w2 = w0 + dt * row(A, g + 3), w1 + dt * row(A, g + 4), w2 + dt * row(A, g + 5)
+    a0, a1 = in_axes(A, laws, row(A, g), row(A, g + 1))
+    v0, v1, v2 = v0 + dt * a0, v1 + dt * a1, v2 + dt * row(A, g + 2)
+    a0, a1 = in_axes(A, laws, row(A, g + 3), row(A, g + 4))
+    w0, w1, w2 = w0 + dt * a0, w1 + dt * a1, w2 + dt * row(A, g + 5)
     for _ in range(MOST_ROUNDS):
         x = solved_velocities(A, laws, n, (v0, v1, v2, w0, w1, w2), I, start, done)
         d0, d1, d2, d3, d4, d5 = x[0] - v0, x[1] - v1, x[2] - v2, x[3] - w0, x[4] - w1, x[5] - w2
@@ -63,6 +73,8 @@ def flat_step(A, laws):
         done = done | (agree & (settling_error(moved, x[6], mass, dt) < SETTLED))
         if not any_of(negated(done)):
             break
+    v0, v1 = in_world(A, laws, v0, v1)
+    w0, w1 = in_world(A, laws, w0, w1)
     advance(A, (v0, v1, v2, w0, w1, w2))
 
 
@@ -82,8 +94,46 @@ def put_rotation(A):
 
 
 @inlined
-def put_in_world(A, to, x, y, z):
-    """Rotate the body vector (x, y, z) to the world frame and store it in three rows from `to`."""
+def put_heading(A):
+    """Choose the axes of the step, and turn the rotation of the body to them.
+
+    They are along and across the legs' rolling direction; for a body on its side those of the
+    world.
+    """
+    x, y = row(A, rows.R + 1), row(A, rows.R + 4)
+    square = x * x + y * y
+    on_side = square < ALONG_ONLY * ALONG_ONLY
+    per_length = 1.0 / root(select(on_side, 1.0, square))
+    c, s = select(on_side, 1.0, y * per_length), select(on_side, 0.0, -x * per_length)
+    put(A, rows.HEADING_COS, c)
+    put(A, rows.HEADING_SIN, s)
+    for a in range(3):
+        x, y = row(A, rows.R + a), row(A, rows.R + 3 + a)
+        put(A, rows.R + a, c * x + s * y)
+        put(A, rows.R + 3 + a, c * y - s * x)
+
+
+@inlined
+def in_axes(A, laws, x, y):
+    """Turn a horizontal vector of the world to the axes of the step."""
+    if laws.directed is None:
+        return x, y
+    c, s = row(A, rows.HEADING_COS), row(A, rows.HEADING_SIN)
+    return c * x + s * y, c * y - s * x
+
+
+@inlined
+def in_world(A, laws, x, y):
+    """Turn a horizontal vector in the axes of the step to the world."""
+    if laws.directed is None:
+        return x, y
+    c, s = row(A, rows.HEADING_COS), row(A, rows.HEADING_SIN)
+    return c * x - s * y, c * y + s * x
+
+
+@inlined
+def put_turned(A, to, x, y, z):
+    """Turn the body vector (x, y, z) to the axes of the step; store it in three rows from `to`."""
     for a in range(3):
         turned = row(A, rows.R + 3 * a) * x
         turned = turned + row(A, rows.R + 3 * a + 1) * y + row(A, rows.R + 3 * a + 2) * z
@@ -115,8 +165,8 @@ def find_legs(A):
         z = select(rolls, r * (dz - s), select(on_toe, toe_z, no))
         put(A, rows.ROLLS + i, select(rolls, no + 1.0, no))
         hip, place, speed = rows.HIPS + 3 * i, rows.PLACE + 3 * i, row(A, rows.SPEED + i)
-        put_in_world(A, place, row(A, hip) + x, row(A, hip + 1), row(A, hip + 2) + z)
-        put_in_world(A, rows.VELOCITY + 3 * i, speed * z, no, -speed * x)
+        put_turned(A, place, row(A, hip) + x, row(A, hip + 1), row(A, hip + 2) + z)
+        put_turned(A, rows.VELOCITY + 3 * i, speed * z, no, -speed * x)
         put(A, rows.GAP + i, above + row(A, place + 2))
 
 
@@ -143,7 +193,7 @@ def find_corners(A):
         k = N_LEGS + i
         sx, sy, sz = 1.0 - 2 * (i & 1), 1.0 - (i & 2), 1.0 - (i & 4) / 2
         place = rows.PLACE + 3 * k
-        put_in_world(A, place, sx * row(A, half), sy * row(A, half + 1), sz * row(A, half + 2))
+        put_turned(A, place, sx * row(A, half), sy * row(A, half + 1), sz * row(A, half + 2))
         for a in range(3):
             put(A, rows.VELOCITY + 3 * k + a, no)
         put(A, rows.ROLLS + k, no)
@@ -153,7 +203,7 @@ def find_corners(A):
 
 @inlined
 def world_inertia(A):
-    """Compute R diag(principal) R', the inertia in the world frame, lower half by rows [kg m2]."""
+    """Compute R diag(principal) R', the inertia in the step's axes, lower half by rows [kg m2]."""
     i0, i1, i2 = row(A, rows.INERTIA), row(A, rows.INERTIA + 1), row(A, rows.INERTIA + 2)
     a0, a1, a2 = row(A, rows.R), row(A, rows.R + 1), row(A, rows.R + 2)
     b0, b1, b2 = row(A, rows.R + 3), row(A, rows.R + 4), row(A, rows.R + 5)
@@ -191,21 +241,22 @@ def solved_velocities(A, laws, n, guess, I, start, done):  # noqa: E741 as in th
         laws: The slip laws.
         n: Number of contacts.
         guess: Velocity and angular velocity of the body, six numbers.
-        I: Inertia in the world frame, lower half by rows.
+        I: Inertia in the axes of the step, lower half by rows.
         start: Right side of the system without contacts.
         done: Walks that keep their loads and secants.
 
     Returns:
         Velocity and angular velocity of the body at the step's end, six numbers, and the sum of
-        the contacts' secants [N s/m].
+        the contacts' larger secants [N s/m].
     """
     v0, v1, v2, w0, w1, w2 = guess
     b0, b1, b2, b3, b4, b5 = start
     I00, I10, I11, I20, I21, I22 = I
     dt, k, c = row(A, rows.DT), row(A, rows.STIFFNESS), row(A, rows.DAMPING_LEFT)
     turn = row(A, rows.R + 1) * w0 + row(A, rows.R + 4) * w1 + row(A, rows.R + 7) * w2
-    d = row(A, rows.MASS)
-    held, e, xg, yg, zg, xq, yq = d * 0.0, d, d * 0.0, d * 0.0, d * 0.0, d * 0.0, d * 0.0
+    d = row(A, rows.MASS)  # and sums of g along, h across the rolling direction, and q upwards
+    held, e, xh, yg, zg, xq, yq = d * 0.0, d, d * 0.0, d * 0.0, d * 0.0, d * 0.0, d * 0.0
+    across, zh = d, zg
     for i in range(n):
         place, velocity = rows.PLACE + 3 * i, rows.VELOCITY + 3 * i
         x, y, z = row(A, place), row(A, place + 1), row(A, place + 2)
@@ -218,6 +269,8 @@ def solved_velocities(A, laws, n, guess, I, start, done):  # noqa: E741 as in th
             put(A, rows.SECANT + i, select(done, row(A, rows.SECANT + i), load))
             continue
         s0, s1 = v0 + w1 * z - w2 * y + u0, v1 + w2 * x - w0 * z + u1
+        if laws.directed is not None:
+            s1 = row(A, rows.LATERAL_SLIP + i) * s1
         slip = root(s0 * s0 + s1 * s1)
         speed = turn + row(A, rows.SPEED + i) if i < N_LEGS else turn * 0.0
         rolls = row(A, rows.ROLLS + i) == 1.0
@@ -226,24 +279,34 @@ def solved_velocities(A, laws, n, guess, I, start, done):  # noqa: E741 as in th
         put(A, rows.SECANT + i, select(done, row(A, rows.SECANT + i), G))
         push = select(pressed, -dt * (k * row(A, rows.GAP + i) + c * u2), 0.0)
         q, g = select(pressed, dt * (k * dt + c), 0.0), dt * G
-        held = held + G
-        f0, f1 = -g * u0, -g * u1
+        h, largest = g, G
+        if laws.directed is not None:
+            b = row(A, rows.LATERAL_SECANT + i)
+            h, largest = b * g, select(b > 1.0, b * G, G)
+        held = held + largest
+        f0, f1 = -g * u0, -h * u1
         b0, b1, b2 = b0 + f0, b1 + f1, b2 + push
         b3, b4, b5 = b3 + y * push - z * f1, b4 + z * f0 - x * push, b5 + x * f1 - y * f0
         d, e = d + g, e + q
-        gx, gy, gz, qx, qy = g * x, g * y, g * z, q * x, q * y
-        xg, yg, zg, xq, yq = xg + gx, yg + gy, zg + gz, xq + qx, yq + qy
-        I00, I11, I22 = I00 + y * qy + z * gz, I11 + x * qx + z * gz, I22 + x * gx + y * gy
-        I10, I20, I21 = I10 - x * qy, I20 - x * gz, I21 - y * gz
-    d, e = 1.0 / d, 1.0 / e
-    xd, yd, zd, xe, ye = xg * d, yg * d, zg * d, xq * e, yq * e
-    b3, b4, b5 = b3 + zd * b1 - ye * b2, b4 - zd * b0 + xe * b2, b5 + yd * b0 - xd * b1
+        hx, gy, gz, qx, qy = h * x, g * y, g * z, q * x, q * y
+        xh, yg, zg, xq, yq = xh + hx, yg + gy, zg + gz, xq + qx, yq + qy
+        hz = gz
+        if laws.directed is not None:
+            hz = h * z
+            across, zh = across + h, zh + hz
+        I00, I11, I22 = I00 + y * qy + z * hz, I11 + x * qx + z * gz, I22 + x * hx + y * gy
+        I10, I20, I21 = I10 - x * qy, I20 - x * hz, I21 - y * gz
+    if laws.directed is None:
+        across, zh = d, zg
+    d, across, e = 1.0 / d, 1.0 / across, 1.0 / e
+    xa, yd, zd, za, xe, ye = xh * across, yg * d, zg * d, zh * across, xq * e, yq * e
+    b3, b4, b5 = b3 + za * b1 - ye * b2, b4 - zd * b0 + xe * b2, b5 + yd * b0 - xa * b1
     w0, w1, w2 = _solve_three(
-        I00 - zg * zd - yq * ye, I10 + xq * ye, I11 - zg * zd - xq * xe, I20 + xg * zd,
-        I21 + yg * zd, I22 - xg * xd - yg * yd, b3, b4, b5,
+        I00 - zh * za - yq * ye, I10 + xq * ye, I11 - zg * zd - xq * xe, I20 + xh * za,
+        I21 + yg * zd, I22 - xh * xa - yg * yd, b3, b4, b5,
     )  # fmt: skip
     return (
-        b0 * d - zd * w1 + yd * w2, b1 * d + zd * w0 - xd * w2, b2 * e - ye * w0 + xe * w1,
+        b0 * d - zd * w1 + yd * w2, b1 * across + za * w0 - xa * w2, b2 * e - ye * w0 + xe * w1,
         w0, w1, w2, held,
     )  # fmt: skip
 
@@ -273,7 +336,7 @@ def contacts_agree(A, n, motion, done):
     Args:
         A: The walks' rows; `LOAD` is compared, then overwritten where not done.
         n: Number of contacts.
-        motion: Velocity and angular velocity of the body at the step's end.
+        motion: Velocity and angular velocity of the body at the step's end, in its axes.
         done: Walks that keep their loads.
     """
     v2, w0, w1 = motion[2], motion[3], motion[4]

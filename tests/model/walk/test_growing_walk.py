@@ -19,7 +19,17 @@ TABLE = VelocityCoulomb(0.38).table(weight=ROBOT.mass * GRAVITY)
 OPTIONS = DynamicsOptions()
 CURVE = cycle_gait(TRIPOD, ground_time=0.5, flight_time=0.5, steering=0.5)
 ONE = np.ones(1)
-FITTED = LegState(np.full((1, 6), 0.03), 0.8 * ONE, ONE, ONE, 0.1 * ONE, 0.3 * ONE, 0.05 * ONE)
+FITTED = LegState(
+    np.full((1, 6), 0.03),
+    0.8 * ONE,
+    ONE,
+    ONE,
+    1.2 * ONE,
+    0.9 * ONE,
+    0.1 * ONE,
+    0.3 * ONE,
+    0.05 * ONE,
+)
 
 
 @pytest.mark.parametrize("corrections", [None, FITTED])

@@ -61,10 +61,13 @@ def test_a_body_in_the_air_has_no_contact_and_falls():
 def test_a_bristle_holds_like_a_spring_and_slides_at_the_largest_traction():
     table = VelocityCoulomb(0.4).table(weight=WEIGHT, toe="bristle")
     spring = BRISTLE_STIFFNESS * CONTACTS.stiffness
-    none = np.zeros(3)
-    assert bristle_pull(table, CONTACTS, none, 5.0, 1e-6, 0.0, 0.0) == spring
-    pull = bristle_pull(table, CONTACTS, none, 5.0, 0.03, 0.04, 0.0)
+    none, alike, across = np.zeros(3), np.zeros(2), np.array([0.0, 1.0, 0.0])
+    assert bristle_pull(table, CONTACTS, none, 5.0, 1e-6, 0.0, 0.0, alike, across) == spring
+    pull = bristle_pull(table, CONTACTS, none, 5.0, 0.03, 0.04, 0.0, alike, across)
     assert pull * 0.05 == pytest.approx(0.4 * 5.0)
+    half = np.array([0.0, 0.5**2 - 1])  # twice the grip across, at the same stiffness
+    pull = bristle_pull(table, CONTACTS, none, 5.0, 0.0, 0.04, 0.0, half, across)
+    assert pull * 0.04 == pytest.approx(2 * 0.4 * 5.0)
 
 
 def test_a_legs_turn_over_the_ground_includes_the_pitch_rate_of_the_body():

@@ -2,6 +2,7 @@
 """`slip.toml` read back, and every way in which it may not be one."""
 
 import io
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from model.slip import Brush, MagicFormula, SidedLaw
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import read_slip, write_tables
+from zebro_lab.calibration.lateral_force import LateralForce
 from zebro_lab.calibration.screen import print_calibration
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError
@@ -111,6 +113,18 @@ def test_a_fit_is_read_back_with_its_curve_and_draws(tmp_path):
     text = (tmp_path / "slip.toml").read_text()
     assert "SIMULATED data: nothing here was measured." in text
     assert len((tmp_path / "summary.csv").read_text().splitlines()) > k
+
+
+def test_the_lateral_force_is_in_the_result_where_it_was_measured(tmp_path):
+    found = LateralForce(90, 100, 0.2, 0.05, 0.02, 0.4)
+    write_tables(tmp_path, short_calibration(), inputs={}, lateral=found.content())
+    content = tomllib.loads((tmp_path / "slip.toml").read_text())
+    assert content["lateral_force"] == {
+        "samples": 90, "mean": 0.2, "sd": 0.05, "mean_over_load": 0.02, "mean_over_traction": 0.4,
+    }  # fmt: skip
+    read_slip(tmp_path)
+    write_tables(tmp_path, short_calibration(), inputs={})
+    assert "lateral_force" not in (tmp_path / "slip.toml").read_text()
 
 
 def test_a_law_with_its_sides_apart_is_read_back(tmp_path):

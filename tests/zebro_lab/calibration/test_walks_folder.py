@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walks.prior import NAMES, WrongLeg, all_cases
+from model.bayes.walks.prior import ACROSS, LATERAL, NAMES, WrongLeg, all_cases
 from support.walk_posteriors import (
     KNOCKED,
     OFF,
@@ -124,6 +124,45 @@ def test_offsets_that_walks_told_are_not_asked_for_again(calibration, legs, tmp_
     )  # fmt: skip
     with pytest.raises(SettingsError, match="offset-sd-deg"):
         predict(request, Nobody())
+
+
+def test_lateral_traction_that_walks_told_is_not_asked_for_again(calibration, legs, tmp_path):
+    stored(calibration, legs, posterior_of(None))
+    band = BandRequest(5, anisotropy=1.2)
+    request = PredictRequest(
+        legs[0], tmp_path / "out", model=ModelRequest(slip=str(calibration), band=band)
+    )
+    with pytest.raises(SettingsError, match="--anisotropy"):
+        predict(request, Nobody())
+    predict_log(tmp_path, legs[0], str(calibration), draws=3)
+    settings = read_walk_manifest(tmp_path / "prediction")["settings"]
+    assert settings["band"]["anisotropy"] is None
+    assert settings["walks"]["lateral_grip"] == 1.0
+    assert "as walks inform them" in " ".join(read_prediction(tmp_path / "prediction").notes)
+
+
+def test_walks_of_the_schema_before_are_read_as_fitted_alike_in_all_directions(
+    calibration, legs, tmp_path
+):
+    sure = posterior_of(WrongLeg(2))
+    stored(calibration, legs, sure)
+    folder = calibration / FOLDER
+    with np.load(folder / "draws.npz") as arrays:
+        older = {name: arrays[name] for name in arrays}
+    for name in ("values", "best"):
+        older[name] = np.delete(older[name], ACROSS, axis=-1)
+    np.savez(folder / "draws.npz", **older)
+    text = (folder / "walks.toml").read_text()
+    lines = [line for line in text.splitlines() if not line.startswith("lateral_sd")]
+    (folder / "walks.toml").write_text("\n".join(lines).replace("schema = 3", "schema = 2"))
+    found = read_stored_walks(calibration / "slip.toml").posterior
+    np.testing.assert_array_equal(found.values, sure.values)
+    assert found.prior.lateral_sd == 0.0
+    assert not any(each.informed for each in found.contractions() if each.name in LATERAL)
+    np.testing.assert_array_equal(found.draw(9, rng=np.random.default_rng(1)).lateral_grip, 1.0)
+    predict_log(tmp_path, legs[0], str(calibration), draws=3)
+    settings = read_walk_manifest(tmp_path / "prediction")["settings"]
+    assert settings["band"]["anisotropy"] == 1.0
 
 
 def test_a_model_without_slip_takes_nothing_from_walks(calibration, legs, tmp_path):

@@ -20,13 +20,15 @@ def stream(times, counts, channels=None):
     )  # fmt: skip
 
 
-def derive(folder, force_times):
+def derive(folder, force_times, forces=None):
     file = profile_file(folder, RIG)
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(PROFILE)
     streams = {
         "/drives/raw": stream([0.1, 0.1, 0.3, 0.3], [[0, 2.0], [0, 0.5]] * 2, [0, 1, 0, 1]),
-        "/load_cell/raw": stream(force_times, [[1e6, 0, -5e6, 0, 0, 0]] * len(force_times)),
+        "/load_cell/raw": stream(
+            force_times, forces or [[1e6, 0, -5e6, 0, 0, 0]] * len(force_times)
+        ),
     }
     return derive_table(folder, streams, zero={})
 
@@ -34,6 +36,14 @@ def derive(folder, force_times):
 def test_forces_outside_the_speeds_are_left_out(tmp_path):
     table, _ = derive(tmp_path, [0.05, 0.2, 0.35])
     np.testing.assert_allclose(table.rows(), [[0.2, 4 * np.pi, np.pi, 5.0, 1.0]], rtol=1e-12)
+
+
+def test_the_third_axis_is_the_lateral_force(tmp_path):
+    table, _ = derive(tmp_path, [0.15, 0.2], [[1e6, 2e6, -5e6, 0, 0, 0]] * 2)
+    assert table.lateral_force is not None
+    np.testing.assert_allclose(table.lateral_force, [2.0, 2.0], rtol=1e-12)
+    np.testing.assert_allclose(table.normal_force, [5.0, 5.0], rtol=1e-12)
+    assert table.rows().shape == (2, 5)
 
 
 def test_a_run_whose_forces_and_speeds_never_meet_is_one_line(tmp_path):

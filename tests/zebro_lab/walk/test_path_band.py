@@ -10,6 +10,7 @@ import pytest
 
 from model.gait import tripod_angles, tripod_reference
 from model.gait.inexact_log import InexactLog
+from model.lateral_spread import ANISOTROPY
 from model.poses import Poses
 from support.validated_walks import predicted, write_walk_data
 from support.watchers import Nobody
@@ -20,6 +21,7 @@ from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.path_band import (
     ASSUMED_OFFSET_DEG,
     DRAWS,
+    band_settings,
     offset_sd_deg,
     predict_band,
     read_draws,
@@ -73,6 +75,25 @@ def test_a_start_pose_that_is_not_known_spreads_the_draws(band):
     start = band(start_sd=(0.0, 0.05, 0.0)).states[:, 0]
     np.testing.assert_allclose(start[:, [0, 2]], 0.0, atol=1e-12)
     assert 0.005 < np.ptp(start[:, 1]) < 0.5
+
+
+def test_lateral_traction_spreads_the_draws_and_nothing_else_changes_with_it(band, three):
+    np.testing.assert_array_equal(band(anisotropy=1.3).states, three.states)
+    alike, wide = band(anisotropy=1.0).states, band(anisotropy=2.0).states
+    assert not np.array_equal(alike, three.states)
+    np.testing.assert_allclose(alike, three.states, atol=2e-3)  # the same offsets and contacts
+    assert np.abs(wide - alike).max() > np.abs(three.states - alike).max()
+
+
+def test_the_manifest_says_what_the_band_takes_of_lateral_traction():
+    assert band_settings(BandRequest(2), None)["anisotropy"] == ANISOTROPY
+    assert band_settings(BandRequest(2, anisotropy=1.0), None)["anisotropy"] == 1.0
+
+
+@pytest.mark.parametrize("factor", [0.9, 3.5, np.nan])
+def test_a_factor_of_lateral_traction_that_cannot_be_is_an_error(factor):
+    with pytest.raises(SettingsError, match="expected 1 to 3"):
+        BandRequest(2, anisotropy=factor)
 
 
 def test_a_model_that_does_not_slip_has_no_band(band):

@@ -56,15 +56,20 @@ def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_
             progress(0.5)
             self.posterior = posterior
 
-    run = judged_walk("one", off=0.02)
-    monkeypatch.setattr(stage, "fit_walks_on_file", lambda *_, progress, **__: Fit(progress))
+    run, priors = judged_walk("one", off=0.02), []
+    monkeypatch.setattr(
+        stage, "fit_walks_on_file",
+        lambda *_, prior, progress, **__: priors.append(prior) or Fit(progress),
+    )  # fmt: skip
     monkeypatch.setattr(stage, "judge_left_out", lambda *_, **__: (run,))
     saved = figures_saved(monkeypatch)
     calibration = write_calibration(tmp_path)
     walks = (write_walk(tmp_path / "one"), write_walk(tmp_path / "two", begin=7.0, every=1.5))
     watcher = Nobody()
     done = calibrate_walks(
-        WalksRequest(walks), CalibrationRequest(out=calibration, seed=3), watcher
+        WalksRequest(walks, anisotropy=1.2),
+        CalibrationRequest(out=calibration, seed=3),
+        watcher,
     )
     assert done.folder == calibration / "walks"
     assert done.source == "sim:rig-sweep, unknown"
@@ -75,6 +80,8 @@ def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_
     np.testing.assert_array_equal(stored.posterior.values, posterior.values)
     manifest = json.loads((done.folder / "manifest.json").read_text())
     assert manifest["settings"]["seed"] == 3
+    assert manifest["settings"]["anisotropy"] == 1.2
+    assert priors[0].lateral_sd == pytest.approx(np.log(1.2))
     read = [calibration / "slip.toml", *(walk / "legs.csv" for walk in walks)]
     assert {str(file) for file in read} <= set(manifest["inputs"])
     assert set(saved) == {"walk_parameters.png", "left_out.one.png"}

@@ -6,7 +6,16 @@ import pytest
 
 from model.bayes.walks.fit import fit_walks
 from model.bayes.walks.misfit import TrackedWalk
-from model.bayes.walks.prior import FLOOR, NAMES, WalkPrior, WrongLeg, all_cases, legs_of
+from model.bayes.walks.prior import (
+    ACROSS,
+    FLOOR,
+    NAMES,
+    WRONG,
+    WalkPrior,
+    WrongLeg,
+    all_cases,
+    legs_of,
+)
 from model.errors import InsufficientData
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
@@ -95,6 +104,15 @@ def test_enough_draws_carry_the_answer(straight_legs):
     assert sum(each.probability for each in straight_legs.found()) == pytest.approx(1.0)
 
 
+def test_the_single_path_has_lateral_traction_as_longitudinal_and_draws_have_their_own(
+    straight_legs,
+):
+    assert not straight_legs.best[ACROSS].any()
+    drawn = straight_legs.draw(500, rng=np.random.default_rng(5))
+    assert np.std(np.log(drawn.lateral_grip)) > 0.05
+    assert np.std(np.log(drawn.lateral_stiffness)) > 0.05
+
+
 def test_another_robot_on_the_floor_shares_what_belongs_to_the_floor(straight_legs):
     rng = np.random.default_rng(4)
     other = straight_legs.of_floor_alone(rng=rng)
@@ -108,7 +126,7 @@ def test_another_robot_on_the_floor_shares_what_belongs_to_the_floor(straight_le
 
 
 def test_a_leg_knocked_off_in_one_walk_is_off_in_that_walk_alone():
-    values = np.zeros((1, 14))
+    values = np.zeros((1, WRONG + 1))
     values[0, -1] = 0.1
     case = WrongLeg(2, walk=1)
     assert legs_of(values, case, walk=1).offset[0, 2] == 0.1

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.bayes.walks.modes import ModeSearch
-from model.bayes.walks.prior import WRONG, WalkPrior, WrongLeg
+from model.bayes.walks.prior import ACROSS, WRONG, WalkPrior, WrongLeg
 from model.robot import N_LEGS
 
 K = 40
@@ -58,3 +58,19 @@ def test_the_leg_that_is_wrong_is_the_likeliest_case():
 def test_legs_as_described_are_likeliest_without_a_wrong_one():
     modes = search(np.zeros(N_LEGS)).modes(progress=lambda _: None)
     assert max(modes, key=lambda mode: mode.log_evidence).case is None
+
+
+def test_parameters_that_are_held_end_at_the_middle_of_their_prior():
+    offset = np.radians([0.3, -0.2, 0.1, 0.0, 0.2, 0.0])
+    held = ModeSearch([LinearMisfit(offset)], WalkPrior(), threads=1, held=[0, *ACROSS])
+    mode, J = held.climb(None, np.ones(WRONG + 1))
+    assert not J[:, [0, *ACROSS]].any()
+    np.testing.assert_allclose(mode.z[[0, *ACROSS]], 0.0, atol=1e-12)
+    assert abs(mode.z[1]) > 0.1
+
+
+def test_a_prior_without_lateral_spread_holds_lateral_traction():
+    alike = ModeSearch([LinearMisfit(np.zeros(6))], WalkPrior(lateral_sd=0.0), threads=1)
+    mode, J = alike.climb(None, np.zeros(WRONG + 1))
+    assert not J[:, ACROSS].any()
+    np.testing.assert_array_equal(mode.z[ACROSS], 0.0)

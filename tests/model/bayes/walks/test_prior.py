@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from model.bayes.walks.prior import (
+    ACROSS,
     FALL,
     NAMES,
     WRONG,
@@ -63,6 +64,18 @@ def test_the_common_offset_moves_every_leg_and_factors_are_logarithms():
 def test_a_leg_that_may_be_wrong_widens_the_prior_of_its_offset():
     prior = WalkPrior(offset_sd=0.01, wrong_sd=0.1, wrong=0.6)
     assert prior.sd(1)[0] == pytest.approx(np.sqrt(0.01**2 + 0.1 * 0.1**2))
+
+
+def test_lateral_traction_is_a_factor_of_its_own_and_may_be_held_at_one():
+    values = np.zeros((1, WRONG + 1))
+    values[0, ACROSS] = np.log([1.2, 0.9])
+    legs = legs_of(values, None)
+    assert legs.lateral_grip[0] == pytest.approx(1.2)
+    assert legs.lateral_stiffness[0] == pytest.approx(0.9)
+    assert legs.grip[0] == 1.0
+    np.testing.assert_array_equal(WalkPrior(lateral_sd=0.0).scale[ACROSS], 0.0)
+    with pytest.raises(DomainError, match="lateral_grip"):
+        WalkPrior(lateral_sd=-0.1)
 
 
 @pytest.mark.parametrize("wrong", [{"offset_sd": 0.0}, {"wrong": 1.0}, {"wrong": 0.0}])

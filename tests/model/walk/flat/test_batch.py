@@ -85,6 +85,28 @@ def test_one_walk_is_that_of_the_general_loop_to_rounding(i):
     np.testing.assert_allclose(legs[0], expected[1], rtol=1e-5, atol=1e-6)
 
 
+def directed_walks(dt=DT, seconds=1.5):
+    """Return the four walks, of which three differ along and across the rolling direction."""
+    factors = ((1.3, 0.7), (0.6, 1.7), (1.5, 2.0), (1.0, 1.0))
+    return [
+        replace(walk, table=walk.table._replace(lateral_grip=a, lateral_stiffness=b))
+        for walk, (a, b) in zip(four_walks(dt, seconds), factors, strict=True)
+    ]
+
+
+def test_walks_by_directed_laws_are_those_of_the_general_loop_to_rounding():
+    walks = directed_walks()
+    n = len(walks[0].theta) - 1
+    expected = [general(walk, DT, n) for walk in walks]
+    alone, _, _ = run_side_by_side([directed_walks()[1]], DT)
+    pose, legs, done = run_side_by_side(walks, DT, keep_legs=True)
+    assert done == [n] * 4
+    np.testing.assert_allclose(alone[0, 1:], expected[1][0], atol=1e-9)
+    for i, (path, rows) in enumerate(expected):
+        np.testing.assert_allclose(pose[i, 1:], path, atol=1e-9, err_msg=str(i))
+        np.testing.assert_allclose(legs[i], rows, rtol=1e-4, atol=1e-5, err_msg=str(i))
+
+
 def test_a_walk_does_not_depend_on_its_neighbours():
     walks = four_walks()
     full, _, _ = run_side_by_side(walks, DT)

@@ -339,7 +339,7 @@ def _joined_angles(parts: Sequence[RigPart]) -> tuple[DiscAngles | None, tuple[s
     notes = tuple(
         f"the angle of the {name} disc is not used, because some tables lack it" for name in lost
     )
-    if both == [None, None]:
+    if all(joined is None for joined in both):
         return None, notes
     return DiscAngles(both[0], both[1], each[0].radius_leg, each[0].radius_ground), notes
 

@@ -29,7 +29,6 @@ from zebro_lab.tables.run_values import run_values
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
 
-
 ANGLES_PASSED: Final = (
     "angles of the discs are not used, because samples are averaged as they are read: run-out is "
     "not corrected"

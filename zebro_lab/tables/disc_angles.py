@@ -55,7 +55,7 @@ def disc_angles(
 def _require_turning(
     table: RigTable, name: str, angle: Array, runs: Runs, time: Array | None
 ) -> None:
-    """Raise `DataError` if an angle turns otherwise than the disc's speed says, either way round."""
+    """Raise `DataError` if an angle turns otherwise than its speed says, either way round."""
     speed = name.replace("angle", "omega")
     if time is None or table.source_of(speed) is None:
         return

@@ -184,7 +184,7 @@ def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns
     import pandas as pd
 
     run, notes, rule = read_slip_rig_run(folder), (), RunRule()
-    columns_read = dict(vars(run.table))
+    columns_read = {k: values for k, values in vars(run.table).items() if values is not None}
     if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # raw device samples: not segmented yet
         number, notes = recorded_sweeps(run)
         rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule

@@ -4,7 +4,7 @@
 New runs contain only raw samples (`raw_log`); logs with this message can still be read.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +28,7 @@ float64[] omega_ground    # angular speed of the ground disc [rad/s]
 float64[] normal_force    # positive when pressed together [N]
 float64[] traction_force  # positive when driving [N]
 """
+_MEASURED = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,8 @@ class SlipRigTable:
         omega_ground: Angular speed of the ground disc [rad/s].
         normal_force: Normal force, positive when pressed together [N].
         traction_force: Traction force, positive when driving [N].
+        angle_leg: Angle of the leg disc [rad]; None where none was recorded.
+        angle_ground: Angle of the ground disc [rad]; None where none was recorded.
     """
 
     t: NDArray[np.float64]
@@ -47,14 +50,16 @@ class SlipRigTable:
     omega_ground: NDArray[np.float64]
     normal_force: NDArray[np.float64]
     traction_force: NDArray[np.float64]
+    angle_leg: NDArray[np.float64] | None = None
+    angle_ground: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.t)
 
     def rows(self) -> NDArray[np.float64]:
-        """Return the samples by rows, columns in the order of the attributes, shape (n, 5)."""
-        return np.column_stack([getattr(self, field.name) for field in fields(self)])
+        """Return the samples by rows without angles, in the order of the attributes, (n, 5)."""
+        return np.column_stack([getattr(self, name) for name in _MEASURED])
 
 
 @dataclass(frozen=True)
@@ -77,13 +82,13 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
         data: The message.
 
     Returns:
-        Samples by rows, columns in the order of the attributes of `SlipRigTable`, shape (m, 5).
+        Samples by rows, columns in the order of `SlipRigTable.rows`, shape (m, 5).
 
     Raises:
         ValueError: The message is not CDR, truncated or empty, or sequences differ in length.
     """
     reader = CdrReader(data)
-    columns = [reader.array("<f8") for _ in fields(SlipRigTable)]
+    columns = [reader.array("<f8") for _ in _MEASURED]
     if len({len(column) for column in columns}) > 1 or not len(columns[0]):
         raise ValueError("a message has columns of different lengths, or no samples")
     return np.column_stack(columns)

@@ -32,8 +32,8 @@ def disc_angles(
         each row is a trial.
 
     Raises:
-        DataError: A cell is no finite number, or a disc turns by its angle otherwise than by its
-            speed.
+        DataError: A cell is no finite number, or a disc of a table turns by its angle otherwise
+            than by its speed.
     """
     recorded = [name for name in ANGLES if table.source_of(name)]
     if not recorded:
@@ -43,42 +43,47 @@ def disc_angles(
     why = why or ("" if len(radii) == 2 else "the radii of the discs are not known")
     if why:
         return None, (f"angles of the discs are not used: {why}",)
-    angles = {name: table.si(name) for name in recorded}
-    for name, angle in angles.items():
-        _require_turning(table, name, angle, runs, time)
+    angles, notes = {}, []
+    for name in recorded:
+        angle = table.si(name)
+        problem = "it does not change" if np.ptp(angle) == 0 else _problem(table, name, runs, time)
+        if problem and np.ptp(angle) > 0 and not table.raw.path.is_dir():
+            raise table.raw.fault(problem, table.required(name).name)
+        if problem:  # recorded runs have angles unasked
+            notes.append(f"{name} is not used: {problem}")
+        else:
+            angles[name] = angle
+    if not angles:
+        return None, tuple(notes)
     return DiscAngles(
         angles.get("angle_leg"), angles.get("angle_ground"), radii["radius_leg"],
         radii["radius_ground"],
-    ), ()  # fmt: skip
+    ), tuple(notes)  # fmt: skip
 
 
-def _require_turning(
-    table: RigTable, name: str, angle: Array, runs: Runs, time: Array | None
-) -> None:
-    """Raise `DataError` if an angle turns otherwise than its speed says, either way round."""
+def _problem(table: RigTable, name: str, runs: Runs, time: Array | None) -> str:
+    """Say that an angle turns otherwise than its disc's speed, either way round; "" where not."""
     speed = name.replace("angle", "omega")
     if time is None or table.source_of(speed) is None:
-        return
+        return ""
     inside = np.diff(runs.index) == 0
-    omega = table.si(speed)
+    angle, omega = table.si(name), table.si(speed)
     expected = (0.5 * (omega[1:] + omega[:-1]) * np.diff(time))[inside]
     turned = np.diff(angle)[inside]
     turning = np.abs(expected) > _TURNING
     if not turning.any():
-        return
+        return ""
     expected, turned = expected[turning], turned[turning]
     usual = float(np.median(np.abs(expected)))
     off = min(float(np.median(np.abs(_wrapped(turned - way * expected)))) for way in (1, -1))
     if off <= min(DISAGREEMENT * usual, _MOST_SURE):
-        return
+        return ""
     ratio = float(np.median(np.abs(turned))) / usual
-    source = table.required(name)
-    raise table.raw.fault(
+    return (
         f"the disc turns by {ratio:.3g} times what its speed '{table.required(speed).name}' says; "
         f"expected 1 within {DISAGREEMENT:g}: correct the unit of the angle (57.3 times is deg, "
         f"not rad) or of the speed, or a gear by scale, in {table.columns.stated_in}, or delete "
-        "the column",
-        source.name,
+        "the column"
     )
 
 

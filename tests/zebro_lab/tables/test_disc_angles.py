@@ -71,3 +71,9 @@ def test_trials_have_no_angle(tmp_path):
     data = read(tmp_path, with_angles(), RADII + "[runs]\neach_row = true\n")
     assert data.samples.angles is None
     assert any("angles of the discs are not used" in note for note in data.notes)
+
+
+def test_an_angle_that_stands_still_is_not_used_and_said(tmp_path):
+    data = read(tmp_path, with_angles().assign(angle_ground=0.0))
+    assert data.samples.angles.ground is None
+    assert "angle_ground is not used: it does not change" in data.notes

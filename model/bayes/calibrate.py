@@ -25,6 +25,7 @@ from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.preview import Preview, preview, weighted_posterior
 from model.bayes.rig_errors import USUAL, RigErrors
+from model.bayes.run_out import RunOut, find_run_out, without_run_out
 from model.bayes.sampler import JUMP_SHARE, MANY_JUMPS, Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
@@ -134,6 +135,9 @@ def calibrate(
     """
     rng = np.random.default_rng(settings.seed)
     require_forces(samples, load_cell)
+    samples, rig_errors, run_out = _true_radii(
+        samples, next(iter(laws.values())), load_cell, rig_errors, settings, watcher
+    )
     known = load_cell, rig_errors, stated
     prepare = partial(_prepare, samples, laws, known, settings, rng, watcher, mapper)
     fits = prepare(validate=not scored, noise=noise)
@@ -164,7 +168,35 @@ def calibrate(
             fit, comparison, draws, convergence, samples,
             weighted=weighted if settings.sampled else None, source=source, seconds=seconds,
         )  # fmt: skip
-    return calibration, chains
+    return replace(calibration, run_out=run_out), chains
+
+
+def _true_radii(
+    samples: SlipSamples,
+    law: SlipLaw,
+    load_cell: LoadCell,
+    rig_errors: RigErrors,
+    settings: SamplerSettings,
+    watcher: Watcher,
+) -> tuple[SlipSamples, RigErrors, RunOut | None]:
+    """Correct slip for the run-out of discs whose angles are recorded, if that predicts better.
+
+    Returns the samples, what of the rig's errors remains, and the run-out. Raises `FitStopped` if a
+    stop is requested.
+    """
+    if samples.angles is None:
+        return samples, rig_errors, None
+    watcher.step("run-out", None)
+    if watcher.stop_requested():
+        raise FitStopped(None)
+    with explain_numerical_errors(samples, law):
+        found = find_run_out(
+            samples, law, load_cell=load_cell, rig_errors=rig_errors,
+            rng=np.random.default_rng(settings.seed),  # others draw as without angles
+        )  # fmt: skip
+    if found is None or not found.used:
+        return samples, rig_errors, found
+    return without_run_out(samples, found), replace(rig_errors, slip_scatter=found.scatter), found
 
 
 def _prepare(

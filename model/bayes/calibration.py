@@ -25,6 +25,7 @@ from model.bayes.law_scores import LawScores
 from model.bayes.posterior import SlipPosterior
 from model.bayes.prior_conflict import PriorShift, prior_shifts
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
+from model.bayes.run_out import RunOut
 from model.bayes.samples import SlipSamples
 from model.bayes.verdict import Verdict, judge
 from model.bayes.weighted import WeightedDraws
@@ -57,6 +58,8 @@ class Calibration:
         seconds: Time that sampling or weighting took, without that of the chains it resumed
             from [s].
         prior_shifts: Comparison of each stated prior with the data.
+        run_out: Run-out of the discs by angle, and whether slip is corrected for it; None where no
+            angle is recorded, or nothing tells it.
     """
 
     fit: PreparedFit
@@ -74,6 +77,7 @@ class Calibration:
     source: str
     seconds: float
     prior_shifts: tuple[PriorShift, ...] = ()
+    run_out: RunOut | None = None
 
     @property
     def posterior(self) -> SlipPosterior:

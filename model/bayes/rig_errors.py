@@ -25,11 +25,14 @@ class RigErrors:
         rolling_resistance: Of the resistance of rolling over the load [-].
         slip_scatter: Scale of the half-normal prior of the standard deviation of a block's slip
             that the speeds do not show [-].
+        run_out: Standard deviation of each coefficient of run-out of a disc whose angle is
+            recorded [m].
     """
 
     radius_ratio: float = UNKNOWN_RATIO
     rolling_resistance: float = ROLLING_RESISTANCE
     slip_scatter: float = UNKNOWN_SCATTER
+    run_out: float = RUN_OUT
 
 
 USUAL = RigErrors()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The samples of a rig experiment, as arrays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -41,6 +41,32 @@ class FineMoments:
 
 
 @dataclass(frozen=True)
+class DiscAngles:
+    """Recorded angles of the discs, all from one zero of each disc; accumulated or wrapped.
+
+    Attributes:
+        leg: Angle of the leg disc at each sample, shape (n,) [rad]; None if not recorded.
+        ground: Angle of the ground disc at each sample, shape (n,) [rad]; None if not recorded.
+        radius_leg: Radius of the leg disc [m].
+        radius_ground: Radius of the ground disc [m].
+    """
+
+    leg: Array | None
+    ground: Array | None
+    radius_leg: float
+    radius_ground: float
+
+    def of_rows(self, rows: NDArray[np.bool_]) -> "DiscAngles":
+        """Return the angles of some samples.
+
+        Args:
+            rows: Whether to keep each sample, shape (n,).
+        """
+        leg, ground = (None if angle is None else angle[rows] for angle in (self.leg, self.ground))
+        return replace(self, leg=leg, ground=ground)
+
+
+@dataclass(frozen=True)
 class SlipSamples:
     """Slip, load and traction of every sample, in time order within each run.
 
@@ -60,6 +86,7 @@ class SlipSamples:
             in its unit; None without one.
         fine: Where each of these samples is the mean of several, what was within it; None where
             they are as they were read.
+        angles: Angles of the discs; None where none are recorded.
     """
 
     slip: Array
@@ -71,6 +98,7 @@ class SlipSamples:
     time: Array | None = None
     covariate: tuple[Covariate, Array] | None = None
     fine: FineMoments | None = None
+    angles: DiscAngles | None = None
 
     def __len__(self) -> int:
         """Return the number of samples."""

@@ -131,17 +131,44 @@ def decode_speeds(leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample]) 
     Raises:
         ProtocolError: There is no sample of one of the drives.
     """
+    return DiscSpeeds(*_across(leg, ground, samples, count=1))
+
+
+def decode_disc_angles(
+    leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample]
+) -> tuple[Array, Array]:
+    """Compute the angles of both discs at the instants of `decode_speeds`, from motor positions.
+
+    They count from where the encoders do, which is usually where the drives were switched on.
+
+    Args:
+        leg: Drive of the leg disc.
+        ground: Drive of the ground disc.
+        samples: Samples of both drives, in order of time.
+
+    Returns:
+        Angle of leg disc and ground disc, accumulated, positive driving, shape (n,) each [rad].
+
+    Raises:
+        ProtocolError: There is no sample of one of the drives.
+    """
+    return _across(leg, ground, samples, count=0)[1:]
+
+
+def _across(
+    leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample], *, count: int
+) -> tuple[Array, Array, Array]:
+    """Return the leg disc's times, and a count of both drives then, in radians of the disc."""
     columns = as_columns(samples)
-    time, speed = {}, {}
+    time, turned = {}, {}
     for drive in (leg, ground):
         own = columns.channel == drive.node
         if not own.any():
             raise ProtocolError(f"no sample came from the drive with node {drive.node}")
         time[drive.node] = columns.host_time[own]
-        speed[drive.node] = disc_speed(drive, 1.0) * columns.counts[own, 1]
+        turned[drive.node] = disc_speed(drive, 1.0) * columns.counts[own, count]
     at = time[leg.node]
-    across = np.interp(at, time[ground.node], speed[ground.node])
-    return DiscSpeeds(at, speed[leg.node], across)
+    return at, turned[leg.node], np.interp(at, time[ground.node], turned[ground.node])
 
 
 def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forces, DiscSpeeds]:

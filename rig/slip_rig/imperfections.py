@@ -48,6 +48,8 @@ class RigImperfections:
         run_out_leg: Run-out of the leg disc: amplitude by which its radius at the contact varies,
             once a turn [m].
         run_out_ground: The same of the ground disc [m].
+        run_out_leg_twice: Amplitude by which the leg disc's radius varies twice a turn [m].
+        run_out_ground_twice: The same of the ground disc [m].
         delay: Time by which the readings of both forces are behind those of the speeds [s].
 
     Raises:
@@ -72,6 +74,8 @@ class RigImperfections:
     rolling_resistance: float = 0.0
     run_out_leg: float = 0.0
     run_out_ground: float = 0.0
+    run_out_leg_twice: float = 0.0
+    run_out_ground_twice: float = 0.0
     delay: float = 0.0
 
     def __post_init__(self) -> None:

@@ -13,7 +13,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.samples import SlipSamples
+from model.bayes.samples import DiscAngles, SlipSamples
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array, SlipLaw, Values
@@ -120,7 +120,8 @@ class SimulatedSweep:
         samples: The log as input of a calibration: slip from both measured disc speeds.
         table: The log as a recorder would write it, canonical columns `t` (runs on through the
             whole sweep) [s], `omega_leg`, `omega_ground` [rad/s], `normal_force`,
-            `traction_force` [N] and `run` (index of the set-point), each of shape (n,).
+            `traction_force` [N] and `run` (index of the set-point), each of shape (n,); where
+            asked for also `angle_leg` and `angle_ground` [rad].
         slip_true: True slip ratio, shape (n,) [-].
         load_true: True normal force, shape (n,) [N].
         offset_true: True traction zero b_run of every run, shape (runs,) [N].
@@ -140,6 +141,7 @@ def simulate_sweep(
     plan: SweepPlan,
     imperfections: RigImperfections,
     rng: np.random.Generator,
+    angles: bool = False,
 ) -> SimulatedSweep:
     r"""Simulate the log of a sweep.
 
@@ -159,6 +161,8 @@ def simulate_sweep(
         plan: Set-points.
         imperfections: Sensor errors, noise and bump of the rig.
         rng: Random generator: the same state gives the same sweep.
+        angles: Whether the log has the angles of both discs, without error, from where the largest
+            radius of the first harmonic is at the contact.
 
     Returns:
         The log and the true values.
@@ -167,7 +171,10 @@ def simulate_sweep(
     true_radius = plan.radius_ground * (1 + imperfections.radius_error)
     omega_ground = plan.speed_leg * (1 - slip) / true_radius
     load = _ride_bump(omega_ground, plan, imperfections, rng)
-    slip = _run_out(slip, omega_ground, plan, imperfections, rng)
+    turned = None
+    if angles or any(_amplitudes(imperfections)):
+        turned = _disc_angles(omega_ground, plan, rng)
+        slip = _run_out(slip, turned, plan, imperfections)
     offset = rng.normal(0.0, imperfections.offset_sd, plan.n_runs)
     pulled = law.force(slip, load, values) - imperfections.rolling_resistance * load
     force = _late((1 + imperfections.gain_traction) * pulled, plan, imperfections)
@@ -183,6 +190,8 @@ def simulate_sweep(
         "traction_force": traction_force.ravel(),
         "run": np.repeat(np.arange(plan.n_runs), plan.n_samples),
     }
+    if angles and turned is not None:
+        table |= {"angle_leg": turned[0].ravel(), "angle_ground": turned[1].ravel()}
     samples = samples_from_table(table, plan)
     return SimulatedSweep(samples, table, slip.ravel(), load.ravel(), offset)
 
@@ -210,6 +219,14 @@ def samples_from_table(table: dict[str, Column], plan: SweepPlan) -> SlipSamples
         run_names=plan.run_names(),
         definition=SlipDefinition.MATERIAL,
         time=np.asarray(table["t"], dtype=float),
+        angles=DiscAngles(
+            np.asarray(table["angle_leg"], dtype=float),
+            np.asarray(table["angle_ground"], dtype=float),
+            plan.radius_leg,
+            plan.radius_ground,
+        )
+        if "angle_leg" in table
+        else None,
     )
 
 
@@ -239,26 +256,42 @@ def _ride_bump(
     return load[:, None] * (1 + bump_rise(angle, height=truth.bump_height, width=truth.bump_width))
 
 
-def _run_out(
-    slip: Array,
-    omega_ground: Array,
-    plan: SweepPlan,
-    truth: RigImperfections,
-    rng: np.random.Generator,
-) -> Array:
-    """Compute the slip of discs out of true, whose speeds give `slip`; (runs, samples) each [-].
+def _amplitudes(truth: RigImperfections) -> tuple[float, float, float, float]:
+    """Return the amplitudes of run-out, once and twice a turn: leg disc, then ground disc [m]."""
+    return (
+        truth.run_out_leg, truth.run_out_leg_twice,
+        truth.run_out_ground, truth.run_out_ground_twice,
+    )  # fmt: skip
 
-    The radius of a disc at the contact varies with the cosine of its angle, which starts anywhere.
-    The ground disc's speed is `omega_ground` [rad/s].
+
+def _disc_angles(
+    omega_ground: Array, plan: SweepPlan, rng: np.random.Generator
+) -> tuple[Array, Array]:
+    """Compute the angles of leg disc and ground disc, (runs, samples) each [rad].
+
+    They start anywhere and go on from run to run. The ground disc's speed is `omega_ground`
+    [rad/s], the leg disc's is the plan's.
     """
-    if not (truth.run_out_leg or truth.run_out_ground):
-        return slip
-    starts = rng.uniform(0.0, 2 * np.pi, 2)
-    leg = starts[0] + plan.omega_leg * np.arange(slip.size).reshape(slip.shape) / plan.rate
-    ground = starts[1] + np.cumsum(omega_ground.ravel()).reshape(slip.shape) / plan.rate
-    higher_leg = 1 + truth.run_out_leg / plan.radius_leg * np.cos(leg)
-    higher_ground = 1 + truth.run_out_ground / plan.radius_ground * np.cos(ground)
-    return 1 - (1 - slip) * higher_ground / higher_leg
+    starts, shape = rng.uniform(0.0, 2 * np.pi, 2), omega_ground.shape
+    leg = starts[0] + plan.omega_leg * np.arange(omega_ground.size).reshape(shape) / plan.rate
+    return leg, starts[1] + np.cumsum(omega_ground.ravel()).reshape(shape) / plan.rate
+
+
+def _run_out(
+    slip: Array, angles: tuple[Array, Array], plan: SweepPlan, truth: RigImperfections
+) -> Array:
+    """Compute the true slip of discs out of true, whose speeds give `slip`; (runs, samples) [-].
+
+    The drives hold the *speeds*, whatever the radii: run-out is in the true slip and the force, and
+    not in the slip that speeds and nominal radii give. The radius at the contact is
+    r + a cos(angle) + b cos(2 angle), with the amplitudes a and b.
+    """
+    leg_once, leg_twice, ground_once, ground_twice = _amplitudes(truth)
+    leg, ground = angles
+    rise_leg = leg_once * np.cos(leg) + leg_twice * np.cos(2 * leg)
+    rise_ground = ground_once * np.cos(ground) + ground_twice * np.cos(2 * ground)
+    ratio = (1 + rise_ground / plan.radius_ground) / (1 + rise_leg / plan.radius_leg)
+    return 1 - (1 - slip) * ratio
 
 
 def _late(values: Array, plan: SweepPlan, truth: RigImperfections) -> Array:

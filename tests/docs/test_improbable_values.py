@@ -17,6 +17,7 @@ from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.robot.robot_file import HEAVIEST, LARGEST
 from zebro_lab.suggest.request import HIGHEST_RATE, LONGEST_TIME
 from zebro_lab.tables.columns_file import LARGEST_LOAD_CELL_ERROR, LARGEST_RIG_ERROR
+from zebro_lab.tables.disc_angles import DISAGREEMENT
 from zebro_lab.tables.mapped_columns import INTERVALS
 from zebro_lab.track.photo_sequence import MOST_APART
 from zebro_lab.track.trajectory.table import FASTEST
@@ -29,6 +30,7 @@ LIMITS = {
     "radii of a rig's discs": (LARGEST_RADIUS,),
     "slip ratio computed": (LARGEST_SLIP,),
     "traction over normal force": FRICTION,
+    "turn of a disc": (1, DISAGREEMENT),
     "one traction force": (STRAY,),
     "`load_cell.gain_sd`": (LARGEST_LOAD_CELL_ERROR,),
     "`rig_errors.radius` and `run_out`": (LARGEST_RIG_ERROR["m"],),

@@ -203,6 +203,7 @@ def _slip_toml(
         **_comparison_content(calibration),
         **_noise_content(calibration),
         **({"lateral_force": dict(lateral)} if lateral else {}),
+        **_run_out_content(calibration),
         **({"priors": dict(priors)} if priors else {}),
         "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
     })  # fmt: skip
@@ -268,6 +269,27 @@ def _noise_content(calibration: "Calibration") -> dict[str, Any]:
             "degrees_of_freedom": calibration.posterior.tail,
             "tried": list(tails),
             "log_evidence_over_gauss": [round(gain, 3) for gain in tails.values()],
+        }
+    }
+
+
+def _run_out_content(calibration: "Calibration") -> dict[str, Any]:
+    """Return the run-out of the discs whose angles are recorded; nothing without."""
+    found = calibration.run_out
+    if found is None:
+        return {}
+    names = ("cos", "sin", "cos_2", "sin_2")
+    return {
+        "run_out": {
+            "corrected": bool(found.used),
+            "log_density_of_left_out_runs": [round(found.gain, 3), round(found.standard_error, 3)],
+            **{
+                disc.disc: {
+                    name: {"mean": float(mean), "sd": float(sd)}
+                    for name, mean, sd in zip(names, disc.coefficients, disc.sd, strict=True)
+                }
+                for disc in found.discs
+            },
         }
     }
 

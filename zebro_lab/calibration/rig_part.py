@@ -3,13 +3,14 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from model.bayes.fine_means import fine_moments, moments_of_runs, reduce_samples
 from model.bayes.rig_errors import RigErrors
-from model.bayes.samples import FineMoments, SlipSamples
+from model.bayes.samples import DiscAngles, FineMoments, SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 from zebro_lab.calibration.lateral_force import lateral_sums
@@ -20,6 +21,7 @@ from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.manifest import RIG, TABLE
 from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.tables.columns import Columns, RunRule
+from zebro_lab.tables.disc_angles import disc_angles
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
@@ -27,6 +29,11 @@ from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
 from zebro_lab.tables.run_values import run_values
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
+
+ANGLES_PASSED: Final = (
+    "angles of the discs are not used, because samples are averaged as they are read: run-out is "
+    "not corrected"
+)
 
 
 @dataclass(frozen=True)
@@ -51,6 +58,7 @@ class RigPart:
             column map states none.
         fine: Where samples are means of several, what was within them; None where they are not.
         lateral: Sums of the lateral force of each run, see `lateral_sums`; None without one.
+        angles: Angles of the discs; None where none are recorded, or they cannot be used.
     """
 
     path: Path
@@ -68,6 +76,7 @@ class RigPart:
     covariate: Array | None = None
     fine: FineMoments | None = None
     lateral: Array | None = None
+    angles: DiscAngles | None = None
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -95,6 +104,7 @@ class RigPart:
             covariate=None if self.covariate is None else self.covariate[chosen],
             fine=None if self.fine is None else moments_of_runs(self.fine, rows, chosen),
             lateral=None if self.lateral is None else self.lateral[chosen],
+            angles=None if self.angles is None else self.angles.of_rows(rows),
         )
 
 
@@ -119,6 +129,8 @@ def averaged_part(part: RigPart, mean_of: int) -> RigPart:
         runs=replace(part.runs, index=reduced.run),
         time=None if part.time is None else time,
         fine=fine_moments([reduced], len(part.runs.names)),
+        angles=None,
+        notes=(*part.notes, *([ANGLES_PASSED] if part.angles is not None else [])),
     )
 
 
@@ -146,6 +158,8 @@ def read_part(
     if wanted is not None:
         slip_column = converted(table, slip_column, wanted)
     runs = separate_runs(table, label)
+    time = run_times(table, runs)
+    angles, unused = disc_angles(table, runs, time)
     return RigPart(
         path=source.path,
         columns=columns,
@@ -156,11 +170,12 @@ def read_part(
         traction_force=traction,
         rig_errors=columns.rig_errors.resolved(table.radii()),
         runs=runs,
-        time=run_times(table, runs),
-        notes=(*raw.notes, *table.conversions(), *doubts),
+        time=time,
+        notes=(*raw.notes, *table.conversions(), *doubts, *unused),
         files=files if columns.file is None else (*files, columns.file),
         covariate=None if columns.covariate is None else run_values(table, runs, columns.covariate),
         lateral=lateral_sums(table, pressed, traction, runs.index, len(runs.names)),
+        angles=angles,
     )
 
 

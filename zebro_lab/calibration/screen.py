@@ -16,6 +16,7 @@ from model.bayes.estimate import BRAKING, Estimate, informed
 from model.bayes.law_scores import LawScores
 from model.bayes.preview import Preview
 from model.bayes.prior_conflict import PriorShift
+from model.bayes.run_out import DiscRunOut, RunOut
 from model.bayes.verdict import State
 from model.counted import counted
 from model.slip.covariate import CovariateLaw
@@ -116,6 +117,7 @@ def _print_blocks(console: Console, calibration: Calibration) -> None:
         + (f"; the noise is correlated over {correlation:.0f} samples." if correlation else "."),
     ]
     lines += _noise_lines(calibration)
+    lines += run_out_lines(calibration.run_out)
     lines += _comparison_lines(calibration)
     lines += _covariate_lines(calibration)
     for line in lines:
@@ -173,6 +175,29 @@ def _noise_lines(calibration: Calibration) -> list[str]:
             "which is taken for wander of the slip; the rest for noise of the speeds"
         )
     return lines + _tail_lines(calibration)
+
+
+def run_out_lines(found: RunOut | None) -> list[str]:
+    """Say how far discs whose angles are recorded run out of true, and whether slip is corrected.
+
+    Args:
+        found: Their run-out; None where no angle is recorded.
+    """
+    if found is None:
+        return []
+
+    def told(disc: DiscRunOut) -> str:
+        by = zip(disc.amplitudes, disc.amplitude_sd, ("once", "twice"), strict=True)
+        of = ", ".join(f"{1e3 * a:.3f} ± {1e3 * sd:.3f} mm {often} a turn" for a, sd, often in by)
+        return f"{disc.disc} disc {of}"
+
+    gain = f"{found.gain:+.1f} ± {found.standard_error:.1f} in log probability"
+    done = (
+        f"slip is corrected for it, which predicts left-out runs better ({gain})"
+        if found.used
+        else f"slip is not corrected, which would not predict left-out runs clearly better ({gain})"
+    )
+    return [f"run-out: {'; '.join(told(disc) for disc in found.discs)}; {done}"]
 
 
 def _tail_lines(calibration: Calibration) -> list[str]:

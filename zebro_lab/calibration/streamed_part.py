@@ -14,10 +14,11 @@ from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 from zebro_lab.calibration.lateral_force import lateral_sums
 from zebro_lab.calibration.plausible import require_plausible
-from zebro_lab.calibration.rig_part import RigPart
+from zebro_lab.calibration.rig_part import ANGLES_PASSED, RigPart
 from zebro_lab.files.errors import DataError
 from zebro_lab.runs.data_paths import DataSource
 from zebro_lab.tables.columns import CANONICAL, Columns
+from zebro_lab.tables.disc_angles import ANGLES
 from zebro_lab.tables.parquet_files import parquet_parts, parquet_rows
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_table import RigTable, normal_force
@@ -210,7 +211,7 @@ def _part(
         rig_errors=columns.rig_errors.resolved(table.radii()),
         runs=Runs(np.concatenate([part.run for part in every]), names, rule),
         time=None if np.isnan(time).any() else time,
-        notes=(*table.raw.notes, *table.conversions(), *doubts),
+        notes=(*table.raw.notes, *table.conversions(), *doubts, *_passed(table)),
         files=files if columns.file is None else (*files, columns.file),
         covariate=_covariate(table, reading, numbers, names),
         fine=fine_moments(every, len(numbers)),
@@ -218,6 +219,11 @@ def _part(
         if reading.lateral
         else None,
     )
+
+
+def _passed(table: RigTable) -> tuple[str, ...]:
+    """Return a note where angles of the discs are recorded: means have no angle."""
+    return (ANGLES_PASSED,) * any(table.source_of(name) for name in ANGLES)
 
 
 def _numbered(every: list[Reduced], numbers: Array) -> Iterator[Reduced]:

@@ -41,6 +41,9 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
         "t": _TIME,
         "omega_leg": rf"{_SPEED}_?{_LEG_DISC}|{_LEG_DISC}_?{_SPEED}|{_TURNS}|drehzahl",
         "omega_ground": rf"{_SPEED}_?{_GROUND}|{_GROUND}_?{_SPEED}|{_GROUND_TURNS}",
+        "angle_leg": r"(angle|winkel|position|pos)_leg(_?disc)?|leg_disc_(angle|position)",
+        "angle_ground":
+            r"(angle|winkel|position|pos)_ground(_?disc)?|ground_disc_(angle|position)",
         "radius_leg": r"(radius|r)_(l|leg|bein)",
         "radius_ground": r"(radius|r)_(g|ground|boden)",
         "slip_ratio":

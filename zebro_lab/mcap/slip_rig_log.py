@@ -45,6 +45,8 @@ class SlipRigTable:
         normal_force: Normal force, positive when pressed together [N].
         traction_force: Traction force, positive when driving [N].
         lateral_force: Force on the load cell's third axis, with its sign; None if not measured [N].
+        angle_leg: Angle of the leg disc [rad]; None where none was recorded.
+        angle_ground: Angle of the ground disc [rad]; None where none was recorded.
     """
 
     t: NDArray[np.float64]
@@ -53,6 +55,8 @@ class SlipRigTable:
     normal_force: NDArray[np.float64]
     traction_force: NDArray[np.float64]
     lateral_force: NDArray[np.float64] | None = None
+    angle_leg: NDArray[np.float64] | None = None
+    angle_ground: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of samples."""

@@ -13,6 +13,7 @@ from rig.errors import RigError
 from rig.sample_columns import SampleColumns
 from rig.slip_rig.decode import (
     decode_board,
+    decode_disc_angles,
     decode_forces,
     decode_further_loads,
     decode_speeds,
@@ -35,8 +36,8 @@ def derive_table(
     `_MANY` forces per speed of the leg disc, the rows are those speeds' times, and forces are
     averaged around them (`averages_around`): speeds interpolated to many forces would turn speed
     noise into changes of slip without effect on force. With fewer forces, the rows are the forces'
-    times inside the speeds' range, and speeds are interpolated. Rows whose time does not increase
-    are dropped, with a note.
+    times inside the speeds' range, and speeds are interpolated. Drives tell the angles, too. Rows
+    whose time does not increase are dropped, with a note.
 
     Args:
         folder: The run folder, which has the profile.
@@ -86,12 +87,13 @@ def _of_two(
     force = np.vstack([decoded.normal, decoded.traction, lateral])
     disc = decode_speeds(drives.leg, drives.ground, speeds)
     speed = np.vstack([disc.leg, disc.ground])
+    angle = np.vstack(decode_disc_angles(drives.leg, drives.ground, speeds))
     if len(t) > _MANY * len(disc.time):
         at, around = averages_around(disc.time, t, force)
-        return np.vstack([disc.time[at], speed[:, at], around])
+        return np.vstack([disc.time[at], speed[:, at], around, angle[:, at]])
     inside = (t >= disc.time[0]) & (t <= disc.time[-1])
-    across = [np.interp(t[inside], disc.time, row) for row in speed]
-    return np.vstack([t[inside], *across, force[:, inside]])
+    leg, ground, *angles = (np.interp(t[inside], disc.time, row) for row in (*speed, *angle))
+    return np.vstack([t[inside], leg, ground, force[:, inside], *angles])
 
 
 def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp], Array]:

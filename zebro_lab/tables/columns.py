@@ -54,6 +54,8 @@ CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
         CanonicalColumn("t", "s", "time, increasing within a run"),
         CanonicalColumn("omega_leg", "rad/s", "angular speed of the leg disc"),
         CanonicalColumn("omega_ground", "rad/s", "angular speed of the ground disc"),
+        CanonicalColumn("angle_leg", "rad", "angle of the leg disc, of one zero; for its run-out"),
+        CanonicalColumn("angle_ground", "rad", "angle of the ground disc, of one zero"),
         CanonicalColumn("radius_leg", "m", "radius of the leg disc at the contact"),
         CanonicalColumn("radius_ground", "m", "radius of the ground disc at the contact"),
         CanonicalColumn("slip_ratio", "dimensionless", "slip ratio, with its definition"),
@@ -180,7 +182,8 @@ class RigErrorsStated:
         radius_ratio: Of the relative error of the ratio of the radii, instead of `radius` [-]; None
             if not given.
         rolling_resistance: Of the rolling resistance over the load [-].
-        run_out: Amplitude by which each disc's radius at the contact varies once a turn [m].
+        run_out: Amplitude by which each disc's radius at the contact varies once a turn, and the
+            standard deviation of each coefficient of a disc whose angle is recorded [m].
     """
 
     radius: float = RADIUS_TOLERANCE
@@ -202,7 +205,7 @@ class RigErrorsStated:
             ratio = radius_ratio_sd(*both, self.radius)
             scatter = run_out_scatter(*both, self.run_out)
         ratio = ratio if self.radius_ratio is None else self.radius_ratio
-        return RigErrors(ratio, self.rolling_resistance, scatter)
+        return RigErrors(ratio, self.rolling_resistance, scatter, self.run_out)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,15 @@ import pytest
 
 from rig.device import Sample
 from rig.errors import LimitExceeded, ProtocolError
-from rig.slip_rig.decode import Forces, Zero, decode_forces, decode_speeds, require_zero, tare
+from rig.slip_rig.decode import (
+    Forces,
+    Zero,
+    decode_disc_angles,
+    decode_forces,
+    decode_speeds,
+    require_zero,
+    tare,
+)
 from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import load_rig_profile
 
@@ -54,6 +62,19 @@ def test_the_ground_disc_is_interpolated_to_the_instants_of_the_leg_disc():
     np.testing.assert_allclose(
         speeds.ground, [disc_speed(ground, each) for each in (held_before, 3.0, 6.0, held_after)]
     )
+
+
+def test_angles_of_discs_are_positions_of_motors_over_gears_with_their_signs():
+    leg, ground = RIG.drives.leg, RIG.drives.ground
+    samples = [
+        Sample(t, None, None, (rate * t, rate), channel=drive.node)
+        for t in (0.0, 1.0, 2.0)
+        for drive, rate in ((leg, 2.0), (ground, 3.0))
+    ]
+    angles = decode_disc_angles(leg, ground, samples)
+    speeds = decode_speeds(leg, ground, samples)
+    for angle, speed in zip(angles, (speeds.leg, speeds.ground), strict=True):
+        np.testing.assert_allclose(angle, speed * speeds.time)
 
 
 def test_speeds_need_samples_of_both_drives():

@@ -284,3 +284,31 @@ def test_both_discs_speed_noise_is_white_and_of_the_promised_size():
     leg, ground = log.table["omega_leg"] - 12, log.table["omega_ground"] - true_ground
     np.testing.assert_allclose([leg.std(), ground.std()], 0.02, rtol=0.02)
     assert abs(np.corrcoef(leg, ground)[0, 1]) < 4 / np.sqrt(len(leg))
+
+
+def test_recorded_angles_turn_as_the_discs_do_and_leave_the_rest_as_it_is():
+    plan = SweepPlan(slips=(0.0, 0.5), loads=(6.0,))
+    plain = sweep(plan=plan)
+    log = simulate_sweep(
+        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=PERFECT,
+        rng=np.random.default_rng(0), angles=True,
+    )  # fmt: skip
+    assert "angle_leg" not in plain.table
+    assert plain.samples.angles is None
+    for disc in ("leg", "ground"):
+        turned = np.diff(log.table[f"angle_{disc}"]) * plan.rate
+        np.testing.assert_allclose(turned, log.table[f"omega_{disc}"][1:], rtol=1e-9)
+    np.testing.assert_array_equal(log.table["normal_force"], plain.table["normal_force"])
+
+
+def test_radii_at_the_contact_swing_once_and_twice_a_turn_and_speeds_do_not():
+    plan = SweepPlan(slips=(0.1,), loads=(6.0,), duration=4.0)
+    rig = RigImperfections(run_out_leg=1e-4, run_out_leg_twice=5e-5)
+    log = simulate_sweep(
+        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig,
+        rng=np.random.default_rng(0), angles=True,
+    )  # fmt: skip
+    np.testing.assert_allclose(log.samples.slip, 0.1)
+    angle = log.table["angle_leg"]
+    rise = (1e-4 * np.cos(angle) + 5e-5 * np.cos(2 * angle)) / plan.radius_leg
+    np.testing.assert_allclose(log.slip_true, 1 - 0.9 / (1 + rise))

@@ -26,6 +26,7 @@ from support.calibrate_processes import (
     patched,
     run,
 )
+from support.out_of_true import swept
 from zebro_lab.calibration.folder import read_slip
 
 pytestmark = pytest.mark.timeout(600)
@@ -186,3 +187,27 @@ def test_help_names_every_exit_code():
     text = " ".join(process.stdout.split())
     for meaning in ("0 converged", "1 error", "2 usage", "3 not converged", "130 stopped"):
         assert meaning in text
+
+
+def test_run_out_is_told_and_corrected_where_tables_have_angles(tmp_path):
+    data = tmp_path / "data"
+    data.mkdir()
+    pd.DataFrame(swept().table).to_parquet(data / "rig.parquet")
+    (data / "columns.toml").write_text(
+        'source = "sim:test"\n[constants]\nradius_leg = "35 mm"\nradius_ground = "120 mm"\n'
+        '[rig_errors]\nradius = "0.02 mm"\nrolling_resistance = 0.002\n'
+    )
+    out = tmp_path / "out"
+    process = calibrate_slip(data, "--out", out, "--engine", "laplace", "--curvature", "peak")
+    assert process.returncode == 0, process.stderr
+    told = " ".join(process.stdout.split())
+    assert "run-out: leg disc 0.0" in told
+    assert "slip is corrected for it, which predicts left-out runs better" in told
+    assert "ok residuals do not swing as discs turn" in told
+    content = tomllib.loads((out / "slip.toml").read_text())["run_out"]
+    assert content["corrected"] is True
+    for disc in ("leg", "ground"):
+        for name, true in (("cos", 5e-5), ("sin", 0.0), ("cos_2", 5e-5), ("sin_2", 0.0)):
+            found = content[disc][name]
+            assert abs(found["mean"] - true) < 4 * found["sd"]
+    read_slip(out)

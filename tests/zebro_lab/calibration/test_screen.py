@@ -11,10 +11,16 @@ from rich.console import Console
 from model.bayes.advice import ExcludeRuns, MeasureSlips
 from model.bayes.checks.check import Outcome, decided
 from model.bayes.prior_conflict import PriorShift
+from model.bayes.run_out import DiscRunOut, RunOut
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.calibration.screen import print_calibration, print_data, prior_words
+from zebro_lab.calibration.screen import (
+    print_calibration,
+    print_data,
+    prior_words,
+    run_out_lines,
+)
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +111,12 @@ def test_words_tell_agreement_conflict_and_what_cannot_be_tested():
     assert "not testable, the data say almost nothing" in prior_words(silent)
     joint = PriorShift(("shape", "friction"), np.array([0.3, 5.0]), 30.0, 2, 3e-7)
     assert "the earlier calibration: the data move friction by 5.0" in prior_words(joint)
+
+
+def test_run_out_is_told_by_disc_in_millimetres_with_what_was_done():
+    disc = DiscRunOut("leg", np.array([3e-5, 4e-5, 0.0, 1e-5]), np.full(4, 2e-6))
+    (line,) = run_out_lines(RunOut((disc,), 30.0, 5.0, 0.0003))
+    assert "leg disc 0.050 ± 0.002 mm once a turn, 0.010 ± 0.002 mm twice a turn" in line
+    assert "slip is corrected" in line
+    assert "not corrected" in run_out_lines(RunOut((disc,), 3.0, 5.0, 0.0003))[0]
+    assert run_out_lines(None) == []

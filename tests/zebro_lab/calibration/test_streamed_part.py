@@ -127,3 +127,10 @@ def test_copies_are_left_out_and_other_tables_join(tmp_path, small):
     assert data.samples.fine is not None
     assert len(data.samples.fine.count) == len(data.samples)
     assert any("a" in note and "b" in note for note in data.repeated)
+
+
+def test_angles_of_the_discs_are_passed_over_with_a_note(tmp_path, request):
+    whole, means = both(tmp_path, request, table(angle_leg=np.arange(ROWS) * 0.004 * 12))
+    assert whole.samples.angles is not None
+    assert means.samples.angles is None
+    assert any("angles of the discs are not used" in note for note in means.notes)

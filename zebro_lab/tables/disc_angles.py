@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Angles of the discs of a rig table, where they are recorded."""
+
+from typing import Final
+
+import numpy as np
+
+from model.bayes.samples import DiscAngles
+from model.slip.law import Array
+from zebro_lab.tables.rig_table import RigTable
+from zebro_lab.tables.run_separation import Runs
+
+ANGLES: Final = ("angle_leg", "angle_ground")
+DISAGREEMENT: Final = 0.2
+"""Relative difference of a disc's turn between samples, by its angle and by its speed [-]."""
+_MOST_SURE = 0.5  # rad, from which a difference between wrapped angles tells, whatever the turn
+_TURNING = 1e-4  # rad between samples, below which nothing is told
+
+
+def disc_angles(
+    table: RigTable, runs: Runs, time: Array | None
+) -> tuple[DiscAngles | None, tuple[str, ...]]:
+    """Return the angles of the discs that are recorded, and notes on what is not used.
+
+    Args:
+        table: Rig table.
+        runs: Run of each kept row.
+        time: Time of each kept row, shape (n,) [s]; None without times.
+
+    Returns:
+        The angles, accumulated or wrapped; None where none are recorded, a radius is not known, or
+        each row is a trial.
+
+    Raises:
+        DataError: A cell is no finite number, or a disc of a table turns by its angle otherwise
+            than by its speed.
+    """
+    recorded = [name for name in ANGLES if table.source_of(name)]
+    if not recorded:
+        return None, ()
+    radii = table.radii()
+    why = "each row is a trial" if table.columns.runs.each_row else ""
+    why = why or ("" if len(radii) == 2 else "the radii of the discs are not known")
+    if why:
+        return None, (f"angles of the discs are not used: {why}",)
+    angles, notes = {}, []
+    for name in recorded:
+        angle = table.si(name)
+        problem = "it does not change" if np.ptp(angle) == 0 else _problem(table, name, runs, time)
+        if problem and np.ptp(angle) > 0 and not table.raw.path.is_dir():
+            raise table.raw.fault(problem, table.required(name).name)
+        if problem:  # recorded runs have angles unasked
+            notes.append(f"{name} is not used: {problem}")
+        else:
+            angles[name] = angle
+    if not angles:
+        return None, tuple(notes)
+    return DiscAngles(
+        angles.get("angle_leg"), angles.get("angle_ground"), radii["radius_leg"],
+        radii["radius_ground"],
+    ), tuple(notes)  # fmt: skip
+
+
+def _problem(table: RigTable, name: str, runs: Runs, time: Array | None) -> str:
+    """Say that an angle turns otherwise than its disc's speed, either way round; "" where not."""
+    speed = name.replace("angle", "omega")
+    if time is None or table.source_of(speed) is None:
+        return ""
+    inside = np.diff(runs.index) == 0
+    angle, omega = table.si(name), table.si(speed)
+    expected = (0.5 * (omega[1:] + omega[:-1]) * np.diff(time))[inside]
+    turned = np.diff(angle)[inside]
+    turning = np.abs(expected) > _TURNING
+    if not turning.any():
+        return ""
+    expected, turned = expected[turning], turned[turning]
+    usual = float(np.median(np.abs(expected)))
+    off = min(float(np.median(np.abs(_wrapped(turned - way * expected)))) for way in (1, -1))
+    if off <= min(DISAGREEMENT * usual, _MOST_SURE):
+        return ""
+    ratio = float(np.median(np.abs(turned))) / usual
+    return (
+        f"the disc turns by {ratio:.3g} times what its speed '{table.required(speed).name}' says; "
+        f"expected 1 within {DISAGREEMENT:g}: correct the unit of the angle (57.3 times is deg, "
+        f"not rad) or of the speed, or a gear by scale, in {table.columns.stated_in}, or delete "
+        "the column"
+    )
+
+
+def _wrapped(angle: Array) -> Array:
+    return (angle + np.pi) % (2 * np.pi) - np.pi

@@ -62,7 +62,7 @@ def test_legs_as_described_are_likeliest_without_a_wrong_one():
 
 def test_parameters_that_are_held_end_at_the_middle_of_their_prior():
     offset = np.radians([0.3, -0.2, 0.1, 0.0, 0.2, 0.0])
-    held = ModeSearch([LinearMisfit(offset)], WalkPrior(), threads=1, held=[0, *ACROSS])
+    held = ModeSearch([LinearMisfit(offset)], WalkPrior(), held=[0, *ACROSS])
     mode, J = held.climb(None, np.ones(WRONG + 1))
     assert not J[:, [0, *ACROSS]].any()
     np.testing.assert_allclose(mode.z[[0, *ACROSS]], 0.0, atol=1e-12)
@@ -70,7 +70,7 @@ def test_parameters_that_are_held_end_at_the_middle_of_their_prior():
 
 
 def test_a_prior_without_lateral_spread_holds_lateral_traction():
-    alike = ModeSearch([LinearMisfit(np.zeros(6))], WalkPrior(lateral_sd=0.0), threads=1)
+    alike = ModeSearch([LinearMisfit(np.zeros(6))], WalkPrior(lateral_sd=0.0))
     mode, J = alike.climb(None, np.zeros(WRONG + 1))
     assert not J[:, ACROSS].any()
     np.testing.assert_array_equal(mode.z[ACROSS], 0.0)

@@ -42,6 +42,7 @@ FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `m
 DRAWS_PER_ENSEMBLE = 1000  # at most
 IMPORTANCE_DRAWS = 10_000
 EFFECTIVE_DRAWS = 2_000.0  # below, the weighted draws are adapted to the posterior
+LIKELY_JUMP = 0.15  # share of accepted jumps, from which most moves are jumps
 FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
@@ -155,7 +156,7 @@ def calibrate(
         first(preview(posterior, weighted, rng=judging))
         chains = None
         if settings.sampled:
-            share = JUMP_SHARE if weighted.adapted else MANY_JUMPS
+            share = MANY_JUMPS if weighted.jumps > LIKELY_JUMP else JUMP_SHARE
             chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep, share)
             draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
         else:

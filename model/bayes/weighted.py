@@ -15,6 +15,7 @@ from model.slip.law import Array
 
 MOST_MORE = 2.0  # draws of the first distribution that are added, over the first ones
 ENOUGH_MORE = 1.1  # effective draws that are aimed at, over the wanted ones
+ENOUGH_PAIRS = 1000  # draws from and to which the acceptance of jumps is averaged
 FURTHER_DRAWS = 2000  # of each round of adapted draws
 FURTHER_ROUNDS = 15  # at most
 OUTSIDE = -1e6  # log weight, less the largest one's, of a draw outside the support
@@ -29,14 +30,15 @@ class WeightedDraws:
         weights: Pareto-smoothed weights, with sum one, shape (n,).
         pareto_k: Tail index of the raw weights; above 0.7 the weights are not reliable [-].
         log_density: Log posterior density up to a constant, shape (n,).
-        adapted: Whether some are of distributions that were adapted to the posterior.
+        jumps: Share of jumps to draws of the first distribution, from draws of the posterior, that
+            a Metropolis-Hastings sampler accepts [-].
     """
 
     z: Array
     weights: Array
     pareto_k: float
     log_density: Array
-    adapted: bool = False
+    jumps: float = 0.0
 
     @property
     def reliable(self) -> bool:
@@ -57,7 +59,7 @@ class WeightedDraws:
         weights = self.weights[chosen]
         return WeightedDraws(
             self.z[chosen], weights / weights.sum(), self.pareto_k, self.log_density[chosen],
-            self.adapted,
+            self.jumps,
         )  # fmt: skip
 
     def resampled(self, n: int, *, rng: np.random.Generator) -> NDArray[np.intp]:
@@ -129,7 +131,7 @@ def weighted_draws(
     order = rng.permutation(len(adapted.z))
     further = replace(
         _weighted(adapted.z[order], adapted.log_density[order], adapted.log_proposal[order]),
-        adapted=True,
+        jumps=first.jumps,
     )
     if first.reliable and further.reliable:
         return max(first, further, key=lambda draws: draws.effective_size)
@@ -163,7 +165,9 @@ def importance_draws(
     if earlier is not None:
         z = np.concatenate([earlier.z, z])
         height = np.concatenate([earlier.log_density, height])
-    return _weighted(z, height, proposal.log_pdf(z))
+    log_proposal = proposal.log_pdf(z)
+    drawn = _weighted(z, height, log_proposal)
+    return replace(drawn, jumps=_accepted(height - log_proposal, drawn.weights))
 
 
 def _in_batches(log_density: LogDensity, z: Array, threads: int) -> Array:
@@ -180,6 +184,17 @@ def _weighted(z: Array, log_density: Array, log_proposal: Array) -> WeightedDraw
     log_weights, pareto_k = pareto_smoothed(ratio)
     weights = np.exp(log_weights)
     return WeightedDraws(z, weights / weights.sum(), pareto_k, log_density)
+
+
+def _accepted(log_ratio: Array, weights: Array) -> float:
+    """Estimate the share of accepted jumps from some draws with their log ratios and weights.
+
+    A jump from i to j is accepted with the probability min(1, r_j / r_i).
+    """
+    ratio, weight = log_ratio[:ENOUGH_PAIRS], weights[:ENOUGH_PAIRS]
+    from_, to = np.where(weight > 0, ratio, np.inf)[:, None], ratio[None, :]
+    chance = np.exp(np.minimum(to - from_, 0.0)).mean(axis=1)
+    return float(weight @ chance / weight.sum())
 
 
 def _spanning(mixture: LaplaceMixture) -> Mode:

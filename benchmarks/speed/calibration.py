@@ -8,22 +8,29 @@ of one second at 250 Hz, and for reading the same sweep with four seconds at 1 k
 import tempfile
 import time
 from collections.abc import Callable
-from itertools import pairwise
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from emcee.moves import DEMove, StretchMove
-from scipy.stats import multivariate_normal, norm
+from scipy.stats import norm
 
 from benchmarks.machine import describe_machine
-from benchmarks.speed.calibration_nuts import NUTS_CHAINS, nuts
+from benchmarks.speed.calibration_emcee import (
+    ENSEMBLES,
+    IMPORTANCE_DRAWS,
+    ensembles,
+    naive,
+    numpy_log_likelihood,
+    scipy_log_likelihood,
+)
+from benchmarks.speed.calibration_nuts import COMPARED, NUTS_CHAINS, nuts
+from benchmarks.speed.sampled import Sampled
 from benchmarks.tables import print_table
-from model.bayes import sampler
-from model.bayes.convergence import assess
 from model.bayes.fit import PreparedFit, prepare_fit
-from model.bayes.likelihood import log_likelihood, predict_blocks, slip_errors
+from model.bayes.likelihood import log_likelihood
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.bayes.weighted import importance_draws
@@ -35,9 +42,10 @@ from zebro_lab.calibration.rig_data import read_rig_data
 SEED = 2020
 SWEEP, READ = SweepPlan(), SweepPlan(duration=4.0, rate=1000.0)
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
-BATCH = 36  # parameter vectors: the walkers of an ensemble of 12 dimensions
-ENSEMBLES, KEPT_STEPS, THIN = 4, 150, 5
-IMPORTANCE_DRAWS = 10_000
+BATCH = 48  # parameter vectors: the walkers of an ensemble of 16 dimensions
+KEPT_STEPS = 150
+LONGER = 4  # kept steps of the stretch move, over `KEPT_STEPS`: fewer tell too little of it
+NAIVE_SECONDS = 30.0  # of each naive run
 READS = 3
 COLUMNS = """source = "sim:bench"
 [constants]
@@ -65,29 +73,6 @@ def rate(evaluate: Callable[[], Any], *, each: int, seconds: float = 3.0) -> flo
     return calls * each / passed
 
 
-def dense_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
-    """Compute our likelihood the plain way: one multivariate normal a run, its covariance dense."""
-    blocks = posterior.blocks
-    predicted = predict_blocks(blocks, posterior.law, values[None])
-    rho, tau = values[-2:]
-    own, shared = slip_errors(blocks, values)
-    total = 0.0
-    starts = blocks.run_starts()
-    for i, (first, end) in enumerate(pairwise(starts)):
-        part = slice(first, end)
-        noise, slope = predicted.noise[0, part], predicted.slope[0, part]
-        lag = np.abs(np.subtract.outer(np.arange(len(noise)), np.arange(len(noise))))
-        covariance = (
-            np.outer(noise, noise) * rho**lag
-            + np.diag(slope**2 * own[part])
-            + np.outer(slope, slope) * shared[i]
-            + tau**2
-        )
-        residual = blocks.traction_force[part] - predicted.force[0, part]
-        total += float(multivariate_normal.logpdf(residual, cov=covariance))
-    return total
-
-
 def independent_log_likelihood(samples: SlipSamples, values: Array) -> float:
     """Compute the likelihood that takes every sample for independent, as a first script would."""
     force = THESIS_LAW.force(samples.slip, samples.normal_force, values[:4])
@@ -104,14 +89,19 @@ def time_likelihoods(posterior: SlipPosterior, samples: SlipSamples, z: Array) -
     def ours(some: Array) -> Array:
         return log_likelihood(blocks, law, some)
 
-    dense = [dense_log_likelihood(posterior, row) for row in values[:5]]
+    plain = (scipy_log_likelihood, numpy_log_likelihood)
+    dense = np.array([[each(posterior, row) for row in values[:5]] for each in plain])
     apart = np.max(np.abs(ours(values[:5]) - dense))
     rates = [
         (f"ours, {BATCH} vectors at once", of_blocks, rate(lambda: ours(values), each=BATCH)),
         ("ours, one vector at a time", of_blocks, rate(lambda: ours(values[:1]), each=1)),
         (
             "scipy multivariate_normal, a run at a time", of_blocks,
-            rate(lambda: dense_log_likelihood(posterior, values[0]), each=1),
+            rate(lambda: scipy_log_likelihood(posterior, values[0]), each=1),
+        ),
+        (
+            "numpy, dense covariances of all runs in one call", of_blocks,
+            rate(lambda: numpy_log_likelihood(posterior, values[0]), each=1),
         ),
         (
             "scipy norm, every sample independent (another model)", of_samples,
@@ -123,33 +113,13 @@ def time_likelihoods(posterior: SlipPosterior, samples: SlipSamples, z: Array) -
         *((name, data, f"{x:,.0f}", f"{x / rates[0][2]:.2f}") for name, data, x in rates),
     )
     print(
-        f"Ours and scipy's dense one differ by {apart:.1e} at most, of {abs(dense[0]):,.0f}, at "
-        "five posterior draws.\n"
+        f"Ours and the dense ones of scipy and numpy differ by {apart:.1e} at most, of "
+        f"{abs(dense[0, 0]):,.0f}, at five posterior draws.\n"
     )
 
 
-def ensembles(fit: PreparedFit, move: type, *, jumps: bool) -> tuple[float, float, float]:
-    """Walk emcee ensembles with one kind of move, with or without jumps; ESS, seconds, R-hat."""
-    ours, sampler.MOVES = sampler.MOVES, ((move, 1.0),)
-    try:
-        density, rng = fit.posterior.log_density, np.random.default_rng(SEED)
-        began = time.perf_counter()
-        approximation = fit.approximation
-        chains = sampler.start_chains(
-            density, approximation, ensembles=ENSEMBLES, thin=THIN, rng=rng
-        )
-        chains = sampler.advance(
-            density, chains, steps=KEPT_STEPS, approximation=approximation if jumps else None
-        )
-        seconds = time.perf_counter() - began
-    finally:
-        sampler.MOVES = ours
-    convergence = assess(chains)
-    return float(convergence.ess_bulk.min()), seconds, float(convergence.r_hat.max())
-
-
-def importance(fit: PreparedFit) -> tuple[float, float, float]:
-    """Weight draws of the Laplace approximation; return Kish's ESS, seconds, Pareto's k."""
+def importance(fit: PreparedFit) -> Sampled:
+    """Weight draws of the Laplace approximation; their effective sample size is Kish's."""
     began = time.perf_counter()
     weighted = importance_draws(
         fit.posterior.log_density,
@@ -158,39 +128,61 @@ def importance(fit: PreparedFit) -> tuple[float, float, float]:
         rng=np.random.default_rng(SEED),
     )
     seconds = time.perf_counter() - began
-    return 1 / float(np.sum(weighted.weights**2)), seconds, weighted.pareto_k
+    return Sampled(weighted.effective_size, seconds, f"Pareto k {weighted.pareto_k:.2f}")
 
 
 def time_samplers(fit: PreparedFit) -> None:
-    """Print effective samples a second by kind of sampler."""
-    importance_ess, importance_seconds, pareto_k = importance(fit)
-    figures: list[tuple[str, *tuple[float, ...]]] = [
-        (
-            f"emcee {move.__name__}{' and jumps' * jumps}, {ENSEMBLES} ensembles, 2 threads",
-            *ensembles(fit, move, jumps=jumps),
+    """Print effective samples a second by kind of sampler, and our ratio to each peer."""
+    weighted = importance(fit)
+    walked = {
+        f"emcee {move.__name__}{' and jumps' * jumps}, {ENSEMBLES} ensembles, 2 threads": ensembles(
+            fit, move, jumps=jumps, steps=KEPT_STEPS * longer, seed=SEED
         )
-        for move, jumps in ((DEMove, True), (DEMove, False), (StretchMove, False))
-    ]
+        for move, jumps, longer in (
+            (DEMove, True, 1), (DEMove, False, 1), (StretchMove, False, LONGER),
+        )
+    }  # fmt: skip
+    figures = {name: found for name, (found, _) in walked.items()}
+    ours, *_, stretch = figures
+    per_evaluation = walked[stretch][1]
+    peers = {"emcee's default move with our density": figures[stretch]}
+    for library, likelihood in (("scipy", scipy_log_likelihood), ("numpy", numpy_log_likelihood)):
+        found = naive(fit, likelihood, seconds=NAIVE_SECONDS, per_evaluation=per_evaluation)
+        figures[f"naive emcee, {library}, 1 thread"] = found
+        peers[f"naive emcee with {library}'s dense likelihood (100 are asked)"] = found
     note = ""
     try:
-        *found, apart = nuts(fit, seed=SEED)
-        figures.append((f"NumPyro NUTS, {NUTS_CHAINS} chains, JAX with gradients", *found))
-        note = f" The density written in JAX differs from ours by {apart:.1e} at most."
+        found, drawing, apart = nuts(fit, seed=SEED)
+        figures[f"NumPyro NUTS, {NUTS_CHAINS} chains, JAX with gradients"] = found
+        peers["NUTS (20 are asked)"] = found
+        peers["NUTS without its warm-up and compilation"] = replace(found, seconds=drawing)
+        note = (
+            f" The density written in JAX differs from ours by {apart:.1e} at most, at {COMPARED} "
+            "draws."
+        )
     except ImportError as error:
         note = f" No row for NumPyro's NUTS: {error}."
+    figures["Laplace + PSIS, 1 thread"] = weighted
     print_table(
         ("engine", "effective samples", "seconds", "effective samples a second", "R-hat"),
-        *((name, f"{n:,.0f}", f"{s:.0f}", f"{n / s:.1f}", f"{r:.3f}") for name, n, s, r in figures),
-        (
-            "Laplace + PSIS, 1 thread", f"{importance_ess:,.0f}", f"{importance_seconds:.0f}",
-            f"{importance_ess / importance_seconds:.1f}", f"Pareto k {pareto_k:.2f}",
-        ),
-    )  # fmt: skip
+        *(found.cells(name) for name, found in figures.items()),
+    )
     print(
         f"The posterior of {len(fit.laplace.mode)} parameters and {len(fit.posterior.blocks):,} "
         "blocks. Effective samples are the bulk's of the worst parameter, Kish's for PSIS. All "
         "start from the Laplace approximation; seconds count everything from there on, also "
-        f"burn-in, NUTS's warm-up and its compilation.{note}\n"
+        "burn-in, the weighted draws that decide how many moves are jumps, NUTS's warm-up and its "
+        f"compilation.{note}\n"
+    )
+    print(
+        "Naive emcee is emcee's default move from a ball around the optimum, one parameter vector "
+        "a call, with a dense likelihood. In so short a time it does not forget its start: its "
+        "effective samples are its evaluations in that time, each worth what it is in the row of "
+        "StretchMove after the burn-in.\n"
+    )
+    print_table(
+        ("effective samples a second of ours, the first row, over those of", "ratio"),
+        *((name, f"{figures[ours].rate / peer.rate:,.0f}") for name, peer in peers.items()),
     )
 
 

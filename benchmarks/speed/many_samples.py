@@ -33,6 +33,9 @@ COLUMNS = """source = "sim:bench"
 [constants]
 radius_leg = "35 mm"
 radius_ground = "120 mm"
+[columns.t]
+name = "t"
+unit = "s"
 [load_cell]
 zero_stability = 0.1
 gain_sd = 0.005

@@ -86,7 +86,8 @@ def parquet_parts(path: Path, *, rows: int, wanted: Collection[str]) -> Iterator
             schema = opened.schema_arrow
             names = [name for name in dict.fromkeys(schema.names) if name in wanted]
             texts = [name for name in names if _is_text(schema.field(name).type)]
-        with pq.ParquetFile(file, read_dictionary=texts, **_LIMITS) as opened:
+        # Without reading ahead, which keeps all bytes that were read until the end.
+        with pq.ParquetFile(file, read_dictionary=texts, pre_buffer=False, **_LIMITS) as opened:
             before, row = None, 0
             for batch in opened.iter_batches(rows, columns=names, use_threads=False):
                 table = pa.Table.from_batches([batch])

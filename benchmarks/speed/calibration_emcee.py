@@ -18,12 +18,12 @@ from scipy.stats import multivariate_normal
 
 from benchmarks.speed.sampled import Sampled
 from model.bayes import sampler
-from model.bayes.calibrate import EFFECTIVE_DRAWS, THIN
+from model.bayes.calibrate import EFFECTIVE_DRAWS, THIN, jump_share
 from model.bayes.convergence import assess
 from model.bayes.fit import PreparedFit
 from model.bayes.likelihood import predict_blocks, slip_errors
 from model.bayes.posterior import SlipPosterior
-from model.bayes.sampler import JUMP_SHARE, MANY_JUMPS, walker_count
+from model.bayes.sampler import walker_count
 from model.bayes.weighted import weighted_draws
 from model.slip.law import Array
 
@@ -34,13 +34,13 @@ BALL = 0.01  # standard deviation of naive walkers' starts in each coordinate, 1
 DenseLogLikelihood = Callable[[SlipPosterior, Array], float]
 
 
-def jump_share(fit: PreparedFit, rng: np.random.Generator) -> float:
-    """Return the share of jumps that `calibrate` chooses, by whether weighted draws are adapted."""
+def chosen_share(fit: PreparedFit, rng: np.random.Generator) -> float:
+    """Return the share of jumps that `calibrate` chooses, by weighted draws."""
     weighted = weighted_draws(
         fit.posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, wanted=EFFECTIVE_DRAWS,
         rng=rng, threads=THREADS,
     )  # fmt: skip
-    return JUMP_SHARE if weighted.adapted else MANY_JUMPS
+    return jump_share(weighted)
 
 
 def ensembles(
@@ -64,7 +64,7 @@ def ensembles(
     try:
         density, rng = fit.posterior.log_density, np.random.default_rng(seed)
         began = time.perf_counter()
-        share = jump_share(fit, rng) if jumps else 0.0
+        share = chosen_share(fit, rng) if jumps else 0.0
         chains = sampler.start_chains(
             density, fit.approximation, ensembles=ENSEMBLES, thin=THIN, rng=rng
         )

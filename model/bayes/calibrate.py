@@ -29,7 +29,7 @@ from model.bayes.run_out import RunOut, find_run_out, without_run_out
 from model.bayes.sampler import JUMP_SHARE, MANY_JUMPS, Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
-from model.bayes.weighted import weighted_draws
+from model.bayes.weighted import WeightedDraws, weighted_draws
 from model.errors import FitError
 from model.mapping import HERE, Mapper
 from model.progress import Watcher
@@ -156,7 +156,7 @@ def calibrate(
         first(preview(posterior, weighted, rng=judging))
         chains = None
         if settings.sampled:
-            share = MANY_JUMPS if weighted.jumps > LIKELY_JUMP else JUMP_SHARE
+            share = jump_share(weighted)
             chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep, share)
             draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
         else:
@@ -333,6 +333,15 @@ def _require_same_density(fit: PreparedFit, earlier: Chains) -> None:
 def _threads(fit: PreparedFit, settings: SamplerSettings) -> int:
     """Return the number of threads for a posterior's density."""
     return 1 if len(fit.posterior.blocks) < FEW_BLOCKS else settings.threads
+
+
+def jump_share(weighted: WeightedDraws) -> float:
+    """Return the share of the sampler's moves that jump, by how likely jumps are accepted.
+
+    Args:
+        weighted: Weighted draws, the first of them of the distribution that is jumped to.
+    """
+    return MANY_JUMPS if weighted.jumps > LIKELY_JUMP else JUMP_SHARE
 
 
 def next_look(n_steps: int) -> int:

@@ -2,18 +2,14 @@
 import numpy as np
 import pytest
 
-from benchmarks.speed import calibration_emcee
 from benchmarks.speed.calibration import LOAD_CELL, simulate
 from benchmarks.speed.calibration_emcee import (
-    jump_share,
     naive,
     numpy_log_likelihood,
     scipy_log_likelihood,
 )
 from model.bayes.fit import prepare_fit
 from model.bayes.likelihood import log_likelihood
-from model.bayes.sampler import JUMP_SHARE, MANY_JUMPS
-from model.bayes.weighted import WeightedDraws
 from model.slip.thesis import THESIS_LAW
 from rig.slip_rig.sweep import SweepPlan
 
@@ -35,13 +31,6 @@ def test_a_dense_likelihood_is_ours(fit, dense):
     ours = log_likelihood(posterior.blocks, posterior.law, values)
     found = [dense(posterior, row) for row in values]
     np.testing.assert_allclose(found, ours, rtol=0, atol=1e-8)
-
-
-@pytest.mark.parametrize(("adapted", "share"), [(True, JUMP_SHARE), (False, MANY_JUMPS)])
-def test_more_moves_jump_where_the_draws_need_no_adaptation(fit, monkeypatch, adapted, share):
-    drawn = WeightedDraws(np.zeros((1, 16)), np.ones(1), 0.1, np.zeros(1), adapted)
-    monkeypatch.setattr(calibration_emcee, "weighted_draws", lambda *_, **__: drawn)
-    assert jump_share(fit, np.random.default_rng(1)) == share
 
 
 def test_naive_walkers_make_whole_moves_and_each_evaluation_counts(fit):

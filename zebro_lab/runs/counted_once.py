@@ -70,9 +70,12 @@ def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tup
         n_runs: Number of runs.
     """
     whole = array_hash(*forces)
+    order = np.argsort(run, kind="stable")
+    bounds = np.searchsorted(run[order], np.arange(n_runs + 1))
     keys = []
     for index in range(n_runs):
-        part = [column[run == index] for column in forces]
+        rows = order[bounds[index] : bounds[index + 1]]
+        part = [column[rows] for column in forces]
         identified = len(part[0]) >= FEWEST and any(np.ptp(column) > 0 for column in part)
         keys.append(array_hash(*part) if identified else f"{whole} {index}")
     return tuple(keys)

@@ -17,7 +17,7 @@ FEWEST_SAMPLES: Final = 6
 _STEEPNESS = (0.5, 2.0, 5.0)  # B times the slip of the largest sample, of the starts
 _SHAPES = (1.3, 1.7)  # C of the starts
 _MOST_CURVATURE = 0.9  # E of a start
-_UNKNOWN = 1e-12  # ratio of singular values below which a direction is not determined
+_UNKNOWN = 1e-8  # ratio of singular values, below which differences of residuals are rounding
 
 
 @dataclass(frozen=True)

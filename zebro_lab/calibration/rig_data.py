@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from model.bayes.fine_means import joined_moments
 from model.bayes.rig_errors import USUAL, RigErrors
-from model.bayes.samples import DiscAngles, SlipSamples
+from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.counted import counted
 from model.errors import ModelError
@@ -33,6 +33,7 @@ from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
 from zebro_lab.tables.columns import Columns, parse_definition
 from zebro_lab.tables.columns_file import read_columns
+from zebro_lab.tables.disc_angles import joined_angles
 from zebro_lab.tables.parquet_files import parquet_rows
 from zebro_lab.tables.table_files import table_stem
 
@@ -131,7 +132,7 @@ def read_rig_data(
             *_averaging_note(parts),
             *(() if lateral is None else (lateral.text,)),
             *covariate_note(parts),
-            *_joined_angles(parts)[1],
+            *joined_angles([part.angles for part in parts])[1],
             *others,
             *skipped,
             *duplicates,
@@ -325,30 +326,8 @@ def _joined(parts: Sequence[RigPart]) -> SlipSamples:
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
         covariate=joined_covariate(parts),
         fine=joined_moments(fine) if len(fine) == len(parts) else None,
-        angles=_joined_angles(parts)[0],
+        angles=joined_angles([part.angles for part in parts])[0],
     )
-
-
-def _joined_angles(parts: Sequence[RigPart]) -> tuple[DiscAngles | None, tuple[str, ...]]:
-    """Return the angles of the discs that all tables have, of discs alike, and a note on others."""
-    each = [part.angles for part in parts if part.angles is not None]
-    if not each:
-        return None, ()
-    if len({(one.radius_leg, one.radius_ground) for one in each}) > 1:
-        return None, ("angles of the discs are not used: the tables have discs of other radii",)
-    leg = [one.leg for one in each if one.leg is not None]
-    ground = [one.ground for one in each if one.ground is not None]
-    both = [np.concatenate(of) if len(of) == len(parts) else None for of in (leg, ground)]
-    lost = [
-        name for name, of, joined in zip(("leg", "ground"), (leg, ground), both, strict=True)
-        if of and joined is None
-    ]  # fmt: skip
-    notes = tuple(
-        f"the angle of the {name} disc is not used, because some tables lack it" for name in lost
-    )
-    if all(joined is None for joined in both):
-        return None, notes
-    return DiscAngles(both[0], both[1], each[0].radius_leg, each[0].radius_ground), notes
 
 
 def _require_one_definition(parts: Sequence[RigPart]) -> None:

@@ -105,7 +105,7 @@ def _headers(columns: Columns) -> set[str]:
 
 
 def _every(raw: RawTable, step: int) -> RawTable:
-    """Return every so manieth row of a part of a table, by its rows in the file."""
+    """Return the rows of a part of a table whose numbers in the file are multiples of `step`."""
     rows = np.flatnonzero(np.asarray(raw.kept) % step == 0)
     return raw.part(rows)
 

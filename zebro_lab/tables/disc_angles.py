@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Angles of the discs of a rig table, where they are recorded."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -59,6 +60,41 @@ def disc_angles(
         angles.get("angle_leg"), angles.get("angle_ground"), radii["radius_leg"],
         radii["radius_ground"],
     ), tuple(notes)  # fmt: skip
+
+
+def joined_angles(
+    tables: Sequence[DiscAngles | None],
+) -> tuple[DiscAngles | None, tuple[str, ...]]:
+    """Return the angles of the discs that all tables have, and notes on those that are not used.
+
+    Args:
+        tables: Angles of each table, in the order of its samples; None of a table without.
+    """
+    each = [one for one in tables if one is not None]
+    if not each:
+        return None, ()
+    if len({(one.radius_leg, one.radius_ground) for one in each}) > 1:
+        return None, ("angles of the discs are not used: the tables have discs of other radii",)
+    recorded = {
+        "leg": [one.leg for one in each if one.leg is not None],
+        "ground": [one.ground for one in each if one.ground is not None],
+    }
+    joined = {
+        disc: np.concatenate(angles)
+        for disc, angles in recorded.items()
+        if len(angles) == len(tables)
+    }
+    notes = tuple(
+        f"the angle of the {disc} disc is not used, because some tables lack it"
+        for disc, angles in recorded.items()
+        if angles and disc not in joined
+    )
+    if not joined:
+        return None, notes
+    first = each[0]
+    return DiscAngles(
+        joined.get("leg"), joined.get("ground"), first.radius_leg, first.radius_ground
+    ), notes
 
 
 def _problem(table: RigTable, name: str, runs: Runs, time: Array | None) -> str:

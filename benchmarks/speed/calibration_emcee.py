@@ -18,12 +18,13 @@ from scipy.stats import multivariate_normal
 
 from benchmarks.speed.sampled import Sampled
 from model.bayes import sampler
-from model.bayes.calibrate import EFFECTIVE_DRAWS, THIN, jump_share
+from model.bayes.calibrate import EFFECTIVE_DRAWS, THIN
 from model.bayes.convergence import assess
 from model.bayes.fit import PreparedFit
+from model.bayes.jumps import choose_jumps
 from model.bayes.likelihood import predict_blocks, slip_errors
 from model.bayes.posterior import SlipPosterior
-from model.bayes.sampler import walker_count
+from model.bayes.sampler import Jumps, walker_count
 from model.bayes.weighted import weighted_draws
 from model.slip.law import Array
 
@@ -34,13 +35,15 @@ BALL = 0.01  # standard deviation of naive walkers' starts in each coordinate, 1
 DenseLogLikelihood = Callable[[SlipPosterior, Array], float]
 
 
-def chosen_share(fit: PreparedFit, rng: np.random.Generator) -> float:
-    """Return the share of jumps that `calibrate` chooses, by weighted draws."""
+def chosen_jumps(fit: PreparedFit, rng: np.random.Generator) -> Jumps:
+    """Return the jumps that `calibrate` chooses, by weighted draws."""
     weighted = weighted_draws(
         fit.posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, wanted=EFFECTIVE_DRAWS,
         rng=rng, threads=THREADS,
     )  # fmt: skip
-    return jump_share(weighted)
+    return choose_jumps(
+        fit.posterior.log_density, fit.approximation, weighted, rng=rng, threads=THREADS
+    )
 
 
 def ensembles(
@@ -48,12 +51,12 @@ def ensembles(
 ) -> tuple[Sampled, float]:
     """Walk emcee ensembles with one kind of move, with or without jumps.
 
-    With jumps the weighted draws that decide their share are part of the time.
+    With jumps the weighted draws that these are fitted to are part of the time.
 
     Args:
         fit: The fit.
         move: The move of emcee.
-        jumps: Whether some moves jump to draws of the Laplace approximations.
+        jumps: Whether some moves jump to draws of a mixture that is fitted to the posterior.
         steps: Number of kept steps, of `THIN` moves each.
         seed: Seed of the random generators.
 
@@ -64,14 +67,11 @@ def ensembles(
     try:
         density, rng = fit.posterior.log_density, np.random.default_rng(seed)
         began = time.perf_counter()
-        share = chosen_share(fit, rng) if jumps else 0.0
+        chosen = chosen_jumps(fit, rng) if jumps else None
         chains = sampler.start_chains(
             density, fit.approximation, ensembles=ENSEMBLES, thin=THIN, rng=rng
         )
-        chains = sampler.advance(
-            density, chains, steps=steps, approximation=fit.approximation if jumps else None,
-            jump_share=share, threads=THREADS,
-        )  # fmt: skip
+        chains = sampler.advance(density, chains, steps=steps, jumps=chosen, threads=THREADS)
         seconds = time.perf_counter() - began
     finally:
         sampler.MOVES = ours

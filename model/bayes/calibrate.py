@@ -11,6 +11,7 @@ from model.bayes.calibration import Calibration, conclude
 from model.bayes.convergence import Convergence, assess
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import (
+    SHORT_CALLS,
     LawComparison,
     Noise,
     PreparedFit,
@@ -20,16 +21,17 @@ from model.bayes.fit import (
     require_forces,
     validated,
 )
+from model.bayes.jumps import choose_jumps
 from model.bayes.law_scores import LawScores, choose_law, load_groups, score_laws, weigh_law
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.preview import Preview, preview, weighted_posterior
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.run_out import RunOut, find_run_out, without_run_out
-from model.bayes.sampler import JUMP_SHARE, MANY_JUMPS, Chains, advance, start_chains
+from model.bayes.sampler import Chains, Jumps, advance, start_chains
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
-from model.bayes.weighted import WeightedDraws, weighted_draws
+from model.bayes.weighted import weighted_draws
 from model.errors import FitError
 from model.mapping import HERE, Mapper
 from model.progress import Watcher
@@ -42,8 +44,6 @@ FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `m
 DRAWS_PER_ENSEMBLE = 1000  # at most
 IMPORTANCE_DRAWS = 10_000
 EFFECTIVE_DRAWS = 2_000.0  # below, the weighted draws are adapted to the posterior
-LIKELY_JUMP = 0.15  # share of accepted jumps, from which most moves are jumps
-FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
 class FitStopped(FitError):
@@ -67,7 +67,7 @@ class SamplerSettings:
         max_steps: Number of sampler moves after which a fit ends without convergence, at the next
             multiple of `THIN * CHUNK`; `FEWEST_MOVES` moves are made at least.
         block_length: Samples in a block; chosen by `choose_block_length` when None.
-        threads: Number of ensembles sampled at once; below `FEW_BLOCKS` blocks one at a time.
+        threads: Number of ensembles sampled at once; below `SHORT_CALLS` blocks one at a time.
         seed: Seed of the random generators.
         sampled: Whether the posterior is sampled by emcee; else its draws are weighted ones of the
             Laplace approximation.
@@ -156,8 +156,11 @@ def calibrate(
         first(preview(posterior, weighted, rng=judging))
         chains = None
         if settings.sampled:
-            share = jump_share(weighted)
-            chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep, share)
+            jumps = choose_jumps(
+                posterior.log_density, fit.approximation, weighted,
+                rng=judging.spawn(1)[0], threads=_threads(fit, settings),
+            )  # fmt: skip
+            chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep, jumps)
             draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
         else:
             draws, convergence = weighted_posterior(
@@ -225,6 +228,7 @@ def _prepare(
         fit = prepare_fit(
             samples, law, load_cell=known[0], rig_errors=known[1], stated=known[2], rng=rng,
             block_choice=choice, mapper=mapper, validate=validate, noise=noise,
+            threads=settings.threads,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks
         fits[name] = fit
@@ -283,7 +287,7 @@ def _sample(
     rng: np.random.Generator,
     watcher: Watcher,
     keep: Callable[[Chains], object],
-    jump_share: float,
+    jumps: Jumps,
 ) -> tuple[Chains, Convergence]:
     """Sample, from `earlier` if given, until convergence or the largest number of steps.
 
@@ -312,10 +316,7 @@ def _sample(
             look = next_look(chains.n_steps + 1)
         if watcher.stop_requested():
             raise FitStopped(chains)
-        chains = advance(
-            density, chains, steps=CHUNK, approximation=fit.approximation, jump_share=jump_share,
-            threads=threads,
-        )  # fmt: skip
+        chains = advance(density, chains, steps=CHUNK, jumps=jumps, threads=threads)
         keep(chains)
 
 
@@ -332,16 +333,7 @@ def _require_same_density(fit: PreparedFit, earlier: Chains) -> None:
 
 def _threads(fit: PreparedFit, settings: SamplerSettings) -> int:
     """Return the number of threads for a posterior's density."""
-    return 1 if len(fit.posterior.blocks) < FEW_BLOCKS else settings.threads
-
-
-def jump_share(weighted: WeightedDraws) -> float:
-    """Return the share of the sampler's moves that jump, by how likely jumps are accepted.
-
-    Args:
-        weighted: Weighted draws, the first of them of the distribution that is jumped to.
-    """
-    return MANY_JUMPS if weighted.jumps > LIKELY_JUMP else JUMP_SHARE
+    return 1 if len(fit.posterior.blocks) < SHORT_CALLS else settings.threads
 
 
 def next_look(n_steps: int) -> int:

@@ -9,6 +9,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from model.bayes.approximation import starting_points, straightened
+from model.bayes.batches import in_batches
 from model.bayes.blocks import SlipBlocks, block_means
 from model.bayes.checks.raw import opposed_runs
 from model.bayes.cross_validation import CrossValidation, cross_validate
@@ -30,6 +31,7 @@ Noise: TypeAlias = Literal["gauss", "student"]
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 UNSTATED_GAIN_SD = 0.01  # of a load cell that nobody has weighed: cells, mounts and wiring differ
 MOST_OPPOSED = 0.9  # share of the runs that slip, from which it is the data's sign that is wrong
+SHORT_CALLS = 500  # blocks below which calls of the density are too short for threads to help
 CLEAR_WIN = 2.0  # standard errors by which a later law must predict better to be preferred
 
 
@@ -98,6 +100,7 @@ def prepare_fit(
     mapper: Mapper = HERE,
     stated: StatedPriors = UNSTATED,
     noise: Noise = "gauss",
+    threads: int = 1,
 ) -> PreparedFit:
     """Average the samples, build the posterior, find its modes and cross-validate it.
 
@@ -113,6 +116,8 @@ def prepare_fit(
         mapper: Where the folds of the cross-validation are fitted.
         stated: Priors that replace default ones; the block length is chosen without them.
         noise: Distribution of the noise: "student" has the tails that explain the data best.
+        threads: Number of batches of points whose density is computed at once in the searches for
+            modes, from `SHORT_CALLS` blocks on.
 
     Raises:
         InsufficientData: There are fewer samples than the law's parameters plus two, traction is
@@ -125,8 +130,9 @@ def prepare_fit(
     require_forces(samples, load_cell)
     with explain_numerical_errors(samples, law):
         return _prepared(
-            samples, law, load_cell, rig_errors, rng, block_choice, validate, mapper, stated, noise
-        )
+            samples, law, load_cell, rig_errors, rng, block_choice, validate, mapper, stated, noise,
+            threads,
+        )  # fmt: skip
 
 
 @contextmanager
@@ -168,6 +174,7 @@ def _prepared(
     mapper: Mapper,
     stated: StatedPriors,
     noise: Noise,
+    threads: int,
 ) -> PreparedFit:
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
@@ -180,7 +187,10 @@ def _prepared(
     priors, correlation = with_stated(defaults, stated, fixed=fixed)
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
     starts = starting_points(posterior, rng)
-    approximation = approximate(posterior.log_density, starts)
+    density = posterior.log_density
+    if len(blocks) >= SHORT_CALLS:
+        density = in_batches(density, threads)
+    approximation = approximate(density, starts)
     tails: Mapping[float, float] = {}
     if noise == "student":
         chosen = choose_tail(posterior, approximation)

@@ -4,12 +4,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.special import logsumexp
 
+from model.bayes.student_mixture import StudentMixture
 from model.errors import FitError
 from model.slip.law import Array
 
@@ -18,6 +17,7 @@ SAME_TOP = 0.05  # maxima closer than this in coordinates are the same mode
 NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, beyond which a mode is left out
 ITERATIONS = 15  # of a search for a mode in one scaling
 ROUNDS = 20  # scalings of a search
+FREEDOM = 8.0  # degrees of freedom of the Student-t distributions [-]
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 
@@ -77,34 +77,22 @@ class LaplaceMixture:
         return share / share.sum()
 
     @cached_property
-    def _distributions(self) -> list[Any]:
-        from scipy.stats import multivariate_t  # late: takes longest of all to import
-
-        frozen: Any = multivariate_t  # scipy's stub has the covariance as an int
-        return [frozen(laplace.mode, laplace.covariance, df=8) for laplace in self.parts]
+    def distribution(self) -> StudentMixture:
+        """The mixture without the densities at its centres."""
+        return StudentMixture(
+            self.weights,
+            np.stack([laplace.mode for laplace in self.parts]),
+            np.stack([laplace.covariance for laplace in self.parts]),
+            np.full(len(self.parts), FREEDOM),
+        )
 
     def draw(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Draw coordinates from the mixture.
-
-        Args:
-            n: Number of draws.
-            rng: Source of randomness.
-
-        Returns:
-            Coordinates in random order, shape (n, d).
-        """
-        counts = rng.multinomial(n, self.weights)
-        parts = [
-            np.reshape(part.rvs(size=count, random_state=rng), (count, -1))
-            for part, count in zip(self._distributions, counts, strict=True)
-            if count
-        ]
-        return rng.permutation(np.concatenate(parts))
+        """Draw n coordinates from the mixture, in random order, shape (n, d)."""
+        return self.distribution.draw(n, rng=rng)
 
     def log_pdf(self, z: Array) -> Array:
         """Compute the mixture's log density at coordinates z of shape (w, d), shape (w,)."""
-        each = [np.reshape(part.logpdf(z), len(z)) for part in self._distributions]
-        return np.asarray(logsumexp(np.stack(each, axis=1) + np.log(self.weights), axis=1))
+        return self.distribution.log_pdf(z)
 
 
 def gradient(log_density: LogDensity, z: Array) -> Array:

@@ -16,6 +16,7 @@ from emcee.autocorr import integrated_time
 from emcee.moves import DEMove, MHMove
 
 from model.bayes.laplace import LaplaceMixture
+from model.bayes.student_mixture import StudentMixture
 from model.errors import DomainError, FitError
 from model.slip.law import Array
 
@@ -28,10 +29,18 @@ The snooker move is not used: emcee's, up to 3.1.6, lacks half of the exponent o
 ratio and narrows every spread by 7 %.
 """
 
-JUMP_SHARE = 0.3
-"""Share of moves that jump to a draw of the Laplace approximations, possibly at another mode."""
-MANY_JUMPS = 0.6
-"""The same where the approximations are close to the posterior."""
+
+@dataclass(frozen=True)
+class Jumps:
+    """Moves that jump to draws of one fixed distribution, wherever the walker is.
+
+    Attributes:
+        proposal: The distribution, near the posterior.
+        share: Share of the moves that jump [-].
+    """
+
+    proposal: StudentMixture
+    share: float
 
 
 @dataclass(frozen=True)
@@ -116,8 +125,7 @@ def advance(
     chains: Chains,
     *,
     steps: int,
-    approximation: LaplaceMixture | None = None,
-    jump_share: float = JUMP_SHARE,
+    jumps: Jumps | None = None,
     threads: int = 2,
 ) -> Chains:
     """Continue sampling every ensemble from its last kept step, the ensembles shared among threads.
@@ -130,9 +138,8 @@ def advance(
             in it.
         chains: Chains so far.
         steps: Number of kept steps to add, each of `chains.thin` moves.
-        approximation: Mixture that proposes some of the moves, so that walkers jump between modes;
-            None for no such moves.
-        jump_share: Share of the moves that it proposes.
+        jumps: Distribution that proposes some of the moves, so that walkers also jump between
+            modes, and their share; None for no such moves.
         threads: Number of ensembles that are sampled at once.
 
     Returns:
@@ -145,7 +152,7 @@ def advance(
         raise DomainError(f"steps is {steps}; expected 1 or more")
 
     def walk(ensemble: int) -> EnsembleSampler:
-        moves = _moves(approximation, jump_share)
+        moves = _moves(jumps)
         return _walk(log_density, chains, moves, ensemble=ensemble, steps=steps)
 
     with ThreadPoolExecutor(threads) as pool:
@@ -165,12 +172,12 @@ def advance(
     )
 
 
-def _moves(approximation: LaplaceMixture | None, jump_share: float) -> list[tuple[Any, float]]:
+def _moves(jumps: Jumps | None) -> list[tuple[Any, float]]:
     """Return the moves of an ensemble with their shares; they have state, and serve one only."""
-    rest = 1.0 if approximation is None else 1 - jump_share
+    rest = 1.0 if jumps is None else 1 - jumps.share
     moves: list[tuple[Any, float]] = [(move(), rest * share) for move, share in MOVES]
-    if approximation is not None:
-        moves.append((MHMove(_jump_to(approximation)), jump_share))
+    if jumps is not None:
+        moves.append((MHMove(_jump_to(jumps.proposal)), jumps.share))
     return moves
 
 
@@ -199,7 +206,7 @@ def _walk(
 
 
 def _jump_to(
-    approximation: LaplaceMixture,
+    proposal: StudentMixture,
 ) -> Callable[[Array, np.random.RandomState], tuple[Array, Array]]:
     """Return a proposal function for emcee: draws of the mixture, independent of the walkers.
 
@@ -208,8 +215,8 @@ def _jump_to(
 
     def propose(z: Array, rng: np.random.RandomState) -> tuple[Array, Array]:
         # A generator of its own: RandomState hides half a pair of normals from its state array.
-        drawn = approximation.draw(len(z), rng=np.random.default_rng(rng.randint(2**31)))
-        return drawn, approximation.log_pdf(z) - approximation.log_pdf(drawn)
+        drawn = proposal.draw(len(z), rng=np.random.default_rng(rng.randint(2**31)))
+        return drawn, proposal.log_pdf(z) - proposal.log_pdf(drawn)
 
     return propose
 

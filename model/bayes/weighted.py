@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Draws of a posterior with importance weights, adapted where the first approximation is poor."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,8 +8,10 @@ from numpy.typing import NDArray
 
 from model.bayes.adaptive import EarlierDraws, Effort, Mode, adaptive_draws
 from model.bayes.arviz_import import import_arviz
+from model.bayes.batches import in_batches
 from model.bayes.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.laplace import LaplaceMixture, LogDensity
+from model.bayes.student_mixture import StudentMixture
 from model.slip.law import Array
 
 MOST_MORE = 2.0  # draws of the first distribution that are added, over the first ones
@@ -120,9 +121,10 @@ def weighted_draws(
         )
     if first.reliable and first.effective_size >= wanted:
         return first
+    spread = in_batches(log_density, threads)
     adapted = adaptive_draws(
         [_spanning(proposal)],
-        lambda z, _: _in_batches(log_density, z, threads),
+        lambda z, _: spread(z),
         rng=rng,
         progress=lambda _: None,
         effort=Effort(FURTHER_DRAWS, wanted, FURTHER_ROUNDS),
@@ -140,14 +142,14 @@ def weighted_draws(
 
 def importance_draws(
     log_density: LogDensity,
-    proposal: LaplaceMixture,
+    proposal: LaplaceMixture | StudentMixture,
     *,
     n: int,
     rng: np.random.Generator,
     threads: int = 1,
     earlier: WeightedDraws | None = None,
 ) -> WeightedDraws:
-    """Draw from a mixture of Laplace approximations and weight the draws by the posterior.
+    """Draw from a mixture near the posterior and weight the draws by the posterior.
 
     Pareto-smoothed importance sampling (Vehtari et al. 2024). Draws outside the support have
     practically no weight; at least one has to lie inside.
@@ -161,19 +163,13 @@ def importance_draws(
         earlier: Earlier draws of the same mixture, which are kept.
     """
     z = proposal.draw(n, rng=rng)
-    height = _in_batches(log_density, z, threads)
+    height = in_batches(log_density, threads)(z)
     if earlier is not None:
         z = np.concatenate([earlier.z, z])
         height = np.concatenate([earlier.log_density, height])
     log_proposal = proposal.log_pdf(z)
     drawn = _weighted(z, height, log_proposal)
     return replace(drawn, jumps=_accepted(height - log_proposal, drawn.weights))
-
-
-def _in_batches(log_density: LogDensity, z: Array, threads: int) -> Array:
-    """Compute the log density at coordinates z, (n, d), in batches of about 64, shape (n,)."""
-    with ThreadPoolExecutor(threads) as pool:
-        return np.concatenate(list(pool.map(log_density, np.array_split(z, len(z) // 64 + 1))))
 
 
 def _weighted(z: Array, log_density: Array, log_proposal: Array) -> WeightedDraws:

@@ -10,7 +10,7 @@ from model.bayes.convergence import assess
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
-from model.bayes.sampler import advance, start_chains
+from model.bayes.sampler import Jumps, advance, start_chains
 from model.bayes.weighted import importance_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
@@ -28,7 +28,9 @@ def short_calibration() -> Calibration:
     fit = prepare_fit(samples, THESIS_LAW, load_cell=LoadCell(), rng=rng)
     density = fit.posterior.log_density
     chains = start_chains(density, fit.approximation, ensembles=2, thin=5, rng=rng)
-    chains = advance(density, chains, steps=100, approximation=fit.approximation, threads=1)
+    chains = advance(
+        density, chains, steps=100, jumps=Jumps(fit.approximation.distribution, 0.3), threads=1
+    )
     convergence = assess(chains)
     weighted = importance_draws(density, fit.approximation, n=4000, rng=rng)
     return conclude(

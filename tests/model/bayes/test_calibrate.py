@@ -11,12 +11,9 @@ from model.bayes.calibrate import (
     FitStopped,
     SamplerSettings,
     calibrate,
-    jump_share,
     next_look,
 )
 from model.bayes.posterior import LoadCell
-from model.bayes.sampler import JUMP_SHARE, MANY_JUMPS
-from model.bayes.weighted import WeightedDraws
 from model.errors import FitError
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
@@ -107,9 +104,3 @@ def test_resumed_fit_is_judged_where_the_uninterrupted_one_is(n_steps):
         return found
 
     assert judged(n_steps) == [n for n in judged(1) if n >= n_steps]
-
-
-@pytest.mark.parametrize(("jumps", "share"), [(0.05, JUMP_SHARE), (0.3, MANY_JUMPS)])
-def test_most_moves_jump_where_jumps_are_likely_to_be_accepted(jumps, share):
-    drawn = WeightedDraws(np.zeros((1, 2)), np.ones(1), 0.1, np.zeros(1), jumps)
-    assert jump_share(drawn) == share

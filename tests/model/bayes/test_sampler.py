@@ -7,6 +7,7 @@ from model.bayes import sampler
 from model.bayes.convergence import assess
 from model.bayes.laplace import Laplace, LaplaceMixture
 from model.bayes.sampler import (
+    Jumps,
     advance,
     autocorrelation_times,
     start_chains,
@@ -28,6 +29,7 @@ def correlated_gaussian(d=D):
 MEAN, COVARIANCE = correlated_gaussian()
 PRECISION = np.linalg.inv(COVARIANCE)
 APPROXIMATION = LaplaceMixture((Laplace(MEAN, COVARIANCE, 0.0),))
+JUMPS = Jumps(APPROXIMATION.distribution, 0.3)
 
 
 def log_density(z):
@@ -236,13 +238,13 @@ def test_jumps_find_the_weights_of_two_modes_whatever_those_of_the_approximation
     wrong = hills(0.0, -2.0)
     chains = start_chains(two_modes, wrong, ensembles=4, thin=5, rng=rng)
     assert np.mean(chains.z[..., 0] > 0) > 0.8
-    chains = advance(two_modes, chains, steps=500, approximation=wrong)
+    chains = advance(two_modes, chains, steps=500, jumps=Jumps(wrong.distribution, 0.3))
     assert np.mean(chains.z[:, 100:, :, 0] > 0) == pytest.approx(0.3, abs=0.03)
 
 
 def test_a_gaussian_is_reproduced_with_jumps_to_a_poor_approximation():
     off = LaplaceMixture((Laplace(MEAN + 0.3 * np.sqrt(np.diag(COVARIANCE)), COVARIANCE, 0.0),))
-    chains = advance(log_density, start(thin=5), steps=600, approximation=off)
+    chains = advance(log_density, start(thin=5), steps=600, jumps=Jumps(off.distribution, 0.3))
     convergence = assess(chains)
     mean_error, spread = errors(chains, convergence.burn_in)
     assert np.abs(mean_error).max() < 0.03  # about 13,000 effective draws, the worst of 12
@@ -252,16 +254,14 @@ def test_a_gaussian_is_reproduced_with_jumps_to_a_poor_approximation():
 
 def test_jumps_shorten_the_autocorrelation_time_of_a_gaussian():
     times = [
-        autocorrelation_times(
-            advance(log_density, start(), steps=300, approximation=approximation).z
-        ).max()
-        for approximation in (None, APPROXIMATION)
+        autocorrelation_times(advance(log_density, start(), steps=300, jumps=jumps).z).max()
+        for jumps in (None, JUMPS)
     ]
     assert times[1] < 0.6 * times[0]
 
 
 def test_a_walk_with_jumps_is_the_same_however_it_is_cut():
     begun = start()
-    whole = advance(log_density, begun, steps=20, approximation=APPROXIMATION)
-    first = advance(log_density, begun, steps=7, approximation=APPROXIMATION, threads=1)
-    assert_same(advance(log_density, first, steps=13, approximation=APPROXIMATION), whole)
+    whole = advance(log_density, begun, steps=20, jumps=JUMPS)
+    first = advance(log_density, begun, steps=7, jumps=JUMPS, threads=1)
+    assert_same(advance(log_density, first, steps=13, jumps=JUMPS), whole)

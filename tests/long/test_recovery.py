@@ -23,10 +23,11 @@ from scipy.stats import chi2
 from model.bayes.convergence import Convergence, assess
 from model.bayes.estimate import Agreement, Estimate, agreement, estimate, thin_draws
 from model.bayes.fit import PreparedFit, prepare_fit
+from model.bayes.jumps import choose_jumps
 from model.bayes.posterior import LoadCell
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
-from model.bayes.weighted import weighted_draws
+from model.bayes.weighted import WeightedDraws, weighted_draws
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
@@ -111,11 +112,14 @@ def say(line: str) -> None:
     print(line, flush=True)  # noqa: T201 the table is what `make test-long` is run for
 
 
-def walk(fit: PreparedFit, rng: np.random.Generator) -> tuple[Chains, Convergence]:
+def walk(
+    fit: PreparedFit, weighted: WeightedDraws, rng: np.random.Generator
+) -> tuple[Chains, Convergence]:
     density = fit.posterior.log_density
+    jumps = choose_jumps(density, fit.approximation, weighted, rng=rng)
     chains = start_chains(density, fit.approximation, ensembles=ENSEMBLES, thin=THIN, rng=rng)
     while True:
-        chains = advance(density, chains, steps=CHUNK, approximation=fit.approximation)
+        chains = advance(density, chains, steps=CHUNK, jumps=jumps)
         convergence = assess(chains)
         enough = convergence.converged and convergence.ess_bulk.min() >= ENOUGH_ESS
         if enough or chains.n_steps > MOST_STEPS:
@@ -137,7 +141,7 @@ def recover(seed: int, errors: RigErrors) -> Recovery:
     covariance = np.cov(np.log(law_values), rowvar=False)
     convergence, engines = None, None
     if seed < N_SAMPLED:
-        chains, convergence = walk(fit, rng)
+        chains, convergence = walk(fit, weighted, rng)
         draws = thin_draws(posterior, chains, convergence, n=chains.z[0].size)
         engines = agreement(draws, weighted, convergence)
     return Recovery(

@@ -100,9 +100,8 @@ def fit_mixture(
             ]
         )
         belongs = weights * np.exp(log - logsumexp(log, axis=0))  # (parts, n)
-        shares = np.maximum(belongs.sum(axis=1), 1e-12)
-        shares = shares / shares.sum()
-        centres = belongs @ z / np.maximum(belongs.sum(axis=1), 1e-300)[:, None]
+        total = np.maximum(belongs.sum(axis=1), 1e-12)
+        shares, centres = total / total.sum(), belongs @ z / total[:, None]
         covariances = np.stack(
             [
                 _shrunk_covariance(z - centre, own, whole)

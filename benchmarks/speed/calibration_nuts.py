@@ -9,6 +9,7 @@ Raises ImportError where NumPyro is missing: `make bench` installs it.
 import math
 import time
 from collections.abc import Callable
+from dataclasses import fields
 from typing import Any, cast
 
 import arviz as az
@@ -21,6 +22,7 @@ from model.bayes.load_rule import load_rule
 from model.bayes.posterior import SlipPosterior
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.bayes.shear import FAR, Shear
+from model.bayes.slip_rule import SlipRule, slip_rule
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW
@@ -116,15 +118,15 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
     rule = load_rule(blocks)
     variance = np.maximum(blocks.slip_variance(), 1e-12)
     apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
-    slip, load, traction, slip_error, half = (
+    slip, load, traction, slip_error = (
         jnp.asarray(x.reshape(shape))
         for x in (
-            blocks.slip,
-            blocks.normal_force,
-            blocks.traction_force,
-            blocks.slip_error,
-            np.sqrt(3 * apart),
+            blocks.slip, blocks.normal_force, blocks.traction_force, blocks.slip_error,
         )
+    )  # fmt: skip
+    rule_of_slip = slip_rule(blocks.slip, apart)
+    inner, outer, inner_weight, outer_weight, inner_slope, outer_slope = (
+        jnp.asarray(getattr(rule_of_slip, each.name).reshape(shape)) for each in fields(SlipRule)
     )
     light, heavy, share, slip_per_load, follow, along = (
         jnp.asarray(x.reshape(shape))
@@ -157,13 +159,17 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
             f = mu * true_load * jnp.sin(C * jnp.arctan(Bk - E * (Bk - jnp.arctan(Bk))))
             return (1 + g_t) * (f - c_r * true_load)
 
-        above, centre, below = (force(slip + s * half, load) for s in (1, 0, -1))
-        slope = (above - below) / (2 * half)
+        centre = force(slip, load)
+        above, below = force(slip + inner, load), force(slip - inner, load)
+        far_above, far_below = force(slip + outer, load), force(slip - outer, load)
+        slope = inner_slope * (above - below) + outer_slope * (far_above - far_below)
+        bend = inner_weight * (above - 2 * centre + below)
+        bend = bend + outer_weight * (far_above - 2 * centre + far_below)
         per_load = slip_per_load + c * slope * follow
         at_light, at_heavy = (force(slip + per_load * (x - load), x) for x in (light, heavy))
         at_one_load = jnp.maximum(1 - (per_load**2 - slip_per_load**2) * along, 0.0)
         mean = at_light + share * (at_heavy - at_light)
-        mean = mean + at_one_load * (above - 2 * centre + below) / 6
+        mean = mean + at_one_load * bend
         slope_in_load = (force(slip, heavy) - centre) / (heavy - load)
         mean = mean + slope_in_load / (1 + g_n) * c * mean
         noise = s_0 + s_1 * jnp.abs(mean)

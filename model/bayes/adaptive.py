@@ -88,28 +88,6 @@ class WeightedCaseDraws:
     log_proposal: Array
 
 
-@dataclass(frozen=True)
-class EarlierDraws:
-    """Draws of case 0 from another distribution, which stay among those of the rounds.
-
-    They keep tails that no round reaches: rounds are adapted to the weighted draws before them, and
-    a tail without draws stays one.
-
-    Attributes:
-        z: Draws in standard normal coordinates, shape (n, d).
-        log_density: Log posterior density at each, up to a constant, shape (n,).
-        log_pdf: Log density of their distribution at points, shape (m, d) to (m,).
-    """
-
-    z: Array
-    log_density: Array
-    log_pdf: Callable[[Array], Array]
-
-    def log_proposal(self, z: Array, draws: int) -> Array:
-        """Compute the log proposal density at points z (m, d), as of rounds of so many draws."""
-        return np.log(len(self.z) / draws) + self.log_pdf(z)
-
-
 def adaptive_draws(
     modes: Sequence[Mode],
     log_density: Callable[[Array, NDArray[np.intp]], Array],
@@ -117,7 +95,6 @@ def adaptive_draws(
     rng: np.random.Generator,
     progress: Callable[[float], None],
     effort: Effort,
-    earlier: EarlierDraws | None = None,
 ) -> WeightedCaseDraws:
     """Draw weighted samples of the posterior by adaptive importance sampling.
 
@@ -130,19 +107,14 @@ def adaptive_draws(
         rng: Source of randomness.
         progress: Called with the fraction of the largest number of rounds done.
         effort: Size and number of the rounds.
-        earlier: Draws that come before those of the rounds; None for none.
     """
     rounds = [_around_modes(modes)]
-    z = np.empty((0, len(modes[0].z))) if earlier is None else earlier.z
-    log_p = np.empty(0) if earlier is None else earlier.log_density
-    log_q = np.empty(0) if earlier is None else earlier.log_proposal(z, effort.draws)
-    case = np.zeros(len(z), dtype=np.intp)
+    z, case = np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
+    log_p, log_q = np.empty(0), np.empty(0)
     while True:
         more, of_case = _draw(rounds[-1], effort.draws, rng)
         log_q = np.logaddexp(log_q, _log_proposal(rounds[-1], z, case))
         before = [_log_proposal(each, more, of_case) for each in rounds]
-        if earlier is not None:
-            before.append(earlier.log_proposal(more, effort.draws))
         log_q = np.concatenate([log_q, np.logaddexp.reduce(before, axis=0)])
         z, case = np.concatenate([z, more]), np.concatenate([case, of_case])
         log_p = np.concatenate([log_p, log_density(more, of_case)])
@@ -150,7 +122,7 @@ def adaptive_draws(
         progress(len(rounds) / effort.rounds)
         if 1 / (weight @ weight) >= effort.wanted or len(rounds) == effort.rounds:
             return WeightedCaseDraws(z, case, weight, log_p, log_q)
-        flat = _tempered(log_p - log_q)
+        flat = tempered(log_p - log_q, ENOUGH)
         modes = _adapted(modes, z, case, flat)
         bumps = _around_modes(modes)
         if len(rounds) >= PATIENCE and 1 / (weight @ weight) < ENOUGH:
@@ -290,8 +262,8 @@ def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Ar
     return adapted
 
 
-def _tempered(log: Array) -> Array:
-    """Raise weights exp(log) to the largest power up to 1 with over `ENOUGH` effective draws.
+def tempered(log: Array, enough: float) -> Array:
+    """Raise weights exp(log) to the largest power up to 1 with over `enough` effective draws.
 
     The weights returned have sum one, shape (n,).
     """
@@ -299,7 +271,7 @@ def _tempered(log: Array) -> Array:
     for _ in range(20):
         power = 0.5 * (low + high)
         weight = _weights(power * log)
-        low, high = (power, high) if 1 / (weight @ weight) > ENOUGH else (low, power)
+        low, high = (power, high) if 1 / (weight @ weight) > enough else (low, power)
     return _weights(low * log)
 
 

@@ -19,6 +19,8 @@ BY_CHANCE = 1e-6  # probability; one false wander can cost hundreds of nats wher
 LEFT_OVER = 0.1  # of the spread beyond noise, behind the best cut; of an even glide it is a quarter
 FEWEST = 4  # samples in a block that can tell a jump from a glide
 LEAST_JUMP = 1e-5  # of the slip ratio; smaller ones are rounding errors
+SURE = 3.0  # standard deviations of the noise's own sum of squares
+UNUSUAL = 4.0  # times the middle block's spread beyond noise
 
 
 def block_starts(
@@ -64,6 +66,10 @@ def _jumps(slip: Array, starts: NDArray[np.intp], noise: Array) -> NDArray[np.in
     :math:`S^2 n / (p (n - p))` away from their sum of squares. A block has a jump if that sum is
     more than noise explains, and its best cut leaves less than `LEFT_OVER` of what is beyond noise.
 
+    Noise alone makes one cut of many look good where a speed ripples. Cuts that noise has chosen
+    select the measured slips of their blocks by their errors, which biases the curve's rise. So a
+    jump is also too large for noise to hide what a cut leaves, or its block spreads unusually far.
+
     Args:
         slip: Slip ratios, shape (n_samples,) [-].
         starts: First sample of each block, then the number of samples, shape (n + 1,).
@@ -79,11 +85,14 @@ def _jumps(slip: Array, starts: NDArray[np.intp], noise: Array) -> NDArray[np.in
     best = np.maximum.reduceat(taken, starts[:-1])
     spare = np.maximum(count - 1, 1)
     beyond = total - noise * spare
+    usual = max(float(np.median(beyond / spare)), 0.0) * spare
+    clear = LEFT_OVER * beyond > SURE * noise * np.sqrt(2 * spare)
     jumped = (
         (count >= FEWEST)
         & (total > noise * chdtri(spare, BY_CHANCE))
         & (best > LEAST_JUMP**2)
         & (beyond - best < LEFT_OVER * beyond)
+        & (clear | (beyond > UNUSUAL * usual))
     )
     cuts = [starts[k] + int(np.argmax(taken[starts[k] : starts[k + 1]])) + 1
             for k in np.flatnonzero(jumped)]  # fmt: skip

@@ -43,7 +43,8 @@ FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
 FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `max_steps` says
 DRAWS_PER_ENSEMBLE = 1000  # at most
 IMPORTANCE_DRAWS = 10_000
-EFFECTIVE_DRAWS = 2_000.0  # below, the weighted draws are adapted to the posterior
+EFFECTIVE_DRAWS = 2_000.0  # that are wanted of the weighted ones before sampling
+ALONE = 5_000.0  # where nothing is sampled: the tails need more than the middle
 
 
 class FitStopped(FitError):
@@ -150,7 +151,8 @@ def calibrate(
     with explain_numerical_errors(samples, posterior.law):
         watcher.step("weighting", None)
         weighted = weighted_draws(
-            posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, wanted=EFFECTIVE_DRAWS,
+            posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS,
+            wanted=EFFECTIVE_DRAWS if settings.sampled else ALONE,
             rng=judging, threads=_threads(fit, settings),
         )  # fmt: skip
         first(preview(posterior, weighted, rng=judging))

@@ -13,13 +13,8 @@ import numpy as np
 
 from model.bayes.laplace import LaplaceMixture, LogDensity
 from model.bayes.sampler import Jumps
-from model.bayes.student_mixture import fit_mixture
-from model.bayes.weighted import WeightedDraws, importance_draws
+from model.bayes.weighted import DRAWS_A_PART, WeightedDraws, fitted_to, importance_draws
 
-MOST_PARTS = 3  # of the fitted mixture
-DRAWS_A_PART = 20.0  # effective draws that a part needs, a dimension
-FREEDOM = 20.0  # degrees of freedom of the parts [-]
-LAPLACE_SHARE = 0.2  # of the Laplace mixture beside them, with its longer tails and its modes
 TRIED = 1000  # draws by which the acceptance of jumps is estimated
 LIKELY = 0.15  # share of accepted jumps, from which most moves are jumps
 FEW, MANY = 0.3, 0.6  # share of moves that are jumps, below and from that on
@@ -47,10 +42,9 @@ def choose_jumps(
         threads: Number of batches of draws whose density is computed at once.
     """
     proposal, accepted = approximation.distribution, weighted.jumps
-    parts = int(min(weighted.effective_size / (DRAWS_A_PART * weighted.z.shape[1]), MOST_PARTS))
-    if parts > 0 and weighted.reliable:
-        fitted = fit_mixture(weighted.z, weighted.weights, parts=parts, freedom=FREEDOM, rng=rng)
-        fitted = fitted.beside(approximation.distribution, LAPLACE_SHARE)
+    enough = weighted.effective_size >= DRAWS_A_PART * weighted.z.shape[1]
+    if enough and weighted.reliable:
+        fitted = fitted_to(weighted, approximation, rng=rng)
         tried = importance_draws(log_density, fitted, n=TRIED, rng=rng, threads=threads)
         if tried.jumps > accepted:
             proposal, accepted = fitted, tried.jumps

@@ -12,6 +12,7 @@ import numpy as np
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.load_rule import load_rule
+from model.bayes.slip_rule import slip_rule
 from model.compiled import borrowing, inlined
 from model.elementary import log_of
 from model.lanes import LANES, put, row, select, size
@@ -23,30 +24,30 @@ from model.slip.law import Array
     GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, SCALE, SCATTER, FLOOR, GROWTH, RHO, TAU,
 ) = range(ROWS, ROWS + 12)  # fmt: skip
 (
-    LOAD, CENTRE, ABOVE, BELOW, LIGHT_LOAD, HEAVY_LOAD, DOWN, UP, HALF_WIDTH, HEAVY_SHARE,
-    FOLLOW, ALONG_LOAD, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
-) = range(16)  # fmt: skip
+    LOAD, CENTRE, INNER, OUTER, INNER_WEIGHT, OUTER_WEIGHT, INNER_SLOPE, OUTER_SLOPE, LIGHT_LOAD,
+    HEAVY_LOAD, DOWN, UP, HEAVY_SHARE, FOLLOW, ALONG_LOAD, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
+) = range(19)  # fmt: skip
 """Columns of `block_table`."""
 LOG_2PI = math.log(2 * math.pi)
 
 
 def block_table(blocks: SlipBlocks) -> Array:
-    """Compute what the likelihood needs of each block, shape (n, 16).
+    """Compute what the likelihood needs of each block, shape (n, 19).
 
-    Load with its slip and that above and below it by sqrt(3) standard deviations, light and heavy
-    load, their differences from the load, half the distance of the outer slips, the share of the
-    heavy load, the variance of slip over that of the load that it follows, the variance of load
-    over that of slip at one load, slip over load, slip over radius error, traction and the variance
-    of slip's own error.
+    Load and slip, the six columns of `SlipRule`, light and heavy load, their differences from the
+    load, the share of the heavy load, the variance of slip over that of the load that it follows,
+    the variance of load over that of slip at one load, slip over load, slip over radius error,
+    traction and the variance of slip's own error.
     """
     rule, slip, load = load_rule(blocks), blocks.slip, blocks.normal_force
     variance = np.maximum(blocks.slip_variance(), 1e-12)
     apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
-    half = np.sqrt(3 * apart)
+    points = slip_rule(slip, apart)
     return np.column_stack(
         [
-            load, slip, slip + half, slip - half, rule.light, rule.heavy,
-            rule.light - load, rule.heavy - load, half, rule.heavy_share,
+            load, slip, points.inner, points.outer, points.inner_weight, points.outer_weight,
+            points.inner_slope, points.outer_slope, rule.light, rule.heavy,
+            rule.light - load, rule.heavy - load, rule.heavy_share,
             variance / rule.followed, rule.variance / apart, rule.slip_per_load,
             slip_per_radius_error(slip, blocks.definition),
             blocks.traction_force, blocks.slip_error,
@@ -134,16 +135,23 @@ def _predicted(kind, sensitive, reference, sided, A, block):
     shift, c_r = row(A, RADIUS) * block[SHIFT], row(A, ROLLING)
     load = _true_load(g_n, b_n, block[LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
-    centre = g_t * (side_at_slip(sided, kind, A, at_load, block[CENTRE] - shift, load) - c_r * load)
-    above = g_t * (side_at_slip(sided, kind, A, at_load, block[ABOVE] - shift, load) - c_r * load)
-    below = g_t * (side_at_slip(sided, kind, A, at_load, block[BELOW] - shift, load) - c_r * load)
-    slope = (above - below) * (0.5 / block[HALF_WIDTH])
+    middle = block[CENTRE] - shift
+    centre = g_t * (side_at_slip(sided, kind, A, at_load, middle, load) - c_r * load)
+    above = g_t * (side_at_slip(sided, kind, A, at_load, middle + block[INNER], load) - c_r * load)
+    below = g_t * (side_at_slip(sided, kind, A, at_load, middle - block[INNER], load) - c_r * load)
+    slope = (above - below) * block[INNER_SLOPE]
+    bend = (above - 2.0 * centre + below) * block[INNER_WEIGHT]
+    if block[OUTER_WEIGHT] > 0.0:
+        far = block[OUTER]
+        above = g_t * (side_at_slip(sided, kind, A, at_load, middle + far, load) - c_r * load)
+        below = g_t * (side_at_slip(sided, kind, A, at_load, middle - far, load) - c_r * load)
+        slope = slope + (above - below) * block[OUTER_SLOPE]
+        bend = bend + (above - 2.0 * centre + below) * block[OUTER_WEIGHT]
     c = row(A, CROSSTALK)
     per_load = block[SLIP_PER_LOAD] + c * slope * block[FOLLOW]
     measured = block[SLIP_PER_LOAD]
     more = (per_load * per_load - measured * measured) * block[ALONG_LOAD]
     at_one_load = _at_least_zero(1.0 - more)
-    middle = block[CENTRE] - shift
     load = _true_load(g_n, b_n, block[LIGHT_LOAD])
     at_load = law_at_load(kind, sensitive, reference, A, load)
     slip = middle + per_load * block[DOWN]
@@ -154,7 +162,7 @@ def _predicted(kind, sensitive, reference, sided, A, block):
     heavy = g_t * (side_at_slip(sided, kind, A, at_load, slip, load) - c_r * load)
     heavier = g_t * (side_at_slip(sided, kind, A, at_load, middle, load) - c_r * load)
     mean = light + block[HEAVY_SHARE] * (heavy - light)
-    mean = mean + at_one_load * (above - 2.0 * centre + below) * (1.0 / 6.0)
+    mean = mean + at_one_load * bend
     slope_in_load = (heavier - centre) * (1.0 / block[UP])
     force = mean + slope_in_load / g_n * c * mean
     return force, slope, row(A, FLOOR) + row(A, GROWTH) * size(force)

@@ -27,6 +27,7 @@ import numpy as np
 from model.bayes.blocks import SlipBlocks
 from model.bayes.lane_likelihood import lane_log_likelihood
 from model.bayes.load_rule import load_rule
+from model.bayes.slip_rule import slip_rule
 from model.compiled import compiled
 from model.slip.covariate import CovariateLaw, law_at
 from model.slip.definition import slip_per_radius_error
@@ -77,16 +78,17 @@ class PredictedForces:
     noise: Array
 
 
-def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> PredictedForces:
+def predict_blocks(
+    blocks: SlipBlocks, law: SlipLaw, values: Array, *, sine: bool = False
+) -> PredictedForces:
     r"""Compute expected traction, its slope in slip and the standard deviation of noise by block.
 
     The mean of the law over a block is that over its loads, slip following load by regression, plus
-    what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` with the law's
-    forces f at :math:`\kappa \pm \sqrt{3}\,\omega` and :math:`\kappa` (three-point Gauss-Hermite,
-    exact to fifth order), :math:`\omega^2` the variance of the slip that does not follow the
-    measured load; the sum is scaled to that which does not follow the true one. The load's rule has
-    two points and the mean, variance and skewness of the block's loads: a bump on a disc makes the
-    loads skewed, and because peak slip depends on load the force is curved in load.
+    what the spread of slip at one load adds to it, by the points of `slip_rule` for the variance of
+    the slip that does not follow the measured load; the sum is scaled to that which does not follow
+    the true one. The load's rule has two points and the mean, variance and skewness of the block's
+    loads: a bump on a disc makes the loads skewed, and because peak slip depends on load the force
+    is curved in load.
 
     Crosstalk puts the expected traction into the load, by the slope of force in load. With the
     measured traction there, the density of the traction would have a Jacobian, and an error in that
@@ -100,6 +102,7 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
         blocks: The block means, n of them.
         law: The slip law, of k parameters.
         values: Law and measurement parameters, shape (w, k + 12).
+        sine: Whether slip within blocks near zero slip is distributed as a sine wave is.
     """
     k = len(law.parameters)
     law_values = values[:, :k].T[:, :, None]
@@ -116,17 +119,22 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
 
     variance = np.maximum(blocks.slip_variance(), 1e-12)
     apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
-    half_width = np.sqrt(3 * apart)
-    offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: loads are computed once
-    above, centre, below = force_at(blocks.slip + offsets * half_width, blocks.normal_force)
-    slope = (above - below) / (2 * half_width)
+    points = slip_rule(blocks.slip, apart, sine=sine)
+    offsets = np.stack([0 * apart, points.inner, -points.inner, points.outer, -points.outer])
+    # One call: what depends on load alone is computed once.
+    centre, above, below, far_above, far_below = force_at(
+        blocks.slip + offsets[:, None], blocks.normal_force
+    )
+    slope = points.inner_slope * (above - below) + points.outer_slope * (far_above - far_below)
+    bend = points.inner_weight * (above - 2 * centre + below)
+    bend = bend + points.outer_weight * (far_above - 2 * centre + far_below)
     per_load = rule.slip_per_load + c * slope * variance / rule.followed
     at_one_load = np.maximum(variance - per_load**2 * rule.variance, 0.0) / apart
     up, down = rule.heavy - blocks.normal_force, rule.light - blocks.normal_force
     light = force_at(blocks.slip + per_load * down, rule.light)
     heavy = force_at(blocks.slip + per_load * up, rule.heavy)
     mean = light + rule.heavy_share * (heavy - light)
-    mean = mean + at_one_load * (above - 2 * centre + below) / 6
+    mean = mean + at_one_load * bend
     slope_in_load = (force_at(blocks.slip, rule.heavy) - centre) / up
     force = mean + slope_in_load / (1 + g_n) * c * mean
     return PredictedForces(force, slope, s_0 + s_1 * np.abs(force))

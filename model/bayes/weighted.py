@@ -1,24 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""Draws of a posterior with importance weights, adapted where the first approximation is poor."""
+"""Draws of a posterior with importance weights, from a mixture fitted to them where few count."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.adaptive import EarlierDraws, Effort, Mode, adaptive_draws
+from model.bayes.adaptive import tempered
 from model.bayes.arviz_import import import_arviz
 from model.bayes.batches import in_batches
 from model.bayes.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.laplace import LaplaceMixture, LogDensity
-from model.bayes.student_mixture import StudentMixture
+from model.bayes.student_mixture import StudentMixture, fit_mixture
 from model.slip.law import Array
 
-MOST_MORE = 2.0  # draws of the first distribution that are added, over the first ones
-ENOUGH_MORE = 1.1  # effective draws that are aimed at, over the wanted ones
 ENOUGH_PAIRS = 1000  # draws from and to which the acceptance of jumps is averaged
-FURTHER_DRAWS = 2000  # of each round of adapted draws
-FURTHER_ROUNDS = 15  # at most
+FURTHER_DRAWS = 2000  # of each further round, at least
+MOST_FURTHER = 40_000  # of all further rounds
+MOST_PARTS = 3  # of a fitted mixture
+DRAWS_A_PART = 20.0  # effective draws that a part needs, a dimension
+FEWEST = 4.0  # effective draws a dimension; weights of fewer are made more even before a fit
+FREEDOM = 20.0  # degrees of freedom of the parts [-]
+FREEDOM_OF_FEW = 5.0  # where fewer draws are effective than one part needs: a tail may be missing
+LAPLACE_SHARE = 0.2  # of the Laplace mixture beside them, with its longer tails and its modes
 OUTSIDE = -1e6  # log weight, less the largest one's, of a draw outside the support
 
 
@@ -96,48 +100,57 @@ def weighted_draws(
 ) -> WeightedDraws:
     """Draw from a posterior with importance weights that are reliable, if need be by adaptation.
 
-    Draws from the mixture of Laplace approximations come first, and up to `MOST_MORE` times as many
-    again if so many are wanted. If their tail index is `MAX_PARETO_K` or more or still fewer than
-    the wanted number are effective, as of posteriors along a curved ridge, rounds of draws follow
-    from Student-t distributions that adapt to those before; the first draws stay among them.
+    Draws from the mixture of Laplace approximations come first. If their tail index is
+    `MAX_PARETO_K` or more or fewer than the wanted number are effective, as of posteriors that lean
+    or follow a curved ridge, rounds of as many draws follow, and of `FURTHER_DRAWS` at least, each
+    from a mixture fitted to all draws before it. The proposal of all draws is the mixture of the
+    rounds' own (Cornuet et al. 2012, adaptive multiple importance sampling).
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
         proposal: The mixture to start from.
         n: Number of first draws.
-        wanted: Effective draws below which the draws are adapted.
+        wanted: Effective draws below which further rounds follow, up to `MOST_FURTHER` draws.
         rng: Source of randomness.
         threads: Number of batches of draws whose density is computed at once.
 
     Returns:
-        The first draws, or these with the adapted ones if their tail index is smaller or, both
-        being reliable, more of them are effective; in random order.
+        The draws, in random order.
     """
-    first = importance_draws(log_density, proposal, n=n, rng=rng, threads=threads)
-    missing = ENOUGH_MORE * wanted / first.effective_size - 1
-    if first.reliable and 0 < missing <= MOST_MORE:
-        first = importance_draws(
-            log_density, proposal, n=int(missing * n), rng=rng, threads=threads, earlier=first
-        )
-    if first.reliable and first.effective_size >= wanted:
-        return first
     spread = in_batches(log_density, threads)
-    adapted = adaptive_draws(
-        [_spanning(proposal)],
-        lambda z, _: spread(z),
-        rng=rng,
-        progress=lambda _: None,
-        effort=Effort(FURTHER_DRAWS, wanted, FURTHER_ROUNDS),
-        earlier=EarlierDraws(first.z, first.log_density, proposal.log_pdf),
-    )
-    order = rng.permutation(len(adapted.z))
-    further = replace(
-        _weighted(adapted.z[order], adapted.log_density[order], adapted.log_proposal[order]),
-        jumps=first.jumps,
-    )
-    if first.reliable and further.reliable:
-        return max(first, further, key=lambda draws: draws.effective_size)
-    return min(first, further, key=lambda draws: draws.pareto_k)
+    drawn = importance_draws(log_density, proposal, n=n, rng=rng, threads=threads)
+    z, height, jumps = drawn.z, drawn.log_density, drawn.jumps
+    rounds, further = [(n, proposal.distribution)], max(n, FURTHER_DRAWS)
+    while len(z) - n < MOST_FURTHER and not (drawn.reliable and drawn.effective_size >= wanted):
+        fitted = fitted_to(drawn, proposal, rng=rng)
+        rounds.append((further, fitted))
+        more = fitted.draw(further, rng=rng)
+        z, height = np.concatenate([z, more]), np.concatenate([height, spread(more)])
+        order = rng.permutation(len(z))
+        z, height = z[order], height[order]
+        shares = [np.log(size) + mixture.log_pdf(z) for size, mixture in rounds]
+        log_proposal = np.logaddexp.reduce(shares)
+        drawn = replace(_weighted(z, height, log_proposal), jumps=jumps)
+    return drawn
+
+
+def fitted_to(
+    weighted: WeightedDraws, approximation: LaplaceMixture, *, rng: np.random.Generator
+) -> StudentMixture:
+    """Fit a mixture to weighted draws, with the Laplace approximations beside it.
+
+    Args:
+        weighted: The draws. If fewer than `FEWEST` a dimension are effective, their weights are
+            raised to a power below 1 for the fit.
+        approximation: The Laplace approximations.
+        rng: Source of randomness.
+    """
+    d = weighted.z.shape[1]
+    parts = int(min(weighted.effective_size / (DRAWS_A_PART * d), MOST_PARTS))
+    freedom = FREEDOM if parts else FREEDOM_OF_FEW
+    weights = tempered(np.log(np.maximum(weighted.weights, 1e-300)), FEWEST * d)
+    fitted = fit_mixture(weighted.z, weights, parts=max(parts, 1), freedom=freedom, rng=rng)
+    return fitted.beside(approximation.distribution, LAPLACE_SHARE)
 
 
 def importance_draws(
@@ -147,7 +160,6 @@ def importance_draws(
     n: int,
     rng: np.random.Generator,
     threads: int = 1,
-    earlier: WeightedDraws | None = None,
 ) -> WeightedDraws:
     """Draw from a mixture near the posterior and weight the draws by the posterior.
 
@@ -160,13 +172,9 @@ def importance_draws(
         n: Number of draws.
         rng: Source of randomness.
         threads: Number of batches of draws whose density is computed at once.
-        earlier: Earlier draws of the same mixture, which are kept.
     """
     z = proposal.draw(n, rng=rng)
     height = in_batches(log_density, threads)(z)
-    if earlier is not None:
-        z = np.concatenate([earlier.z, z])
-        height = np.concatenate([earlier.log_density, height])
     log_proposal = proposal.log_pdf(z)
     drawn = _weighted(z, height, log_proposal)
     return replace(drawn, jumps=_accepted(height - log_proposal, drawn.weights))
@@ -191,17 +199,6 @@ def _accepted(log_ratio: Array, weights: Array) -> float:
     from_, to = np.where(weight > 0, ratio, np.inf)[:, None], ratio[None, :]
     chance = np.exp(np.minimum(to - from_, 0.0)).mean(axis=1)
     return float(weight @ chance / weight.sum())
-
-
-def _spanning(mixture: LaplaceMixture) -> Mode:
-    """Return one Gaussian with the mean and covariance of a mixture of Laplace approximations."""
-    means = np.stack([each.mode for each in mixture.parts])
-    mean = mixture.weights @ means
-    covariance = sum(
-        weight * (each.covariance + np.outer(each.mode - mean, each.mode - mean))
-        for weight, each in zip(mixture.weights, mixture.parts, strict=True)
-    )
-    return Mode(mean, np.asarray(covariance), 0.0)
 
 
 def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:

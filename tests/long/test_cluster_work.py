@@ -21,6 +21,7 @@ from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 from support.commands import started
 from support.tracked_walks import write_walk
+from support.walk_posteriors import write_calibration
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.walk_fit.prediction import fit_walks_on_file
 from zebro_lab.walk_fit.tracked_walks import read_walk_on_file
@@ -156,3 +157,28 @@ def test_a_band_is_the_same_by_commands(local, ground, tmp_path):
     assert killed
     np.testing.assert_array_equal(found[0], expected[0])
     assert found[1] == expected[1]
+
+
+def test_walks_are_fitted_the_same_by_commands(local, tmp_path):
+    write_walk(tmp_path / "walk")
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+    folders = [write_calibration(tmp_path / name) for name in ("here", "there")]
+
+    def fit(calibration, *more):
+        words = ("calibrate", "--walks", "walk", "--out", calibration, "--anisotropy", 1.2, *more)
+        with started(*words, cwd=tmp_path) as process:
+            _, err = process.communicate(timeout=400)
+        assert process.returncode == 0, err
+        with np.load(calibration / "walks" / "draws.npz") as stored:
+            return (calibration / "walks" / "walks.toml").read_text(), dict(stored)
+
+    expected, killed = fit(folders[0]), []
+    watch = threading.Thread(target=kill_one_at_work, args=(local, killed))
+    watch.start()
+    found = fit(folders[1], "--scheduler", local.scheduler_address)
+    watch.join()
+    assert killed
+    assert found[0] == expected[0]
+    for name, values in expected[1].items():
+        np.testing.assert_array_equal(found[1][name], values)

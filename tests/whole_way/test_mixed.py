@@ -2,7 +2,9 @@
 """One folder holds runs of the rig, walks, an excluded run, some cut short, plots and results."""
 
 import json
+import math
 import time
+import tomllib
 from pathlib import Path
 
 import pandas as pd
@@ -60,12 +62,17 @@ def test_a_mixed_folder_goes_the_whole_way(command, data):
     cut = cut_short(data, "cut", "--rig", "sim")
     cut_walk = cut_short(data, "cut-walk", "--rig", "sim", "--zebro", "sim")
     one, two = (next(data.glob(f"*_walk_{label}")) for label in ("one", "two"))
-    said = command("calibrate", data, "--walks", one, "--walks", two, *FEW_STEPS, code=3)
+    walks = ("--walks", one, "--walks", two, "--anisotropy", 1.2)
+    said = command("calibrate", data, *walks, *FEW_STEPS, code=3)
     assert "the belt came off" in said
     assert f"left out, runs of another kind than slip-rig: {one.name} (walk)" in plain(said)
     assert f"{cut.name}: log.mcap is incomplete" in plain(said)
     assert cut_walk.is_dir()
     assert "legs and floor fitted to 2 walks" in plain(said)
+    assert plain(said).count("1 ×/÷ 1.20") == 2  # priors of lateral grip and lateral stiffness
+    fitted = tomllib.loads(Path("calibration/walks/walks.toml").read_text())
+    assert fitted["prior"]["lateral_sd"] == pytest.approx(math.log(1.2))
+    assert {"lateral_grip", "lateral_stiffness"} <= {each["name"] for each in fitted["parameter"]}
     for walked in (one, two):
         command("predict", walked, "--slip", "calibration", "--draws", 60)
         command("plot", walked)

@@ -13,6 +13,12 @@ y(z) ~ N(0, 1) a priori with the derivative Y (y is z itself unless z is straigh
 of a further term a·t, t one force a block. What the fit could absorb is projected out of r and D,
 and a = D·r/|D|^2 with the variance 1/|D|^2. That is the estimate a full fit with the term would
 give, at the cost of a few predictions.
+
+One column of A is no parameter of the fit. The mean of the curve over a block depends on how slip
+is distributed within it, which the fit takes for Gaussian. A speed that ripples as discs turn has
+another distribution, and where a curve rises within a few of its standard deviations that moves
+the mean by a hundredth of the peak. The column is what the distribution of a sine wave would
+change, with a multiple of N(0, 1) a priori, so that no check blames it on law or sensors.
 """
 
 from dataclasses import dataclass, replace
@@ -63,9 +69,9 @@ class Linearised:
             the two differ, and a fitted shift moves the force by this.
         residual: Measured minus predicted traction, shape (n,) [N].
         factors: Lower Cholesky factor of each run's covariance [N].
-        basis: Orthonormal basis of the columns of A, shape (n + d, d) [-].
-        triangle: A in that basis, upper triangular, shape (d, d) [-].
-        rest: r without what the fit could absorb, shape (n + d,) [-].
+        basis: Orthonormal basis of the columns of A, shape (n + d + 1, d + 1) [-].
+        triangle: A in that basis, upper triangular, shape (d + 1, d + 1) [-].
+        rest: r without what the fit could absorb, shape (n + d + 1,) [-].
         values: Law and measurement parameters at the centre, shape (k + 12,).
         z: Coordinates of the centre, shape (d,).
     """
@@ -82,7 +88,7 @@ class Linearised:
     z: Array
 
     def project(self, terms: Array) -> Array:
-        """Whiten terms, shape (n, m) [N], and take out what the fit absorbs, (n + d, m) [-]."""
+        """Whiten terms, shape (n, m) [N], and take out what A absorbs, (n + d + 1, m) [-]."""
         white = whiten(self.blocks, terms, self.factors)
         padded = np.vstack([white, np.zeros((self.basis.shape[1], terms.shape[1]))])
         return padded - self.basis @ (self.basis.T @ padded)
@@ -94,11 +100,11 @@ class Linearised:
             term: A force added to each block, shape (n,) [N].
         """
         white = whiten(self.blocks, term[:, None], self.factors)[:, 0]
-        return solve_triangular(self.triangle, self.basis[: len(white)].T @ white)
+        return solve_triangular(self.triangle, self.basis[: len(white)].T @ white)[:-1]
 
     def spread(self) -> Array:
         """Compute the posterior standard deviation of each coordinate, shape (d,) [-]."""
-        return np.sqrt(np.sum(np.linalg.inv(self.triangle) ** 2, axis=1))
+        return np.sqrt(np.sum(np.linalg.inv(self.triangle) ** 2, axis=1))[:-1]
 
     def beyond_fit(self, term: Array) -> Array:
         """Return a term, shape (n,) [N], less what the fit would absorb of it, shape (n,) [N]."""
@@ -146,11 +152,13 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
     jacobian = (every.force[1 : d + 1] - every.force[d + 1 :]).T / (2 * STEP)
     factors = covariance_factors(blocks, every.slope[0], every.noise[0], values[0])
     residual = blocks.traction_force - predicted.force
-    white = whiten(blocks, np.column_stack([residual, jacobian]), factors)
+    ripple = predict_blocks(blocks, law, values[:1], sine=True).force[0] - predicted.force
+    white = whiten(blocks, np.column_stack([residual, jacobian, ripple]), factors)
     prior = posterior.prior_coordinates(around)
-    prior_jacobian = (prior[1 : d + 1] - prior[d + 1 :]).T / (2 * STEP)
+    prior_jacobian = np.eye(d + 1)  # that of the ripple's multiple is 1
+    prior_jacobian[:d, :d] = (prior[1 : d + 1] - prior[d + 1 :]).T / (2 * STEP)
     basis, triangle = np.linalg.qr(np.vstack([white[:, 1:], prior_jacobian]))
-    right = np.append(white[:, 0], -prior[0])
+    right = np.concatenate([white[:, 0], -prior[0], [0.0]])
     return Linearised(
         blocks,
         predicted,

@@ -3,9 +3,8 @@
 
 import numpy as np
 import pytest
-from scipy import stats
 
-from model.bayes.adaptive import EarlierDraws, Effort, Mode, adaptive_draws
+from model.bayes.adaptive import Effort, Mode, adaptive_draws
 
 D = 4
 EFFORT = Effort(200, 150.0, 10)
@@ -93,27 +92,3 @@ def test_bumps_around_draws_leave_the_weights_right(monkeypatch):
     assert np.mean(shares) == pytest.approx(0.75, abs=0.06)
     means = np.array([result.weight @ result.z for result in results])
     np.testing.assert_allclose(means.mean(axis=0), 0.0, atol=0.1)
-
-
-def test_earlier_draws_keep_a_tail_that_no_round_reaches():
-    """A quarter of the density lies far off, where the Gaussian that is started from is not."""
-
-    def two(z, _=None):
-        near = stats.multivariate_normal(np.zeros(D)).logpdf(z)
-        far = stats.multivariate_normal(np.full(D, 6.0)).logpdf(z)
-        return np.logaddexp(np.log(0.75) + near, np.log(0.25) + far)
-
-    rng = np.random.default_rng(4)
-    wide = stats.multivariate_t(np.full(D, 3.0), 8 * np.eye(D), df=5)
-    z = wide.rvs(2000, random_state=rng)
-    earlier = EarlierDraws(z, two(z), wide.logpdf)
-    result = adaptive_draws(
-        [Mode(np.zeros(D), np.eye(D), 0.0)], two, rng=rng, progress=ignored,
-        effort=Effort(2000, 2000.0, 10), earlier=earlier,
-    )  # fmt: skip
-    assert len(result.z) > 2000
-    np.testing.assert_array_equal(result.z[:2000], z)
-    assert result.weight[result.z.sum(axis=1) > 3 * D].sum() == pytest.approx(0.25, abs=0.03)
-    assert np.exp(result.log_density - result.log_proposal).mean() * len(result.z) / 2000 == (
-        pytest.approx(1.0, rel=0.05)
-    )

@@ -70,6 +70,32 @@ def test_a_glide_a_wave_noise_and_wander_are_no_jumps():
         assert starts_of(samples(slip), 20) == list(range(0, 401, 20))
 
 
+def rippling(rng, n=40_000):
+    """Return true slip that both discs' speeds ripple, and measured values, as much noise on it."""
+    time, phase = np.arange(n), 85 * rng.random(2)
+    waves = [np.sin(2 * np.pi * (time + phase[i]) / period) for i, period in enumerate((87, 122))]
+    true = 0.005 * np.sum(waves, axis=0)
+    return true, true + 0.006 * rng.standard_normal(n)
+
+
+@pytest.mark.parametrize("length", [50, 64, 100])
+def test_noise_does_not_choose_cuts_in_a_ripple(length):
+    """Measured slips of blocks would be off to where the noise of their samples is large."""
+    true, measured = rippling(np.random.default_rng(length))
+    starts = np.array(starts_of(samples(measured), length))
+    count = np.diff(starts)
+    mean, error = (np.add.reduceat(x, starts[:-1]) / count for x in (true, measured - true))
+    per_slip = mean @ error / (mean @ mean)
+    assert abs(per_slip) < 4 * 0.006 / np.sqrt(length * (mean @ mean))
+    assert np.mean(error**2 * count) == pytest.approx(0.006**2, rel=4 * np.sqrt(2 / len(count)))
+
+
+def test_a_jump_within_a_ripple_is_one():
+    _, measured = rippling(np.random.default_rng(2), 1000)
+    starts = starts_of(samples(measured + np.repeat([0.1, 0.16], 500)), 60)
+    assert min(abs(start - 500) for start in starts) <= 1
+
+
 def test_no_part_is_shorter_than_half_a_block():
     slip = np.concatenate([steps(0.1, each=100), steps(0.5, each=9), steps(0.1, each=100)])
     sizes = np.diff(starts_of(samples(slip), 20))

@@ -252,13 +252,9 @@ def averaging_error(spread):
     return np.abs(found - numeric_mean(slip, spread * SLIP_SCALE, 5.0)).max() / peak
 
 
-@pytest.mark.parametrize(("spread", "tolerance"), [(0.05, 1e-6), (0.3, 1e-3), (1.0, 0.04)])
+@pytest.mark.parametrize(("spread", "tolerance"), [(0.05, 1e-6), (0.3, 1e-5), (1.0, 0.02)])
 def test_a_blocks_mean_force_is_the_law_averaged_over_its_wander(spread, tolerance):
     assert averaging_error(spread) < tolerance
-
-
-def test_the_averaging_is_exact_to_fifth_order_in_the_spread():
-    assert 45 < averaging_error(0.2) / averaging_error(0.1) < 80  # 2**6 in the limit
 
 
 def test_the_law_at_the_mean_slip_would_be_a_hundred_times_worse():

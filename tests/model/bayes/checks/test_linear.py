@@ -62,3 +62,16 @@ def test_a_term_that_the_fit_absorbs_leaves_no_force_and_another_leaves_itself()
     left = fit.beyond_fit(alternating)
     assert np.corrcoef(left, alternating)[0, 1] > 0.95
     np.testing.assert_allclose(left.std(), alternating.std(), rtol=0.1)
+
+
+def test_how_slip_is_distributed_within_blocks_is_blamed_on_nothing():
+    """What a sine wave's distribution changes is absorbed as far as its prior goes, N(0, 1)."""
+    posterior, fit, _ = linearised()
+    as_sine = predict_blocks(fit.blocks, posterior.law, fit.values[None], sine=True).force[0]
+    ripple = as_sine - fit.predicted.force
+    assert np.abs(ripple).max() > 0
+    for size in (1.0, 100.0):  # the second as if it had a hundred times the prior's size
+        white = whiten(fit.blocks, size * ripple[:, None], fit.factors)
+        left = fit.project(size * ripple[:, None])
+        assert np.sum(left**2) <= np.sum(white**2) / (1 + np.sum(white**2) / size**2) * (1 + 1e-9)
+    assert fit.spread().shape == fit.absorbed(ripple).shape == fit.z.shape

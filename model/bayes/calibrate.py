@@ -42,7 +42,7 @@ CHUNK = 20  # kept steps between checks for a request to stop
 FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
 FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `max_steps` says
 DRAWS_PER_ENSEMBLE = 1000  # at most
-IMPORTANCE_DRAWS = 10_000
+IMPORTANCE_DRAWS = 5_000
 EFFECTIVE_DRAWS = 2_000.0  # that are wanted of the weighted ones before sampling
 ALONE = 5_000.0  # where nothing is sampled: the tails need more than the middle
 

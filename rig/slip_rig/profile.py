@@ -2,6 +2,7 @@
 """Profile of a slip rig: discs, limits, drives, load cell or board."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal, TypeAlias
@@ -15,6 +16,8 @@ from rig.toml_table import TomlTable
 
 BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")
+FURTHER: Final = ("lateral_force", "angle_leg", "angle_ground")
+"""What a table of a rig may have measured besides forces and speeds, SI."""
 HIGHEST_NODE: Final = 0x3F
 """Highest node of CANSimple: six bits."""
 FURTHER_LIMITS: Final = {"lateral_force": "N", "torque": "N m", "temperature_celsius": "degC"}
@@ -107,6 +110,7 @@ class BoardProfile:
         normal_sign: Factor that makes the normal force positive when pressed together, 1 or -1.
         traction_sign: Factor that makes the traction force positive when driving, 1 or -1.
         link: `serial`, or `table` for an imported file.
+        further: What a table measured besides, of `FURTHER`, in the order of its samples.
     """
 
     baudrate: int
@@ -118,6 +122,7 @@ class BoardProfile:
     normal_sign: int
     traction_sign: int
     link: BoardLink = "serial"
+    further: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -157,13 +162,16 @@ class RigProfile:
         return frozenset(key for key, known in measures.items() if known)
 
 
-def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float) -> str:
+def render_table_profile(
+    *, radius_leg: float, radius_ground: float, rate: float, further: Sequence[str] = ()
+) -> str:
     """Format as TOML the profile of a rig whose speeds and forces are imported from a table in SI.
 
     Args:
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
         rate: Sample rate [Hz].
+        further: What the table measured besides, of `FURTHER`, in the order of its samples.
     """
     document = {
         "schema": SCHEMA,
@@ -171,7 +179,7 @@ def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float
         "discs": {"radius_leg": radius_leg, "radius_ground": radius_ground},
         "board": {
             "link": "table", "rate": rate, "counts_per_force": 1.0, "counts_per_speed": 1.0,
-            "normal_sign": 1, "traction_sign": 1,
+            "normal_sign": 1, "traction_sign": 1, **({"further": list(further)} if further else {}),
         },
     }  # fmt: skip
     return tomlkit.dumps(document)
@@ -292,4 +300,5 @@ def _board(table: TomlTable) -> BoardProfile:
         counts_per_speed=table.positive("counts_per_speed"),
         normal_sign=table.sign("normal_sign"),
         traction_sign=table.sign("traction_sign"),
+        further=table.names("further", FURTHER) if is_table else (),
     )

@@ -2,7 +2,7 @@
 """Import the table of a slip rig: one run folder for each run in it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from model.counted import counted
 from model.slip.law import Array
+from rig.slip_rig.profile import FURTHER
 from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import DataError
@@ -19,7 +20,9 @@ from zebro_lab.files.source_names import stated_source
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.runs.table_run import write_slip_rig_run
-from zebro_lab.tables.columns import COLUMNS_FILE, Columns
+from zebro_lab.tables.columns import COLUMNS_FILE, Columns, RigErrorsStated
+from zebro_lab.tables.columns_file import prior_entry
+from zebro_lab.tables.disc_angles import disc_angles
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import run_times, separate_runs
@@ -39,14 +42,14 @@ class RigRun:
         manifest: Name, source and radii of the run; its start is set by `begun`.
         table: Samples of the run; their time is the file's, after `begun` the run's.
         files: Every file read: the table and its `columns.toml`.
-        load_cell: Standard deviations from the load cell's certificate, SI, by key of the
-            `[load_cell]` in `columns.toml`; empty without a certificate.
+        stated: What is stated of load cell and rig, and priors, in SI, by section and key of
+            `columns.toml`.
     """
 
     manifest: RunManifest
     table: SlipRigTable
     files: tuple[Path, ...]
-    load_cell: Mapping[str, float] = field(default_factory=dict)
+    stated: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
 
     def begun(self, start: datetime, zero: float) -> "RigRun":
         """Return the run with its start date and times from 0 at its first sample.
@@ -94,7 +97,9 @@ def rig_runs(
     doubts = _require_plausible(table)
     runs = separate_runs(table, label)
     run_times(table, runs)
-    samples = {name: table.si(name) for name in _NEEDED}
+    given = [name for name in FURTHER if table.source_of(name) is not None]
+    disc_angles(table, runs, table.si("t"))  # refuses angles in another unit than they are said in
+    samples = {name: table.si(name) for name in (*_NEEDED, *given)}
     common = RunManifest(
         kind="slip-rig",
         label=label,
@@ -109,7 +114,7 @@ def rig_runs(
             replace(common, label=name),
             SlipRigTable(**{key: part[runs.index == i] for key, part in samples.items()}),
             files=(path, *([columns.file] if columns.file else [])),
-            load_cell=columns.load_cell,
+            stated=_stated(columns),
         )
         for i, name in enumerate(runs.names)
     ]
@@ -118,6 +123,7 @@ def rig_runs(
         *table.conversions(),
         *doubts,
         *_left_out(table),
+        *_covariate_lost(columns),
         f"{counted(len(made), 'run')}, {runs.rule}",
     )
 
@@ -125,7 +131,7 @@ def rig_runs(
 def write_rig_run(data_dir: Path, run: RigRun) -> Path:
     """Write the run folder of an imported rig run.
 
-    Standard deviations from the load cell's certificate go into the folder's `columns.toml`.
+    What is stated of load cell and rig, and priors, go into the folder's `columns.toml`.
 
     Args:
         data_dir: Folder of run folders; created when missing.
@@ -143,7 +149,7 @@ def write_rig_run(data_dir: Path, run: RigRun) -> Path:
         data_dir,
         run.table,
         replace(run.manifest, inputs=file_hashes(run.files)),
-        extra=lambda draft: _write_load_cell(draft, run.load_cell),
+        extra=lambda draft: _write_stated(draft, run.stated),
     )
 
 
@@ -198,7 +204,24 @@ def _left_out(table: RigTable) -> tuple[str, ...]:
     )
 
 
-def _write_load_cell(draft: Path, load_cell: Mapping[str, float]) -> None:
-    if load_cell:
-        template = "[load_cell]  # standard deviations, SI\n"
-        atomic_write_text(draft / COLUMNS_FILE, fill_in(template, {"load_cell": load_cell}))
+def _stated(columns: Columns) -> dict[str, Mapping[str, object]]:
+    usual, given = asdict(RigErrorsStated()), asdict(columns.rig_errors)
+    sections: dict[str, Mapping[str, object]] = {
+        "load_cell": columns.load_cell,
+        "rig_errors": {name: value for name, value in given.items() if value != usual[name]},
+        "priors": dict(prior_entry(text) for text in columns.priors),
+    }
+    return {name: entries for name, entries in sections.items() if entries}
+
+
+def _write_stated(draft: Path, stated: Mapping[str, Mapping[str, object]]) -> None:
+    if stated:
+        template = "".join(f"[{name}]  # SI\n" for name in stated)
+        atomic_write_text(draft / COLUMNS_FILE, fill_in(template, stated))
+
+
+def _covariate_lost(columns: Columns) -> tuple[str, ...]:
+    """Say that a run folder does not hold the quantity that a run was made at."""
+    if columns.covariate is None:
+        return ()
+    return (f"{columns.covariate.name} of runs is not kept: for a law that follows it, {_ELSE}",)

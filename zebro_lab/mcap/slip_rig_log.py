@@ -4,7 +4,7 @@
 New runs contain only raw samples (`raw_log`); logs with this message can still be read.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -65,6 +65,19 @@ class SlipRigTable:
     def rows(self) -> NDArray[np.float64]:
         """Return the samples by rows with the columns `COLUMNS`, shape (n, 5)."""
         return np.column_stack([getattr(self, name) for name in COLUMNS])
+
+    def measured(self) -> dict[str, NDArray[np.float64]]:
+        """Return all that was measured, by its name."""
+        every = {each.name: getattr(self, each.name) for each in fields(self)}
+        return {name: values for name, values in every.items() if values is not None}
+
+    def select(self, rows: NDArray[np.bool_]) -> "SlipRigTable":
+        """Return some of the samples.
+
+        Args:
+            rows: Whether to keep each, shape (n,).
+        """
+        return SlipRigTable(**{name: values[rows] for name, values in self.measured().items()})
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 """Decode raw samples of a recorded slip rig to speeds and forces in SI."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from rig.slip_rig.decode import (
     decode_board,
     decode_disc_angles,
     decode_forces,
+    decode_further,
     decode_further_loads,
     decode_speeds,
 )
@@ -47,7 +49,7 @@ def derive_table(
 
     Returns:
         The samples with strictly increasing time, and the note, if any. The lateral force, of which
-        no zero is known, is as measured; a board has none.
+        no zero is known, is as measured; a board has none, and an imported table what it has.
 
     Raises:
         DataError: A stream or a drive has no samples, no sample has speeds and forces, or the
@@ -65,22 +67,25 @@ def derive_table(
             raise DataError("lacks [board], or [drives] and [load_cell]; restore it", file=file)
     except RigError as error:
         raise DataError(str(error), file=folder) from error
-    if table.shape[1] == 0:
+    if len(table) == 0:
         raise DataError("no force was recorded while both disc speeds are known", file=folder)
-    table[3] -= zero.get("zero_normal", 0.0)
-    table[4] -= zero.get("zero_traction", 0.0)
-    return _increasing(table, folder.absolute().name)
+    zeroed = replace(
+        table,
+        normal_force=table.normal_force - zero.get("zero_normal", 0.0),
+        traction_force=table.traction_force - zero.get("zero_traction", 0.0),
+    )
+    return _increasing(zeroed, folder.absolute().name)
 
 
-def _of_board(profile: BoardProfile, board: SampleColumns) -> Array:
+def _of_board(profile: BoardProfile, board: SampleColumns) -> SlipRigTable:
     forces, speeds = decode_board(profile, board)
-    columns = (speeds.leg, speeds.ground, forces.normal, forces.traction)
-    return np.vstack([sample_times(board), *columns])
+    columns = (sample_times(board), speeds.leg, speeds.ground, forces.normal, forces.traction)
+    return SlipRigTable(*columns, **decode_further(profile, board))
 
 
 def _of_two(
     drives: DriveProfile, cell: LoadCellProfile, speeds: SampleColumns, forces: SampleColumns
-) -> Array:
+) -> SlipRigTable:
     t = sample_times(forces)
     decoded = decode_forces(cell, forces)
     lateral, _ = decode_further_loads(cell, forces)
@@ -90,10 +95,10 @@ def _of_two(
     angle = np.vstack(decode_disc_angles(drives.leg, drives.ground, speeds))
     if len(t) > _MANY * len(disc.time):
         at, around = averages_around(disc.time, t, force)
-        return np.vstack([disc.time[at], speed[:, at], around, angle[:, at]])
+        return SlipRigTable(disc.time[at], *speed[:, at], *around, *angle[:, at])
     inside = (t >= disc.time[0]) & (t <= disc.time[-1])
     leg, ground, *angles = (np.interp(t[inside], disc.time, row) for row in (*speed, *angle))
-    return np.vstack([t[inside], leg, ground, force[:, inside], *angles])
+    return SlipRigTable(t[inside], leg, ground, *force[:, inside], *angles)
 
 
 def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
@@ -127,8 +132,8 @@ def _require(streams: Mapping[str, SampleColumns], name: str, folder: Path) -> S
     return streams[raw_topic(name)]
 
 
-def _increasing(table: Array, run: str) -> tuple[SlipRigTable, tuple[str, ...]]:
-    later = np.r_[True, np.diff(np.maximum.accumulate(table[0])) > 0]
+def _increasing(table: SlipRigTable, run: str) -> tuple[SlipRigTable, tuple[str, ...]]:
+    later = np.r_[True, np.diff(np.maximum.accumulate(table.t)) > 0]
     left_out = int(np.sum(~later))
     note = f"{run}: {left_out} samples are ignored, because their time does not increase"
-    return SlipRigTable(*table[:, later]), (note,) * bool(left_out)
+    return table.select(later), (note,) * bool(left_out)

@@ -15,7 +15,7 @@ import numpy as np
 
 from model.slip.law import Array
 from rig.sample_columns import SampleColumns
-from rig.slip_rig.profile import render_table_profile
+from rig.slip_rig.profile import FURTHER, render_table_profile
 from zebro_lab.files.atomic import atomic_folder, atomic_write_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hash
@@ -157,20 +157,22 @@ def write_slip_rig_run(
     """
     if len(table) == 0:
         raise DataError(f"run '{manifest.label}' has no samples to write")
-    forces_and_speeds = (
-        table.normal_force, table.traction_force, table.omega_leg, table.omega_ground
-    )  # fmt: skip
+    further = [name for name in table.measured() if name in FURTHER]
+    columns = ("normal_force", "traction_force", "omega_leg", "omega_ground", *further)
+    values = np.column_stack([getattr(table, name) for name in columns])
     return write_table_run(
         data_dir,
         replace(manifest, sources={_BOARD: manifest.source}),
-        {_BOARD: table_samples(table.t, np.column_stack(forces_and_speeds))},
-        profiles={RIG: _profile(table.t, manifest.constants)},
+        {_BOARD: table_samples(table.t, values)},
+        profiles={RIG: _profile(table.t, manifest.constants, further)},
         extra=extra,
     )
 
 
-def _profile(t: Array, constants: Mapping[str, float]) -> str:
+def _profile(t: Array, constants: Mapping[str, float], further: Sequence[str]) -> str:
     """Return the TOML of a rig profile with scale 1, the radii, and the rate of samples at `t`.
+
+    `further` names what was measured besides forces and speeds.
 
     The rate is 1 over the median interval; 1 Hz for one sample, or where that is not positive.
     """
@@ -179,4 +181,5 @@ def _profile(t: Array, constants: Mapping[str, float]) -> str:
         radius_leg=constants["radius_leg"],
         radius_ground=constants["radius_ground"],
         rate=1 / step if step > 0 else 1.0,
+        further=further,
     )

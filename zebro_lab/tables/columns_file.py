@@ -5,6 +5,7 @@ The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commen
 """
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -358,6 +359,12 @@ def _priors(table: SettingsTable) -> tuple[str, ...]:
     return tuple(
         f"{key} {'~' if '(' in text else '='} {text.lstrip('~= ')}" for key, text in texts.items()
     )
+
+
+def prior_entry(text: str) -> tuple[str, str]:
+    """Return a prior as key and text of `[priors]`, from one text of `Columns.priors`."""
+    name, value = re.split(r" [=~] ", text, maxsplit=1)
+    return name, value
 
 
 def _rig_errors(table: SettingsTable) -> RigErrorsStated:

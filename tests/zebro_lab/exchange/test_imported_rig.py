@@ -28,6 +28,58 @@ def test_a_rigs_table_is_calibrated_as_the_table_itself(sweep, tmp_path):
     assert read_manifest(imported.folders[0]).material == "POM"
 
 
+STATED = """
+source = "sim:rig-sweep"
+[runs]
+by = ["run"]
+[load_cell]
+zero_stability = 0.1
+[rig_errors]
+radius = "0.2 mm"
+rolling_resistance = 0.03
+[priors]
+friction = "0.40 ± 0.05"
+shape = "~ uniform(1.2, 1.9)"
+"""
+
+
+def test_angles_lateral_force_and_what_is_stated_come_along(sweep, tmp_path):
+    table = pd.read_csv(sweep / "sweep.csv")
+    step = table.groupby("run").t.diff().fillna(0.0)
+    for disc in ("leg", "ground"):
+        turned = (table[f"omega_{disc}"] * step).groupby(table.run).cumsum()
+        table[f"angle_{disc}"] = turned % (2 * np.pi)
+    table["lateral_force"] = np.random.default_rng(2).normal(0.1, 0.05, len(table))
+    table.to_csv(tmp_path / "own.csv", index=False)
+    (tmp_path / "columns.toml").write_text(STATED, encoding="utf-8")
+    taken(tmp_path, rig=tmp_path / "own.csv", start=datetime(2026, 1, 1, tzinfo=UTC))
+    ours, theirs = read_rig_data([tmp_path / "data"]), read_rig_data([tmp_path / "own.csv"])
+    for disc in ("leg", "ground"):
+        np.testing.assert_allclose(
+            getattr(ours.samples.angles, disc), getattr(theirs.samples.angles, disc), rtol=1e-12
+        )
+    assert ours.lateral == theirs.lateral
+    assert ours.rig_errors == theirs.rig_errors
+    assert set(ours.priors) == set(theirs.priors) and len(ours.priors) == 2
+    assert ours.load_cell == theirs.load_cell
+
+
+def test_an_angle_in_another_unit_is_refused_and_a_lost_covariate_said(sweep, tmp_path):
+    table = pd.read_csv(sweep / "sweep.csv").assign(pressure=80.0)
+    dt = table.t.iloc[1] - table.t.iloc[0]
+    table["angle_leg"] = np.degrees((table.omega_leg * dt).cumsum())
+    table.to_csv(tmp_path / "own.csv", index=False)
+    by_run = '[runs]\nby = ["run"]\n'
+    (tmp_path / "columns.toml").write_text(by_run)
+    with pytest.raises(DataError, match="57.3 times is deg"):
+        taken(tmp_path, rig=tmp_path / "own.csv")
+    degrees = '[columns.angle_leg]\nname = "angle_leg"\nunit = "deg"\n'
+    pressure = '[covariates.pressure]\nname = "pressure"\nunit = "kPa"\n'
+    (tmp_path / "columns.toml").write_text(by_run + degrees + pressure)
+    notes = taken(tmp_path, rig=tmp_path / "own.csv").notes
+    assert any(note.startswith("pressure of runs is not kept") for note in notes)
+
+
 def test_a_rig_without_speeds_or_with_trials_is_left_to_the_calibration(sweep, tmp_path):
     table = pd.read_csv(sweep / "sweep.csv")
     given = table.drop(columns=["omega_leg"]).assign(slip_ratio=0.1)

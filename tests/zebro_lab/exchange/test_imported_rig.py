@@ -60,7 +60,8 @@ def test_angles_lateral_force_and_what_is_stated_come_along(sweep, tmp_path):
         )
     assert ours.lateral == theirs.lateral
     assert ours.rig_errors == theirs.rig_errors
-    assert set(ours.priors) == set(theirs.priors) and len(ours.priors) == 2
+    assert set(ours.priors) == set(theirs.priors)
+    assert len(ours.priors) == 2
     assert ours.load_cell == theirs.load_cell
 
 
@@ -71,7 +72,7 @@ def test_an_angle_in_another_unit_is_refused_and_a_lost_covariate_said(sweep, tm
     table.to_csv(tmp_path / "own.csv", index=False)
     by_run = '[runs]\nby = ["run"]\n'
     (tmp_path / "columns.toml").write_text(by_run)
-    with pytest.raises(DataError, match="57.3 times is deg"):
+    with pytest.raises(DataError, match=r"57\.3 times is deg"):
         taken(tmp_path, rig=tmp_path / "own.csv")
     degrees = '[columns.angle_leg]\nname = "angle_leg"\nunit = "deg"\n'
     pressure = '[covariates.pressure]\nname = "pressure"\nunit = "kPa"\n'

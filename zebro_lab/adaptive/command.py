@@ -9,6 +9,7 @@ from zebro_lab.adaptive.request import AdaptiveRequest
 from zebro_lab.experiment.command import REFUSED, STOPS, carry_out, end
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
+from zebro_lab.terminal.stopping import StoppedBySignal
 
 if TYPE_CHECKING:
     from rig.experiment.run import Outcome
@@ -42,8 +43,10 @@ def run(request: AdaptiveRequest, output: Output = TEXT) -> None:
 
 def _adapt(request: AdaptiveRequest, output: Output) -> None:
     """Run an adaptive experiment and exit: 0 reached or nothing to reach, `REFUSED` if not."""
+    from zebro_lab.adaptive.rounds import ROUNDS_FILE
     from zebro_lab.adaptive.screen import in_numbers, rounds_table, told
     from zebro_lab.adaptive.stage import adapt
+    from zebro_lab.calibration.stage import Stopped
     from zebro_lab.files.source_names import is_simulated
 
     latched = False
@@ -53,10 +56,16 @@ def _adapt(request: AdaptiveRequest, output: Output) -> None:
         outcome, latched = carry_out(round_, output)
         return outcome
 
-    found = adapt(
-        request, measure=measure, working=output.progress,
-        tell=lambda each: output.say(told(each, request.wanted)),
-    )  # fmt: skip
+    try:
+        found = adapt(
+            request, measure=measure, working=output.progress,
+            tell=lambda each: output.say(told(each, request.wanted)),
+        )  # fmt: skip
+    except (Stopped, StoppedBySignal):
+        if (request.data / ROUNDS_FILE).exists():
+            output.say(f"what was measured is kept in {request.data}; the same command with "
+                       "--resume goes on")  # fmt: skip
+        raise
     if found.stopped is not None and found.outcome is not None:
         end(found.outcome, found.stopped, output, latched=latched)
     output.console().print(rounds_table(found.rounds, request.wanted))

@@ -8,7 +8,8 @@ import pytest
 from rig.experiment.run import Outcome
 from support.experiment_plans import THESIS_PLAN, short_plan
 from zebro_lab.adaptive import stage
-from zebro_lab.adaptive.rounds import Round
+from zebro_lab.adaptive.rounds import Round, write_rounds
+from zebro_lab.calibration.stage import Stopped
 
 PILOT = {
     "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [2.13, 12.75]",
@@ -44,6 +45,25 @@ def test_a_simulated_rig_is_measured_until_its_stiffness_is_known(run_command, t
     assert "verdict: converged and trustworthy as far as tested" in fitted.out
     points = sum(each["points"] for each in document["rounds"])
     assert f"{points} runs" in fitted.out
+
+
+@pytest.mark.parametrize("begun", [True, False])
+def test_a_stop_while_a_round_is_fitted_says_how_to_go_on(
+    run_command, monkeypatch, tmp_path, begun
+):
+    def adapt(request, **_):
+        if begun:
+            write_rounds(request.data, {}, ())
+        raise Stopped(None)
+
+    monkeypatch.setattr(stage, "adapt", adapt)
+    data = tmp_path / "data"
+    data.mkdir()
+    ended = run_command("rig", "run", short_plan(tmp_path), "--rig", "sim", "--adaptive",
+                        "friction=0.01", "--data", data)  # fmt: skip
+    assert ended.code == 1
+    assert ("--resume goes on" in ended.out) == begun
+    assert "stopped before sampling began" in ended.err
 
 
 def ending(monkeypatch, *, reached, stopped=None):

@@ -211,6 +211,6 @@ def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:
         Logarithms of the weights, whose sum is one, shape (n,), and the tail index of the ratios.
     """
     az = import_arviz()
-
-    smoothed, pareto_k = az.psislw(log_ratio)
+    with np.errstate(over="ignore"):  # of ratios many orders of magnitude apart; the limit is right
+        smoothed, pareto_k = az.psislw(log_ratio)
     return np.asarray(smoothed, dtype=float), float(pareto_k)

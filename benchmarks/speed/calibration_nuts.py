@@ -9,7 +9,6 @@ Raises ImportError where NumPyro is missing: `make bench` installs it.
 import math
 import time
 from collections.abc import Callable
-from dataclasses import fields
 from typing import Any, cast
 
 import arviz as az
@@ -22,7 +21,7 @@ from model.bayes.load_rule import load_rule
 from model.bayes.posterior import SlipPosterior
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.bayes.shear import FAR, Shear
-from model.bayes.slip_rule import SlipRule, slip_rule
+from model.bayes.slip_rule import slip_rule
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW
@@ -124,10 +123,9 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
             blocks.slip, blocks.normal_force, blocks.traction_force, blocks.slip_error,
         )
     )  # fmt: skip
-    rule_of_slip = slip_rule(blocks.slip, apart)
-    inner, outer, inner_weight, outer_weight, inner_slope, outer_slope = (
-        jnp.asarray(getattr(rule_of_slip, each.name).reshape(shape)) for each in fields(SlipRule)
-    )
+    points = slip_rule(blocks.slip, apart)
+    away, weight = (jnp.asarray(x.reshape(-1, *slip.shape)) for x in points.pairs())
+    per_slip = weight * away / jnp.asarray(points.sd.reshape(shape)) ** 2
     light, heavy, share, slip_per_load, follow, along = (
         jnp.asarray(x.reshape(shape))
         for x in (
@@ -160,11 +158,9 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
             return (1 + g_t) * (f - c_r * true_load)
 
         centre = force(slip, load)
-        above, below = force(slip + inner, load), force(slip - inner, load)
-        far_above, far_below = force(slip + outer, load), force(slip - outer, load)
-        slope = inner_slope * (above - below) + outer_slope * (far_above - far_below)
-        bend = inner_weight * (above - 2 * centre + below)
-        bend = bend + outer_weight * (far_above - 2 * centre + far_below)
+        above, below = force(slip + away, load), force(slip - away, load)
+        slope = (per_slip * (above - below)).sum(axis=0)
+        bend = (weight * (above - 2 * centre + below)).sum(axis=0)
         per_load = slip_per_load + c * slope * follow
         at_light, at_heavy = (force(slip + per_load * (x - load), x) for x in (light, heavy))
         at_one_load = jnp.maximum(1 - (per_load**2 - slip_per_load**2) * along, 0.0)

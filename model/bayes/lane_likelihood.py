@@ -12,7 +12,7 @@ import numpy as np
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.load_rule import load_rule
-from model.bayes.slip_rule import slip_rule
+from model.bayes.slip_rule import POINTS, WEIGHTS, slip_rule
 from model.compiled import borrowing, inlined
 from model.elementary import log_of
 from model.lanes import LANES, put, row, select, size
@@ -24,17 +24,17 @@ from model.slip.law import Array
     GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, SCALE, SCATTER, FLOOR, GROWTH, RHO, TAU,
 ) = range(ROWS, ROWS + 12)  # fmt: skip
 (
-    LOAD, CENTRE, INNER, OUTER, INNER_WEIGHT, OUTER_WEIGHT, INNER_SLOPE, OUTER_SLOPE, LIGHT_LOAD,
-    HEAVY_LOAD, DOWN, UP, HEAVY_SHARE, FOLLOW, ALONG_LOAD, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
-) = range(19)  # fmt: skip
+    LOAD, CENTRE, SPREAD, FIRST, LAST, LIGHT_LOAD, HEAVY_LOAD, DOWN, UP, HEAVY_SHARE, FOLLOW,
+    ALONG_LOAD, SLIP_PER_LOAD, SHIFT, FORCE, OWN_ERROR,
+) = range(16)  # fmt: skip
 """Columns of `block_table`."""
 LOG_2PI = math.log(2 * math.pi)
 
 
 def block_table(blocks: SlipBlocks) -> Array:
-    """Compute what the likelihood needs of each block, shape (n, 19).
+    """Compute what the likelihood needs of each block, shape (n, 16).
 
-    Load and slip, the six columns of `SlipRule`, light and heavy load, their differences from the
+    Load and slip, the three columns of `SlipRule`, light and heavy load, their differences from the
     load, the share of the heavy load, the variance of slip over that of the load that it follows,
     the variance of load over that of slip at one load, slip over load, slip over radius error,
     traction and the variance of slip's own error.
@@ -45,8 +45,7 @@ def block_table(blocks: SlipBlocks) -> Array:
     points = slip_rule(slip, apart)
     return np.column_stack(
         [
-            load, slip, points.inner, points.outer, points.inner_weight, points.outer_weight,
-            points.inner_slope, points.outer_slope, rule.light, rule.heavy,
+            load, slip, points.sd, points.first, points.last, rule.light, rule.heavy,
             rule.light - load, rule.heavy - load, rule.heavy_share,
             variance / rule.followed, rule.variance / apart, rule.slip_per_load,
             slip_per_radius_error(slip, blocks.definition),
@@ -137,16 +136,14 @@ def _predicted(kind, sensitive, reference, sided, A, block):
     at_load = law_at_load(kind, sensitive, reference, A, load)
     middle = block[CENTRE] - shift
     centre = g_t * (side_at_slip(sided, kind, A, at_load, middle, load) - c_r * load)
-    above = g_t * (side_at_slip(sided, kind, A, at_load, middle + block[INNER], load) - c_r * load)
-    below = g_t * (side_at_slip(sided, kind, A, at_load, middle - block[INNER], load) - c_r * load)
-    slope = (above - below) * block[INNER_SLOPE]
-    bend = (above - 2.0 * centre + below) * block[INNER_WEIGHT]
-    if block[OUTER_WEIGHT] > 0.0:
-        far = block[OUTER]
-        above = g_t * (side_at_slip(sided, kind, A, at_load, middle + far, load) - c_r * load)
-        below = g_t * (side_at_slip(sided, kind, A, at_load, middle - far, load) - c_r * load)
-        slope = slope + (above - below) * block[OUTER_SLOPE]
-        bend = bend + (above - 2.0 * centre + below) * block[OUTER_WEIGHT]
+    slope = bend = centre * 0.0
+    for pair in range(int(block[FIRST]), int(block[LAST])):
+        away = POINTS[pair] * block[SPREAD]
+        above = g_t * (side_at_slip(sided, kind, A, at_load, middle + away, load) - c_r * load)
+        below = g_t * (side_at_slip(sided, kind, A, at_load, middle - away, load) - c_r * load)
+        slope = slope + (above - below) * (WEIGHTS[pair] * POINTS[pair])
+        bend = bend + (above - 2.0 * centre + below) * WEIGHTS[pair]
+    slope = slope * (1.0 / block[SPREAD])
     c = row(A, CROSSTALK)
     per_load = block[SLIP_PER_LOAD] + c * slope * block[FOLLOW]
     measured = block[SLIP_PER_LOAD]

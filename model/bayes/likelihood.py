@@ -120,14 +120,13 @@ def predict_blocks(
     variance = np.maximum(blocks.slip_variance(), 1e-12)
     apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
     points = slip_rule(blocks.slip, apart, sine=sine)
-    offsets = np.stack([0 * apart, points.inner, -points.inner, points.outer, -points.outer])
+    away, weight = points.pairs()
+    offsets = np.concatenate([np.zeros((1, len(blocks))), away, -away])
     # One call: what depends on load alone is computed once.
-    centre, above, below, far_above, far_below = force_at(
-        blocks.slip + offsets[:, None], blocks.normal_force
-    )
-    slope = points.inner_slope * (above - below) + points.outer_slope * (far_above - far_below)
-    bend = points.inner_weight * (above - 2 * centre + below)
-    bend = bend + points.outer_weight * (far_above - 2 * centre + far_below)
+    centre, *pairs = force_at(blocks.slip + offsets[:, None], blocks.normal_force)
+    above, below = np.split(np.array(pairs), 2)
+    slope = np.einsum("pn,pwn->wn", weight * away / points.sd**2, above - below)
+    bend = np.einsum("pn,pwn->wn", weight, above - 2 * centre + below)
     per_load = rule.slip_per_load + c * slope * variance / rule.followed
     at_one_load = np.maximum(variance - per_load**2 * rule.variance, 0.0) / apart
     up, down = rule.heavy - blocks.normal_force, rule.light - blocks.normal_force

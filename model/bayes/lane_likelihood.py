@@ -45,8 +45,8 @@ def block_table(blocks: SlipBlocks) -> Array:
     points = slip_rule(slip, apart)
     return np.column_stack(
         [
-            load, slip, points.sd, points.first.astype(float), points.last.astype(float), rule.light, rule.heavy,
-            rule.light - load, rule.heavy - load, rule.heavy_share,
+            load, slip, points.sd, points.first.astype(float), points.last.astype(float),
+            rule.light, rule.heavy, rule.light - load, rule.heavy - load, rule.heavy_share,
             variance / rule.followed, rule.variance / apart, rule.slip_per_load,
             slip_per_radius_error(slip, blocks.definition),
             blocks.traction_force, blocks.slip_error,

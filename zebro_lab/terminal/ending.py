@@ -31,6 +31,7 @@ def _guard(command: Callable[[], object]) -> None:
     try:
         command()
     except Exception as error:
+        _raise_stop_behind(error)
         message = f"{error}{_advice(error)}" if _is_known(error) else _of_a_file(error)
         if message is None:
             raise
@@ -41,6 +42,14 @@ def _guard(command: Callable[[], object]) -> None:
         if not say_in_time(f"error: {shortened(shown(message))}", err=True):
             leave_at_once(code)
         raise SystemExit(code) from None
+
+
+def _raise_stop_behind(error: Exception) -> None:
+    """Raise the stop by a signal that a library being imported has turned into its own error."""
+    stop = getattr(sys.modules.get("zebro_lab.terminal.stopping"), "StoppedBySignal", ())
+    cause = error.__cause__
+    if cause is not None and isinstance(cause, stop):
+        raise cause from None
 
 
 def _advice(error: Exception) -> str:

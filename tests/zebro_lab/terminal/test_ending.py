@@ -11,6 +11,7 @@ from rig.errors import WrongDevice
 from zebro_lab.files.errors import DataError
 from zebro_lab.main import app as zebro_lab
 from zebro_lab.terminal.ending import run
+from zebro_lab.terminal.stopping import StoppedBySignal
 
 
 def app_that_raises(error: Exception) -> typer.Typer:
@@ -91,3 +92,13 @@ def test_a_name_too_long_for_the_file_system_is_one_line(arguments, capsys, monk
         run(zebro_lab)
     assert ended.value.code == 1
     assert re.fullmatch(rf"error: \S*{LONG}\S*: .*File name too long.*\n", capsys.readouterr().err)
+
+
+def test_a_stop_that_an_import_turned_into_its_own_error_is_a_stop():
+    """As extension modules do whose initialisation a signal interrupts."""
+
+    def importing():
+        raise ImportError("initialization failed") from StoppedBySignal(15)
+
+    with pytest.raises(StoppedBySignal):
+        run(importing)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 r"""Adaptive importance sampling of a posterior that is not Gaussian, from Gaussians at its modes.
 
-Such is a slip law's where one parameter makes up for another along a curved ridge. That of walks
-has a kink: where legs take over from each other at equal heights, a common offset or a longer arc
-lengthens the steps in one direction and has no effect in the opposite one. It is also a mixture of
-cases, one for each leg that may be mounted wrongly.
+Such is the posterior of walks. It has a kink: where legs take over from each other at equal
+heights, a common offset or a longer arc lengthens the steps in one direction and has no effect in
+the opposite one. It is also a mixture of cases, one for each leg that may be mounted wrongly. That
+of a slip law has no cases, and is drawn from by `model.bayes.weighted`.
 
 In the first round draws are made from Student's t around each mode, in later rounds around the mean
 of the weighted draws of each case and around some of the draws. All draws are weighted by the

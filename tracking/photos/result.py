@@ -13,7 +13,6 @@ from tracking.path import PoseObservation, Track, assemble_track
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.scene import Scene
 from tracking.pose import BodyPrior
-from tracking.shared import SharedErrors
 
 Times = Mapping[str, tuple[float, float]]
 """By name of photograph or exposure, its time and the standard deviation of the time [s]."""
@@ -50,7 +49,7 @@ def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
 
 
 def observation_of(
-    photo: str, alignment: Alignment, time: tuple[float, float], *, source: str, stand: int = 0
+    photo: str, alignment: Alignment, time: tuple[float, float], *, source: str
 ) -> PoseObservation:
     """Convert a template alignment to an observation of the pose.
 
@@ -59,10 +58,11 @@ def observation_of(
         alignment: The robot's pose with covariances and score.
         time: Time of the photograph and its standard deviation [s].
         source: "marker" or "body": what the template shows.
-        stand: Number of the camera's stand, from 0.
     """
     t, t_sd = time
-    return PoseObservation(photo, t, t_sd, alignment.pose, alignment.score, source, stand)
+    return PoseObservation.of(
+        photo, alignment.pose, t=t, t_sd=t_sd, score=alignment.score, source=source
+    )
 
 
 def finish(
@@ -87,8 +87,8 @@ def finish(
     Raises:
         TrackingError: No observation is left, two have the same time, or a correction is invalid.
     """
-    kept = replay(observations, scene.corrections, times=times, prior=scene.prior)
-    track = assemble_track(kept, shared=shared_errors(scene, seen), prior=scene.prior, gap=gap)
+    kept = replay(observations, scene.corrections, times=times, z=scene.prior.height)
+    track = assemble_track(kept, gap=gap)
     tracked = {seen.photo for seen in track.observations}
     deleted = {o.photo: "deleted by a correction" for o in observations if o.photo not in tracked}
     lost = {**seen.lost, **unseen, **deleted}
@@ -96,20 +96,6 @@ def finish(
     notes = (*seen.fit.warnings, *_track_notes(track), *_height_note(track, scene.prior),
              *_correction_note(scene.corrections))  # fmt: skip
     return Tracked(track, seen, lost, notes)
-
-
-def shared_errors(scene: Scene, seen: FloorSeen) -> SharedErrors:
-    """Join the errors of camera and floor with those of the robot's marker and prior.
-
-    Args:
-        scene: Scene, of which robot and prior are used.
-        seen: Fitted floor and camera.
-    """
-    shared = seen.fit.shared
-    robot = {} if scene.robot is None else scene.robot.marker.spreads
-    for cause, covariance in {**robot, **scene.prior.spreads}.items():
-        shared = shared.also(cause, covariance)
-    return shared
 
 
 def _track_notes(track: Track) -> list[str]:

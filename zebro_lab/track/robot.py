@@ -14,9 +14,6 @@ from zebro_lab.robot.robot_file import RobotFile
 WALKING_HEIGHT_SD = 5e-3
 """Standard deviation of a walking body's height about its standing height [m]."""
 
-WALKING_TILT_SD = 0.02
-"""Standard deviation of roll and of pitch, both of their means and about these [rad]."""
-
 STEEPEST = 0.05
 """Roll or pitch beyond which a marker on the robot is not level [rad]."""
 
@@ -81,7 +78,7 @@ def body_prior(
     if not height_sd > 0:
         raise SettingsError(f"is {height_sd:g} m; expected more than 0", key="--height-sd")
     if height is not None:
-        return _walking(height, height_sd)
+        return BodyPrior(height, height_sd)
     place = described.marker
     if place is None or place.height is None:
         raise SettingsError(
@@ -89,14 +86,7 @@ def body_prior(
             "give --body-height",
             file=_file(described), key="marker.height",
         )  # fmt: skip
-    return _walking(place.height - place.position[2], height_sd)
-
-
-def _walking(height: float, height_sd: float) -> BodyPrior:
-    return BodyPrior(
-        height, height_sd, mean_height_sd=height_sd, tilt_sd=WALKING_TILT_SD,
-        mean_tilt_sd=WALKING_TILT_SD,
-    )  # fmt: skip
+    return BodyPrior(place.height - place.position[2], height_sd)
 
 
 def _file(described: RobotFile) -> str:

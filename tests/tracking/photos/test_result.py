@@ -14,24 +14,19 @@ from tracking.images import PhotoTimes
 from tracking.path import PoseObservation
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.result import finish, times_by_name
-from tracking.pose import BodyPose
-from tracking.shared import SharedErrors
 
 
 @pytest.fixture
 def seen(scene) -> FloorSeen:
-    # Nothing else of it is read.
-    fit = SimpleNamespace(warnings=("the tape slipped",), shared=SharedErrors.none())
+    fit = SimpleNamespace(warnings=("the tape slipped",))  # nothing else of it is read
     return FloorSeen(cast("FloorFit", fit), (), {"p9.png": "cut short"})
 
 
 def walked(scene, count=6, higher=0.0):
     z = scene.prior.height + higher
     return [
-        PoseObservation(
-            f"p{k}.png", 2.0 * k, 0.0,
-            BodyPose(np.array([0.1 * k, 0.0, z, 0.0, 0.0, 0.0]), 1e-8 * np.eye(6)), 0.9, "marker",
-        )
+        PoseObservation(f"p{k}.png", 2.0 * k, 0.0, np.array([0.1 * k, 0.0, 0.0]),
+                        1e-6 * np.eye(3), np.zeros((3, 3)), z, 0.9, "marker")
         for k in range(count)
     ]  # fmt: skip
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from model.counted import counted
 from model.errors import InsufficientData
+from model.joint_covariance import JointCovariance
 from model.metrics.consistency import FEWEST_DRAWS, Consistency, consistency
 from model.metrics.path_errors import PathErrors, path_errors
-from model.metrics.scores import EnsembleScores, ensemble_scores, with_tracker_noise
+from model.metrics.scores import EnsembleScores, ensemble_scores
 from model.metrics.tilt import TiltErrors, tilt_errors
 from model.path_draws import anchored, states_at
 from model.poses import Poses, overlap
@@ -101,7 +102,8 @@ def judge(
         prediction: The prediction.
         track: The track, by the prediction's clock; without a covariance it is taken as exact.
         anchor: Move every path to the first tracked pose within the predicted path's time, draws
-            to draws of it by its covariance; that pose is then not scored.
+            to draws of it by its covariance; that pose is then not scored. What errors of that pose
+            and of later ones have in common is drawn once for both.
         rng: Source of randomness of tracker noise.
 
     Raises:
@@ -119,7 +121,6 @@ def judge(
     first, at = seen.states[0], float(seen.t[0])
     if anchor and not np.isfinite(first[2]):
         raise InsufficientData("the track has no headings to start a path; pass anchor=False")
-    covariance = np.zeros((len(seen), 3, 3)) if seen.covariance is None else seen.covariance
 
     def placed(path: Poses) -> Poses:
         return anchored(path.draws(), first, at=at, rng=rng) if anchor else path.draws()
@@ -129,9 +130,10 @@ def judge(
     rows.append(_judge_path(STAND_STILL, _standing(seen), target))
     band = prediction.draws
     if band is not None:
+        errors = _tracker_errors(seen, len(band.yaw), rng)
         if anchor:
-            band = anchored(band, first, at=at, covariance=covariance[0], rng=rng)
-        rows[0] = _judge_band(rows[0], band, target, covariance[len(seen) - len(target) :], rng)
+            band = anchored(band, first + errors[:, 0], at=at, rng=rng)
+        rows[0] = _judge_band(rows[0], band, target, errors[:, len(seen) - len(target) :])
     return Judgement(target, tuple(rows), band)
 
 
@@ -159,9 +161,16 @@ def _judge_path(name: str, path: Poses, target: Poses) -> Judged:
     return Judged(name, single, path_errors(single, target), scores)
 
 
-def _judge_band(
-    single: Judged, band: Poses, target: Poses, noise: Array, rng: np.random.Generator
-) -> Judged:
+def _tracker_errors(seen: Poses, count: int, rng: np.random.Generator) -> Array:
+    """Draw errors, true minus tracked, of all tracked poses, shape (count, n, 3) [m, m, rad].
+
+    They are 0 if the track has no covariance.
+    """
+    none = JointCovariance.independent(np.zeros((len(seen), 3, 3)))
+    return (seen.joint or none).draw(count, rng=rng)
+
+
+def _judge_band(single: Judged, band: Poses, target: Poses, errors: Array) -> Judged:
     """Replace the scores of a single path by those of an ensemble with tracker noise.
 
     Consistency is added if there are `FEWEST_DRAWS` draws or more.
@@ -170,16 +179,14 @@ def _judge_band(
         single: Errors and scores of the single path.
         band: Draws of the path.
         target: The tracked poses that are scored, n of them.
-        noise: The tracker's covariance of x, y and yaw at each of them, shape (n, 3, 3).
-        rng: Source of randomness of tracker noise.
+        errors: The tracker's errors, true minus tracked, one draw for each path, shape (m, n, 3).
     """
-    draws = states_at(band, target.t)
-    seen = with_tracker_noise(draws, noise, rng=rng)
-    enough = len(draws) >= FEWEST_DRAWS
+    seen = states_at(band, target.t) - errors
+    enough = len(seen) >= FEWEST_DRAWS
     return replace(
         single,
         scores=ensemble_scores(seen, target.states),
-        consistency=consistency(draws, target.states, noise, rng=rng) if enough else (),
+        consistency=consistency(seen, target.states) if enough else (),
     )
 
 

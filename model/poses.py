@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from model.errors import DomainError, InsufficientData
+from model.joint_covariance import JointCovariance
 from model.slip.law import Array
 from model.told_apart import told_apart
 
@@ -21,8 +22,8 @@ class Poses:
         position: Positions x, y, shape (n, 2), or (draws, n, 2) for several draws [m].
         yaw: Unwrapped headings, shape (n,) or (draws, n) [rad]; NaN throughout where not
             measured.
-        covariance: Covariance of x, y and yaw of each pose of one path, shape (n, 3, 3), in
-            products of [m, m, rad]; None where it is not known.
+        joint: Covariance of x, y and yaw of the n poses of one path with each other; None where it
+            is not known.
 
     Raises:
         DomainError: Shapes do not match, times do not increase strictly, or a time or a position is
@@ -32,7 +33,7 @@ class Poses:
     t: Array
     position: Array
     yaw: Array
-    covariance: Array | None = None
+    joint: JointCovariance | None = None
 
     def __post_init__(self) -> None:
         """Check that shapes match, that times increase and that times and positions are finite."""
@@ -43,12 +44,13 @@ class Poses:
             or len(batch) > 1
             or self.position.shape != (*batch, n, 2)
             or self.yaw.shape != (*batch, n)
-            or (self.covariance is not None and self.covariance.shape != (n, 3, 3))
+            or (self.joint is not None and len(self.joint) != n)
         ):
+            poses = "no" if self.joint is None else len(self.joint)
             raise DomainError(
                 f"times {self.t.shape}, positions {self.position.shape}, headings {self.yaw.shape} "
-                f"or covariance {getattr(self.covariance, 'shape', None)} do not match; expected "
-                "(n,), (n, 2), (n,) and (n, 3, 3) or None; for m draws (n,), (m, n, 2) and (m, n)"
+                f"or the covariance of {poses} poses do not match; expected (n,), (n, 2), (n,) and "
+                "n poses or none; for m draws (n,), (m, n, 2) and (m, n)"
             )
         if not np.all(np.diff(self.t) > 0):
             worst = int(np.argmin(np.diff(self.t) > 0))
@@ -96,6 +98,14 @@ class Poses:
         return Poses(self.t, position[keep], yaw[keep])
 
     @property
+    def covariance(self) -> Array | None:
+        """Covariance of x, y and yaw of each pose, in products of [m, m, rad], shape (n, 3, 3).
+
+        None where it is not known.
+        """
+        return None if self.joint is None else self.joint.marginal
+
+    @property
     def has_yaw(self) -> bool:
         """Whether every heading is finite."""
         return bool(np.isfinite(self.yaw).all())
@@ -114,10 +124,8 @@ class Poses:
         Args:
             keep: Slice, boolean mask (n,) or indices of the times.
         """
-        covariance = None if self.covariance is None else self.covariance[keep]
-        return Poses(
-            self.t[keep], self.position[..., keep, :], self.yaw[..., keep], covariance=covariance
-        )
+        joint = None if self.joint is None else self.joint.part(keep)
+        return Poses(self.t[keep], self.position[..., keep, :], self.yaw[..., keep], joint)
 
     def delayed(self, offset: float) -> "Poses":
         """Return the same poses with an offset [s] added to all times."""

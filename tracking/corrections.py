@@ -15,13 +15,15 @@ import numpy as np
 from model.similar_name import similar_name
 from tracking.errors import CorrectionError
 from tracking.path import PoseObservation
+from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior
+from tracking.shared import CAMERA, LENS
 
 
 @dataclass(frozen=True)
 class Move:
     """Set the robot's pose in a photograph, whether or not the tracker found it there.
 
-    A pose found there keeps its time, height z and covariance from the camera's pose.
+    A pose found there keeps its time, and the error that it has from the camera's pose and lens.
 
     Attributes:
         photo: Name of the photograph.
@@ -82,16 +84,16 @@ _KINDS: dict[str, type[Correction]] = {
 
 def replay(
     observations: Sequence[PoseObservation], corrections: Iterable[Correction], *,
-    times: Mapping[str, tuple[float, float]] | None = None, z: float = 0.0,
+    prior: BodyPrior, times: Mapping[str, tuple[float, float]] | None = None,
 ) -> tuple[PoseObservation, ...]:  # fmt: skip
     """Apply corrections to observations.
 
     Args:
         observations: The tracker's observations.
         corrections: The corrections, in the order in which they were made.
+        prior: Prior of the body's height and tilt: those of a pose that a `Move` sets.
         times: By photograph, time and its standard deviation [s]; needed to `Move` the robot into
             a photograph without an observation.
-        z: Height of the body's origin in an observation that a `Move` adds [m].
 
     Returns:
         Corrected observations in the given order, those added by a `Move` last; unchanged
@@ -106,7 +108,7 @@ def replay(
         if isinstance(correction, Order):
             found = _ordered(found, correction)
         elif isinstance(correction, Move):
-            found[correction.photo] = _moved(found, correction, times or {}, z)
+            found[correction.photo] = _moved(found, correction, times or {}, prior)
         elif isinstance(correction, Delete):
             _known(found, correction.photo)
             del found[correction.photo]
@@ -185,26 +187,31 @@ def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
 
 def _flipped(seen: PoseObservation) -> PoseObservation:
     # The position stays; only head and tail are exchanged.
-    yaw = np.angle(np.exp(1j * (seen.planar[2] + np.pi)))
-    return replace(seen, planar=np.array([*seen.planar[:2], float(yaw)]))
+    state = seen.pose.state.copy()
+    state[5] = float(np.angle(np.exp(1j * (state[5] + np.pi))))
+    return replace(seen, pose=replace(seen.pose, state=state))
 
 
 def _moved(
     found: Mapping[str, PoseObservation],
     move: Move,
     times: Mapping[str, tuple[float, float]],
-    z: float,
+    prior: BodyPrior,
 ) -> PoseObservation:
-    planar = np.array([move.x, move.y, move.yaw])
-    covariance = np.diag([move.position_sd, move.position_sd, move.yaw_sd]) ** 2
+    state = np.array([move.x, move.y, prior.height, 0.0, 0.0, move.yaw])
+    covariance = np.zeros((6, 6))
+    covariance[PLANAR, PLANAR] = np.square([move.position_sd, move.position_sd, move.yaw_sd])
+    covariance[np.ix_(HELD, HELD)] = prior.covariance
     if move.photo in found:
         seen = found[move.photo]
-        return replace(seen, planar=planar, covariance=covariance, score=1.0, source="hand")
+        by_camera = {cause: seen.pose.by_cause[cause] for cause in (CAMERA, LENS)
+                     if cause in seen.pose.by_cause}  # fmt: skip
+        pose = BodyPose(state, covariance, by_camera)
+        return replace(seen, pose=pose, score=1.0, source="hand")
     if move.photo not in times:
         _known(found, move.photo)
     t, t_sd = times[move.photo]
-    none = np.zeros((3, 3))
-    return PoseObservation(move.photo, t, t_sd, planar, covariance, none, z, 1.0, "hand")
+    return PoseObservation(move.photo, t, t_sd, BodyPose(state, covariance), 1.0, "hand")
 
 
 def _ordered(found: Mapping[str, PoseObservation], order: Order) -> dict[str, PoseObservation]:

@@ -12,12 +12,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera.lens import Camera
+from tracking.camera.lens import CameraPose, to_floor
 from tracking.errors import PhotoError
 from tracking.floor import FloorFit, FloorMap, FloorView
-from tracking.markers import Sighting, find_markers, guess_dictionary, neighbourhood
+from tracking.markers import (
+    Sighting,
+    edge_growth,
+    find_markers,
+    guess_dictionary,
+    neighbourhood,
+)
 from tracking.path import PoseObservation
-from tracking.pose import BodyPrior, RobotMarker, fit_pose
+from tracking.pose import BodyPose, BodyPrior, RobotMarker, fit_pose
+from tracking.shared import EDGES
 
 
 @dataclass(frozen=True)
@@ -135,44 +142,68 @@ def _no_floor(pixels: NDArray[np.uint8], floor: FloorMap) -> str:
 
 
 def observe(
-    camera: Camera, fit: FloorFit, detections: Sequence[Detection], *, robot: MarkedRobot,
-    times: Mapping[str, tuple[float, float]],
+    fit: FloorFit, detections: Sequence[Detection], *, robot: MarkedRobot,
+    times: Mapping[str, tuple[float, float]], edge_sd: float | None = None,
 ) -> tuple[PoseObservation, ...]:  # fmt: skip
     """Compute the robot's pose in every photograph that shows its marker and the floor.
 
-    The covariance of the corners is multiplied by `fit.noise_factor`².
+    The covariance of the corners is multiplied by `fit.noise_factor`², and includes the spread of
+    the edges of single markers that the floor's markers show.
 
     Args:
-        camera: Camera intrinsics and distortion.
-        fit: The floor and the camera's poses.
+        fit: The camera, its poses and the floor.
         detections: Markers detected in each photograph.
         robot: The robot's marker and prior.
         times: By photograph, time and its standard deviation [s]; needed for each observation.
+        edge_sd: Standard deviation of the edges of one marker [px]; None for that of `fit`.
 
     Returns:
         One observation for each photograph that shows the robot's marker and for which `fit` has
         a camera pose, in the order of `detections`.
     """
     return tuple(
-        _observation(camera, fit, detection.photo, detection.robot, robot, times)
+        _observation(fit, detection.photo, detection.robot, robot, times, edge_sd)
         for detection in detections
         if detection.robot is not None and detection.photo not in fit.unused
     )
 
 
 def _observation(
-    camera: Camera, fit: FloorFit, photo: str, sighting: Sighting, robot: MarkedRobot,
-    times: Mapping[str, tuple[float, float]],
+    fit: FloorFit, photo: str, sighting: Sighting, robot: MarkedRobot,
+    times: Mapping[str, tuple[float, float]], edge_sd: float | None,
 ) -> PoseObservation:  # fmt: skip
-    marker = robot.marker
-    pose = fit_pose(
-        camera,
-        fit.pose_of(photo),
-        points_body=marker.points_body,
-        corners_px=sighting.corners_px,
-        covariance=fit.noise_factor**2 * sighting.covariance,
-        prior=robot.prior,
-        scale_sd=marker.side_sd / marker.side,
-    )
+    pose = pose_of_marker(fit, fit.pose_of(photo), sighting, robot, edge_sd=edge_sd)
     t, t_sd = times[photo]
-    return PoseObservation.of(photo, pose, t=t, t_sd=t_sd, score=sighting.score, source="marker")
+    return PoseObservation(photo, t, t_sd, pose, sighting.score, "marker", fit.stand_of(photo))
+
+
+def pose_of_marker(
+    fit: FloorFit, view: CameraPose, sighting: Sighting, robot: MarkedRobot, *,
+    edge_sd: float | None = None,
+) -> BodyPose:  # fmt: skip
+    """Fit the robot's pose to its marker in a photograph.
+
+    Args:
+        fit: The camera and the edges of markers.
+        view: Pose of the camera in the photograph.
+        sighting: The robot's marker in the photograph.
+        robot: The robot's marker and prior.
+        edge_sd: Standard deviation of the edges of one marker [px]; None for that of `fit`.
+    """
+    edge_sd = fit.edge_spread.sd if edge_sd is None else edge_sd
+    growth = edge_growth(sighting.corners_px).ravel()
+    height = robot.prior.height + robot.marker.position[2]
+    about = to_floor(fit.camera, view, sighting.corners_px, height)
+    points = np.column_stack((about, np.full(len(about), height)))
+    by_edges = fit.edge_derivative(sighting.corners_px, points, view)
+    spread = fit.noise_factor**2 * sighting.covariance
+    return fit_pose(
+        fit.camera,
+        view,
+        points_body=robot.marker.points_body,
+        corners_px=sighting.corners_px - by_edges @ fit.edges,
+        covariance=spread + edge_sd**2 * np.outer(growth, growth),
+        prior=robot.prior,
+        points_by=robot.marker.derivatives,
+        pixels_by={EDGES: by_edges},
+    )

@@ -2,15 +2,17 @@
 """Path of a walk: observations of the pose in photographs, sorted by time and smoothed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from model.joint_covariance import JointCovariance
 from tracking.camera.lens import Array
 from tracking.errors import PathError
-from tracking.pose import PLANAR, BodyPose
-from tracking.smooth import Process, SmoothPath, smooth
+from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior
+from tracking.shared import CAMERA, HEIGHT, TILT, SharedErrors, stand_name
+from tracking.smooth import Process, SharedInput, SmoothPath, smooth
 
 TRACK_COLUMNS = (
     "t_s", "t_sigma", "x_m", "y_m", "yaw_rad", "cov_xx", "cov_xy", "cov_xyaw", "cov_yy",
@@ -28,46 +30,38 @@ class PoseObservation:
         photo: Name of the photograph, or of the exposure in a composite one.
         t: Time [s].
         t_sd: Standard deviation of `t` [s].
-        planar: x, y [m] and yaw [rad] of the body, shape (3,).
-        covariance: Covariance of `planar` from errors of this photograph alone, shape (3, 3).
-        camera_covariance: Covariance of `planar` from the error of the camera's pose, which
-            photographs from one camera position share, shape (3, 3).
-        z: Height of the body's origin over the floor [m].
+        pose: Pose of the body, with its covariance and its derivatives by shared errors.
         score: Correlation of the photograph with the marker or template, 1 at best and of a pose
             that a person set [-].
         source: How the pose was found: "marker", "body" (template) or "hand" (set by a person; a
             pose of which only head and tail were exchanged keeps its source).
+        stand: Number of the camera's stand in which the photograph was taken, from 0.
     """
 
     photo: str
     t: float
     t_sd: float
-    planar: Array
-    covariance: Array
-    camera_covariance: Array
-    z: float
+    pose: BodyPose
     score: float
     source: str
+    stand: int = 0
 
-    @classmethod
-    def of(
-        cls, photo: str, pose: BodyPose, *, t: float, t_sd: float, score: float, source: str
-    ) -> "PoseObservation":
-        """Build an observation from a fitted pose: its x, y, yaw, their covariances, and its z.
+    @property
+    def planar(self) -> Array:
+        """x, y [m] and yaw [rad] of the body, shape (3,)."""
+        return self.pose.planar
 
-        Args:
-            photo: Name of the photograph.
-            pose: The robot's pose with its covariances.
-            t: Time [s].
-            t_sd: Standard deviation of `t` [s].
-            score: Correlation with the marker or template, 1 at best [-].
-            source: "marker", "body" or "hand".
-        """
-        shared = pose.camera_covariance[np.ix_(PLANAR, PLANAR)]
-        return cls(
-            photo, t, t_sd, pose.planar, pose.planar_covariance, shared, float(pose.state[2]),
-            score, source,
-        )  # fmt: skip
+    @property
+    def z(self) -> float:
+        """Height of the body's origin over the floor [m]."""
+        return float(self.pose.state[2])
+
+    def by_error(self, shared: SharedErrors, prior: BodyPrior) -> Array:
+        """Compute the derivative of the pose's six coordinates by shared errors, shape (6, q)."""
+        by_cause = dict(self.pose.with_prior(prior))
+        if CAMERA in by_cause:
+            by_cause[stand_name(self.stand)] = by_cause.pop(CAMERA)
+        return shared.columns(by_cause, 6)
 
 
 @dataclass(frozen=True)
@@ -77,13 +71,25 @@ class Track:
     Attributes:
         observations: The robot's observed poses, in order of time.
         smoothed: The path smoothed from `observations`, at their times.
-        covariance: Covariance of the smoothed x, y [m] and yaw [rad], including the error of the
-            camera's pose, shape (n, 3, 3).
+        joint: Covariance of the smoothed poses with each other; its shared errors are `shared`.
+        shared: Covariance of the shared errors that the photographs leave, by cause.
+        stated: Covariance of the shared errors before the robot was looked at.
     """
 
     observations: tuple[PoseObservation, ...]
     smoothed: SmoothPath
-    covariance: Array
+    joint: JointCovariance
+    shared: SharedErrors
+    stated: SharedErrors
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of each sample's x, y [m] and yaw [rad], shared errors included, (n, 3, 3)."""
+        return self.joint.marginal
+
+    def covariance_given(self, causes: Sequence[str]) -> Array:
+        """Compute the covariance of each sample if some causes of errors were known, (n, 3, 3)."""
+        return replace(self.joint, errors=self.shared.given(causes)).marginal
 
     @property
     def t(self) -> Array:
@@ -139,20 +145,25 @@ class Track:
 def assemble_track(
     observations: Sequence[PoseObservation],
     *,
+    shared: SharedErrors,
+    prior: BodyPrior,
     gap: float | None = None,
     process: Process | None = None,
+    start: Process | None = None,
 ) -> Track:
-    """Sort observations by time and smooth their poses with `tracking.smooth.smooth`.
+    """Sort observations by time; estimate their path and the errors that they share.
 
     Args:
         observations: Poses of the robot, one for each photograph, in any order.
+        shared: Covariance of the shared errors before the robot is looked at.
+        prior: Prior of height and tilt with which the poses were fitted.
         gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
             interval.
         process: Noise densities of the motion model; None to estimate them.
+        start: Noise densities from which to start their estimate; None for a walking robot's.
 
     Returns:
-        The path; the covariance from the camera's pose is added after smoothing, since more
-        photographs from the same place do not average it away.
+        The path, smoothed with `tracking.smooth.smooth`, with its joint covariance.
 
     Raises:
         PathError: When there is no observation or two photographs have the same time.
@@ -160,13 +171,60 @@ def assemble_track(
     if not observations:
         raise PathError("the robot is found in no photograph, or corrections delete all its poses")
     ordered = tuple(sorted(observations, key=lambda seen: seen.t))
+    by_error = np.stack([seen.by_error(shared, prior) for seen in ordered])
+    root = shared.root
     path = smooth(
         [seen.t for seen in ordered],
         np.array([seen.planar for seen in ordered]),
-        covariance=np.array([seen.covariance for seen in ordered]),
+        covariance=np.array([seen.pose.planar_covariance for seen in ordered]),
         time_sd=[seen.t_sd for seen in ordered],
         gap=gap,
         process=process,
+        start=start,
+        shared=SharedInput(
+            by_error[:, PLANAR] @ root,
+            *_from_heights(ordered, by_error @ root, root, shared, prior),
+        ),
     )
-    shared = np.array([seen.camera_covariance for seen in ordered])
-    return Track(ordered, path, path.covariance + shared)
+    left = SharedErrors(root @ path.shared_covariance @ root.T, shared.slots)
+    parts = (path.own, path.following, path.gain(by_error[:, PLANAR]), left.covariance)
+    joint = JointCovariance(*(np.asarray(part, dtype=np.float64) for part in parts))
+    return Track(ordered, path, joint, left, shared)
+
+
+def _from_heights(
+    observations: Sequence[PoseObservation], by_error: Array, root: Array, shared: SharedErrors,
+    prior: BodyPrior,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Compute what heights and tilts in the photographs tell of the shared errors u.
+
+    With C the covariance of height and tilt after a photograph, Q that of their prior and e the
+    estimate less the prior's mean, the photograph's own value differs from the prior's by v with
+    G v = Q^-1 e, where G = Q^-1 (Q - C) Q^-1 is the inverse covariance of v (0 where a photograph
+    tells nothing). v moves with the shared errors by G dv = Q^-1 (de - dm), m the prior's mean.
+
+    Returns:
+        Information on u, shape (r, r), and gradient of minus the log likelihood at u = 0, (r,).
+    """
+    of_mean = shared.columns(
+        {HEIGHT: np.eye(3)[:, :1], TILT: np.eye(3)[:, 1:]}, 3
+    ) @ root  # fmt: skip
+    Q = prior.covariance
+    held = np.linalg.inv(Q)
+    information, gradient = np.zeros((root.shape[1],) * 2), np.zeros(root.shape[1])
+    for seen, derivative in zip(observations, by_error, strict=True):
+        C = seen.pose.covariance[np.ix_(HELD, HELD)]
+        e = seen.pose.state[HELD] - [prior.height, 0.0, 0.0]
+        spread = _inverse_where_known(held @ (Q - C) @ held, held)
+        moved = held @ (derivative[HELD] - of_mean)
+        information += moved.T @ spread @ moved
+        gradient += moved.T @ spread @ held @ e
+    return information, gradient
+
+
+def _inverse_where_known(G: Array, held: Array) -> Array:
+    """Invert an information matrix; 0 in directions that hold under a millionth of `held`."""
+    unit = np.sqrt(np.diag(held))
+    values, vectors = np.linalg.eigh(G / np.outer(unit, unit))
+    inverse = np.where(values > 1e-6, 1 / np.maximum(values, 1e-6), 0.0)
+    return (vectors * inverse) @ vectors.T / np.outer(unit, unit)

@@ -8,11 +8,16 @@ on height, roll and pitch therefore enters from the robot's dimensions. Minimise
     r' C^-1 r + ((z - z_body) / sd_z)² + (roll / sd_tilt)² + (pitch / sd_tilt)²
 
 with r the points' pixels minus their projection, C the covariance of the pixels, z_body and sd_z
-the prior's height and its standard deviation, sd_tilt that of roll and pitch. x, y and yaw carry no
-prior; their covariance includes the uncertainty of height and tilt.
+the prior's height and its standard deviation about the mean of the walk, sd_tilt that of roll and
+pitch. x, y and yaw carry no prior; their covariance includes the uncertainty of height and tilt.
+
+What photographs have in common (camera, lens, side of the marker) is taken as exact here. With the
+pose comes its derivative by each of these, from which `tracking.path` computes the whole
+covariance.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,6 +33,7 @@ from tracking.camera.lens import (
 )
 from tracking.errors import MarkerError
 from tracking.markers import marker_corners
+from tracking.shared import CAMERA, HEIGHT, LENS, PLACE, SIDE, TILT, TURN
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,9 @@ class RobotMarker:
         position: Centre of the marker in the body frame: forward, left, up [m].
         yaw: Turn of the print's left-to-right direction from the body's x, counter-clockwise
             [rad]; -pi/2 when the print's top points ahead.
-        side_sd: Standard deviation of `side` [m].
+        side_sd: Standard deviation of `side`, 0 if taken as exact, as of the next two [m].
+        position_sd: Standard deviation of x and of y of `position` [m].
+        yaw_sd: Standard deviation of `yaw` [rad].
     """
 
     marker_id: int
@@ -49,7 +57,9 @@ class RobotMarker:
     dictionary: str
     position: tuple[float, float, float]
     yaw: float = -np.pi / 2
-    side_sd: float = 2e-4
+    side_sd: float = 0.0
+    position_sd: float = 0.0
+    yaw_sd: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.side > 0:
@@ -60,20 +70,56 @@ class RobotMarker:
         """Corners of the marker in the body frame, OpenCV's order, shape (4, 3) [m]."""
         return marker_corners(self.side, self.position, self.yaw)
 
+    @property
+    def derivatives(self) -> dict[str, Array]:
+        """Derivative of `points_body` by cause: side, place (x, y) and turn, shape (4, 3, k)."""
+        arm = self.points_body - np.asarray(self.position)
+        turned = np.column_stack((-arm[:, 1], arm[:, 0], np.zeros(4)))
+        along = np.tile(np.eye(3)[:, :2], (4, 1, 1))
+        return {SIDE: arm[:, :, None] / self.side, PLACE: along, TURN: turned[:, :, None]}
+
+    @property
+    def spreads(self) -> dict[str, Array]:
+        """Covariance of side, place and turn by cause, shape (k, k) [m², m², rad²]."""
+        variance = {SIDE: [self.side_sd], PLACE: 2 * [self.position_sd], TURN: [self.yaw_sd]}
+        return {cause: np.diag(np.square(sd)) for cause, sd in variance.items()}
+
 
 @dataclass(frozen=True)
 class BodyPrior:
-    """Prior on the body's height and tilt.
+    """Prior on the body's height and tilt: of their means over a walk, and about these means.
 
     Attributes:
-        height: Height of the body's origin over the floor [m].
-        height_sd: Standard deviation of `height` over a walk [m].
-        tilt_sd: Standard deviation of roll and of pitch over a walk [rad].
+        height: Height of the body's origin over the floor, mean of a walk [m].
+        height_sd: Standard deviation of the height about its mean, in a photograph [m].
+        tilt_sd: Standard deviation of roll and of pitch about their means, in a photograph [rad].
+        mean_height_sd: Standard deviation of `height` [m].
+        mean_tilt_sd: Standard deviation of mean roll and of mean pitch, about 0 [rad].
     """
 
     height: float
     height_sd: float = 3e-3
     tilt_sd: float = 0.02
+    mean_height_sd: float = 0.0
+    mean_tilt_sd: float = 0.0
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of height, roll and pitch in a photograph about their means, shape (3, 3)."""
+        return np.diag(np.square([self.height_sd, self.tilt_sd, self.tilt_sd]))
+
+    @property
+    def spreads(self) -> dict[str, Array]:
+        """Covariance of the means of a walk by cause: height (1, 1), roll and pitch (2, 2)."""
+        tilt = self.mean_tilt_sd**2 * np.eye(2)
+        return {HEIGHT: np.array([[self.mean_height_sd**2]]), TILT: tilt}
+
+
+PLANAR = [0, 1, 5]
+"""Indices of x, y and yaw in `BodyPose.state`."""
+
+HELD = [2, 3, 4]
+"""Indices of z, roll and pitch in `BodyPose.state`, which have a prior."""
 
 
 @dataclass(frozen=True)
@@ -83,15 +129,18 @@ class BodyPose:
     Attributes:
         state: x, y, z [m], roll, pitch, yaw [rad] of the body in the floor frame, shape (6,);
             R = Rz(yaw) Ry(pitch) Rx(roll).
-        covariance: Covariance of `state` from errors of pixels, height and tilt, taken as
-            independent from photograph to photograph, shape (6, 6).
-        camera_covariance: Covariance of `state` from the error of the camera's pose, which the
-            photographs of a stand share, shape (6, 6).
+        covariance: Covariance of `state` from errors of pixels, and of height and tilt about their
+            means, all independent from photograph to photograph, shape (6, 6).
+        by_cause: By cause of shared errors (`tracking.shared`), the derivative of `state` by the
+            value that was used, shape (6, k); causes that do not matter are left out.
+        log_evidence: Log marginal likelihood of the pixels over height and tilt at the best x, y
+            and yaw, up to a constant; it compares assumptions on the pixels' errors [-].
     """
 
     state: Array
     covariance: Array
-    camera_covariance: Array
+    by_cause: Mapping[str, Array] = field(default_factory=dict)
+    log_evidence: float = 0.0
 
     @property
     def planar(self) -> Array:
@@ -100,12 +149,17 @@ class BodyPose:
 
     @property
     def planar_covariance(self) -> Array:
-        """Covariance of x, y and yaw without the error of the camera's pose, shape (3, 3)."""
+        """Covariance of x, y and yaw without shared errors, shape (3, 3)."""
         return self.covariance[np.ix_(PLANAR, PLANAR)]
 
+    def with_prior(self, prior: BodyPrior) -> Mapping[str, Array]:
+        """Return `by_cause` with the mean height and tilt of the prior that was used in the fit.
 
-PLANAR = [0, 1, 5]
-"""Indices of x, y and yaw in `BodyPose.state`."""
+        The estimate is (C^-1)^-1 times the sum of each information times its value; the prior's is
+        P^-1, so that the estimate moves with the prior's means by C P^-1.
+        """
+        by_mean = self.covariance[:, HELD] @ np.linalg.inv(prior.covariance)
+        return {**self.by_cause, HEIGHT: by_mean[:, :1], TILT: by_mean[:, 1:]}
 
 
 def rotation_with_derivatives(roll: float, pitch: float, yaw: float) -> tuple[Array, Array]:
@@ -139,30 +193,31 @@ def fit_pose(
     corners_px: ArrayLike,
     covariance: ArrayLike,
     prior: BodyPrior,
-    scale_sd: float = 0.0,
+    points_by: Mapping[str, Array] | None = None,
+    pixels_by: Mapping[str, Array] | None = None,
 ) -> BodyPose:
     """Fit the robot's pose to points on the robot by least squares, with prior of height and tilt.
 
     Args:
         camera: Camera intrinsics and distortion.
-        view: The camera's pose with covariance.
+        view: The camera's pose.
         points_body: Points in the body frame, shape (n, 3), n at least 2 [m].
         corners_px: The same points in the picture, shape (n, 2) [px].
         covariance: Covariance of `corners_px.ravel()`, shape (2n, 2n) [px²].
         prior: Prior of the body's height and tilt.
-        scale_sd: Relative standard deviation of the points' common scale, `side_sd / side` of a
-            marker. It limits how well the size in the picture determines the height [-].
+        points_by: By cause of shared errors, derivative of `points_body`, shape (n, 3, k).
+        pixels_by: By cause of shared errors, how it moves the points in the picture besides
+            their projection, shape (n, 2, k).
 
     Returns:
-        The pose of least cost with its covariances, yaw in -pi to pi.
+        The pose of least cost with its covariance and its derivatives by the camera, the lens and
+        the causes given, yaw in -pi to pi.
 
     Raises:
         ValueError: When a point's ray does not meet the plane of the points' expected mean height.
     """
     pixels = np.asarray(corners_px, dtype=float)
-    growth = scale_sd * (pixels - pixels.mean(axis=0)).ravel()
-    spread_px = np.asarray(covariance, dtype=float) + np.outer(growth, growth)
-    whiten = np.linalg.inv(np.linalg.cholesky(spread_px))
+    whiten = np.linalg.inv(np.linalg.cholesky(np.asarray(covariance, dtype=float)))
     body = np.asarray(points_body, dtype=float)
     problem = _PoseProblem(camera, view, body, pixels, prior, whiten)
     fit = least_squares(
@@ -173,9 +228,17 @@ def fit_pose(
     )
     J = problem.jacobian(fit.x)
     spread = np.linalg.inv(J.T @ J)
-    # The state follows the camera: d state = -(J'J)^-1 J' (d residual / d camera) d camera.
-    follow = -spread @ J.T @ problem.by_camera(fit.x)
-    return BodyPose(_wrapped(fit.x), spread, follow @ view.covariance @ follow.T)
+    by_cause = {
+        # The estimate follows: d state = -(J'J)^-1 J' (d residual / d cause) d cause.
+        cause: -spread @ J.T @ derivative
+        for cause, derivative in problem.by_cause(fit.x, points_by or {}, pixels_by or {}).items()
+    }
+    log_dets = (
+        -2 * float(np.log(np.diag(whiten)).sum())
+        - float(np.linalg.slogdet(spread)[1])
+        + float(np.linalg.slogdet(spread[np.ix_(PLANAR, PLANAR)])[1])
+    )
+    return BodyPose(_wrapped(fit.x), spread, by_cause, -float(fit.cost) - 0.5 * log_dets)
 
 
 def _wrapped(state: Array) -> Array:
@@ -226,17 +289,30 @@ class _PoseProblem:
         by_state = np.empty((len(self.points_body), 3, 6))
         by_state[:, :, :3] = np.eye(3)
         by_state[:, :, 3:] = np.einsum("kab,nb->nak", dR, self.points_body)
-        _, by_point, _ = project_with_derivatives(self.camera, self.view, self.points_world(state))
+        by_point = project_with_derivatives(
+            self.camera, self.view, self.points_world(state)
+        ).by_point
         pixels = self.whiten @ (by_point @ by_state).reshape(-1, 6)
         held = np.zeros((3, 6))
         held[0, 2] = 1 / self.prior.height_sd
         held[1, 3] = held[2, 4] = 1 / self.prior.tilt_sd
         return np.vstack((pixels, held))
 
-    def by_camera(self, state: Array) -> Array:
-        """Compute the derivative of the residual by the camera's pose, shape (2n + 3, 6).
+    def by_cause(
+        self, state: Array, points_by: Mapping[str, Array], pixels_by: Mapping[str, Array]
+    ) -> dict[str, Array]:
+        """Compute the derivative of the residual by camera, lens and further causes (2n + 3, k).
 
-        Columns: rotation vector [1/rad], translation [1/m]; the last 3 rows (prior) are 0.
+        The last 3 rows (prior) are 0.
         """
-        _, _, by_pose = project_with_derivatives(self.camera, self.view, self.points_world(state))
-        return np.vstack((self.whiten @ by_pose.reshape(-1, 6), np.zeros((3, 6))))
+        R, _ = rotation_with_derivatives(*state[3:])
+        seen = project_with_derivatives(self.camera, self.view, self.points_world(state))
+        by_cause = {CAMERA: seen.by_pose, LENS: seen.by_lens}
+        for cause, of_points in points_by.items():
+            by_cause[cause] = seen.by_point @ R @ of_points
+        by_cause |= pixels_by
+        return {
+            cause: np.vstack((self.whiten @ each.reshape(-1, each.shape[2]),
+                              np.zeros((3, each.shape[2]))))
+            for cause, each in by_cause.items()
+        }  # fmt: skip

@@ -8,18 +8,23 @@ Robotics, 2017, section 11.3, written for the plane):
 
     e = [ log(T_k^-1 T_k+1) - dt w_k ;  w_k+1 - w_k ],   cov e = [ dt³/3 dt²/2 ; dt²/2 dt ] x Q_c
 
-The least-squares problem is block tridiagonal and solved as such. The two noise densities of Q_c
-are those with the greatest marginal likelihood (Laplace's approximation) unless they are given.
+Errors that the measurements share (camera, lens, height) are unknowns as well. With u these errors,
+independent and of variance 1, a measured pose m is the true pose minus F u plus noise of its own.
+The normal equations of all are an arrow: block tridiagonal for the poses and twists, with a border
+for u, which is eliminated last. The two noise densities of Q_c are those with the greatest marginal
+likelihood (Laplace's approximation) unless they are given.
 
 The second line leaves out the Jacobian of the logarithm, which differs from one by half the turn
 between two photographs; the noise density absorbs the difference.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.optimize import minimize
 
 from tracking.camera.lens import Array
@@ -41,6 +46,32 @@ class Process(NamedTuple):
 
 
 @dataclass(frozen=True)
+class SharedInput:
+    """Errors that measured poses share, as independent unknowns u of mean 0 and variance 1.
+
+    Attributes:
+        by_error: Derivative F of each measured pose by u, shape (n, 3, r): the true pose is the
+            measured one plus F u plus noise.
+        information: Information on u that is not in the measured poses, shape (r, r).
+        gradient: Gradient of minus its log likelihood at u = 0, shape (r,).
+    """
+
+    by_error: Array
+    information: Array
+    gradient: Array
+
+    @classmethod
+    def none(cls, n: int) -> "SharedInput":
+        """Return no shared errors of n poses."""
+        return cls(np.zeros((n, 3, 0)), np.zeros((0, 0)), np.zeros(0))
+
+    @property
+    def size(self) -> int:
+        """Number r of shared errors."""
+        return len(self.gradient)
+
+
+@dataclass(frozen=True)
 class SmoothPath:
     """A smoothed path at the times of the photographs.
 
@@ -52,6 +83,13 @@ class SmoothPath:
         suspect: True where the squared Mahalanobis distance of a measured pose from the path, by
             the covariance of the measurement, exceeds 25 (3 degrees of freedom), shape (n,).
         process: The noise densities used, given or estimated.
+        own: Covariance of pose and twist if the shared errors were known, shape (n, 6, 6).
+        following: The same between each sample and the next, shape (n - 1, 6, 6); zero over gaps.
+        gain: Derivative of all poses by the measured ones' shared errors, as a function: it takes
+            F, shape (n, 3, q), and returns the derivative of the smoothed poses, (n, 3, q).
+        log_likelihood: Log marginal likelihood (Laplace) of the measured poses, up to a constant.
+        shared: Estimate of u, shape (r,).
+        shared_covariance: Covariance of u, shape (r, r).
     """
 
     poses: Array
@@ -60,6 +98,12 @@ class SmoothPath:
     segment: NDArray[np.int64]
     suspect: NDArray[np.bool_]
     process: Process
+    own: Array
+    following: Array
+    gain: Callable[[Array], Array]
+    log_likelihood: float
+    shared: Array
+    shared_covariance: Array
 
     @property
     def gap_before(self) -> NDArray[np.bool_]:
@@ -75,6 +119,8 @@ def smooth(
     time_sd: ArrayLike = 0.0,
     gap: float | None = None,
     process: Process | None = None,
+    start: Process | None = None,
+    shared: SharedInput | None = None,
 ) -> SmoothPath:
     """Smooth measured poses by least squares with a constant-twist motion model.
 
@@ -88,6 +134,8 @@ def smooth(
             median interval.
         process: Noise densities of the motion model; None estimates them, or takes 1e-3 m²/s³ and
             1e-2 rad²/s³ where no segment has three poses.
+        start: Noise densities near those to be estimated; None if none are known.
+        shared: Errors that the measured poses share; None for none.
 
     Returns:
         The path, at the times `t` only.
@@ -97,21 +145,31 @@ def smooth(
     """
     times, measured, spread = _checked(t, poses, covariance)
     stamp_sd = np.broadcast_to(np.asarray(time_sd, dtype=float), times.shape)
+    known = SharedInput.none(len(times)) if shared is None else shared
     segment = _segments(times, gap)
+    rows = [np.flatnonzero(segment == number) for number in np.unique(segment)]
     parts = [
-        _Chain.of(times[part], measured[part], spread[part], stamp_sd[part])
-        for part in (np.flatnonzero(segment == number) for number in np.unique(segment))
+        _Chain.of(times[part], measured[part], spread[part], stamp_sd[part], known.by_error[part])
+        for part in rows
     ]
-    found = process or _likeliest(parts)
-    solved = [part.solve(found) for part in parts]
-    state = np.concatenate([solution.state for solution in solved])
-    cov = np.concatenate([solution.covariance for solution in solved])
-    residual = np.concatenate(
-        [s.state[:, :3] - p.measured for s, p in zip(solved, parts, strict=True)]
-    )
+    problem = _Problem(parts, known)
+    found = process or _likeliest(problem, start)
+    solved = problem.solve(found)
+    state, own = np.concatenate(solved.states), np.concatenate(solved.covariances)
+    by_error = problem.gain(solved, known.by_error)
+    common = by_error @ solved.shared_covariance @ by_error.transpose(0, 2, 1)
+    corrected = np.concatenate([part.corrected(solved.shared) for part in parts])
+    residual = state[:, :3] - corrected
     noise = np.concatenate([part.spread for part in parts])
     far = np.einsum("ni,nij,nj->n", residual, np.linalg.inv(noise), residual) > 25
-    return SmoothPath(state[:, :3], cov[:, :3, :3], state[:, 3:], segment, far, found)
+    following = np.zeros((max(len(times) - 1, 0), 6, 6))
+    for part, cross in zip(rows, solved.following, strict=True):
+        following[part[:-1]] = cross
+    return SmoothPath(
+        state[:, :3], own[:, :3, :3] + common, state[:, 3:], segment, far, found, own, following,
+        lambda by_error: problem.gain(solved, by_error), solved.log_likelihood, solved.shared,
+        solved.shared_covariance,
+    )  # fmt: skip
 
 
 def _checked(t: ArrayLike, poses: ArrayLike, covariance: ArrayLike) -> tuple[Array, Array, Array]:
@@ -141,52 +199,51 @@ def _segments(times: Array, gap: float | None) -> NDArray[np.int64]:
     return np.concatenate(([0], np.cumsum(intervals > longest))).astype(np.int64)
 
 
-def _likeliest(parts: list["_Chain"]) -> Process:
+def _likeliest(problem: "_Problem", near: Process | None) -> Process:
     """Estimate the noise densities by maximum marginal likelihood, with a wide prior.
 
     Of each segment the first 200 poses are used, segments of one or two poses are not. Without a
     segment of three poses the densities are 1e-3 m²/s³ and 1e-2 rad²/s³.
     """
-    used = [part.head(_LONGEST_SEARCH) for part in parts if len(part.times) > 2]
+    used = [part.head(_LONGEST_SEARCH) for part in problem.parts if len(part.times) > 2]
     if not used:
         return Process(1e-3, 1e-2)
+    searched = _Problem(used, problem.known)
+    point = [searched.start()]
 
     def minus_log_likelihood(logs: Array) -> float:
         # A wide prior around a walking robot's densities keeps a path that shows no disturbance
         # at all (all its scatter is measurement noise) from sending them to zero.
         prior = 0.5 * float(np.sum(((logs - np.log([1e-4, 1e-3])) / 4.0) ** 2))
         process = Process(*(float(q) for q in np.exp(logs)))
-        return prior - sum(part.solve(process).log_likelihood for part in used)
+        fitted = searched.fit(process, point[0])
+        point[0] = fitted.point
+        return prior - fitted.log_likelihood
 
-    start = np.log([1e-4, 1e-3])
-    simplex = start + 2 * np.array([[0, 0], [1, 0], [0, 1]])
+    start, reach = (np.log([1e-4, 1e-3]), 2.0) if near is None else (np.log(near), 0.4)
+    simplex = start + reach * np.array([[0, 0], [1, 0], [0, 1]])
     options = {"xatol": 0.05, "fatol": 0.05, "maxfev": 80, "initial_simplex": simplex}
     fit = minimize(minus_log_likelihood, start, method="Nelder-Mead", options=options)
     return Process(*(float(q) for q in np.exp(fit.x)))
 
 
 @dataclass(frozen=True)
-class _Solution:
-    """State x, y, yaw, twist, shape (n, 6); covariance (n, 6, 6); log marginal likelihood."""
-
-    state: Array
-    covariance: Array
-    log_likelihood: float
-
-
-@dataclass(frozen=True)
 class _Chain:
     """Times (n,) [s], measured poses (n, 3), yaw unwrapped, and covariances (n, 3, 3) of a segment.
 
-    The covariances include the errors of the times.
+    The covariances include the errors of the times; `by_error` (n, 3, r) are the poses' derivatives
+    by the shared errors.
     """
 
     times: Array
     measured: Array
     spread: Array
+    by_error: Array
 
     @classmethod
-    def of(cls, times: Array, measured: Array, spread: Array, stamp_sd: Array) -> "_Chain":
+    def of(
+        cls, times: Array, measured: Array, spread: Array, stamp_sd: Array, by_error: Array
+    ) -> "_Chain":
         """Unwrap yaw; add (rate of the pose x `stamp_sd`)² to the covariance `spread`.
 
         A segment of one pose has no rate, and keeps its covariance.
@@ -197,11 +254,15 @@ class _Chain:
             rate = np.gradient(unwrapped, times, axis=0)
             along = rate * stamp_sd[:, None]
             spread = spread + np.einsum("ni,nj->nij", along, along)
-        return cls(times, unwrapped, spread)
+        return cls(times, unwrapped, spread, by_error)
 
     def head(self, n: int) -> "_Chain":
         """Return the segment's first n poses, or all if it has fewer, as a segment."""
-        return _Chain(self.times[:n], self.measured[:n], self.spread[:n])
+        return _Chain(self.times[:n], self.measured[:n], self.spread[:n], self.by_error[:n])
+
+    def corrected(self, errors: Array) -> Array:
+        """Return the measured poses with the shared errors (r,) added, shape (n, 3)."""
+        return self.measured + self.by_error @ errors
 
     def start(self) -> Array:
         """Compute the initial state (n, 6): measured poses, and twists from each to the next.
@@ -215,24 +276,125 @@ class _Chain:
             state[:, 3:] = np.concatenate((twist, twist[-1:]))
         return state
 
-    def solve(self, process: Process) -> _Solution:
-        """Fit the states by Gauss-Newton (at most 8 steps), for given noise densities.
 
-        Returns:
-            State, its covariance, and log marginal likelihood (Laplace) up to a constant.
-        """
-        weights = np.linalg.inv(self.spread)
-        links, log_links = _link_weights(np.diff(self.times), process)
-        state, cost = self.start(), np.inf
+@dataclass(frozen=True)
+class _Solution:
+    """By segment states (n, 6), covariances (n, 6, 6) given u, and those with the next sample.
+
+    `factors` are what `_solve_blocks` needs to solve again; `shared` is u, with its covariance.
+    """
+
+    states: list[Array]
+    covariances: list[Array]
+    following: list[Array]
+    factors: "list[_Factors]"
+    shared: Array
+    shared_covariance: Array
+    log_likelihood: float
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Segments and the errors they share."""
+
+    parts: "list[_Chain]"
+    known: SharedInput
+
+    def start(self) -> "_Point":
+        """Return where to start from: the measured poses, and no shared errors."""
+        return _Point([part.start() for part in self.parts], np.zeros(self.known.size))
+
+    def fit(self, process: Process, start: "_Point") -> "_Fitted":
+        """Fit states and shared errors by Gauss-Newton, at most 8 steps, for given densities."""
+        weights = [np.linalg.inv(part.spread) for part in self.parts]
+        links = [_link_weights(np.diff(part.times), process) for part in self.parts]
+        point, step, cost = start, self._step(start, weights, links), np.inf
         for _ in range(8):
-            diagonal, upper, gradient, now = _normal_blocks(self, state, weights, links)
-            if abs(cost - now) < 1e-4 * max(1.0, now):
+            if abs(cost - step.cost) < 1e-4 * max(1.0, step.cost):
                 break
-            cost = now
-            state = state + _solve_blocks(diagonal, upper, gradient)[0]
-        diagonal, upper, gradient, cost = _normal_blocks(self, state, weights, links)
-        _, covariance, log_det = _solve_blocks(diagonal, upper, gradient)
-        return _Solution(state, covariance, -0.5 * (cost + log_det - log_links))
+            cost = step.cost
+            states: list[Array] = [
+                state + each for state, each in zip(point.states, step.states, strict=True)
+            ]
+            point = _Point(states, point.errors + step.errors)
+            step = self._step(point, weights, links)
+        log_det = sum(factors.log_det for factors in step.factors)
+        log_det += float(np.linalg.slogdet(step.normal)[1]) if self.known.size else 0.0
+        log_links = sum(log for _, log in links)
+        return _Fitted(point, step, -0.5 * (step.cost + log_det - log_links))
+
+    def solve(self, process: Process) -> _Solution:
+        """Fit states and shared errors for given densities, with their covariances."""
+        point, step, log_likelihood = self.fit(process, self.start())
+        pairs = [_inverse_blocks(factors) for factors in step.factors]
+        return _Solution(
+            point.states, [own for own, _ in pairs], [cross for _, cross in pairs], step.factors,
+            point.errors, np.linalg.inv(step.normal), log_likelihood,
+        )  # fmt: skip
+
+    def gain(self, solved: _Solution, by_error: Array) -> Array:
+        """Compute the derivative of the smoothed poses by errors, from that of the measured."""
+        start, moved = 0, []
+        for part, factors in zip(self.parts, solved.factors, strict=True):
+            own = by_error[start : start + len(part.times)]
+            start += len(part.times)
+            pull = np.zeros((len(own), 6, by_error.shape[2]))
+            pull[:, :3] = np.linalg.inv(part.spread) @ own
+            moved.append(_solve_blocks(factors, pull)[:, :3])
+        return np.concatenate(moved)
+
+    def _step(
+        self, point: "_Point", weights: list[Array], links: list[tuple[Array, float]]
+    ) -> "_Step":
+        known, (states, errors) = self.known, point
+        pull = known.information @ errors
+        normal = np.eye(known.size) + known.information
+        gradient = -(errors + pull + known.gradient)
+        cost = float(errors @ errors + errors @ pull + 2 * errors @ known.gradient)
+        found, all_factors = [], []
+        for part, state, weight, (link, _) in zip(self.parts, states, weights, links, strict=True):
+            missed = part.corrected(errors) - state[:, :3]
+            diagonal, upper, rise, own = _normal_blocks(part, state, missed, weight, link)
+            border = np.zeros((len(state), 6, known.size))
+            border[:, :3] = -weight @ part.by_error
+            factors = _factorised(diagonal, upper)
+            solution = _solve_blocks(factors, np.concatenate((rise[:, :, None], border), axis=2))
+            by_error = part.by_error
+            normal += np.einsum("nai,nab,nbj->ij", by_error, weight, by_error)
+            normal -= np.einsum("nai,naj->ij", border, solution[:, :, 1:])
+            gradient -= np.einsum("nai,nab,nb->i", by_error, weight, missed)
+            gradient -= np.einsum("nai,na->i", border, solution[:, :, 0])
+            cost += own
+            found.append(solution)
+            all_factors.append(factors)
+        step = np.linalg.solve(normal, gradient)
+        moved = [solution[:, :, 0] - solution[:, :, 1:] @ step for solution in found]
+        return _Step(moved, step, normal, all_factors, cost)
+
+
+class _Point(NamedTuple):
+    """Unknowns: states by segment (n, 6), and shared errors (r,)."""
+
+    states: list[Array]
+    errors: Array
+
+
+class _Fitted(NamedTuple):
+    """Unknowns of least cost, the last step there, and the log marginal likelihood (Laplace)."""
+
+    point: _Point
+    step: "_Step"
+    log_likelihood: float
+
+
+class _Step(NamedTuple):
+    """A Gauss-Newton step: of the states by segment and of the errors, and what it came from."""
+
+    states: list[Array]
+    errors: Array
+    normal: Array
+    factors: "list[_Factors]"
+    cost: float
 
 
 _TWIST_SD = np.array([1.0, 1.0, 3.0])
@@ -276,15 +438,15 @@ def _link_error(a: Array, b: Array, dt: Array) -> Array:
 
 
 def _normal_blocks(
-    chain: _Chain, state: Array, weights: Array, links: Array
+    chain: _Chain, state: Array, missed: Array, weights: Array, links: Array
 ) -> tuple[Array, Array, Array, float]:
     """Assemble diagonal blocks (n, 6, 6), blocks above them (n-1, 6, 6), gradient, and cost.
 
     The gradient (n, 6) is the right-hand side of the step; both hold the first twist's prior.
+    `missed` (n, 3) are the measured poses, shared errors added, less those of `state`.
     """
     n = len(state)
     diagonal, gradient = np.zeros((n, 6, 6)), np.zeros((n, 6))
-    missed = chain.measured - state[:, :3]
     diagonal[:, :3, :3] += weights
     gradient[:, :3] += np.einsum("nij,nj->ni", weights, missed)
     cost = float(np.einsum("ni,nij,nj->", missed, weights, missed))
@@ -293,7 +455,7 @@ def _normal_blocks(
     cost += float(np.sum((state[0, 3:] / _TWIST_SD) ** 2))
     a, b, dt = state[:-1], state[1:], np.diff(chain.times)
     error = _link_error(a, b, dt)
-    A, B = (_derivative(a, b, dt, side) for side in (0, 1))
+    A, B = _derivatives(a, b, dt)
     diagonal[:-1] += A.transpose(0, 2, 1) @ links @ A
     diagonal[1:] += B.transpose(0, 2, 1) @ links @ B
     gradient[:-1] -= np.einsum("nji,njk,nk->ni", A, links, error)
@@ -302,38 +464,81 @@ def _normal_blocks(
     return diagonal, A.transpose(0, 2, 1) @ links @ B, gradient, cost
 
 
-def _derivative(a: Array, b: Array, dt: Array, side: int) -> Array:
-    """Differentiate `_link_error` numerically by a (side 0) or b (side 1), shape (n, 6, 6)."""
-    step, columns = 1e-6, []
-    for axis in range(6):
-        shift = step * np.eye(6)[axis]
-        ends = [(a + s * shift, b) if side == 0 else (a, b + s * shift) for s in (1, -1)]
-        columns.append((_link_error(*ends[0], dt) - _link_error(*ends[1], dt)) / (2 * step))
-    return np.stack(columns, axis=2)
+def _derivatives(a: Array, b: Array, dt: Array) -> tuple[Array, Array]:
+    """Differentiate `_link_error` by a and by b, shape (n, 6, 6) each.
 
-
-def _solve_blocks(diagonal: Array, upper: Array, gradient: Array) -> tuple[Array, Array, float]:
-    """Solve a symmetric block-tridiagonal system of `diagonal` blocks and those above them.
-
-    Returns solution (n, 6), diagonal blocks of the inverse (n, 6, 6), log det of the matrix.
+    With f and l the displacement ahead and to the left, h half the turn and k = h / tan h, what is
+    travelled is (k f + h l, k l - h f, 2 h).
     """
-    n = len(diagonal)
-    inverse, carried = np.empty_like(diagonal), gradient.copy()
-    log_det = 0.0
-    for k in range(n):
-        pivot = diagonal[k].copy()
-        if k:
-            back = upper[k - 1].T @ inverse[k - 1]
-            pivot -= back @ upper[k - 1]
-            carried[k] -= back @ carried[k - 1]
-        inverse[k] = np.linalg.inv(pivot)
-        log_det += float(np.linalg.slogdet(pivot)[1])
-    solution, covariance = np.empty_like(gradient), np.empty_like(diagonal)
-    for k in reversed(range(n)):
-        solution[k] = inverse[k] @ carried[k]
-        covariance[k] = inverse[k]
-        if k < n - 1:
-            gain = inverse[k] @ upper[k]
-            solution[k] -= gain @ solution[k + 1]
-            covariance[k] += gain @ covariance[k + 1] @ gain.T
-    return solution, covariance, log_det
+    h = (b[:, 2] - a[:, 2]) / 2
+    c, s = np.cos(a[:, 2]), np.sin(a[:, 2])
+    dx, dy = b[:, 0] - a[:, 0], b[:, 1] - a[:, 1]
+    f, l = c * dx + s * dy, -s * dx + c * dy  # noqa: E741 as in the docstring
+    small = np.abs(h) < 1e-4
+    safe = np.where(small, 1.0, h)
+    k = np.where(small, 1 - h**2 / 3, h / np.tan(safe))
+    slope = np.where(small, -2 * h / 3, 1 / np.tan(safe) - h / np.sin(safe) ** 2)  # dk / dh
+    by_turn = np.stack((slope * f + l, slope * l - f), axis=1) / 2
+    by_a, by_b = np.zeros((len(a), 6, 6)), np.zeros((len(a), 6, 6))
+    by_b[:, 0, 0], by_b[:, 0, 1] = k * c - h * s, k * s + h * c
+    by_b[:, 1, 0], by_b[:, 1, 1] = -k * s - h * c, k * c - h * s
+    by_b[:, :2, 2], by_b[:, 2, 2] = by_turn, 1.0
+    by_a[:, :3, :3] = -by_b[:, :3, :3]
+    by_a[:, 0, 2] += k * l - h * f
+    by_a[:, 1, 2] += -k * f - h * l
+    by_a[:, :3, 3:] = -dt[:, None, None] * np.eye(3)
+    by_a[:, 3:, 3:], by_b[:, 3:, 3:] = -np.eye(3), np.eye(3)
+    return by_a, by_b
+
+
+class _Factors(NamedTuple):
+    """Cholesky factor of a symmetric block-tridiagonal matrix.
+
+    Attributes:
+        banded: The factor in LAPACK's upper banded storage, shape (2 b, n b).
+        diagonal: Blocks on the matrix's diagonal, shape (n, b, b).
+        upper: Blocks above it, shape (n - 1, b, b).
+    """
+
+    banded: Array
+    diagonal: Array
+    upper: Array
+
+    @property
+    def log_det(self) -> float:
+        """Logarithm of the matrix's determinant."""
+        return 2 * float(np.log(self.banded[-1]).sum())
+
+
+def _factorised(diagonal: Array, upper: Array) -> _Factors:
+    n, b, _ = diagonal.shape
+    banded = np.zeros((2 * b, n, b))
+    for i in range(b):
+        for j in range(b):
+            # LAPACK: the element of row r and column c is at row 2 b - 1 + r - c of column c.
+            if i <= j:
+                banded[2 * b - 1 + i - j, :, j] = diagonal[:, i, j]
+            banded[b - 1 + i - j, 1:, j] = upper[:, i, j]
+    factor = cholesky_banded(banded.reshape(2 * b, n * b), overwrite_ab=True, check_finite=False)
+    return _Factors(factor, diagonal, upper)
+
+
+def _solve_blocks(factors: _Factors, sides: Array) -> Array:
+    """Solve for right-hand sides of shape (n, b, k); return the same shape."""
+    n, b, k = sides.shape
+    flat = sides.reshape(n * b, k)
+    return cho_solve_banded((factors.banded, False), flat, check_finite=False).reshape(n, b, k)
+
+
+def _inverse_blocks(factors: _Factors) -> tuple[Array, Array]:
+    """Compute the blocks of the inverse on the diagonal (n, b, b), and above it (n - 1, b, b)."""
+    _, diagonal, upper = factors
+    covariance, following = np.empty_like(diagonal), np.empty_like(upper)
+    for k, block in enumerate(diagonal):  # forward elimination: inverses of the pivots
+        pivot = block if k == 0 else block - upper[k - 1].T @ covariance[k - 1] @ upper[k - 1]
+        covariance[k] = np.linalg.inv(pivot)
+    for k in reversed(range(len(upper))):
+        gain = covariance[k] @ upper[k]
+        following[k] = -gain @ covariance[k + 1]
+        covariance[k] -= following[k] @ gain.T
+    return covariance, following

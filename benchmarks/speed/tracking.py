@@ -99,7 +99,8 @@ def whole(photos: Sequence[np.ndarray], count: int) -> tuple[float, float]:
             found.append(hint)
         fit = refine_floor(LENS, FLOOR, [seen.floor for seen in found])
         times = {f"{number}": (2.0 * number, 0.01) for number in range(count)}
-        assemble_track(observe(LENS, fit, found, robot=ROBOT, times=times))
+        seen = observe(fit, found, robot=ROBOT, times=times)
+        assemble_track(seen, shared=fit.shared, prior=ROBOT.prior)
 
     return timed(work)[:2]
 

@@ -18,7 +18,9 @@ import numpy as np
 
 from tracking.floor import FloorMap
 from tracking.floor import FloorMarker as MeasuredMarker
-from zebro_lab.track.camera.command import calibrate
+from tracking.photos.workers import NoProgress
+from zebro_lab.track.camera.request import CameraRequest
+from zebro_lab.track.camera.stage import calibrate_camera
 from zebro_lab.track.camera_file import CAMERA_FILE
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 
@@ -254,10 +256,9 @@ def write_photos(folder: Path, truth: Truth, rng: np.random.Generator) -> None:
 
 def write_bench(folder: Path) -> None:
     """Write what a lab has before it tracks: `camera.toml` from the boards, and `floor.toml`."""
-    calibrate(
-        folder / "calibration", out=folder / CAMERA_FILE,
-        board=f"charuco:{BOARD[0]}x{BOARD[1]}:{1e3 * SQUARE:g}mm:{750 * SQUARE:g}mm:4x4_50",
-    )  # fmt: skip
+    board = f"charuco:{BOARD[0]}x{BOARD[1]}:{1e3 * SQUARE:g}mm:{750 * SQUARE:g}mm:4x4_50"
+    request = CameraRequest(folder / "calibration", board, folder / CAMERA_FILE)
+    calibrate_camera(request, NoProgress())
     (folder / FLOOR_FILE).write_text(floor_toml(), encoding="utf-8")
 
 

@@ -135,7 +135,8 @@ def _misfit(track: Poses, path: Poses, offset: float, *, way: Array | None = Non
     x, y = _centred(path.at(at[inside])), _centred(seen)
     moving = float(np.abs(x * x.conj()).sum())
     shared = np.abs((y * x.conj()).sum()) ** 2 / moving if moving > 0 else 0.0
-    return float((np.abs(y) ** 2).sum() - shared) / (2 * len(seen) - 4)
+    left = max(float((np.abs(y) ** 2).sum() - shared), 0.0)  # rounding may make it negative
+    return left / (2 * len(seen) - 4)
 
 
 def _enough(inside: NDArray[np.bool_], way: Array | None) -> bool:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.errors import InsufficientData
-from model.metrics.scores import centred, with_tracker_noise
+from model.metrics.scores import centred
 from model.poses import Poses
 from model.slip.law import Array
 from model.travel import travel_direction
@@ -47,13 +47,7 @@ class Consistency:
         return self.low <= self.value <= self.high
 
 
-def consistency(
-    draws: Array,
-    observed: Array,
-    covariance: Array,
-    *,
-    rng: np.random.Generator,
-) -> tuple[Consistency, ...]:
+def consistency(draws: Array, observed: Array) -> tuple[Consistency, ...]:
     r"""Compare statistics of a track with the same statistics of draws with tracker noise.
 
     Statistics: the mean over time of the normalised error squared
@@ -64,11 +58,10 @@ def consistency(
     distinguish a wrong speed from a wrong heading.
 
     Args:
-        draws: x, y, yaw of every draw at the track's times, shape (m, n, 3) [m, m, rad].
+        draws: x, y, yaw of every draw at the track's times, tracker noise included, shape (m, n, 3)
+            [m, m, rad].
         observed: Tracked x, y, yaw, shape (n, 3) [m, m, rad]; k is 3, or 2 (x and y) with any NaN
             yaw.
-        covariance: The tracker's covariance at each time, shape (n, 3, 3).
-        rng: Source of randomness of the tracker's noise.
 
     Returns:
         One result a statistic, in the order of `STATISTICS`; without yaw if k is 2.
@@ -81,7 +74,7 @@ def consistency(
             f"{len(draws)} draws are too few for an interval; draw {FEWEST_DRAWS} or more"
         )
     k = 3 if np.isfinite(observed[:, 2]).all() else 2
-    seen = with_tracker_noise(draws, covariance, rng=rng)[..., :k]
+    seen = draws[..., :k]
     track = centred(draws, observed)[:, :k]
     own = _statistics(seen, seen)
     its = _statistics(track[None], seen)

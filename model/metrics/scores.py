@@ -50,23 +50,6 @@ def centred(draws: Array, observed: Array) -> Array:
     return np.column_stack([observed[:, :2], mean + wrap(observed[:, 2] - mean)])
 
 
-def with_tracker_noise(draws: Array, covariance: Array, *, rng: np.random.Generator) -> Array:
-    """Add random tracker noise to predicted poses.
-
-    Args:
-        draws: x, y, yaw of every draw at every time, shape (m, n, 3) [m, m, rad].
-        covariance: The tracker's covariance at each time, shape (n, 3, 3).
-        rng: Source of randomness.
-
-    Returns:
-        Draws, each with its own Gaussian noise, independent between times, shape (m, n, 3).
-    """
-    values, vectors = np.linalg.eigh(covariance)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
-    noise = rng.standard_normal(draws.shape)
-    return draws + np.einsum("nij,mnj->mni", root, noise)
-
-
 def ensemble_scores(draws: Array, observed: Array) -> EnsembleScores:
     """Compute mean scores of an ensemble against a track at the same times.
 

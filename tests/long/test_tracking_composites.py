@@ -185,7 +185,7 @@ def ordered(
             )  # fmt: skip
         else:
             state = np.array([clicked[0], clicked[1], prior.height, 0, 0, clicked[2]])
-            known = FoundPose(state, np.zeros((6, 6)), np.zeros((6, 6)))
+            known = FoundPose(state, np.zeros((6, 6)))
             found = find_exposures_like(
                 picture, lens, view, known=known, plate=plate, prior=prior, merged=merged,
                 body_size=body, hidden=hidden,

@@ -40,7 +40,10 @@ from tracking.camera import Camera
 from tracking.detect import Detection, MarkedRobot, observe
 from tracking.floor import FloorFit, FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.markers import Sighting, find_markers
+from tracking.path import PoseObservation
 from tracking.pose import PLANAR, BodyPose, BodyPrior, RobotMarker
+from tracking.shared import SIDE as PRINTED_SIDE
+from tracking.shared import SharedErrors
 
 pytestmark = pytest.mark.long
 
@@ -180,8 +183,15 @@ def by_marker(
     )  # fmt: skip
     robot = MarkedRobot(marker, BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd))
     detection = Detection("photo", FloorView.of("photo"), _shifted(found[0], window))
-    seen = observe(stage().lens, fit, [detection], robot=robot, times={"photo": (0.0, 0.0)})[0]
-    return seen.planar, seen.covariance + seen.camera_covariance
+    seen = observe(fit, [detection], robot=robot, times={"photo": (0.0, 0.0)})[0]
+    shared = fit.shared.also(PRINTED_SIDE, marker.spreads[PRINTED_SIDE])
+    return seen.planar, whole_covariance(seen, shared, robot.prior)
+
+
+def whole_covariance(seen: PoseObservation, shared: SharedErrors, prior: BodyPrior) -> np.ndarray:
+    """Add to a pose's own covariance that of the errors it shares with other photographs."""
+    by_error = seen.by_error(shared, prior)[PLANAR]
+    return seen.pose.planar_covariance + by_error @ shared.covariance @ by_error.T
 
 
 @cache
@@ -193,7 +203,7 @@ def template(seed: int) -> BodyTemplate:
     pixels, window = photograph(truth, kind, rng)
     fit = refine_floor(place.lens, true_floor(), [see_floor(GOOD, rng)])
     state = np.array([truth.x, truth.y, truth.z, 0.0, 0.0, truth.yaw])
-    pose = BodyPose(state, np.zeros((6, 6)), np.zeros((6, 6)))
+    pose = BodyPose(state, np.zeros((6, 6)))
     return make_template(pasted(pixels, window), place.lens, fit.stands[0].pose, pose=pose,
                          plate=PLATE)  # fmt: skip
 
@@ -216,17 +226,17 @@ def by_picture(
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Find the robot by its own picture; return x, y, yaw and their covariance."""
     pixels, window = photograph(truth, kind, rng)
+    prior = BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd)
     found = find_body(
         pasted(pixels, window), stage().lens, fit.stands[0].pose,
-        template=template(int(rng.integers(10))),
-        prior=BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd),
+        template=template(int(rng.integers(10))), prior=prior,
         near=truth.position[:2] + rng.normal(0, 0.01, 2), reach=0.06,
     )  # fmt: skip
     if found is None:
         return None
     pose = found.best.pose
-    camera = pose.camera_covariance[np.ix_(PLANAR, PLANAR)]
-    return pose.planar, pose.planar_covariance + camera
+    seen = PoseObservation("photo", 0.0, 0.0, pose, found.best.score, "body")
+    return pose.planar, whole_covariance(seen, fit.shared, prior)
 
 
 def one_pose(task: tuple[int, int]) -> tuple[np.ndarray, np.ndarray] | None:

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from model.errors import InsufficientData
+from model.joint_covariance import JointCovariance
 from model.judgement import PREDICTION, STAND_STILL, Prediction, judge, judge_tilt
 from model.poses import Poses
 from model.walk.path import WalkPath
@@ -27,8 +30,8 @@ def track(speed=0.1, seed=2):
     """Return the walk as seen on a floor whose frame is turned and shifted, with noise."""
     noise = np.random.default_rng(seed).normal(0, SD, (len(SEEN), 3))
     seen = walk(speed).moved(rotation=0.8, translation=[1.0, 2.0]).at(SEEN)
-    covariance = np.tile(np.diag(SD**2), (len(SEEN), 1, 1))
-    return Poses(SEEN, seen.position + noise[:, :2], seen.yaw + noise[:, 2], covariance)
+    joint = JointCovariance.independent(np.tile(np.diag(SD**2), (len(SEEN), 1, 1)))
+    return Poses(SEEN, seen.position + noise[:, :2], seen.yaw + noise[:, 2], joint)
 
 
 def judged(prediction, seen=None, *, anchor=True):
@@ -65,6 +68,20 @@ def test_a_band_of_the_right_width_holds_its_share():
     assert np.mean(shares) == pytest.approx(0.9, abs=0.08)
 
 
+def test_what_all_tracked_poses_have_wrong_alike_does_not_widen_a_path_that_starts_from_one():
+    shared = np.tile([1.0, 0.0, 0.0], (len(SEEN), 1))
+    seen = track()
+    aside = replace(seen, joint=seen.joint.also(shared, 0.05**2))
+    alone = replace(seen, joint=JointCovariance.independent(aside.covariance))
+    band = walk(n=300, spread=0.05)
+    plain, common, apart = (
+        judged(Prediction(walk(), band), each).rows[0].scores.width[1, 0]
+        for each in (seen, aside, alone)
+    )
+    assert common == pytest.approx(plain, rel=0.05)
+    assert apart > 5 * plain
+
+
 def test_baselines_are_judged_beside_the_prediction():
     result = judged(Prediction(walk(), baselines={"slower": walk(0.05)}))
     assert [row.name for row in result.rows] == [PREDICTION, "slower", STAND_STILL]
@@ -79,7 +96,7 @@ def test_a_track_of_another_time_cannot_be_judged():
 
 def test_a_track_without_headings_starts_no_path():
     seen = track()
-    blind = Poses(seen.t, seen.position, np.full(len(seen), np.nan), seen.covariance)
+    blind = Poses(seen.t, seen.position, np.full(len(seen), np.nan), seen.joint)
     with pytest.raises(InsufficientData, match="no headings"):
         judged(Prediction(walk()), blind)
 

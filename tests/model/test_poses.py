@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from model.errors import DomainError, InsufficientData
+from model.joint_covariance import JointCovariance
 from model.poses import (
     Poses,
     compose,
@@ -46,7 +47,8 @@ def test_a_single_path_is_one_draw_and_draws_are_paths():
 
 def test_some_times_are_taken_of_every_draw_and_of_the_covariance():
     covariance = np.arange(4)[:, None, None] * np.eye(3)
-    part = Poses(T, LINE.position, LINE.yaw, covariance).part(slice(1, 3))
+    joint = JointCovariance.independent(covariance)
+    part = Poses(T, LINE.position, LINE.yaw, joint).part(slice(1, 3))
     np.testing.assert_array_equal(part.covariance, covariance[1:3])
     assert bundle().part(T < 2).states.shape == (3, 2, 3)
 
@@ -72,7 +74,7 @@ def test_a_delay_moves_times_alone():
         {"yaw": np.zeros(3)},
         {"position": np.zeros((4, 3))},
         {"position": np.full((4, 2), np.nan)},
-        {"covariance": np.zeros((3, 3, 3))},
+        {"joint": JointCovariance.independent(np.zeros((3, 3, 3)))},
     ],
 )
 def test_what_is_no_path_is_an_error(wrong):

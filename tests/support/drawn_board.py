@@ -96,7 +96,7 @@ def composite(walk, kind, seed=0, lights=None, around_px=0):
 
 def known_at(planar):
     state = np.array([planar[0], planar[1], PRIOR.height, 0, 0, planar[2]])
-    return BodyPose(state, np.zeros((6, 6)), np.zeros((6, 6)))
+    return BodyPose(state, np.zeros((6, 6)))
 
 
 def found_in(picture, planar, merged, **other):

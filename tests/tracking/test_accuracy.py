@@ -19,10 +19,13 @@ from support.synthetic import (
     render_background,
     take_photo,
 )
-from tracking.camera import Camera, CameraPose
+from tracking.camera import Camera
+from tracking.detect import MarkedRobot, pose_of_marker
 from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.markers import find_markers
-from tracking.pose import PLANAR, BodyPrior, RobotMarker, fit_pose
+from tracking.path import PoseObservation
+from tracking.pose import PLANAR, BodyPrior, RobotMarker
+from tracking.shared import SIDE
 
 PLACES = [(0.1, -0.1), (1.5, -0.1), (1.6, 1.2), (0.0, 1.3)]
 GOOD = Conditions(defocus_sd_px=0.6)
@@ -75,7 +78,7 @@ def run(case: Case, count: int, seed: int):
     mark = DrawnRobotMarker()
     robot = RobotMarker(0, mark.side, "4x4_50", (0.0, 0.0, mark.height))
     prior = BodyPrior(0.0645, max(case.bounce, 5e-4), max(case.tilt, 2e-3))
-    errors, z, view = [], [], CameraPose.from_matrix(taken.rotation, taken.translation)
+    marked, errors, z, fit = MarkedRobot(robot, prior), [], [], None
     for index in range(count):
         truth = DrawnPose(
             rng.uniform(0.2, 1.4), rng.uniform(0.1, 1.0), rng.uniform(-np.pi, np.pi),
@@ -86,18 +89,16 @@ def run(case: Case, count: int, seed: int):
         )
         if index == 0:
             marks = find_markers(photo.pixels, "4x4_50", wanted=floor.marker_ids)
-            view = refine_floor(lens, floor, [FloorView.of("p", marks)]).stands[0].pose
+            fit = refine_floor(lens, floor, [FloorView.of("p", marks)])
         found = find_markers(photo.pixels, "4x4_50", wanted=[0])
         if len(found) != 1:
             continue
-        pose = fit_pose(
-            lens, view, points_body=robot.points_body, corners_px=found[0].corners_px,
-            covariance=found[0].covariance, prior=prior, scale_sd=robot.side_sd / robot.side,
-        )  # fmt: skip
+        pose = pose_of_marker(fit, fit.stands[0].pose, found[0], marked)
         error = pose.planar - [truth.x, truth.y, truth.yaw]
         error[2] = np.angle(np.exp(1j * error[2]))
-        block = np.ix_(PLANAR, PLANAR)
-        total = pose.planar_covariance + pose.camera_covariance[block]
+        shared = fit.shared.also(SIDE, robot.spreads[SIDE])
+        by_error = PoseObservation("p", 0, 0, pose, 1, "marker").by_error(shared, prior)[PLANAR]
+        total = pose.planar_covariance + by_error @ shared.covariance @ by_error.T
         errors.append(error)
         z.append(error / np.sqrt(np.diag(total)))
     return np.array(errors), np.array(z), len(errors) / count

@@ -9,11 +9,14 @@ from hypothesis import strategies as st
 from tracking.corrections import Delete, Flip, Move, Order, correction_from, plain, replay
 from tracking.errors import CorrectionError
 from tracking.path import PoseObservation
+from tracking.pose import BodyPose, BodyPrior
+
+PRIOR = BodyPrior(0.1)
 
 
 def seen(index: int) -> PoseObservation:
-    planar, cov = np.array([0.1 * index, 0.0, 0.2]), 1e-6 * np.eye(3)
-    return PoseObservation(f"p{index}.jpg", 2.0 * index, 0.01, planar, cov, cov, 0.1, 0.9, "marker")
+    pose = BodyPose(np.array([0.1 * index, 0.0, 0.1, 0.0, 0.0, 0.2]), 1e-6 * np.eye(6))
+    return PoseObservation(f"p{index}.jpg", 2.0 * index, 0.01, pose, 0.9, "marker")
 
 
 WALK = tuple(seen(index) for index in range(4))
@@ -35,37 +38,43 @@ def test_plain_values_bring_corrections_back(corrections):
 @given(st.lists(CORRECTIONS, max_size=6))
 def test_replaying_leaves_the_observations_as_they_were(corrections):
     before = [(o.photo, o.t, o.planar.tolist()) for o in WALK]
-    first, second = replay(WALK, corrections), replay(WALK, corrections)
+    first, second = replay(WALK, corrections, prior=PRIOR), replay(WALK, corrections, prior=PRIOR)
     assert [(o.photo, o.t, o.planar.tolist()) for o in WALK] == before
     assert [o.planar.tolist() for o in first] == [o.planar.tolist() for o in second]
 
 
 def test_flipping_twice_is_nothing():
-    (again, *_) = replay(WALK, [Flip("p0.jpg"), Flip("p0.jpg")])
+    (again, *_) = replay(WALK, [Flip("p0.jpg"), Flip("p0.jpg")], prior=PRIOR)
     np.testing.assert_allclose(again.planar, WALK[0].planar, atol=1e-12)
-    (once, *_) = replay(WALK, [Flip("p0.jpg")])
+    (once, *_) = replay(WALK, [Flip("p0.jpg")], prior=PRIOR)
     assert np.cos(once.planar[2] - WALK[0].planar[2]) == pytest.approx(-1)
 
 
 def test_deleting_takes_one_away():
-    assert [o.photo for o in replay(WALK, [Delete("p1.jpg")])] == ["p0.jpg", "p2.jpg", "p3.jpg"]
+    assert [o.photo for o in replay(WALK, [Delete("p1.jpg")], prior=PRIOR)] == [
+        "p0.jpg",
+        "p2.jpg",
+        "p3.jpg",
+    ]
 
 
 def test_moving_is_by_hand_and_as_uncertain_as_said():
-    moved = replay(WALK, [Move("p2.jpg", 1.0, 2.0, 0.5, position_sd=0.01)])[2]
+    moved = replay(WALK, [Move("p2.jpg", 1.0, 2.0, 0.5, position_sd=0.01)], prior=PRIOR)[2]
     assert moved.source == "hand"
     np.testing.assert_allclose(moved.planar, [1.0, 2.0, 0.5])
-    assert moved.covariance[0, 0] == pytest.approx(1e-4)
+    assert moved.pose.planar_covariance[0, 0] == pytest.approx(1e-4)
     assert moved.t == WALK[2].t
 
 
 def test_a_robot_is_moved_into_a_photograph_without_one():
-    added = replay(WALK, [Move("p9.jpg", 1.0, 2.0, 0.5)], times={"p9.jpg": (18.0, 0.1)})[-1]
+    added = replay(
+        WALK, [Move("p9.jpg", 1.0, 2.0, 0.5)], prior=PRIOR, times={"p9.jpg": (18.0, 0.1)}
+    )[-1]
     assert (added.photo, added.t, added.t_sd) == ("p9.jpg", 18.0, 0.1)
 
 
 def test_an_order_shares_out_the_times():
-    again = {o.photo: o.t for o in replay(WALK, [Order(("p2.jpg", "p1.jpg"))])}
+    again = {o.photo: o.t for o in replay(WALK, [Order(("p2.jpg", "p1.jpg"))], prior=PRIOR)}
     assert again == {"p0.jpg": 0.0, "p1.jpg": 4.0, "p2.jpg": 2.0, "p3.jpg": 6.0}
 
 
@@ -80,7 +89,7 @@ def test_an_order_shares_out_the_times():
 )
 def test_a_correction_of_nothing_is_named(correction, message):
     with pytest.raises(CorrectionError, match=message):
-        replay(WALK, [correction])
+        replay(WALK, [correction], prior=PRIOR)
 
 
 @pytest.mark.parametrize(

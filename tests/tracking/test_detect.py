@@ -80,8 +80,8 @@ def test_a_marked_walk_goes_from_photographs_to_pictures(shared):
         detections.append(hint)
     fit = refine_floor(lens, floor, [detection.floor for detection in detections])
     times = {path.name: (6.0 * index, 0.0) for index, path in enumerate(paths)}
-    seen = observe(lens, fit, detections, robot=ROBOT, times=times)
-    track = assemble_track(seen)
+    seen = observe(fit, detections, robot=ROBOT, times=times)
+    track = assemble_track(seen, shared=fit.shared, prior=ROBOT.prior)
     assert len(track.t) == len(paths)
     view = fit.pose_of(paths[0].name)
     pixels = cv2.imread(str(paths[0]))

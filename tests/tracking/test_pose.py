@@ -2,6 +2,7 @@
 """The robot's pose comes back from its marker, with the error it states."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,9 +12,11 @@ from scipy.spatial.transform import Rotation
 
 from tracking.camera import Camera, CameraPose, project
 from tracking.errors import MarkerError
+from tracking.markers import edge_growth
 from tracking.pose import BodyPrior, RobotMarker, fit_pose, rotation_with_derivatives
+from tracking.shared import CAMERA, EDGES, HEIGHT, LENS, PLACE, SIDE, TURN
 
-LENS = Camera((1280, 960), np.array([[1394.0, 0, 640], [0, 1394, 480], [0, 0, 1]]), np.zeros(5))
+GLASS = Camera((1280, 960), np.array([[1394.0, 0, 640], [0, 1394, 480], [0, 0, 1]]), np.zeros(5))
 MARKER = RobotMarker(0, 0.12, "4x4_50", (0.01, 0.0, 0.04))
 PRIOR = BodyPrior(0.1, height_sd=5e-3, tilt_sd=np.radians(2))
 _VIEW = [[1.0, 0, 0], [0, -0.74, -0.67], [0, 0.67, -0.74]]
@@ -22,13 +25,13 @@ VIEW = CameraPose.from_matrix(np.linalg.svd(_VIEW)[0] @ np.linalg.svd(_VIEW)[2],
 
 def corners_of(state, noise_px=0.0, rng=None):
     turn = Rotation.from_euler("ZYX", [state[5], state[4], state[3]]).as_matrix()
-    corners = project(LENS, VIEW, MARKER.points_body @ turn.T + state[:3])
+    corners = project(GLASS, VIEW, MARKER.points_body @ turn.T + state[:3])
     return corners if rng is None else corners + noise_px * rng.standard_normal(corners.shape)
 
 
 def fitted(corners, sigma=0.05, view=VIEW, prior=PRIOR):
     return fit_pose(
-        LENS, view, points_body=MARKER.points_body, corners_px=corners,
+        GLASS, view, points_body=MARKER.points_body, corners_px=corners,
         covariance=sigma**2 * np.eye(8), prior=prior,
     )  # fmt: skip
 
@@ -63,7 +66,8 @@ def test_an_error_of_the_camera_shows_in_its_own_covariance():
         shift = rng.multivariate_normal(np.zeros(6), spread)
         wrong = CameraPose(VIEW.rotation_vector + shift[:3], VIEW.translation + shift[3:], spread)
         found.append(fitted(corners_of(truth), view=wrong).state)
-    stated = fitted(corners_of(truth), view=view).camera_covariance
+    by_camera = fitted(corners_of(truth), view=view).by_cause[CAMERA]
+    stated = by_camera @ spread @ by_camera.T
     np.testing.assert_allclose(np.std(found, axis=0), np.sqrt(np.diag(stated)), rtol=0.15)
 
 
@@ -74,18 +78,40 @@ def test_height_ignored_is_an_error_and_modelled_is_not():
     assert np.hypot(*(fitted(corners).planar[:2] - [0.3, 1.2])) < 1e-6
 
 
-def test_a_print_of_uncertain_size_does_not_raise_the_robot():
-    state = np.array([1.0, 0.5, 0.1, 0, 0, 0.3])
-    large = np.concatenate([MARKER.points_body[:, :2] * 1.003, MARKER.points_body[:, 2:]], axis=1)
-    turn = Rotation.from_euler("Z", state[5]).as_matrix()
-    corners = project(LENS, VIEW, large @ turn.T + state[:3])
-    args = {"points_body": MARKER.points_body, "corners_px": corners,
-            "covariance": 0.02**2 * np.eye(8), "prior": PRIOR}  # fmt: skip
-    errors = [
-        np.hypot(*(fit_pose(LENS, VIEW, scale_sd=sd, **args).planar[:2] - state[:2]))
-        for sd in (0.0, 0.003)
-    ]
-    assert errors[1] < 0.7 * errors[0]
+@pytest.mark.parametrize("cause", [LENS, SIDE, PLACE, TURN, EDGES, HEIGHT])
+def test_a_pose_follows_what_is_shared_by_its_derivative(cause):
+    """A small error of lens, marker, edges or height moves the fitted pose as it says."""
+    corners = corners_of([1.0, 0.5, 0.104, 0.01, -0.02, 0.3])
+    growth = edge_growth(corners)
+    sizes = {LENS: np.array([2.0, 1.0, 1.0, -1.0, 1e-3, 0, 1e-4, 1e-4, 0]), SIDE: np.array([1e-4]),
+             PLACE: np.array([2e-4, -1e-4]), TURN: np.array([1e-3]), EDGES: np.array([0.02]),
+             HEIGHT: np.array([5e-4])}  # fmt: skip
+    error = sizes[cause]
+
+    def fit(share):
+        lens, marker, prior, seen = GLASS, MARKER, PRIOR, corners
+        if cause == LENS:
+            lens = GLASS.changed(share * error)
+        elif cause == SIDE:
+            marker = replace(MARKER, side=MARKER.side + share * error[0])
+        elif cause == PLACE:
+            x, y, z = MARKER.position
+            marker = replace(MARKER, position=(x + share * error[0], y + share * error[1], z))
+        elif cause == TURN:
+            marker = replace(MARKER, yaw=MARKER.yaw + share * error[0])
+        elif cause == EDGES:
+            seen = corners - share * error[0] * growth
+        else:
+            prior = replace(PRIOR, height=PRIOR.height + share * error[0])
+        return fit_pose(
+            lens, VIEW, points_body=marker.points_body, corners_px=seen,
+            covariance=0.05**2 * np.eye(8), prior=prior, points_by=marker.derivatives,
+            pixels_by={EDGES: growth[:, :, None]},
+        )  # fmt: skip
+
+    moved = fit(0.5).state - fit(-0.5).state
+    stated = fit(0.0).with_prior(PRIOR)[cause] @ error
+    np.testing.assert_allclose(moved, stated, rtol=0.02, atol=1e-7)
 
 
 @given(st.tuples(*[st.floats(-1, 1)] * 3))

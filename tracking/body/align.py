@@ -16,8 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.body.template import BodyTemplate, sample
-from tracking.camera.lens import Array, Camera, CameraPose, project_with_derivatives
+from tracking.camera.lens import (
+    Array,
+    Camera,
+    CameraPose,
+    project,
+    project_with_derivatives,
+)
 from tracking.pose import BodyPose, BodyPrior, rotation_with_derivatives
+from tracking.shared import CAMERA, LENS
 
 _ITERATIONS = 25
 _HUBER = 1.5
@@ -152,7 +159,7 @@ class _Job:
         `state` is x, y, z, roll, pitch, yaw of the robot.
         """
         points = template.points_body.reshape(-1, 3)
-        seen, _, _ = project_with_derivatives(camera, view, _world(points, state))
+        seen = project(camera, view, _world(points, state))
         reach = 6 + 4 * blur
         low = np.maximum(np.floor(seen.min(axis=0) - reach), 0).astype(int)
         high = np.minimum(np.ceil(seen.max(axis=0) + reach) + 1, camera.size).astype(int)
@@ -218,21 +225,20 @@ class _Job:
             return None
         residual, J, weight, noise, score = look
         spread = np.linalg.inv(normal)
-        seen, _, by_pose = project_with_derivatives(
-            self.camera, self.view, _world(self.points, state)
-        )
+        drawn = project_with_derivatives(self.camera, self.view, _world(self.points, state))
+        seen = drawn.pixels
         used = self._used(seen)
-        by_camera = self._slopes_at(seen[used]) @ by_pose[used]
+        moved = np.concatenate((drawn.by_pose, drawn.by_lens), axis=2)[used]
+        by_camera = self._slopes_at(seen[used]) @ moved
         if self.raster is not None:
             by_camera = _without_slow(by_camera, used, self.raster)
         weighed = (weight / (noise * self.correlated)).reshape(-1, 1) * J.reshape(-1, 7)
-        follow = -spread @ weighed.T @ by_camera.reshape(-1, 6)
-        camera_covariance = follow @ self.view.covariance @ follow.T
+        follow = (-spread @ weighed.T @ by_camera.reshape(-1, 15))[:6]
         wrapped = state[:6].copy()
         wrapped[5] = np.arctan2(np.sin(state[5]), np.cos(state[5]))
         effective = residual.size / self.correlated
         covariance = spread[:6, :6] + self.floor
-        pose = BodyPose(wrapped, covariance, camera_covariance[:6, :6])
+        pose = BodyPose(wrapped, covariance, {CAMERA: follow[:, :6], LENS: follow[:, 6:]})
         log_likelihood = -0.5 * effective * float(np.log(max(noise.mean(), 1e-6)))
         return Alignment(pose, score, log_likelihood)
 
@@ -257,9 +263,8 @@ class _Job:
         colours by the state, weights (n, 3), variance of the noise of each colour (3,), and score;
         None where fewer than 60 points or less than the least share are visible.
         """
-        seen, by_point, _ = project_with_derivatives(
-            self.camera, self.view, _world(self.points, state)
-        )
+        drawn = project_with_derivatives(self.camera, self.view, _world(self.points, state))
+        seen, by_point = drawn.pixels, drawn.by_point
         used = self._used(seen)
         if used.sum() < max(60, self.least_visible * len(used)):
             return None

@@ -66,13 +66,17 @@ class SeenBoard:
     corners_px: Array
 
 
-def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> SeenBoard | None:
+def find_board(
+    pixels: NDArray[np.uint8], board: Board, *, name: str = "", quick: bool = False
+) -> SeenBoard | None:
     """Detect a calibration board's inner corners with subpixel accuracy.
 
     Args:
         pixels: The picture, grey or BGR, shape (height, width) or (height, width, 3).
         board: The board.
         name: Name of the picture, for the report.
+        quick: Leave out the slow search for checkerboards that are blurred or small; it also finds
+            parts of larger boards.
 
     Returns:
         The corners detected; None where a checkerboard is not detected whole, or fewer than 6
@@ -83,14 +87,18 @@ def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> Se
     """
     grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
     if isinstance(board, Checkerboard):
-        return _find_checkerboard(grey, board, name)
+        return _find_checkerboard(grey, board, name, quick=quick)
     return _find_charuco(grey, board, name)
 
 
-def _find_checkerboard(grey: NDArray, board: Checkerboard, name: str) -> SeenBoard | None:
+def _find_checkerboard(
+    grey: NDArray, board: Checkerboard, name: str, *, quick: bool
+) -> SeenBoard | None:
     shape = (board.columns, board.rows)
     found, corners = cv2.findChessboardCorners(grey, shape)
     if not found:
+        if quick:
+            return None
         # Slower, but it sees boards that are blurred or small.
         found, corners = cv2.findChessboardCornersSB(grey, shape, flags=cv2.CALIB_CB_EXHAUSTIVE)
         if not found:

@@ -6,8 +6,8 @@ spans [-0.5, w - 0.5]. Programs that put (0, 0) at the first pixel's *corner* gi
 half a pixel, which is 2 mm on the floor of a usual set-up; see `tracking.markers`.
 """
 
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, TypeAlias
 
 import cv2
 import numpy as np
@@ -24,11 +24,14 @@ class Camera:
         size: Width and height of the picture [px].
         matrix: Focal lengths and principal point as OpenCV's camera matrix, shape (3, 3) [px].
         distortion: k1, k2, p1, p2, k3 of OpenCV's lens model, shape (5,) [-].
+        covariance: Covariance of fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-], shape (9, 9); zeros
+            for a lens taken as exact.
     """
 
     size: tuple[int, int]
     matrix: Array
     distortion: Array
+    covariance: Array = field(default_factory=lambda: np.zeros((9, 9)))
 
     def scaled(self, size: tuple[int, int]) -> "Camera":
         """Return the camera for the same pictures scaled to another size.
@@ -50,7 +53,15 @@ class Camera:
         matrix = self.matrix.copy()
         matrix[:2, :2] *= ratio
         matrix[:2, 2] = (self.matrix[:2, 2] + 0.5) * ratio - 0.5
-        return Camera(size, matrix, self.distortion)
+        in_pixels = np.array([ratio] * 4 + [1.0] * 5)
+        covariance = self.covariance * np.outer(in_pixels, in_pixels)
+        return Camera(size, matrix, self.distortion, covariance)
+
+    def changed(self, step: Array) -> "Camera":
+        """Return the camera with a step added to fx, fy, cx, cy, k1, k2, p1, p2, k3, shape (9,)."""
+        matrix = self.matrix.copy()
+        matrix[[0, 1, 0, 1], [0, 1, 2, 2]] += step[:4]
+        return Camera(self.size, matrix, self.distortion + step[4:], self.covariance)
 
 
 @dataclass(frozen=True)
@@ -110,29 +121,44 @@ def project(camera: Camera, pose: CameraPose, points_world: ArrayLike) -> Array:
     return np.asarray(pixels, dtype=float).reshape(-1, 2)
 
 
+class Projection(NamedTuple):
+    """Pixels of projected points, with their derivatives.
+
+    Attributes:
+        pixels: Pixels, shape (n, 2) [px].
+        by_point: Derivative with respect to the points, shape (n, 2, 3) [px/m].
+        by_pose: Derivative with respect to the camera's rotation vector and translation, shape
+            (n, 2, 6) [px/rad, px/m].
+        by_lens: Derivative with respect to fx, fy, cx, cy [-], k1, k2, p1, p2, k3 [px], shape
+            (n, 2, 9).
+    """
+
+    pixels: Array
+    by_point: Array
+    by_pose: Array
+    by_lens: Array
+
+
 def project_with_derivatives(
     camera: Camera, pose: CameraPose, points_world: ArrayLike
-) -> tuple[Array, Array, Array]:
-    """Project points to pixels; compute the Jacobians by the points and by the camera's pose.
+) -> Projection:
+    """Project points to pixels; compute the Jacobians by the points, camera's pose and lens.
 
     Args:
         camera: Camera intrinsics and distortion.
         pose: Pose of the camera.
         points_world: Points, shape (n, 3) [m].
-
-    Returns:
-        Pixels, shape (n, 2) [px]; their derivative with respect to the points, shape (n, 2, 3)
-        [px/m]; and with respect to rotation vector and translation, shape (n, 2, 6)
-        [px/rad, px/m].
     """
     points = np.ascontiguousarray(points_world, dtype=float).reshape(-1, 1, 3)
     pixels, derivative = cv2.projectPoints(
         points, pose.rotation_vector, pose.translation, camera.matrix, camera.distortion
     )
-    by_pose = np.asarray(derivative, dtype=float)[:, :6].reshape(-1, 2, 6)
+    by_all = np.asarray(derivative, dtype=float)[:, :15].reshape(-1, 2, 15)
+    by_pose = by_all[:, :, :6]
     # d X_camera / d X_world = R, and d X_camera / d t is the identity.
     by_point = by_pose[:, :, 3:] @ pose.rotation
-    return np.asarray(pixels, dtype=float).reshape(-1, 2), by_point, by_pose
+    at = np.asarray(pixels, dtype=float).reshape(-1, 2)
+    return Projection(at, by_point, by_pose, by_all[:, :, 6:])
 
 
 def undistort(camera: Camera, corners_px: ArrayLike) -> Array:

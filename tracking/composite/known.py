@@ -21,7 +21,7 @@ from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
 from tracking.composite.exposure import disturbance, widened
 from tracking.errors import BodyError, CompositeError
-from tracking.pose import BodyPose, BodyPrior
+from tracking.pose import HELD, BodyPose, BodyPrior
 
 LEAST_SCORE = 0.75
 """Least correlation of an exposure's visible part with the template of the known exposure [-]."""
@@ -173,9 +173,9 @@ class KnownExposure:
 
         The robot is level at the prior's height, both with the prior's standard deviations.
         """
-        height, tilt = self.prior.height_sd, self.prior.tilt_sd
-        covariance = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
-        level = BodyPose(self.level(pose), covariance, np.zeros((6, 6)))
+        covariance = np.zeros((6, 6))
+        covariance[np.ix_(HELD, HELD)] = self.prior.covariance
+        level = BodyPose(self.level(pose), covariance)
         slip = RASTER_SD * self.size[0]
         return widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
 

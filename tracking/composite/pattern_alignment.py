@@ -20,6 +20,7 @@ from tracking.camera.lens import Array, project_with_derivatives
 from tracking.composite.floor_pattern import REACH_PX, FloorPattern
 from tracking.composite.known import KnownExposure
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
+from tracking.shared import CAMERA, LENS
 
 AROUND = 0.15
 """Margin that the template must have beyond the robot's top, in lengths of the top [-]."""
@@ -30,7 +31,8 @@ _HUBER = 1.5
 _LIMIT = np.array([0.01, 0.01, 0.05])  # m, m, rad: longest step
 _LEAST_POINTS = 200
 _ASSUMED = [2, 3, 4]  # height, roll and pitch in a state
-_ALL, _CAMERA = list(range(12)), slice(6, 12)  # of a state, then of the camera's pose
+# Columns: the state, the camera's pose and the lens.
+_ALL, _CAMERA, _LENS = list(range(21)), slice(6, 12), slice(12, 21)
 
 
 class PatternResidual(NamedTuple):
@@ -180,45 +182,46 @@ class PatternAlignment:
             pose: x, y [m] and yaw [rad], shape (3,).
 
         Returns:
-            Jacobian, shape (rows, columns, 3, 12): x, y, z, roll, pitch, yaw, then the camera's
-            rotation vector and translation.
+            Jacobian, shape (rows, columns, 3, 21): x, y, z, roll, pitch, yaw, then the camera's
+            rotation vector and translation, and the lens.
         """
         state = self.known.level(pose)
         points = np.concatenate(
             (body, np.full((*body.shape[:2], 1), self.known.plate.height)), axis=2
         ).reshape(-1, 3)
         R, dR = rotation_with_derivatives(*state[3:])
-        _, by_point, by_camera = project_with_derivatives(
+        _, by_point, by_camera, by_lens = project_with_derivatives(
             self.known.camera, self.known.view, points @ R.T + state[:3]
         )
         turned = (points @ dR.transpose(0, 2, 1)).transpose(1, 2, 0)
-        moved = np.concatenate((by_point, by_point @ turned, by_camera), axis=2)
+        moved = np.concatenate((by_point, by_point @ turned, by_camera, by_lens), axis=2)
         along = [cv2.Scharr(drawn, cv2.CV_32F, *axis, scale=1 / 32) for axis in ((1, 0), (0, 1))]
         slope = np.stack(along, axis=-1)
-        return -slope @ moved.reshape(*body.shape[:2], 2, 12)
+        return -slope @ moved.reshape(*body.shape[:2], 2, 21)
 
     def concluded(self, pose: Array, residual: PatternResidual) -> Alignment:
         """Build the alignment: the pose, its covariances from the Jacobian, and the score.
 
         Args:
             pose: x, y [m] and yaw [rad], shape (3,).
-            residual: Residual, weights, noise and Jacobian of all 12 columns at the pose.
+            residual: Residual, weights, noise and Jacobian of all 21 columns at the pose.
         """
         J, prior = residual.slopes[:, PLANAR], self.known.prior
         weighed = residual.weight[:, None] * J / residual.noise**2
         spread = np.linalg.inv(weighed.T @ J)
         follow = spread @ weighed.T @ residual.slopes  # x, y and yaw by state and camera's pose
-        covariance, by_camera = np.zeros((6, 6)), np.zeros((6, 6))
+        covariance = np.zeros((6, 6))
         covariance[np.ix_(PLANAR, PLANAR)] = spread
+        by_camera, by_lens = np.zeros((6, 6)), np.zeros((6, 9))
         by_assumed = np.zeros((6, 3))
         by_assumed[PLANAR], by_assumed[_ASSUMED] = follow[:, _ASSUMED], -np.eye(3)
-        by_camera[PLANAR] = follow[:, _CAMERA]
-        assumed = np.square([prior.height_sd, prior.tilt_sd, prior.tilt_sd])
+        # The pose follows the camera against the residual, as it does what is assumed.
+        by_camera[PLANAR], by_lens[PLANAR] = -follow[:, _CAMERA], -follow[:, _LENS]
         return Alignment(
             BodyPose(
                 self.known.level(pose),
-                covariance + by_assumed * assumed @ by_assumed.T,
-                by_camera @ self.known.view.covariance @ by_camera.T,
+                covariance + by_assumed @ prior.covariance @ by_assumed.T,
+                {CAMERA: by_camera, LENS: by_lens},
             ),
             residual.score,
             -residual.seen.size * float(np.log(residual.noise)),

@@ -4,13 +4,19 @@
 from tracking.dictionaries import DICTIONARIES, dictionary_named, guess_dictionary
 from tracking.markers.find import Region, find_markers, neighbourhood
 from tracking.markers.refine import Sighting, refine_corners
-from tracking.markers.square import marker_corners, marker_picture, square_homography
+from tracking.markers.square import (
+    edge_growth,
+    marker_corners,
+    marker_picture,
+    square_homography,
+)
 
 __all__ = [
     "DICTIONARIES",
     "Region",
     "Sighting",
     "dictionary_named",
+    "edge_growth",
     "find_markers",
     "guess_dictionary",
     "marker_corners",

@@ -99,3 +99,29 @@ def apply_homography(H: Array, points: ArrayLike) -> Array:
     """
     x = np.asarray(points, dtype=float) @ H[:, :2].T + H[:, 2]
     return x[:, :2] / x[:, 2:]
+
+
+def edge_growth(corners: ArrayLike) -> Array:
+    """Compute how the corners of a marker move when each of its edges moves outwards by one pixel.
+
+    Sharpening, exposure, compression and resampling move the border between black and white by a
+    fraction of a pixel, in the picture, whatever the distance of the marker.
+
+    Args:
+        corners: Corners in their order around the marker, shape (..., 4, 2) [px].
+
+    Returns:
+        Movement of the corners, shape (..., 4, 2) [px per px].
+
+    >>> edge_growth([[0, 0], [10, 0], [10, 10], [0, 10]]).tolist()
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+    """
+    at = np.asarray(corners, dtype=float)
+    along = np.roll(at, -1, axis=-2) - at
+    along /= np.linalg.norm(along, axis=-1, keepdims=True)
+    normal = np.stack((along[..., 1], -along[..., 0]), axis=-1)
+    away = at - at.mean(axis=-2, keepdims=True)
+    # Outwards, whichever way round the corners go.
+    normal *= np.sign((normal * away).sum(axis=(-2, -1)))[..., None, None]
+    both = np.stack((normal, np.roll(normal, 1, axis=-2)), axis=-2)
+    return np.linalg.solve(both, np.ones((*both.shape[:-1], 1)))[..., 0]

@@ -74,7 +74,13 @@ def track_by_look(
     known = [(photo, each) for photo, each in zip(usable, found, strict=True) if each is not None]
     chosen = resolve_headings([each for _, each in known], length=template.plate.length)
     observations = [
-        observation_of(photo.name, alignment, times[photo.name], source="body")
+        observation_of(
+            photo.name,
+            alignment,
+            times[photo.name],
+            source="body",
+            stand=seen.fit.stand_of(photo.name),
+        )
         for (photo, _), alignment in zip(known, chosen, strict=True)
     ]
     unseen = {

@@ -11,8 +11,9 @@ from tracking.errors import NoUsablePhoto
 from tracking.floor import FloorMap
 from tracking.images import read_pixels
 from tracking.markers import dictionary_named, find_markers, guess_dictionary
+from tracking.photos.edges import edge_spread
 from tracking.photos.floor_seen import FloorSeen, see_floor
-from tracking.photos.result import Times, Tracked, finish
+from tracking.photos.result import Times, Tracked, finish, shared_errors
 from tracking.photos.scene import Photo, Scene
 from tracking.photos.workers import Progress
 
@@ -44,7 +45,11 @@ def track_by_marker(
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=robot, workers=workers, progress=progress)
-    observations = observe(scene.camera, seen.fit, seen.detections, robot=robot, times=times)
+    edges = edge_spread(
+        seen.fit, seen.detections, robot=robot, times=times, shared=shared_errors(scene, seen),
+        gap=gap,
+    )  # fmt: skip
+    observations = observe(seen.fit, seen.detections, robot=robot, times=times, edge_sd=edges.sd)
     if not observations and not scene.corrections:
         raise NoUsablePhoto(_robot_unseen(scene, robot, photos, seen))
     unseen = {

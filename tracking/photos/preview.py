@@ -7,12 +7,11 @@ from itertools import combinations
 import numpy as np
 
 from tracking.camera import CameraPose, to_floor
-from tracking.detect import Detection
+from tracking.detect import Detection, pose_of_marker
 from tracking.errors import PhotoError
-from tracking.floor import FloorView, refine_floor
+from tracking.floor import FloorFit, FloorView, refine_floor
 from tracking.photos.scene import Photo, Scene
 from tracking.photos.search import Wanted, look_at
-from tracking.pose import fit_pose
 
 _FAR = 4e-3  # disagreement of tape and picture worth a warning [m]
 
@@ -98,7 +97,7 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
     return Preview(
         look.seen, pose, tuple(map(str, seen)),
         tuple(str(key) for key in marks if key not in view.pixels),
-        fit.misfit_px, _scale(scene, view, pose), _robot_pose(scene, look.seen, pose),
+        fit.misfit_px, _scale(scene, view, pose), _robot_pose(scene, fit, look.seen),
         None if look.seen.robot is None else _side_px(look.seen.robot.corners_px),
         _tape_checks(scene, view, pose),
     )  # fmt: skip
@@ -117,16 +116,11 @@ def _side_px(corners_px: np.ndarray) -> float:
 
 
 def _robot_pose(
-    scene: Scene, detection: Detection, pose: CameraPose
+    scene: Scene, fit: FloorFit, detection: Detection
 ) -> tuple[float, float, float] | None:
     if scene.robot is None or detection.robot is None:
         return None
-    marker = scene.robot.marker
-    found = fit_pose(
-        scene.camera, pose, points_body=marker.points_body, corners_px=detection.robot.corners_px,
-        covariance=detection.robot.covariance, prior=scene.prior,
-        scale_sd=marker.side_sd / marker.side,
-    )  # fmt: skip
+    found = pose_of_marker(fit, fit.stands[0].pose, detection.robot, scene.robot)
     x, y, yaw = found.planar.tolist()
     return x, y, yaw
 

@@ -8,16 +8,16 @@ import numpy as np
 
 from tracking.body import Alignment
 from tracking.corrections import Correction, Move, replay
+from tracking.doubt import doubts, heading_doubts
 from tracking.images import PhotoTimes
 from tracking.path import PoseObservation, Track, assemble_track
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.scene import Scene
-from tracking.pose import BodyPrior
+from tracking.shared import SharedErrors
+from tracking.suspect import suspicion
 
 Times = Mapping[str, tuple[float, float]]
 """By name of photograph or exposure, its time and the standard deviation of the time [s]."""
-
-_HIGH = 3.0  # standard deviations of height above robot.toml's that are put down to chance
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
 
 
 def observation_of(
-    photo: str, alignment: Alignment, time: tuple[float, float], *, source: str
+    photo: str, alignment: Alignment, time: tuple[float, float], *, source: str, stand: int = 0
 ) -> PoseObservation:
     """Convert a template alignment to an observation of the pose.
 
@@ -58,11 +58,10 @@ def observation_of(
         alignment: The robot's pose with covariances and score.
         time: Time of the photograph and its standard deviation [s].
         source: "marker" or "body": what the template shows.
+        stand: Number of the camera's stand, from 0.
     """
     t, t_sd = time
-    return PoseObservation.of(
-        photo, alignment.pose, t=t, t_sd=t_sd, score=alignment.score, source=source
-    )
+    return PoseObservation(photo, t, t_sd, alignment.pose, alignment.score, source, stand)
 
 
 def finish(
@@ -81,21 +80,46 @@ def finish(
             interval.
 
     Returns:
-        The track, with the warnings of the floor fit and notes on gaps, outliers, a median height 3
-        or more standard deviations off the prior's, and corrections, each where there are any.
+        The track, with the warnings of the floor fit and notes on stated values that do not fit,
+        gaps, outliers and corrections, each where there are any.
 
     Raises:
         TrackingError: No observation is left, two have the same time, or a correction is invalid.
     """
-    kept = replay(observations, scene.corrections, times=times, z=scene.prior.height)
-    track = assemble_track(kept, gap=gap)
+    kept = replay(observations, scene.corrections, times=times, prior=scene.prior)
+    track = assemble_track(kept, shared=shared_errors(scene, seen), prior=scene.prior, gap=gap)
     tracked = {seen.photo for seen in track.observations}
     deleted = {o.photo: "deleted by a correction" for o in observations if o.photo not in tracked}
     lost = {**seen.lost, **unseen, **deleted}
     lost = {photo: reason for photo, reason in lost.items() if photo not in tracked}
-    notes = (*seen.fit.warnings, *_track_notes(track), *_height_note(track, scene.prior),
+    notes = (*seen.fit.warnings, *_robot_notes(track, seen), *_track_notes(track),
              *_correction_note(scene.corrections))  # fmt: skip
     return Tracked(track, seen, lost, notes)
+
+
+def _robot_notes(track: Track, seen: FloorSeen) -> tuple[str, ...]:
+    """Return warnings of stated values of the robot that do not fit.
+
+    None of them but the heading where lens or floor do not fit, as what is wrong there also shows
+    in the size and height of the robot.
+    """
+    if suspicion(seen.fit.suspects):
+        return heading_doubts(track)
+    return (*suspicion(doubts(track)), *heading_doubts(track))
+
+
+def shared_errors(scene: Scene, seen: FloorSeen) -> SharedErrors:
+    """Join the errors of camera and floor with those of the robot's marker and prior.
+
+    Args:
+        scene: Scene, of which robot and prior are used.
+        seen: Fitted floor and camera.
+    """
+    shared = seen.fit.shared
+    robot = {} if scene.robot is None else scene.robot.marker.spreads
+    for cause, covariance in {**robot, **scene.prior.spreads}.items():
+        shared = shared.also(cause, covariance)
+    return shared
 
 
 def _track_notes(track: Track) -> list[str]:
@@ -111,17 +135,6 @@ def _track_notes(track: Track) -> list[str]:
         for k in np.flatnonzero(track.smoothed.suspect)
     ]
     return notes
-
-
-def _height_note(track: Track, prior: BodyPrior) -> list[str]:
-    higher = float(np.median([seen.z for seen in track.observations])) - prior.height
-    if abs(higher) < _HIGH * prior.height_sd:
-        return []
-    return [
-        f"the robot's body is {1e3 * abs(higher):.0f} mm {'higher' if higher > 0 else 'lower'} in "
-        f"the photographs than expected ({1e3 * prior.height:.0f} mm above the floor); check "
-        "marker.height in robot.toml (or --body-height) and the side of the marker (--marker)"
-    ]
 
 
 def _correction_note(corrections: Sequence[Correction]) -> list[str]:

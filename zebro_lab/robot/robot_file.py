@@ -31,12 +31,18 @@ class Marker:
         height: Height of the marker's centre above the ground while the robot stands [m]; None if
             it was not measured.
         printed: Dictionary, number and size of the printed marker; that of the kit by default.
+        side_sd: Standard deviation of the side of the print [m].
+        position_sd: Standard deviation of x and of y of `position` [m].
+        yaw_sd: Standard deviation of the yaw of `roll_pitch_yaw` [rad].
     """
 
     position: tuple[float, float, float]
     roll_pitch_yaw: tuple[float, float, float] = (0.0, 0.0, 0.0)
     height: float | None = None
     printed: MarkerPrint = KIT_PRINT
+    side_sd: float = 2e-4
+    position_sd: float = 5e-4
+    yaw_sd: float = 3e-3
 
 
 @dataclass(frozen=True)
@@ -137,8 +143,11 @@ _MARKER_TEMPLATE = """\
 dictionary = ""
 id = 0  # number of the marker in the dictionary
 side = 0  # side of the black square [m]
+side_sd = 0  # standard deviation of what was measured: 0.2 mm by a ruler, 0.05 mm by callipers
 position = []  # centre of the marker in the body frame [m]
+position_sd = 0
 roll_pitch_yaw_deg = []
+yaw_sd_deg = 0
 height = 0.1  # height of the marker's centre above the ground while the robot stands [m]
 """
 
@@ -150,8 +159,11 @@ def _marker_section(marker: Marker | None) -> str:
         "dictionary": shown.printed.dictionary,
         "id": shown.printed.number,
         "side": shown.printed.side,
+        "side_sd": shown.side_sd,
         "position": shown.position,
+        "position_sd": shown.position_sd,
         "roll_pitch_yaw_deg": np.degrees(shown.roll_pitch_yaw),
+        "yaw_sd_deg": np.degrees(shown.yaw_sd),
         **measured,
     }})  # fmt: skip
     if marker is None:
@@ -238,4 +250,10 @@ def _marker(marker: SettingsTable) -> Marker:
         marker.whole("id", KIT_PRINT.number, most=_MOST_NUMBER),
         marker.quantity("side", "m", default=KIT_PRINT.side, above=0.0, usual=LARGEST),
     )
-    return Marker((x, y, z), (roll, pitch, yaw), height, printed)
+    return Marker(
+        (x, y, z), (roll, pitch, yaw), height, printed,
+        marker.quantity("side_sd", "m", default=Marker.side_sd, least=0.0, usual=LARGEST),
+        marker.quantity("position_sd", "m", default=Marker.position_sd, least=0.0, usual=LARGEST),
+        float(np.radians(marker.quantity("yaw_sd_deg", "dimensionless",
+                                         default=float(np.degrees(Marker.yaw_sd)), least=0.0))),
+    )  # fmt: skip

@@ -7,17 +7,22 @@ from pathlib import Path
 import numpy as np
 
 from tracking.camera import Camera, CameraCalibration
+from tracking.camera.lens import Array
 from zebro_lab.files.settings_table import SettingsTable, read_settings
 from zebro_lab.files.settings_text import fill_in
 
 CAMERA_FILE = "camera.toml"
-_CALIBRATION = (
-    "lens_model", "rms_px", "focal_sd", "centre_sd", "distortion_sd", "coverage", "photos",
-)  # fmt: skip
+_FOR_PEOPLE = ("lens_model", "rms_px", "corner_noise_px", "smooth_error_px", "coverage", "photos")
+_SDS = (("focal_sd", 2), ("centre_sd", 2), ("distortion_sd", 5))
+_PAIRS = np.triu_indices(9, 1)
+_ROUNDED = 1e-4  # negative eigenvalue of correlations, by rounding
 
 
 def read_camera_file(file: Path) -> Camera:
     """Read and validate the lens of a `camera.toml`: size, camera matrix, distortion (0 without).
+
+    The covariance is that of the standard deviations and correlations in `[calibration]`; 0 without
+    standard deviations, and without correlations that of independent errors.
 
     Raises:
         NotFound: The file does not exist.
@@ -37,11 +42,34 @@ def read_camera_file(file: Path) -> Camera:
         distortion = np.array(table.quantities("distortion", 5, "dimensionless"))
     size = _size(table)
     fit = table.table("calibration")
-    for key in _CALIBRATION:
+    covariance = _covariance(fit)
+    for key in _FOR_PEOPLE:
         if key in fit:
             fit.value(key)
     table.finish()
-    return Camera(size, matrix, distortion)
+    return Camera(size, matrix, distortion, covariance)
+
+
+def _covariance(fit: SettingsTable) -> Array:
+    """Read the lens's covariance, shape (9, 9), from standard deviations and correlations."""
+    sd: list[float] = []
+    for key, count in _SDS:
+        values = fit.quantities(key, count, "dimensionless") if key in fit else count * (0.0,)
+        if min(values) < 0:
+            raise fit.fault(f"is {min(values):g}; expected standard deviations of 0 or more", key)
+        sd += values
+    correlation = np.eye(9)
+    if "correlation" in fit:
+        stated = np.array(fit.quantities("correlation", len(_PAIRS[0]), "dimensionless"))
+        correlation[_PAIRS] = stated
+        correlation = correlation + correlation.T - np.eye(9)
+        smallest = float(np.linalg.eigvalsh(correlation)[0])
+        if np.abs(stated).max() > 1 or smallest < -_ROUNDED:
+            raise fit.fault(
+                "are not correlations of nine numbers (upper triangle, row by row); expected those "
+                "that `zebro-lab camera calibrate` writes, or none", "correlation",
+            )  # fmt: skip
+    return correlation * np.outer(sd, sd)
 
 
 def _size(table: SettingsTable) -> tuple[int, int]:
@@ -59,6 +87,8 @@ def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> 
         photos: SHA-256 of the photographs used in the calibration, by name.
     """
     camera, sd = fit.camera, fit.sd
+    unit = np.where(sd > 0, sd, 1.0)
+    correlation = (camera.covariance / np.outer(unit, unit))[_PAIRS]
     return fill_in(_TEMPLATE, {
         "size": camera.size,
         "focal": [camera.matrix[0, 0], camera.matrix[1, 1]],
@@ -67,10 +97,13 @@ def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> 
         "calibration": {
             "lens_model": fit.lens_model,
             "rms_px": round(fit.rms, 4),
+            "corner_noise_px": round(fit.errors.noise, 4),
+            "smooth_error_px": round(fit.errors.smooth, 4),
             "coverage": round(fit.coverage, 3),
             "focal_sd": sd[:2].round(4),
             "centre_sd": sd[2:4].round(4),
             "distortion_sd": sd[4:].round(7),
+            "correlation": correlation.round(6),
             "photos": photos,
         },
     })  # fmt: skip
@@ -88,13 +121,16 @@ focal = []  # fx, fy
 centre = []  # cx, cy
 distortion = []  # k1, k2, p1, p2, k3 of OpenCV's lens model
 
-[calibration]  # how well it is known: nothing reads this but people
+[calibration]  # how well it is known; `track` reads standard deviations and correlations
 lens_model = ""
 rms_px = 0  # distance between corners seen and predicted
+corner_noise_px = 0  # error of a corner alone, in x and in y
+smooth_error_px = 0  # error that neighbouring corners of a photograph share, as of a bent board
 coverage = 0  # share of the picture in which corners were seen
 focal_sd = []  # standard deviations
 centre_sd = []
 distortion_sd = []
+correlation = []  # of fx, fy, cx, cy, k1, k2, p1, p2, k3: each with those after it
 
 [calibration.photos]  # SHA-256
 """

@@ -13,10 +13,12 @@ from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.request import TrackRequest
 
 if TYPE_CHECKING:
+    from tracking.path import Track
     from tracking.photos.preview import Preview
     from zebro_lab.track.stage import TrackResult
 
 _MOST_LISTED = 10
+_WORTH_ADVICE = 0.3  # part of a variance that photographs share
 
 EPILOG = """
 Examples:
@@ -108,6 +110,7 @@ def track_lines(result: "TrackResult") -> list[str]:
         f"standard deviations (median): x {1e3 * np.median(spread[:, 0]):.2f} mm, "
         f"y {1e3 * np.median(spread[:, 1]):.2f} mm, "
         f"yaw {np.degrees(np.median(spread[:, 2])):.3f} deg",
+        *_uncertainty_lines(track),
         f"floor: marks are off by {fit.misfit_px:.3f} px (rms), camera "
         f"{fit.stands[0].pose.position[2]:.3f} m high",
         *(f"left out: {photo}: {reason}" for photo, reason in lost[:_MOST_LISTED]),
@@ -118,6 +121,28 @@ def track_lines(result: "TrackResult") -> list[str]:
         f"written to {result.folder}:",
         *(f"  {file}" for file in written(result.folder)),
     ]  # fmt: skip
+
+
+def _uncertainty_lines(track: "Track") -> list[str]:
+    """Format which part of the variance all photographs share, and the largest cause of it."""
+    from tracking.contributions import contributions, shared_part
+
+    common, causes = shared_part(track), contributions(track)
+    kinds = (
+        ("x and y", common.position, {each: each.position for each in causes}),
+        ("yaw", common.yaw, {each: each.yaw for each in causes}),
+    )
+    lines = []
+    for what, part, parts in kinds:
+        line = f"of the variance of {what}, {part:.0%} is of errors that all photographs share"
+        if parts and part > _WORTH_ADVICE:
+            most = max(parts, key=lambda each: parts[each])
+            line += (
+                f"; {parts[most]:.0%} would go if the {most.cause} were known: to shrink it, "
+                f"{most.advice}"
+            )
+        lines.append(line)
+    return lines
 
 
 def _preview(request: TrackRequest, file: Path, output: Output) -> None:

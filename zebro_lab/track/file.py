@@ -9,6 +9,7 @@ import numpy as np
 
 from model.counted import counted
 from model.errors import DomainError
+from model.joint_covariance import JointCovariance
 from model.poses import Poses
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
@@ -18,6 +19,7 @@ from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.folder import MANIFEST, TRACK_CSV, read_track_manifest
+from zebro_lab.track.joint_file import read_joint
 
 FEWEST = 3  # a start, which is not scored, and two poses to score
 _NAMES = (("t_s", "t"), ("x_m", "x"), ("y_m", "y"))
@@ -42,10 +44,16 @@ class TrackFile:
     notes: tuple[str, ...] = ()
 
     @property
+    def joint(self) -> JointCovariance:
+        """Covariance of x, y [m] and yaw [rad] of all poses, zero if unknown."""
+        known = self.poses.joint
+        none = np.zeros((len(self.poses), 3, 3))
+        return JointCovariance.independent(none) if known is None else known
+
+    @property
     def covariance(self) -> Array:
         """Covariance of x, y [m], yaw [rad] of each pose, zero if unknown, shape (n, 3, 3)."""
-        known = self.poses.covariance
-        return np.zeros((len(self.poses), 3, 3)) if known is None else known
+        return self.joint.marginal
 
 
 def read_track(path: Path) -> TrackFile:
@@ -58,9 +66,9 @@ def read_track(path: Path) -> TrackFile:
 
     Raises:
         NotFound: The table file does not exist.
-        DataError: The table or the manifest beside it is damaged, a column is missing, a cell holds
-            no finite number, time does not increase, a covariance has a negative eigenvalue, or
-            there are fewer than `FEWEST` poses.
+        DataError: The table, its joint covariance or the manifest beside it is damaged, a column is
+            missing, a cell holds no finite number, time does not increase, a covariance has a
+            negative eigenvalue, or there are fewer than `FEWEST` poses.
     """
     settle(path)
     file = path / TRACK_CSV if path.is_dir() else path
@@ -90,9 +98,18 @@ def track_of_table(table: RawTable) -> TrackFile:
     if not has_covariance:
         notes.append(f"{file.name} has no full covariance; its poses are taken as exact")
     if has_covariance:
-        poses = replace(poses, covariance=_covariance(table))
+        joint, doubts = _joint(table, poses)
+        poses, notes = replace(poses, joint=joint), [*notes, *doubts]
     source = table.source or _tracked_source(file) or "unknown"
     return TrackFile(poses, source, file, (*table.notes, *notes))
+
+
+def _joint(table: RawTable, poses: Poses) -> tuple[JointCovariance, tuple[str, ...]]:
+    """Return the poses' covariance with each other, independent without a file of it, and notes."""
+    covariance = _covariance(table)
+    if table.path.name == TRACK_CSV and poses.has_yaw:
+        return read_joint(table.path, poses.t, covariance)
+    return JointCovariance.independent(covariance), ()
 
 
 def _tracked_source(file: Path) -> str | None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read and write a track folder: `track.csv`, `track.tum` and `manifest.json`."""
+"""Read and write a track folder: `track.csv`, `track.tum`, joint covariance, `manifest.json`."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -12,6 +12,7 @@ from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.track.annotations import ANNOTATIONS_FILE
 from zebro_lab.track.floor_file import FLOOR_FILE
+from zebro_lab.track.joint_file import JOINT
 from zebro_lab.track.request import KIND
 
 SCHEMA = 1
@@ -19,7 +20,7 @@ TRACK_CSV = "track.csv"
 TRACK_TUM = "track.tum"
 PICTURES = in_every_format("overlay", "map", "residuals")
 TRACKED = ResultKind(
-    KIND, "track", (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, *PICTURES), SCHEMA
+    KIND, "track", (TRACK_CSV, TRACK_TUM, JOINT, FLOOR_FILE, ANNOTATIONS_FILE, *PICTURES), SCHEMA
 )
 """Kind of folder that `track` writes; an earlier track's files are replaced."""
 

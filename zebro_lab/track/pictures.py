@@ -59,7 +59,7 @@ def draw_track(
     figure = draw.residual_page(
         track.t,
         track.residuals,
-        sd=np.array([np.sqrt(np.diag(each.covariance)) for each in seen]),
+        sd=np.array([np.sqrt(np.diag(each.pose.planar_covariance)) for each in seen]),
         score=np.array([each.score for each in seen]),
         height=np.array([each.z for each in seen]),
         source=[each.source for each in seen],

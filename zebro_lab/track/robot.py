@@ -14,6 +14,9 @@ from zebro_lab.robot.robot_file import RobotFile
 WALKING_HEIGHT_SD = 5e-3
 """Standard deviation of a walking body's height about its standing height [m]."""
 
+WALKING_TILT_SD = 0.02
+"""Standard deviation of roll and of pitch, both of their means and about these [rad]."""
+
 STEEPEST = 0.05
 """Roll or pitch beyond which a marker on the robot is not level [rad]."""
 
@@ -54,8 +57,9 @@ def tracked_robot(
     try:
         require_in_dictionary(printed.dictionary, [printed.number])
         on_robot = RobotMarker(
-            printed.number, printed.side, printed.dictionary, place.position, yaw=yaw - np.pi / 2
-        )
+            printed.number, printed.side, printed.dictionary, place.position, yaw=yaw - np.pi / 2,
+            side_sd=place.side_sd, position_sd=place.position_sd, yaw_sd=place.yaw_sd,
+        )  # fmt: skip
     except TrackingError as error:
         file, key = (_file(described), "marker") if marker is None else (None, "--marker")
         raise SettingsError(str(error), file=file, key=key) from error
@@ -78,7 +82,7 @@ def body_prior(
     if not height_sd > 0:
         raise SettingsError(f"is {height_sd:g} m; expected more than 0", key="--height-sd")
     if height is not None:
-        return BodyPrior(height, height_sd)
+        return _walking(height, height_sd)
     place = described.marker
     if place is None or place.height is None:
         raise SettingsError(
@@ -86,7 +90,14 @@ def body_prior(
             "give --body-height",
             file=_file(described), key="marker.height",
         )  # fmt: skip
-    return BodyPrior(place.height - place.position[2], height_sd)
+    return _walking(place.height - place.position[2], height_sd)
+
+
+def _walking(height: float, height_sd: float) -> BodyPrior:
+    return BodyPrior(
+        height, height_sd, mean_height_sd=height_sd, tilt_sd=WALKING_TILT_SD,
+        mean_tilt_sd=WALKING_TILT_SD,
+    )  # fmt: skip
 
 
 def _file(described: RobotFile) -> str:

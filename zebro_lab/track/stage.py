@@ -5,7 +5,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from tracking import Scene, Tracked, track_photos
+from tracking.contributions import Contribution, contributions, shared_part
 from tracking.images import PhotoTimes, read_pixels
 from tracking.photos.workers import Progress
 from zebro_lab.files.picture_format import PictureFormat
@@ -18,6 +21,7 @@ from zebro_lab.track.clock import CountedTimes
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 from zebro_lab.track.folder import TRACKED, track_folder
 from zebro_lab.track.inputs import TrackInputs, read_inputs
+from zebro_lab.track.joint_file import write_joint
 from zebro_lab.track.photo_sequence import (
     PhotoSequence,
     exposure_times,
@@ -90,13 +94,23 @@ def _result(
 ) -> TrackResult:
     """Return the result; add left-out photographs and notes known before tracking to `tracked`."""
     lost = {**sequence.left_out, **tracked.lost}
-    tracked = replace(tracked, lost=lost, notes=(*counted.notes, *tracked.notes))
+    notes = (*counted.notes, *_lens_note(inputs), *tracked.notes)
+    tracked = replace(tracked, lost=lost, notes=notes)
     count = len(sequence.photos) + len(sequence.left_out)
     if sequence.is_composite:
         count = len(tracked.track.observations)
     source = inputs.source_of(sequence)
     return TrackResult(
         inputs.request.folder, tracked, count, source, counted.description, sequence.is_composite
+    )
+
+
+def _lens_note(inputs: TrackInputs) -> tuple[str, ...]:
+    if inputs.scene.camera.covariance.any():
+        return ()
+    return (
+        f"the lens is taken as exact, as {inputs.request.camera} states no standard deviations; "
+        "`zebro-lab camera calibrate` writes them",
     )
 
 
@@ -113,6 +127,7 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
         inputs=file_hashes([*request.named, *photos]),
         report=_report(result),
     ) as draft:
+        write_joint(draft, np.asarray(found.t, dtype=float), found.joint, found.shared.slots)
         heading = f"The floor of {request.floor.name}, refined with the photographs."
         (draft / FLOOR_FILE).write_text(render_floor_file(seen.fit.floor, heading=heading))
         if request.annotations is not None:
@@ -145,9 +160,17 @@ def _report(result: TrackResult) -> Mapping[str, object]:
         "tracked": len(result.tracked.track.observations),
         "left_out": dict(result.tracked.lost),
         "notes": list(result.tracked.notes),
+        "uncertainty": {
+            "shared": _parts(shared_part(result.tracked.track)),
+            "causes": {each.cause: _parts(each) for each in contributions(result.tracked.track)},
+        },
         "floor_misfit_px": fit.misfit_px,
         "camera_stands": len(fit.stands),
     }
+
+
+def _parts(each: Contribution) -> Mapping[str, float]:
+    return {"position": round(each.position, 4), "yaw": round(each.yaw, 4)}
 
 
 def _settings(inputs: TrackInputs) -> Mapping[str, object]:

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from model.counted import counted
+from model.errors import InsufficientData
 from model.judgement import Judgement, TiltJudged, judge
 from model.metrics.consistency import FEWEST_DRAWS
 from model.path_draws import states_at
@@ -17,7 +18,7 @@ from model.travel import turn_oppositely
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.extents import unit_warning
-from zebro_lab.validation.shared_clock import mirrored_hint, shared_time
+from zebro_lab.validation.shared_clock import clock_difference, mirrored_hint, shared_time
 from zebro_lab.walk.prediction_file import PredictionFile
 
 _GAP: Final = 5.0
@@ -81,7 +82,8 @@ def judge_run(
     notes = (
         *_sizes(judgement, track), *track.notes, *predicted.notes,
         *_outside(inside, predicted.prediction.path.t), *_gaps(seen.t),
-        *_mirrored(seen, predicted.prediction.path), *_not_testable(judgement),
+        *_mirrored(seen, predicted.prediction.path),
+        *_clock(track.poses, predicted.prediction.path), *_not_testable(judgement),
     )  # fmt: skip
     return JudgedRun(judgement.track, judgement.rows, judgement.band, name, notes)
 
@@ -129,6 +131,29 @@ def _mirrored(track: Poses, path: Poses) -> Iterator[str]:
     """Yield a warning if the track turns to the other side than the predicted path in its time."""
     if turn_oppositely(path.at(track.t), track):
         yield f"WARNING: {mirrored_hint(track)}"
+
+
+def _clock(track: Poses, path: Poses) -> Iterator[str]:
+    """Yield a warning if the motion shows another clock than the path's, or what is not testable.
+
+    Nothing of a track that turns to the other side, on which there is a warning already.
+    """
+    if turn_oppositely(path, track):
+        return
+    try:
+        found = clock_difference(track, path)
+    except InsufficientData:
+        yield (
+            "the track's clock: not testable, as this motion does not determine its offset; let "
+            "the robot start and stop in view"
+        )
+        return
+    if found is not None:
+        yield (
+            f"WARNING: by the motion the track's clock is {found.value:+.1f} ± {found.sd:.1f} s "
+            "behind the prediction's, which is scored as an error along the path: add that to its "
+            "times with --time-offset, or give --estimate-offset"
+        )
 
 
 def _not_testable(judgement: Judgement) -> Iterator[str]:

@@ -8,13 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.errors import InsufficientData
-from model.metrics.clock import estimate_offset
+from model.metrics.clock import ClockOffset, estimate_offset
 from model.poses import Poses, overlap
 from model.slip.law import Array
 from model.travel import travel_turn, turn_oppositely
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
 
+LARGEST_OFFSET = (
+    0.5  # s, and three standard deviations; wrong leg offsets look like a few tenths of a second
+)
 _STEP = 0.05  # s to either side, for the finite difference of the path's velocity
 
 
@@ -34,7 +37,7 @@ def estimated_clock(
     r"""Estimate a track's clock offset from the motion; add it to its times, its variance to poses.
 
     A clock error shifts every pose along the path by the same time, so the covariance grows by
-    :math:`\sigma_\tau^2 v v^T` with v the path's velocity.
+    :math:`\sigma_\tau^2 v v^T` with v the path's velocity, and poses get this error in common.
 
     Args:
         track: The track.
@@ -60,13 +63,30 @@ def estimated_clock(
         ) from error
     moved = shifted(track, found.value)
     v = _velocity(path, moved.poses.t)
-    widened = moved.covariance + found.sd**2 * v[:, :, None] * v[:, None, :]
     note = (
         f"clock: {found.value:+.2f} ± {found.sd:.2f} s, estimated from the motion, were added to "
         "the track's times; this makes errors along the path smaller"
     )
-    poses = replace(moved.poses, covariance=widened)
+    poses = replace(moved.poses, joint=moved.joint.also(v, found.sd**2))
     return replace(moved, poses=poses, notes=(*moved.notes, note)), found.value
+
+
+def clock_difference(
+    track: Poses, path: Poses, *, largest: float = LARGEST_OFFSET
+) -> ClockOffset | None:
+    """Return the offset to add to a track's times if its clock is not the path's; None if it is.
+
+    Args:
+        track: Tracked poses.
+        path: The predicted path, whose clock counts.
+        largest: Offset that is put down to errors of the path, as are three standard deviations if
+            these are more [s].
+
+    Raises:
+        InsufficientData: The motion does not determine the offset.
+    """
+    found = estimate_offset(track, path)
+    return found if abs(found.value) > max(largest, 3 * found.sd) else None
 
 
 def mirrored_hint(track: Poses) -> str:

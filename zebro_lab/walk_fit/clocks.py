@@ -8,18 +8,13 @@ from model.bayes.walks.misfit import middle
 from model.errors import InsufficientData
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
-from model.metrics.clock import estimate_offset
 from model.poses import Poses
 from model.robot import GRAVITY, Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.slip import Slip
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
-from zebro_lab.validation.shared_clock import estimated_clock
-
-LARGEST_OFFSET = (
-    0.5  # s, and three standard deviations; wrong leg offsets look like a few tenths of a second
-)
+from zebro_lab.validation.shared_clock import LARGEST_OFFSET, clock_difference, estimated_clock
 
 Legs: TypeAlias = SampledReference | InexactLog
 Clock: TypeAlias = Callable[[TrackFile, Legs, Robot], TrackFile]
@@ -39,10 +34,11 @@ def checked_clock(slip: Slip, *, largest: float = LARGEST_OFFSET) -> Clock:
 
     def check(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
         try:
-            found = estimate_offset(track.poses, _predicted_path(legs, robot, slip))
+            path = _predicted_path(legs, robot, slip)
+            found = clock_difference(track.poses, path, largest=largest)
         except InsufficientData:
             return track
-        if abs(found.value) > max(largest, 3 * found.sd):
+        if found is not None:
             raise DataError(
                 f"the motion shows that its clock is {found.value:+.1f} ± {found.sd:.1f} s behind "
                 "the leg log's; expected one clock. Add that to its times, or let "

@@ -21,7 +21,8 @@ from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.validation.judged_run import JudgedRun
-from zebro_lab.walk_fit.clocks import LARGEST_OFFSET, checked_clock, estimated_clock_of
+from zebro_lab.validation.shared_clock import LARGEST_OFFSET
+from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
 from zebro_lab.walk_fit.prediction import fit_walks_on_file, judge_left_out, metrics_by_model
 from zebro_lab.walk_fit.request import WalksRequest

@@ -64,7 +64,7 @@ class WalkOnFile:
         """The walk as input of a fit: leg angles, tracked poses with covariance, roll and pitch."""
         poses = self.track.poses
         states = np.column_stack([poses.position, poses.yaw])
-        return TrackedWalk(self.name, self.legs, poses.t, states, self.track.covariance, self.tilt)
+        return TrackedWalk(self.name, self.legs, poses.t, states, self.track.joint, self.tilt)
 
     @property
     def duration(self) -> float:

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
 r"""Whitened residuals between a tracked walk and its prediction.
 
-Each walk is predicted from its leg angles and its first tracked pose. Differences from the later
-poses contain the tracker's noise :math:`V` and, by the first pose, :math:`V_0`; the model's errors
-of distance (derivative d) and curvature (derivative c), and of stiffness and damping of contacts,
-:math:`H`; and the spread that counted angles leave, or else the time step's error, :math:`Q`. The
-model's errors are the same all along a walk, so the walk's poses are strongly correlated,
+Each walk is predicted from its leg angles and its first tracked pose. Differences r from the later
+poses contain the tracker's errors e of all poses, of joint covariance :math:`V`, that of the first
+pose by its lever arm :math:`J_0`; the model's errors of distance (derivative d) and curvature
+(derivative c), and of stiffness and damping of contacts, :math:`H`; and the spread that counted
+angles leave, or else the time step's error, :math:`Q`. The model's errors are the same all along a
+walk, so the walk's poses are strongly correlated,
 
 .. math::
-    r \sim N(0,\; V + J_0 V_0 J_0^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + H + Q) .
+    r \sim N(0,\; M V M^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + H + Q) , \qquad
+    M = [J_0 \;\; {-1}] .
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,6 +24,7 @@ from model.bayes.walks.tilt import MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData, WalkError
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
+from model.joint_covariance import JointCovariance
 from model.leg_state import LegState, law_in, robot_in
 from model.mapping import HERE, Mapper
 from model.path_draws import bent, states_at
@@ -61,7 +64,7 @@ class TrackedWalk:
         t: Times of the tracked poses by the clock of the leg angles, increasing from zero or later;
             the prediction is moved onto the first pose, shape (n,) [s].
         states: Tracked x, y [m] and yaw [rad], shape (n, 3).
-        covariance: The tracker's covariance of x, y and yaw of each pose, shape (n, 3, 3).
+        joint: The tracker's covariance of x, y and yaw of all poses.
         tilt: Roll and pitch by the robot's IMU; None without an IMU.
 
     Raises:
@@ -72,7 +75,7 @@ class TrackedWalk:
     legs: LegReference | InexactLog
     t: Array
     states: Array
-    covariance: Array
+    joint: JointCovariance
     tilt: MeasuredTilt | None = None
 
     def __post_init__(self) -> None:
@@ -270,7 +273,7 @@ class WalkMisfit:
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
     def _of_tracker(self, difference: Array) -> Array:
-        """Compute the covariance (k, k) of tracker noise, that of the first pose by its lever arm.
+        """Compute the covariance (k, k) of the tracker's errors, the first pose's by its lever arm.
 
         Args:
             difference: Predicted minus tracked poses after the first, shape (k,).
@@ -280,11 +283,8 @@ class WalkMisfit:
         away = predicted[:, :2] - walk.states[0, :2]
         J0 = np.tile(np.eye(3), (n, 1, 1))
         J0[:, 0, 2], J0[:, 1, 2] = -away[:, 1], away[:, 0]
-        J0 = J0.reshape(3 * n, 3)
-        total = J0 @ walk.covariance[0] @ J0.T
-        for i in range(n):
-            total[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] += walk.covariance[i + 1]
-        return total
+        M = np.hstack((J0.reshape(3 * n, 3), -np.eye(3 * n)))
+        return M @ walk.joint.dense @ M.T
 
     def _of_model(self, path: Poses, spread: ModelSpread) -> Array:
         """Compute the covariance (k, k) due to the model's errors of distance and curvature.

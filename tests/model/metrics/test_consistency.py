@@ -6,7 +6,7 @@ from model.errors import InsufficientData
 from model.metrics.consistency import STATISTICS, consistency, nees
 
 N = 12
-NOISE = np.tile(np.diag([0.002, 0.002, 0.01]) ** 2, (N, 1, 1))
+NOISE = np.array([0.002, 0.002, 0.01])  # standard deviations of the tracker's noise
 
 
 def paths(n, *, spread=0.02, seed=1):
@@ -19,12 +19,12 @@ def paths(n, *, spread=0.02, seed=1):
 
 def track(seed, **options):
     rng = np.random.default_rng(seed)
-    noise = rng.multivariate_normal(np.zeros(3), NOISE[0], N)
-    return paths(1, seed=seed, **options)[0] + noise
+    return paths(1, seed=seed, **options)[0] + NOISE * rng.standard_normal((N, 3))
 
 
 def judged(observed):
-    return consistency(paths(400), observed, NOISE, rng=np.random.default_rng(2))
+    noise = NOISE * np.random.default_rng(2).standard_normal((400, N, 3))
+    return consistency(paths(400) + noise, observed)
 
 
 def test_tracks_of_the_ensemble_s_own_kind_are_plausible_as_often_as_claimed():
@@ -53,4 +53,4 @@ def test_a_track_without_headings_is_judged_by_its_places():
 
 def test_few_draws_are_no_band():
     with pytest.raises(InsufficientData, match="draw 50"):
-        consistency(paths(10), track(1), NOISE, rng=np.random.default_rng(1))
+        consistency(paths(10), track(1))

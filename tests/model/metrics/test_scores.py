@@ -14,12 +14,15 @@ from model.metrics.scores import (
     energy_score,
     ensemble_scores,
     interval_coverage,
-    with_tracker_noise,
 )
 
 TIMES = np.arange(2.0, 31.0, 2.0)
-NO_NOISE = np.zeros((len(TIMES), 3, 3))
-TRACKER = np.broadcast_to(np.diag([2e-3, 2e-3, 5e-3]) ** 2, (len(TIMES), 3, 3))
+TRACKER = np.array([2e-3, 2e-3, 5e-3])  # standard deviations of its noise
+
+
+def tracked(poses, rng):
+    """Add the tracker's noise."""
+    return poses + TRACKER * rng.standard_normal(poses.shape)
 
 
 def paths(m: int, rng: np.random.Generator, *, speed=1.0, heading=0.0, spread=1.0):
@@ -36,11 +39,10 @@ def paths(m: int, rng: np.random.Generator, *, speed=1.0, heading=0.0, spread=1.
 def rejected(truths, *, spread=1.0):
     """Return the names of the statistics that reject each truth."""
     rng = np.random.default_rng(8)
-    draws = paths(400, rng, spread=spread)
-    seen = with_tracker_noise(truths, TRACKER, rng=rng)
+    draws = tracked(paths(400, rng, spread=spread), rng)
     return [
-        {each.name for each in consistency(draws, one, TRACKER, rng=rng) if not each.consistent}
-        for one in seen
+        {each.name for each in consistency(draws, one) if not each.consistent}
+        for one in tracked(truths, rng)
     ]
 
 
@@ -53,8 +55,8 @@ def test_a_perfect_ensemble_is_rejected_at_the_stated_rate():
 
 def test_a_perfect_ensemble_covers_at_its_levels():
     rng = np.random.default_rng(6)
-    draws = with_tracker_noise(paths(1000, rng), TRACKER, rng=rng)
-    truths = with_tracker_noise(paths(300, rng), TRACKER, rng=rng)
+    draws = tracked(paths(1000, rng), rng)
+    truths = tracked(paths(300, rng), rng)
     coverage = np.mean([interval_coverage(draws, one, LEVELS)[0] for one in truths], axis=0)
     np.testing.assert_allclose(coverage, np.array([[0.5], [0.9], [0.95]]) * np.ones(3), atol=0.05)
 
@@ -82,8 +84,8 @@ def test_a_tenfold_overconfident_ensemble_is_caught_by_nees_and_coverage():
     caught = rejected(paths(20, np.random.default_rng(7)), spread=0.1)
     assert sum("nees" in names for names in caught) >= 16
     rng = np.random.default_rng(8)
-    sharp = with_tracker_noise(paths(400, rng, spread=0.1), TRACKER, rng=rng)
-    truths = with_tracker_noise(paths(20, rng), TRACKER, rng=rng)
+    sharp = tracked(paths(400, rng, spread=0.1), rng)
+    truths = tracked(paths(20, rng), rng)
     coverage = np.mean([ensemble_scores(sharp, one).coverage[1] for one in truths], axis=0)
     assert np.all(coverage < 0.75)
 
@@ -156,7 +158,7 @@ def test_unknown_headings_leave_scores_of_position():
     scores = ensemble_scores(draws, observed)
     assert np.isfinite(scores.coverage[:, :2]).all()
     assert np.isnan(scores.coverage[:, 2]).all()
-    names = [each.name for each in consistency(draws, observed, NO_NOISE, rng=rng)]
+    names = [each.name for each in consistency(draws, observed)]
     assert names == ["nees", "along", "cross"]
 
 
@@ -167,9 +169,7 @@ def test_shapes_that_do_not_match_are_refused():
 
 def test_too_few_draws_have_no_band():
     with pytest.raises(InsufficientData, match="too few for an interval"):
-        consistency(
-            np.zeros((5, 4, 3)), np.zeros((4, 3)), NO_NOISE[:4], rng=np.random.default_rng()
-        )
+        consistency(np.zeros((5, 4, 3)), np.zeros((4, 3)))
 
 
 def test_bootstrap_over_runs_is_as_wide_as_the_runs_differ():

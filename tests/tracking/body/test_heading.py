@@ -11,7 +11,7 @@ from tracking.pose import BodyPose
 
 def reading(x, yaw, likelihood=0.0, y=0.0):
     state = np.array([x, y, 0.1, 0, 0, yaw])
-    return Alignment(BodyPose(state, np.eye(6), np.eye(6)), 0.9, likelihood)
+    return Alignment(BodyPose(state, np.eye(6)), 0.9, likelihood)
 
 
 def sequence(evidence, step=0.1):

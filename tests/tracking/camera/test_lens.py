@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Projection, its inverse on a plane and its derivatives agree."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -33,7 +35,7 @@ def test_a_pixel_above_the_horizon_shows_no_floor():
 
 def test_derivatives_agree_with_finite_differences():
     pose, points = looking_down(), np.array([[0.4, 0.3, 0.1], [1.5, 1.0, 0.0]])
-    _, by_point, by_pose = project_with_derivatives(LENS, pose, points)
+    _, by_point, by_pose, by_lens = project_with_derivatives(LENS, pose, points)
     step = 1e-6
     for axis in range(3):
         shift = step * np.eye(3)[axis]
@@ -48,6 +50,19 @@ def test_derivatives_agree_with_finite_differences():
         ]  # fmt: skip
         moved = project(LENS, ends[0], points) - project(LENS, ends[1], points)
         np.testing.assert_allclose(by_pose[:, :, axis], moved / (2 * step), rtol=1e-4, atol=1e-2)
+    for axis in range(9):
+        shift = step * np.eye(9)[axis]
+        moved = project(LENS.changed(shift), pose, points) - project(
+            LENS.changed(-shift), pose, points
+        )
+        np.testing.assert_allclose(by_lens[:, :, axis], moved / (2 * step), rtol=1e-4, atol=1e-4)
+
+
+def test_a_scaled_lens_is_as_uncertain():
+    """Half as large pictures have half the error of focal length, and that of distortion as is."""
+    known = replace(LENS, covariance=np.diag(np.arange(1.0, 10.0)))
+    half = known.scaled((LENS.size[0] // 2, LENS.size[1] // 2)).covariance
+    np.testing.assert_allclose(np.diag(half), [0.25, 0.5, 0.75, 1.0, 5.0, 6.0, 7.0, 8.0, 9.0])
 
 
 def test_a_scaled_picture_shows_the_same_scene():

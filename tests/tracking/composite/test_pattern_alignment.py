@@ -25,7 +25,7 @@ AS_IT_IS = FloorPattern(WIDTH, ONE)  # foretells nothing
 
 def known_exposure(planar, picture):
     state = np.array([planar[0], planar[1], PRIOR.height, 0, 0, planar[2]])
-    pose = BodyPose(state, np.zeros((6, 6)), np.zeros((6, 6)))
+    pose = BodyPose(state, np.zeros((6, 6)))
     nothing = np.zeros(picture.shape[:2], bool)
     area = np.array([-0.2, -0.2]), np.array([0.2, 0.2])
     pixels = np.clip(picture + 128, 0, 255).astype(np.uint8)

@@ -40,10 +40,7 @@ def test_exposures_through_which_others_shine_are_found_and_named(scene, photos,
 
 @pytest.mark.parametrize(("score", "told"), [(0.9, False), (0.0, True)])
 def test_exposures_that_could_not_be_aligned_are_told_of(scene, photos, monkeypatch, score, told):
-    poses = [
-        BodyPose(np.array([x, 0.2, 0.06, 0, 0, 0]), 1e-6 * np.eye(6), 0 * np.eye(6))
-        for x in (0.7, 0.5, 0.6)
-    ]
+    poses = [BodyPose(np.array([x, 0.2, 0.06, 0, 0, 0]), 1e-6 * np.eye(6)) for x in (0.7, 0.5, 0.6)]
     found = tuple(Exposure(Alignment(pose, score, 0.0), 1.0) for pose in poses)
     monkeypatch.setattr(exposures, "find_exposures", lambda *_, **__: found)
     track = tracked(replace(scene, body_size=(0.24, 0.2)), photos[0])
@@ -60,8 +57,7 @@ def test_a_mean_whose_exposures_overlap_is_noted_as_less_sure_than_it_says(
     scene, photos, top, monkeypatch, merged, step, told
 ):
     poses = [
-        BodyPose(np.array([x, 0.2, 0.06, 0, 0, 0]), 1e-6 * np.eye(6), 0 * np.eye(6))
-        for x in step * np.arange(3)
+        BodyPose(np.array([x, 0.2, 0.06, 0, 0, 0]), 1e-6 * np.eye(6)) for x in step * np.arange(3)
     ]
     found = tuple(Exposure(Alignment(pose, 0.9, 0.0), 1.0) for pose in poses)
     monkeypatch.setattr(exposures, "find_exposures_like", lambda *_, **__: found)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Corrections are replayed, and what a person should know is said."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
@@ -14,19 +15,24 @@ from tracking.images import PhotoTimes
 from tracking.path import PoseObservation
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.result import finish, times_by_name
+from tracking.pose import BodyPose
+from tracking.shared import SharedErrors
 
 
 @pytest.fixture
 def seen(scene) -> FloorSeen:
-    fit = SimpleNamespace(warnings=("the tape slipped",))  # nothing else of it is read
+    # Nothing else of it is read.
+    fit = SimpleNamespace(warnings=("the tape slipped",), shared=SharedErrors.none(), suspects=())
     return FloorSeen(cast("FloorFit", fit), (), {"p9.png": "cut short"})
 
 
 def walked(scene, count=6, higher=0.0):
     z = scene.prior.height + higher
     return [
-        PoseObservation(f"p{k}.png", 2.0 * k, 0.0, np.array([0.1 * k, 0.0, 0.0]),
-                        1e-6 * np.eye(3), np.zeros((3, 3)), z, 0.9, "marker")
+        PoseObservation(
+            f"p{k}.png", 2.0 * k, 0.0,
+            BodyPose(np.array([0.1 * k, 0.0, z, 0.0, 0.0, 0.0]), 1e-8 * np.eye(6)), 0.9, "marker",
+        )
         for k in range(count)
     ]  # fmt: skip
 
@@ -53,12 +59,26 @@ def test_a_gap_is_told(scene, seen):
     assert any("no pose is found in the 52.0 s before p5.png" in note for note in notes)
 
 
-@pytest.mark.parametrize(("higher", "told"), [(0.0, None), (0.02, "higher"), (-0.02, "lower")])
+@pytest.mark.parametrize(("higher", "told"), [(0.0, None), (0.03, 30.0), (-0.03, -30.0)])
 def test_a_body_that_seems_higher_or_lower_than_stated_is_told(scene, seen, higher, told):
-    notes = finished(scene, seen, walked(scene, higher=higher)).notes
-    of_height = [note for note in notes if "the robot's body is" in note]
+    unsure = replace(scene, robot=None, prior=replace(scene.prior, mean_height_sd=5e-3))
+    notes = finished(unsure, seen, walked(scene, higher=higher)).notes
+    of_height = [note for note in notes if "the height of the body" in note]
     assert len(of_height) == (told is not None)
-    assert all(f"20 mm {told}" in note for note in of_height)
+    for note in of_height:  # drawn towards what was stated
+        off = float(re.findall(r"([-+][\d.]+) mm off", note)[0])
+        assert off == pytest.approx(told, rel=0.15)
+
+
+def test_a_robot_that_moves_against_its_heading_is_asked_about(scene, seen):
+    about = np.array([0, 0, 0, 0, 0, np.pi])
+    turned = [
+        replace(each, pose=replace(each.pose, state=each.pose.state + about))
+        for each in walked(scene)
+    ]
+    notes = finished(scene, seen, turned).notes
+    assert any("moves backwards" in note for note in notes)
+    assert not any("moves" in note for note in finished(scene, seen, walked(scene)).notes)
 
 
 def test_times_go_by_name():

@@ -7,18 +7,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tracking.camera import Camera, CameraCalibration
+from tracking.camera.corner_errors import CornerErrors
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.track.camera_file import read_camera_file, render_camera_file
 
+_ROOT = np.random.default_rng(1).normal(size=(9, 9)) * np.repeat([3.0, 1e-2], [4, 5])[:, None]
+COVARIANCE = _ROOT @ _ROOT.T
 GOOD = "size = [1280, 960]\nfocal = [1400, 1401]\ncentre = [640, 480]\n"
 
 
 def calibration(numbers, distortion) -> CameraCalibration:
     fx, fy, cx, cy = numbers
     matrix = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]])
-    camera = Camera((1600, 1200), matrix, np.array(distortion))
+    camera = Camera((1600, 1200), matrix, np.array(distortion), COVARIANCE)
+    errors = CornerErrors(0.1, 0.05, 0.02, COVARIANCE)
     return CameraCalibration(
-        camera, "full", np.full(9, 0.1), 0.2, ("a.jpg",), np.array([0.2]), 0.9, np.ones((6, 8), int)
+        camera, "full", errors, 0.2, ("a.jpg",), np.array([0.2]), 0.9, np.ones((6, 8), int)
     )
 
 
@@ -34,6 +38,22 @@ def test_a_calibration_comes_back(tmp_path_factory, numbers, distortion, name):
     assert camera.size == (1600, 1200)
     np.testing.assert_allclose(camera.matrix, fit.camera.matrix, rtol=1e-11)
     np.testing.assert_allclose(camera.distortion, fit.camera.distortion, rtol=1e-11)
+    sd = np.sqrt(np.diag(COVARIANCE))
+    np.testing.assert_allclose(
+        camera.covariance / np.outer(sd, sd), COVARIANCE / np.outer(sd, sd), atol=1e-3
+    )
+
+
+def test_standard_deviations_alone_are_those_of_independent_errors(tmp_path):
+    (tmp_path / "camera.toml").write_text(GOOD + "[calibration]\nfocal_sd = [2, 3]\n")
+    covariance = read_camera_file(tmp_path / "camera.toml").covariance
+    np.testing.assert_allclose(np.diag(covariance), [4, 9, 0, 0, 0, 0, 0, 0, 0])
+    assert not (covariance - np.diag(np.diag(covariance))).any()
+
+
+def test_a_lens_without_standard_deviations_is_exact(tmp_path):
+    (tmp_path / "camera.toml").write_text(GOOD)
+    assert not read_camera_file(tmp_path / "camera.toml").covariance.any()
 
 
 def test_a_lens_without_distortion_needs_none_stated(tmp_path):
@@ -48,6 +68,11 @@ FAULTS = {
     "half a pixel": (GOOD.replace("1280", "1280.5"), "integers of at least 16"),
     "too few numbers": (GOOD + "distortion = [0.1]", "expected a list of 5"),
     "text": (GOOD.replace("1400", '"wide"'), r"focal\[0\]"),
+    "negative sd": (GOOD + "[calibration]\nfocal_sd = [-1, 1]", "focal_sd: is -1"),
+    "impossible correlation": (
+        GOOD + f"[calibration]\ncorrelation = {[0.9, -0.9, 0, 0, 0, 0, 0, 0, 0.9] + 27 * [0]}",
+        "not correlations of nine numbers",
+    ),
     "no TOML": ("size = ", "cannot be read as TOML"),
 }
 

@@ -10,6 +10,8 @@ from tracking.detect import Detection
 from tracking.floor import FloorMap, FloorMarker, FloorView
 from tracking.markers import Sighting
 from tracking.path import PoseObservation, assemble_track
+from tracking.pose import BodyPose, BodyPrior
+from tracking.shared import SharedErrors
 from zebro_lab.track.photographs import PlacedPhoto
 from zebro_lab.track.pictures import draw_track, seen_marks
 
@@ -23,11 +25,15 @@ FLOOR = FloorMap("4x4_50", (FloorMarker(10, 0.1, 0.1, 0.1), FloorMarker(11, 0.1,
 def track():
     """Walk along x, with a pause of a minute in it."""
     times = (0.0, 2.0, 4.0, 6.0, 66.0, 68.0)
-    return assemble_track([
-        PoseObservation(f"p{k}.jpg", t, 0.0, np.array([0.2 + 0.1 * k, 0.3, 0.0]),
-                        1e-6 * np.eye(3), np.zeros((3, 3)), 0.06, 0.9, "marker")
+    seen = [
+        PoseObservation(
+            f"p{k}.jpg", t, 0.0,
+            BodyPose(np.array([0.2 + 0.1 * k, 0.3, 0.06, 0.0, 0.0, 0.0]), 1e-6 * np.eye(6)), 0.9,
+            "marker",
+        )
         for k, t in enumerate(times)
-    ])  # fmt: skip
+    ]  # fmt: skip
+    return assemble_track(seen, shared=SharedErrors.none(), prior=BodyPrior(0.06))
 
 
 def test_three_pictures_are_drawn(track, tmp_path):

@@ -32,7 +32,8 @@ def test_a_print_turned_to_the_left_has_its_top_to_the_left():
 def test_the_body_is_as_high_as_its_marker_less_its_place_on_it():
     described = RobotFile(marker=Marker((0, 0, 0.04), height=0.105))
     assert body_prior(described).height == pytest.approx(0.065)
-    assert body_prior(described, height=0.07, height_sd=0.001) == BodyPrior(0.07, 0.001)
+    prior = body_prior(described, height=0.07, height_sd=0.001)
+    assert (prior.height, prior.height_sd, prior.mean_height_sd) == (0.07, 0.001, 0.001)
 
 
 def test_the_files_own_marker_is_sought_unless_another_is_named():

@@ -128,7 +128,7 @@ def exposures(monkeypatch, request) -> pd.DataFrame:
     score = getattr(request, "param", 0.9)
     true = walk_of_the_composite()
     poses = [
-        BodyPose(np.array([x, y, 0.06, 0, 0, yaw]), 1e-6 * np.eye(6), 0 * np.eye(6))
+        BodyPose(np.array([x, y, 0.06, 0, 0, yaw]), 1e-6 * np.eye(6))
         for x, y, yaw in true[["x", "y", "yaw"]].to_numpy()
     ]
     shuffled = np.random.default_rng(0).permutation(len(poses))

@@ -95,8 +95,30 @@ def test_what_cannot_be_judged_is_told(draws, heading, told):
     track = Poses(T, PATH.position, np.full_like(T, heading))
     found = judge(track, draws=draws)
     assert bool(found.rows[0].consistency) == (draws >= 50)
-    lines = [note for note in found.notes if "not testable" in note]
+    lines = [note for note in found.notes if "not testable" in note and "clock" not in note]
     assert [line[: len(start)] for line, start in zip(lines, told, strict=True)] == told
+
+
+def test_a_motion_that_determines_no_clock_is_told():
+    (note,) = (note for note in judge(Poses(T, PATH.position, PATH.yaw)).notes if "clock" in note)
+    assert "not testable" in note
+
+
+@pytest.mark.parametrize("late", [0.0, 2.0])
+def test_a_clock_that_the_motion_contradicts_is_told_with_the_offset(late):
+    t = np.linspace(0.0, 30.0, 301)
+    moved = np.clip(t - 4.0, 0.0, 12.0) + np.clip(t - 20.0, 0.0, 6.0)  # starts, rests, starts
+    turned = 0.8 * np.sin(0.2 * moved)
+    path = Poses(t, 0.1 * np.column_stack([moved, turned]), 0.0 * t)
+    seen = path.at(np.arange(2.0, 28.0, 1.0))
+    rng = np.random.default_rng(0)
+    position = seen.position + 1e-3 * rng.standard_normal(seen.position.shape)
+    track = TrackFile(Poses(seen.t - late, position, seen.yaw), "sim:test", Path("track.csv"))
+    prediction = PredictionFile(Prediction(path), ("sim:test",), (), ())
+    found = judge_run("walk", prediction, track, anchor=False, rng=rng)
+    warned = [note for note in found.notes if "--estimate-offset" in note]
+    assert len(warned) == (late > 0)
+    assert all("+2.0 ±" in note for note in warned)
 
 
 @pytest.mark.parametrize(

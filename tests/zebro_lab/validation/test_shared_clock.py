@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from model.joint_covariance import JointCovariance
 from model.poses import Poses
 from support.validated_walks import request_of, rows_of
 from support.watchers import Nobody
@@ -78,7 +79,7 @@ def test_a_given_offset_is_added_to_the_tracks_times():
 def test_an_estimated_offset_widens_the_covariance_along_the_path(tmp_path):
     path, track = (read_track(file) for file in standing_walk(tmp_path, behind=3.0))
     known = np.tile(1e-6 * np.eye(3), (len(track.poses), 1, 1))
-    track = replace(track, poses=replace(track.poses, covariance=known))
+    track = replace(track, poses=replace(track.poses, joint=JointCovariance.independent(known)))
     moved, offset = estimated_clock(track, path.poses)
     assert offset == pytest.approx(3.0, abs=0.1)
     np.testing.assert_allclose(moved.poses.t, track.poses.t + offset)

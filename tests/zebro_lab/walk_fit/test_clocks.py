@@ -8,6 +8,7 @@ import pytest
 
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
+from model.joint_covariance import JointCovariance
 from model.poses import Poses
 from model.robot import GRAVITY, Robot
 from model.walk.ensemble import WalkDraw, planar_walk
@@ -38,7 +39,9 @@ def track(walked, *, behind, begin=0.0, end=np.inf):
     true = path.at(t)
     noise = np.random.default_rng(1).normal(0.0, NOISE, (len(t), 2))
     covariance = np.tile(np.eye(3) * NOISE**2, (len(t), 1, 1))
-    poses = Poses(t - behind, true.position + noise, true.yaw, covariance)
+    poses = Poses(
+        t - behind, true.position + noise, true.yaw, JointCovariance.independent(covariance)
+    )
     return TrackFile(poses, "sim:test", Path("t.csv"))
 
 

@@ -14,9 +14,8 @@ from support.watchers import Nobody
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.walks_folder import read_stored_walks
 from zebro_lab.files.errors import NotFound, SettingsError
-from zebro_lab.validation.shared_clock import shifted
+from zebro_lab.validation.shared_clock import LARGEST_OFFSET, shifted
 from zebro_lab.walk_fit import stage
-from zebro_lab.walk_fit.clocks import LARGEST_OFFSET
 from zebro_lab.walk_fit.request import WalksRequest
 from zebro_lab.walk_fit.stage import calibrate_walks, require_walks
 

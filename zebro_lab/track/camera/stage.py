@@ -3,11 +3,20 @@
 
 import os
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from io import BytesIO
+from itertools import product
 from pathlib import Path
 
-from tracking.camera import Board, CameraCalibration, SeenBoard, calibrate, find_board
+from tracking.camera import (
+    Board,
+    CameraCalibration,
+    Checkerboard,
+    SeenBoard,
+    calibrate,
+    find_board,
+)
 from tracking.errors import CalibrationError, PhotoError
 from tracking.images import find_photos, read_pixels
 from tracking.photos.workers import WORTH_WORKERS, Progress, run_batches
@@ -23,6 +32,8 @@ from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 from zebro_lab.track.photo_sequence import upright_size
 
 KIT_FILE = "kit.pdf"
+FEWEST_VIEWS = 3
+_TRIED = 6  # photographs in which another board is looked for
 LENS = text_file("camera calibrate", HEADING)
 
 
@@ -68,6 +79,8 @@ def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult
     left_out = {
         path.name: look for path, look in zip(paths, looks, strict=True) if isinstance(look, str)
     }
+    if len(views) < FEWEST_VIEWS and (other := _other_count(board, paths, len(views))):
+        raise CalibrationError(other)
     if not views:
         raise CalibrationError(_why_none(request, left_out))
     progress.step("lens", None)
@@ -91,6 +104,37 @@ def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
     return (
         f"the board '{request.board}' is seen in none of {len(left_out)} photographs ({name}: "
         f"{reason}); describe the board that was photographed with --board"
+    )
+
+
+def _other_count(board: Board, paths: Sequence[Path], found: int) -> str | None:
+    """Return an error message if photographs show a checkerboard of one corner more or fewer.
+
+    Args:
+        board: The board that was looked for.
+        paths: The photographs, of which the first few are looked at.
+        found: Number of photographs in which `board` was detected.
+    """
+    if not isinstance(board, Checkerboard):
+        return None
+    seen: Counter[Checkerboard] = Counter()
+    for path in paths[:_TRIED]:
+        try:
+            pixels = read_pixels(path)
+        except PhotoError:
+            continue
+        for more in product((1, 0, -1), repeat=2):
+            other = replace(board, columns=board.columns + more[0], rows=board.rows + more[1])
+            if any(more) and min(other.columns, other.rows) > 2:
+                seen[other] += find_board(pixels, other, quick=True) is not None
+    likeliest, count = seen.most_common(1)[0] if seen else (board, 0)
+    if count <= found:
+        return None
+    inner = f"{likeliest.columns}x{likeliest.rows}"
+    return (
+        f"{count} of the first {min(len(paths), _TRIED)} photographs show {inner} inner corners, "
+        f"not {board.columns}x{board.rows} (inner corners are squares less one along either side): "
+        f"give --board checkerboard:{inner}:{1e3 * board.square:g}mm"
     )
 
 

@@ -99,11 +99,8 @@ class _Run:
         """
         if self.track is None or not self.track.poses.has_yaw:
             return None
-        poses, covariance = self.track.poses, self.track.covariance
-        noise = np.stack(
-            [rng.multivariate_normal(np.zeros(3), c, TRACKS, method="eigh") for c in covariance],
-            axis=1,
-        )
+        poses = self.track.poses
+        noise = self.track.joint.draw(TRACKS, rng=rng)
         return _summaries(poses.t, poses.states + noise)
 
     def predicted(self) -> Array | None:

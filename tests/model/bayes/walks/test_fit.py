@@ -19,6 +19,7 @@ from model.bayes.walks.prior import (
 from model.errors import InsufficientData
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
+from model.joint_covariance import JointCovariance
 from model.predict import ModelSpread
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
@@ -40,7 +41,8 @@ def tracked(steering, side, *, offset, seed, duration=DURATION):
     states = true.at(seen).states
     states += np.random.default_rng(seed).normal(0, 1, states.shape) * NOISE
     covariance = np.tile(np.diag(NOISE**2), (len(seen), 1, 1))
-    return TrackedWalk(f"{steering} {side}", legs, seen, states, covariance)
+    joint = JointCovariance.independent(covariance)
+    return TrackedWalk(f"{steering} {side}", legs, seen, states, joint)
 
 
 THREE = ((1.0, "left"), (1.3, "left"), (1.3, "right"))
@@ -146,4 +148,4 @@ def test_no_walk_and_a_track_of_two_poses_are_refused():
         fit_walks(Robot(), TABLE, [], prior=PRIOR, rng=np.random.default_rng(1))
     walk = tracked(1.0, "left", offset=np.zeros(6), seed=1)
     with pytest.raises(InsufficientData, match="expected 3 or more"):
-        TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.covariance[:2])
+        TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.joint.part(slice(2)))

@@ -7,6 +7,7 @@ from model.bayes.walks.prior import WRONG, legs_of
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
+from model.joint_covariance import JointCovariance
 from model.predict import ModelSpread
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
@@ -24,7 +25,8 @@ def walk():
     legs = SampledReference(t, gait.angles(t))
     seen = np.arange(0.0, 6.0, 1.0)
     states = planar_walk(WalkDraw(Robot(), legs, TABLE), duration=6.0).poses.at(seen).states
-    return TrackedWalk("walk", legs, seen, states, np.tile(np.diag(NOISE**2), (len(seen), 1, 1)))
+    joint = JointCovariance.independent(np.tile(np.diag(NOISE**2), (len(seen), 1, 1)))
+    return TrackedWalk("walk", legs, seen, states, joint)
 
 
 @pytest.fixture(scope="module")
@@ -67,4 +69,4 @@ def test_terms_say_what_residuals_do_for_small_steering_and_stride(misfit):
 
 def test_two_poses_are_no_track(walk):
     with pytest.raises(InsufficientData, match="2 tracked poses"):
-        TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.covariance[:2])
+        TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.joint.part(slice(2)))

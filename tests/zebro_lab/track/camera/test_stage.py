@@ -54,6 +54,20 @@ def test_another_board_is_an_error_that_says_so_and_writes_nothing(tmp_path):
     assert not (tmp_path / "camera.toml").exists()
 
 
+@pytest.mark.reference
+@pytest.mark.parametrize("counted", ["10x7", "9x7"])
+def test_a_count_that_is_off_by_one_is_recognised(shared, tmp_path, counted):
+    photos = tmp_path / "boards"
+    photos.mkdir()
+    for name in ("left01.jpg", "left02.jpg", "left03.jpg"):
+        shutil.copy(shared / "realdata/checkerboards" / name, photos)
+    request = CameraRequest(photos, f"checkerboard:{counted}:25mm", tmp_path / "camera.toml")
+    with pytest.raises(
+        CalibrationError, match=r"3 of the first 3 .* 9x6 inner corners.*checkerboard:9x6:25mm"
+    ):
+        calibrate_camera(request, Nobody())
+
+
 def test_the_kit_comes_with_a_floor_to_edit_and_never_over_an_edited_one(tmp_path):
     pdf, floor = write_kit(tmp_path / "kit")
     assert pdf.read_bytes()[:5] == b"%PDF-"

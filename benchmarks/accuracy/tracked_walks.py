@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""Whether a track's errors are as large as its covariances say, on simulated walks.
+
+    python -m benchmarks.accuracy.tracked_walks 400
+
+Walks are drawn by `benchmarks.accuracy.drawn_walks`, whose code is not the tracker's: every value
+that the tracker is told has an error of the standard deviation that is told with it. SIMULATED:
+corners, not pictures. Printed are, over all walks, the squared error by the covariance divided by
+its degrees of freedom (NEES) of single poses and of all poses of a walk jointly, with 99 %
+intervals from a bootstrap over walks, and how often 90 % intervals of the last pose hold the truth.
+"""
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from scipy.stats import binom
+
+from benchmarks.accuracy.drawn_walks.world import PLAIN, WIDE, DrawnWalk, Lens, Spreads, draw_walk
+from benchmarks.tables import print_table
+from tracking.camera import Camera
+from tracking.detect import Detection, MarkedRobot, observe
+from tracking.floor import EDGE_SPREADS, FloorMap, FloorMarker, FloorView, refine_floor
+from tracking.floor.adjustment import EDGE_SCALE
+from tracking.markers import Sighting
+from tracking.path import Track
+from tracking.photos.edges import edge_spread
+from tracking.photos.floor_seen import FloorSeen
+from tracking.photos.result import Times, Tracked, finish, shared_errors
+from tracking.photos.scene import Scene
+from tracking.pose import BodyPrior, RobotMarker
+
+DISTANCES = (2.0, 2.6, 3.4, 4.4, 5.7)  # m
+EDGES = (None, 0.0, 0.03, 0.06)
+"""Spread of edges of the rows [px]; None for one of each walk, drawn from the tracker's prior."""
+NEAR = 3.4  # m, the farthest distance that counts as near
+
+
+@dataclass(frozen=True)
+class Scored:
+    """Errors of one walk by its covariances.
+
+    Attributes:
+        distance: Distance of the camera [m].
+        marginal: NEES over its degrees of freedom, mean of the poses [-].
+        joint: NEES of all poses together over its degrees of freedom [-].
+        last: Error of the last pose over its standard deviation, x, y and yaw, shape (3,) [-].
+        sd: Standard deviation of the last pose, shape (3,) [m, m, rad].
+        largest: Largest distance from the truth [m].
+    """
+
+    distance: float
+    marginal: float
+    joint: float
+    last: np.ndarray
+    sd: np.ndarray
+    largest: float
+
+
+def photographed(walk: DrawnWalk) -> tuple[Scene, FloorSeen, Times]:
+    """Return what the lab is told of a drawn walk, the fitted floor, and times of photographs."""
+    s, told = walk.spreads, walk.told
+    fx, fy, cx, cy, *distortion = told.lens
+    camera = Camera(
+        walk.size, np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]]), np.array(distortion),
+        np.diag(np.square(walk.lens.sd)),
+    )  # fmt: skip
+    floor = FloorMap("4x4_50", tuple(
+        FloorMarker(number, side, x, y, yaw, position_sd=s.tape, yaw_sd=s.mark_turn,
+                    side_sd=s.mark_side)
+        for number, (x, y, yaw, side) in told.marks.items()
+    ))  # fmt: skip
+    side, ahead, left, turn = told.robot
+    prior = BodyPrior(told.height, s.bounce, s.tilt, s.height, s.tilt)
+    robot = MarkedRobot(
+        RobotMarker(0, side, "4x4_50", (ahead, left, 0.0385), turn - np.pi / 2, s.side, s.place,
+                    s.turn),
+        prior,
+    )  # fmt: skip
+    names = [f"p{k}.jpg" for k in range(len(walk.t))]
+    detections = [
+        Detection(
+            name,
+            FloorView(name, {key: each.corners for key, each in floor_seen.items()},
+                      {key: each.covariance for key, each in floor_seen.items()}),
+            Sighting(0, marker.corners, marker.covariance, 1.0, 0.8),
+        )
+        for name, floor_seen, marker in zip(names, walk.floor, walk.robot, strict=True)
+    ]  # fmt: skip
+    fit = refine_floor(camera, floor, [each.floor for each in detections])
+    times = {name: (float(t), 0.0) for name, t in zip(names, walk.t, strict=True)}
+    return Scene(camera, floor, prior, robot), FloorSeen(fit, tuple(detections), {}), times
+
+
+def track_drawn(walk: DrawnWalk) -> Track:
+    """Track a drawn walk from its corners, told what the lab was told."""
+    return track_drawn_whole(walk).track
+
+
+def track_drawn_whole(walk: DrawnWalk) -> Tracked:
+    """Track a drawn walk as `track_drawn` does, and return what is said of it too."""
+    scene, seen, times = photographed(walk)
+    fit, detections, robot = seen.fit, seen.detections, scene.robot
+    assert robot is not None
+    edges = edge_spread(
+        fit, detections, robot=robot, times=times, shared=shared_errors(scene, seen), gap=None
+    )
+    observations = observe(fit, detections, robot=robot, times=times, edge_sd=edges.sd)
+    return finish(scene, seen, observations, unseen={}, times=times, gap=None)
+
+
+def score(job: tuple[int, Lens, float, Spreads]) -> Scored:
+    """Draw and track a walk, and compare it with the truth."""
+    seed, lens, distance, spreads = job
+    walk = draw_walk(np.random.default_rng(seed), lens=lens, distance=distance, spreads=spreads)
+    track = track_drawn(walk)
+    error = track.poses - walk.poses
+    error[:, 2] = np.angle(np.exp(1j * error[:, 2]))
+    n, covariance = len(error), track.covariance
+    marginal = np.einsum("ni,nij,nj->n", error, np.linalg.inv(covariance), error).mean() / 3
+    dense = track.joint.dense
+    flat = error.ravel()
+    joint = float(flat @ np.linalg.solve(dense, flat)) / (3 * n)
+    sd = np.sqrt(np.diag(covariance[-1]))
+    largest = float(np.hypot(*error[:, :2].T).max())
+    return Scored(distance, float(marginal), joint, error[-1] / sd, sd, largest)
+
+
+def jobs(walks: int, edges: float | None) -> list[tuple[int, Lens, float, Spreads]]:
+    """List the walks to draw: both lenses and all distances in turn."""
+    kinds = list(product((PLAIN, WIDE), DISTANCES))
+    rng = np.random.default_rng(7)
+    return [
+        (1000 + k, *kinds[k % len(kinds)],
+         replace(Spreads(), edges=_drawn_spread(rng) if edges is None else edges))
+        for k in range(walks)
+    ]  # fmt: skip
+
+
+def _drawn_spread(rng: np.random.Generator) -> float:
+    """Draw a spread of edges from the half-Cauchy prior within `EDGE_SPREADS` [px]."""
+    low, high = np.arctan(EDGE_SPREADS[[0, -1]] / EDGE_SCALE)
+    return float(EDGE_SCALE * np.tan(rng.uniform(low, high)))
+
+
+def interval(values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
+    """Compute the 99 % interval of the mean by a bootstrap over walks."""
+    means = values[rng.integers(0, len(values), (4000, len(values)))].mean(axis=1)
+    low, high = np.quantile(means, [0.005, 0.995])
+    return float(low), float(high)
+
+
+def main() -> None:
+    """Draw walks, track them and print the table."""
+    parser = argparse.ArgumentParser(description=str(__doc__).split("\n")[0])
+    parser.add_argument("walks", type=int, nargs="?", default=400)
+    walks = parser.parse_args().walks
+    rng = np.random.default_rng(0)
+    rows = []
+    with ProcessPoolExecutor() as pool:
+        for edges in EDGES:
+            scored = list(pool.map(score, jobs(walks, edges), chunksize=4))
+            rows.append(_row(edges, scored, rng))
+    print_table(
+        ("edges", "NEES", "99 %", "joint NEES", "99 %", "near: x, y, yaw hold", "far", "of",
+         "sd x, y, yaw", "largest error"),
+        *rows,
+    )  # fmt: skip
+
+
+def _row(edges: float | None, scored: list[Scored], rng: np.random.Generator) -> tuple[str, ...]:
+    cells = ["drawn" if edges is None else f"{edges:g} px"]
+    for values in (np.array([s.marginal for s in scored]), np.array([s.joint for s in scored])):
+        low, high = interval(values, rng)
+        cells += [f"{values.mean():.3f}", f"{low:.3f} to {high:.3f}"]
+    near = [s for s in scored if s.distance <= NEAR]
+    far = [s for s in scored if s.distance > NEAR]
+    for group in (near, far):
+        held = (np.abs([s.last for s in group]) < 1.6448536).sum(axis=0)
+        low, high = binom.interval(1 - 0.01 / 18, len(group), 0.9)
+        cells.append(f"{held[0]}, {held[1]}, {held[2]} in {low:.0f} to {high:.0f}")
+    cells.append(f"{len(near)} + {len(far)}")
+    sd = np.median([s.sd for s in scored], axis=0)
+    cells.append(f"{1e3 * sd[0]:.2f} mm, {1e3 * sd[1]:.2f} mm, {np.degrees(sd[2]):.3f}°")
+    cells.append(f"{1e3 * max(s.largest for s in scored):.1f} mm")
+    return tuple(cells)
+
+
+if __name__ == "__main__":
+    main()

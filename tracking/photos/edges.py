@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+"""Spread of the edges of the robot's marker from photograph to photograph.
+
+The floor's markers tell how far edges lie outwards from marker to marker, but there are few of
+them. The walk tells more: a marker that looks too large looks too near, and moves the robot along
+the line of sight, to and fro between photographs, which a walking robot does not do. A walk without
+such steps says nothing against a large spread: edges that lie outwards alike in neighbouring
+photographs move a whole stretch of the path.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tracking.detect import Detection, MarkedRobot, observe
+from tracking.floor import EDGE_SPREADS, EdgeSpread, FloorFit
+from tracking.path import assemble_track
+from tracking.photos.result import Times
+from tracking.shared import SharedErrors
+
+_LONGEST = 100  # photographs
+_NEGLIGIBLE = 1e-3
+
+
+def edge_spread(
+    fit: FloorFit, detections: Sequence[Detection], *, robot: MarkedRobot, times: Times,
+    shared: SharedErrors, gap: float | None,
+) -> EdgeSpread:  # fmt: skip
+    """Weigh the spreads that the floor's markers leave by the likelihood of the walk.
+
+    Args:
+        fit: The camera and the floor, with the edges of its markers.
+        detections: Markers detected in each photograph, of which the first 100 with the robot's
+            are used.
+        robot: The robot's marker and prior.
+        times: By photograph, time and its standard deviation [s].
+        shared: Covariance of the errors that photographs share.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
+            interval.
+    """
+    usable = [each for each in detections if each.robot is not None]
+    usable = [each for each in usable if each.photo not in fit.unused][:_LONGEST]
+    known = fit.edge_spread
+    if len(usable) < 3:
+        return known
+    logs = np.full(len(EDGE_SPREADS), -np.inf)
+    process = None
+    for k in np.flatnonzero(known.weights > _NEGLIGIBLE):
+        seen = observe(fit, usable, robot=robot, times=times, edge_sd=float(EDGE_SPREADS[k]))
+        track = assemble_track(seen, shared=shared, prior=robot.prior, gap=gap, start=process)
+        process = track.smoothed.process
+        logs[k] = track.smoothed.log_likelihood + sum(each.pose.log_evidence for each in seen)
+    at_least = np.maximum.accumulate(logs)
+    return EdgeSpread(np.where(np.isfinite(logs), known.log_weights + at_least, -np.inf))

@@ -15,7 +15,7 @@ import numpy as np
 from tracking.camera.lens import Array
 from tracking.path import Track
 from tracking.shared import HEIGHT, SIDE, TILT
-from tracking.suspect import Suspect
+from tracking.suspect import Suspect, more_or_less
 
 _FAR = 8.0  # stated standard deviations
 _BACKWARDS = np.radians(120)
@@ -23,9 +23,9 @@ _SIDEWAYS = np.radians(40)
 _STRAY = 0.05  # m, travelled less than which a walk has no direction
 
 _WORDS = {
-    SIDE: ("the side of the robot's marker (robot.toml, --marker)", "mm", 1e3),
-    HEIGHT: ("the height of the body (marker.height in robot.toml, --body-height)", "mm", 1e3),
-    TILT: ("the level of the robot's marker", "deg", float(np.degrees(1))),
+    SIDE: ("the side of the robot's marker (robot.toml, --marker)", " mm", 1e3),
+    HEIGHT: ("the height of the body (marker.height in robot.toml, --body-height)", " mm", 1e3),
+    TILT: ("the tilt of the robot's marker", " degrees", float(np.degrees(1))),
 }
 
 
@@ -54,8 +54,8 @@ def doubts(track: Track) -> tuple[Suspect, ...]:
         W = np.linalg.pinv(root) @ axes
         log_likelihood, u = _log_likelihood(D, b, np.eye(r) + _FAR**2 * W @ W.T)
         off = (root @ u)[slot] * scale
-        finding = " and ".join(f"{each:+.1f}" for each in off)
-        found.append(Suspect(what, f"{finding} {unit} off", log_likelihood - plain))
+        finding = " and ".join(more_or_less(float(each), unit) for each in off)
+        found.append(Suspect(what, finding, log_likelihood - plain))
     return tuple(found)
 
 
@@ -70,8 +70,11 @@ def heading_doubts(track: Track) -> tuple[str, ...]:
     """Return a question if the robot moves backwards or sideways by its marker.
 
     Args:
-        track: The track. Steps are weighted by their length; a walk of under 5 cm says nothing.
+        track: The track. Steps are weighted by their length; a walk of under 5 cm says nothing, nor
+            one without poses by the marker.
     """
+    if all(seen.source != "marker" for seen in track.observations):
+        return ()
     step = np.diff(track.poses[:, :2], axis=0)[~track.gap_before[1:]]
     yaw = (
         track.poses[:-1, 2][~track.gap_before[1:]]

@@ -16,7 +16,7 @@ class Suspect:
 
     Attributes:
         what: The value in words, such as "the side of the robot's marker".
-        finding: What it would have to be, such as "2.4 mm less than stated".
+        finding: What it would have to be, as by `more_or_less`.
         log_odds: Log of how much likelier the photographs are if this value alone is off by far
             more than its standard deviation [-].
     """
@@ -24,6 +24,15 @@ class Suspect:
     what: str
     finding: str
     log_odds: float
+
+
+def more_or_less(off: float, unit: str) -> str:
+    """Format how far a value would be from the stated one.
+
+    >>> more_or_less(-2.44, " mm")
+    '2.4 mm less than stated'
+    """
+    return f"{abs(off):.1f}{unit} {'more' if off > 0 else 'less'} than stated"
 
 
 def suspicion(suspects: Sequence[Suspect]) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 from tracking.camera.lens import Camera
 from tracking.floor.adjustment import EDGE_SCALE, EDGE_SPREADS, Adjusted, Adjustment
 from tracking.floor.marks import Mark
-from tracking.suspect import Suspect
+from tracking.suspect import Suspect, more_or_less
 
 _FAR = 6.0  # times its standard deviation that a suspected mark may be off
 _LENS = 0.02  # standard deviation of the focal length of a suspected lens, of itself
@@ -49,7 +49,8 @@ def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[Suspect]:
             fit.found.floor.marks[key].points[:, :2].mean(axis=0) - mark.points[:, :2].mean(axis=0)
         ) * 1e3
         yield Suspect(
-            f"the place of mark {key} in floor.toml", f"{x:+.1f} mm in x and {y:+.1f} mm in y off",
+            f"the place of mark {key} in floor.toml",
+            f"{x:+.1f} mm in x and {y:+.1f} mm in y from where it is stated",
             fit.log_evidence - plain.log_evidence,
         )  # fmt: skip
     if problem.floor.markers:
@@ -67,7 +68,7 @@ def _of_prints(problem: Adjustment, plain: _Weighed) -> Suspect:
         for found, stated in zip(fit.found.floor.markers, problem.floor.markers, strict=True)
     ])  # fmt: skip
     return Suspect(
-        "the side of the floor's markers", f"{longer:+.1%} off",
+        "the side of the floor's markers", more_or_less(1e2 * float(longer), "%"),
         fit.log_evidence - plain.log_evidence,
     )  # fmt: skip
 
@@ -78,7 +79,7 @@ def _of_lens(problem: Adjustment, plain: _Weighed) -> Suspect:
     fit = _weighed(other, start)
     longer = fit.problem.lens(fit.found).matrix[0, 0] / problem.camera.matrix[0, 0] - 1
     return Suspect(
-        "the focal length in camera.toml", f"{longer:+.1%} off",
+        "the focal length in camera.toml", more_or_less(1e2 * float(longer), "%"),
         fit.log_evidence - plain.log_evidence,
     )  # fmt: skip
 

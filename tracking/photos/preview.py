@@ -53,6 +53,7 @@ class Preview:
             is none.
         robot_side_px: Mean side of the robot's marker in the photograph [px]; None likewise.
         tape: Distance checks of all pairs of `marks`; empty for a single mark.
+        warnings: Warnings, one sentence each, as of a track.
     """
 
     detection: Detection
@@ -64,6 +65,7 @@ class Preview:
     robot: tuple[float, float, float] | None
     robot_side_px: float | None
     tape: tuple[TapeCheck, ...]
+    warnings: tuple[str, ...] = ()
 
     @property
     def photo(self) -> str:
@@ -99,7 +101,7 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
         tuple(str(key) for key in marks if key not in view.pixels),
         fit.misfit_px, _scale(scene, view, pose), _robot_pose(scene, fit, look.seen),
         None if look.seen.robot is None else _side_px(look.seen.robot.corners_px),
-        _tape_checks(scene, view, pose),
+        _tape_checks(scene, view, pose), fit.warnings,
     )  # fmt: skip
 
 

@@ -179,4 +179,4 @@ def preview_lines(seen: "Preview") -> list[str]:
         for check in seen.tape
         for a, b in [check.marks]
     ]
-    return [*lines, *pairs]
+    return [*lines, *pairs, *(f"WARNING: {each}" for each in seen.warnings)]

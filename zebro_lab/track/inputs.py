@@ -126,3 +126,13 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
         body_size=(length, width),
     )  # fmt: skip
     return TrackInputs(request, scene, annotations, manifest)
+
+
+def lens_note(inputs: TrackInputs) -> tuple[str, ...]:
+    """Return a warning if the lens is taken as exact, as its file states no standard deviations."""
+    if inputs.scene.camera.covariance.any():
+        return ()
+    return (
+        f"the lens is taken as exact, as {inputs.request.camera} states no standard deviations; "
+        "`zebro-lab camera calibrate` writes them",
+    )

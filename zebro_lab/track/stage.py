@@ -20,7 +20,7 @@ from zebro_lab.track.annotations import ANNOTATIONS_FILE, render_annotations
 from zebro_lab.track.clock import CountedTimes
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 from zebro_lab.track.folder import TRACKED, track_folder
-from zebro_lab.track.inputs import TrackInputs, read_inputs
+from zebro_lab.track.inputs import TrackInputs, lens_note, read_inputs
 from zebro_lab.track.joint_file import write_joint
 from zebro_lab.track.photo_sequence import (
     PhotoSequence,
@@ -94,7 +94,7 @@ def _result(
 ) -> TrackResult:
     """Return the result; add left-out photographs and notes known before tracking to `tracked`."""
     lost = {**sequence.left_out, **tracked.lost}
-    notes = (*counted.notes, *_lens_note(inputs), *tracked.notes)
+    notes = (*counted.notes, *lens_note(inputs), *tracked.notes)
     tracked = replace(tracked, lost=lost, notes=notes)
     count = len(sequence.photos) + len(sequence.left_out)
     if sequence.is_composite:
@@ -102,15 +102,6 @@ def _result(
     source = inputs.source_of(sequence)
     return TrackResult(
         inputs.request.folder, tracked, count, source, counted.description, sequence.is_composite
-    )
-
-
-def _lens_note(inputs: TrackInputs) -> tuple[str, ...]:
-    if inputs.scene.camera.covariance.any():
-        return ()
-    return (
-        f"the lens is taken as exact, as {inputs.request.camera} states no standard deviations; "
-        "`zebro-lab camera calibrate` writes them",
     )
 
 

@@ -30,7 +30,7 @@ HEIGHT = "body height"
 TILT = "body tilt"
 """Cause: mean roll and pitch of the body over the walk [rad]."""
 ANNOTATION = "annotation"
-"""Cause: x, y, z [m], roll, pitch, yaw [rad] of the annotated robot, in its body frame."""
+"""Cause: x, y [m] and yaw [rad] of the annotated robot in its body frame, by the clicks."""
 
 
 STANDS = "camera's pose"

@@ -13,7 +13,7 @@ from tracking.body import (
     make_template,
     resolve_headings,
 )
-from tracking.camera import Camera, CameraPose
+from tracking.camera import Camera, CameraPose, project_with_derivatives
 from tracking.camera.lens import Array
 from tracking.errors import BodyError, NoUsablePhoto, PhotoError
 from tracking.images import read_pixels
@@ -21,10 +21,7 @@ from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Times, Tracked, finish, observation_of
 from tracking.photos.scene import MarkedTop, Photo, Scene
 from tracking.photos.workers import Progress, batches_of, run_batches
-from tracking.pose import BodyPose, BodyPrior, fit_pose
-
-CLICK_SD = 1.0
-"""Standard deviation of u and of v of a click on a corner of the robot's top [px]."""
+from tracking.pose import BodyPose, BodyPrior, fit_pose, rotation_with_derivatives
 
 _REACH = 0.6  # radius around the last position that is searched first [m]
 _WORTH_WORKERS = 6  # photographs; each takes a second to match
@@ -68,7 +65,7 @@ def track_by_look(
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
-    template = _template(scene, seen, photos)
+    template, annotation = _template(scene, seen, photos)
     usable = [photo for photo in photos if photo.name not in seen.lost]
     found = _found(scene, seen, template, usable, workers=workers, progress=progress)
     known = [(photo, each) for photo, each in zip(usable, found, strict=True) if each is not None]
@@ -80,6 +77,7 @@ def track_by_look(
             times[photo.name],
             source="body",
             stand=seen.fit.stand_of(photo.name),
+            annotated=True,
         )
         for (photo, _), alignment in zip(known, chosen, strict=True)
     ]
@@ -88,7 +86,9 @@ def track_by_look(
         for photo, each in zip(usable, found, strict=True)
         if each is None
     }
-    return finish(scene, seen, observations, unseen=unseen, times=times, gap=gap)
+    return finish(
+        scene, seen, observations, unseen=unseen, times=times, gap=gap, annotation=annotation
+    )
 
 
 def _found(
@@ -136,8 +136,11 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
     return top
 
 
-def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTemplate:
+def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> tuple[BodyTemplate, Array]:
     """Cut the robot's template out of the photograph in which its top is annotated.
+
+    Returns:
+        The template, and the covariance of its pose in the body frame by the clicks (3, 3).
 
     Raises:
         BodyError: No top is annotated, or it cannot serve as template (see `make_template`).
@@ -148,7 +151,32 @@ def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTem
     files = {photo.name: photo.path for photo in photos}
     pixels = read_pixels(files[top.photo], size=scene.camera.size)
     pose = pose_of_top(top, scene, view)
-    return make_template(pixels, scene.camera, view, pose=pose, plate=top.plate)
+    template = make_template(pixels, scene.camera, view, pose=pose, plate=top.plate)
+    return template, annotation_covariance(top, scene, view, pose)
+
+
+def annotation_covariance(top: MarkedTop, scene: Scene, view: CameraPose, pose: BodyPose) -> Array:
+    """Compute the covariance of an annotated pose by the clicks alone, in the body frame.
+
+    A template cut out at this pose moves all poses by the same x, y and yaw of the body. Height and
+    tilt of the robot in the annotated photograph are taken as known: what is wrong with them is
+    wrong in the same way where the template is found again.
+
+    Args:
+        top: The top, with the clicked corners.
+        scene: Scene, of which the camera is used.
+        view: Pose of the camera in the annotated photograph.
+        pose: The annotated pose, by `pose_of_top`.
+
+    Returns:
+        Covariance of x, y [m] and yaw [rad] in the body frame, shape (3, 3).
+    """
+    R, dR = rotation_with_derivatives(*pose.state[3:])
+    corners = top.plate.corners_body
+    by_point = project_with_derivatives(scene.camera, view, corners @ R.T + pose.state[:3]).by_point
+    moved = np.concatenate((np.tile(R[:, :2], (4, 1, 1)), (corners @ dR[2].T)[:, :, None]), axis=2)
+    J = (by_point @ moved).reshape(8, 3)
+    return top.corner_sd_px**2 * np.linalg.inv(J.T @ J)
 
 
 def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:
@@ -161,7 +189,7 @@ def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:
     """
     return fit_pose(
         scene.camera, view, points_body=top.plate.corners_body, corners_px=top.corners_px,
-        covariance=CLICK_SD**2 * np.eye(8), prior=scene.prior,
+        covariance=top.corner_sd_px**2 * np.eye(8), prior=scene.prior,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tracking.body import marker_template
+from tracking.camera.lens import Array
 from tracking.composite import (
     Exposure,
     Merged,
@@ -17,7 +18,7 @@ from tracking.composite import (
 from tracking.composite.steps import usual_step
 from tracking.errors import CompositeError
 from tracking.images import PhotoTimes, read_pixels
-from tracking.photos.by_look import marked_top, pose_of_top
+from tracking.photos.by_look import annotation_covariance, marked_top, pose_of_top
 from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Tracked, finish, observation_of, times_by_name
 from tracking.photos.scene import Photo, Scene
@@ -60,12 +61,18 @@ def track_exposures(
     order = order_exposures(np.array([each.alignment.pose.planar for each in exposures]))
     names = tuple(f"{photo.name}#{number}" for number in range(1, len(order) + 1))
     times = times_by_name(names, times_of(names))
-    source = "body" if scene.robot is None else "marker"
+    is_annotated = scene.robot is None
+    source = "body" if is_annotated else "marker"
     observations = [
-        observation_of(name, exposures[k].alignment, times[name], source=source)
+        observation_of(
+            name, exposures[k].alignment, times[name], source=source, annotated=is_annotated
+        )
         for name, k in zip(names, order, strict=True)
     ]
-    tracked = finish(scene, seen, observations, unseen={}, times=times, gap=gap)
+    tracked = finish(
+        scene, seen, observations, unseen={}, times=times, gap=gap,
+        annotation=_annotation(scene, seen, photo) if is_annotated else None,
+    )  # fmt: skip
     notes = (*tracked.notes, *_rough_note(exposures), *_overlap_note(scene, merged, exposures))
     return replace(tracked, notes=notes)
 
@@ -92,6 +99,12 @@ def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> t
         pixels, scene.camera, view, known=pose_of_top(top, scene, view), plate=top.plate,
         prior=scene.prior, merged=merged, body_size=size, hidden=hidden,
     )  # fmt: skip
+
+
+def _annotation(scene: Scene, seen: FloorSeen, photo: Photo) -> Array:
+    """Compute the covariance (3, 3) of the annotated exposure's pose by the clicks."""
+    top, view = marked_top(scene, seen, [photo]), seen.fit.pose_of(photo.name)
+    return annotation_covariance(top, scene, view, pose_of_top(top, scene, view))
 
 
 def _rough_note(exposures: Sequence[Exposure]) -> list[str]:

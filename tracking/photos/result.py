@@ -2,18 +2,19 @@
 """Assemble a track from observed poses: corrections, smoothing, notes for the user."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tracking.body import Alignment
+from tracking.camera.lens import Array
 from tracking.corrections import Correction, Move, replay
 from tracking.doubt import doubts, heading_doubts
 from tracking.images import PhotoTimes
 from tracking.path import PoseObservation, Track, assemble_track
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.scene import Scene
-from tracking.shared import SharedErrors
+from tracking.shared import ANNOTATION, SharedErrors
 from tracking.suspect import suspicion
 
 Times = Mapping[str, tuple[float, float]]
@@ -49,8 +50,9 @@ def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
 
 
 def observation_of(
-    photo: str, alignment: Alignment, time: tuple[float, float], *, source: str, stand: int = 0
-) -> PoseObservation:
+    photo: str, alignment: Alignment, time: tuple[float, float], *, source: str, stand: int = 0,
+    annotated: bool = False,
+) -> PoseObservation:  # fmt: skip
     """Convert a template alignment to an observation of the pose.
 
     Args:
@@ -59,14 +61,22 @@ def observation_of(
         time: Time of the photograph and its standard deviation [s].
         source: "marker" or "body": what the template shows.
         stand: Number of the camera's stand, from 0.
+        annotated: Whether the template was cut out at an annotated pose, whose error in the body
+            frame is then an error of this pose too.
     """
     t, t_sd = time
-    return PoseObservation(photo, t, t_sd, alignment.pose, alignment.score, source, stand)
+    pose = alignment.pose
+    if annotated:
+        c, s = np.cos(pose.state[5]), np.sin(pose.state[5])
+        moved = np.zeros((6, 3))
+        moved[:2, :2], moved[5, 2] = [[c, -s], [s, c]], 1.0
+        pose = replace(pose, by_cause={**pose.by_cause, ANNOTATION: moved})
+    return PoseObservation(photo, t, t_sd, pose, alignment.score, source, stand)
 
 
 def finish(
     scene: Scene, seen: FloorSeen, observations: Sequence[PoseObservation], *,
-    unseen: Mapping[str, str], times: Times, gap: float | None,
+    unseen: Mapping[str, str], times: Times, gap: float | None, annotation: Array | None = None,
 ) -> Tracked:  # fmt: skip
     """Apply corrections, smooth the poses, and collect notes for the user.
 
@@ -78,6 +88,8 @@ def finish(
         times: By photograph, time and its standard deviation [s].
         gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
             interval.
+        annotation: Covariance of the annotated pose in the body frame, of observations with
+            `annotated`, shape (3, 3); None without a template that was cut out.
 
     Returns:
         The track, with the warnings of the floor fit and notes on stated values that do not fit,
@@ -87,7 +99,10 @@ def finish(
         TrackingError: No observation is left, two have the same time, or a correction is invalid.
     """
     kept = replay(observations, scene.corrections, times=times, prior=scene.prior)
-    track = assemble_track(kept, shared=shared_errors(scene, seen), prior=scene.prior, gap=gap)
+    shared = shared_errors(scene, seen)
+    if annotation is not None:
+        shared = shared.also(ANNOTATION, annotation)
+    track = assemble_track(kept, shared=shared, prior=scene.prior, gap=gap)
     tracked = {seen.photo for seen in track.observations}
     deleted = {o.photo: "deleted by a correction" for o in observations if o.photo not in tracked}
     lost = {**seen.lost, **unseen, **deleted}

@@ -39,11 +39,13 @@ class MarkedTop:
         corners_px: Clicks u, v on the front left, front right, rear right and rear left corner of
             the plate [px].
         plate: Dimensions of the robot's top.
+        corner_sd_px: Standard deviation of u and of v of a click [px].
     """
 
     photo: str
     corners_px: tuple[Click, ...]
     plate: TopPlate
+    corner_sd_px: float = 0.5
 
 
 @dataclass(frozen=True)

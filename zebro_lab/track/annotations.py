@@ -83,7 +83,8 @@ def _template(table: SettingsTable) -> MarkedTop:
         )
     except TrackingError as error:
         raise table.fault(str(error)) from error
-    return MarkedTop(table.text("photo", least=1), corners, plate)
+    sd = table.quantity("corner_sd_px", "dimensionless", default=MarkedTop.corner_sd_px, above=0.0)
+    return MarkedTop(table.text("photo", least=1), corners, plate, sd)
 
 
 def _pixel(table: SettingsTable, key: str) -> Click:
@@ -137,4 +138,5 @@ def _template_values(template: MarkedTop) -> Mapping[str, Any]:
         "photo": template.photo, "corners_px": template.corners_px,
         "length": plate.length, "width": plate.width, "height": plate.height,
         "centre_x": plate.centre_x, "margin": plate.margin, "front_margin": plate.front_margin,
+        "corner_sd_px": template.corner_sd_px,
     }  # fmt: skip

@@ -6,10 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from model.poses import relative
 from tracking.errors import BodyError, NoUsablePhoto
-from tracking.photos.by_look import marked_top, pose_of_top, track_by_look
+from tracking.photos.by_look import (
+    annotation_covariance,
+    marked_top,
+    pose_of_top,
+    track_by_look,
+)
 from tracking.photos.floor_seen import see_floor
 from tracking.photos.workers import NoProgress
+from tracking.shared import ANNOTATION
 
 TIMES = {"p0.png": (0.0, 0.0), "p1.png": (2.0, 0.0)}
 
@@ -36,3 +43,41 @@ def test_clicks_on_the_top_give_the_robots_pose(scene, photos, walk, top):
     seen = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress())
     pose = pose_of_top(top, scene, seen.fit.pose_of("p0.png"))
     np.testing.assert_allclose(pose.planar, walk[0], atol=2e-3)
+
+
+def test_an_annotated_pose_errs_by_the_covariance_of_its_clicks(scene, photos, top):
+    seen = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress())
+    view = seen.fit.pose_of("p0.png")
+    sure = replace(scene.prior, height_sd=1e-6, tilt_sd=1e-6)  # the same robot, clicked on again
+    bare, rng = replace(scene, prior=sure), np.random.default_rng(1)
+    first = pose_of_top(top, bare, view)
+    errors = []
+    for _ in range(400):
+        clicks = np.add(top.corners_px, top.corner_sd_px * rng.standard_normal((4, 2)))
+        again = pose_of_top(replace(top, corners_px=tuple(map(tuple, clicks))), bare, view)
+        errors.append(relative(again.planar, first.planar))
+    stated = annotation_covariance(top, bare, view, first)
+    sd = np.sqrt(np.diag(stated))
+    np.testing.assert_allclose(np.std(errors, axis=0), sd, rtol=0.15)
+    np.testing.assert_allclose(np.corrcoef(np.transpose(errors)), stated / np.outer(sd, sd),
+                               atol=0.2)  # fmt: skip
+
+
+def test_clicks_that_are_off_move_the_whole_track_and_the_covariance_says_so(
+    scene, photos, walk, top
+):
+    bare = replace(scene, robot=None, top=top)
+    run = {"times": TIMES, "gap": None, "workers": 1, "progress": NoProgress()}
+    right = track_by_look(bare, photos[:2], **run).track
+    c, s = np.cos(0.03), np.sin(0.03)
+    middle = np.mean(top.corners_px, axis=0)
+    turned = (np.subtract(top.corners_px, middle) @ [[c, -s], [s, c]]) + middle + [0.8, 0.0]
+    off = replace(top, corners_px=tuple(map(tuple, turned)))
+    wrong = track_by_look(replace(bare, top=off), photos[:2], **run).track
+    moved = [relative(a, b) for a, b in zip(right.poses, wrong.poses, strict=True)]
+    assert np.all(np.abs(moved[0] - moved[1]) < [1e-3, 1e-3, 6e-3])  # alike, on the body
+    assert abs(moved[0][2]) > 0.02
+    slot = wrong.shared.slots[ANNOTATION]
+    known = wrong.covariance_given([ANNOTATION])[0]
+    assert wrong.covariance[0, 2, 2] > 2 * known[2, 2]
+    assert wrong.joint.by_error[1][:, slot].any()

@@ -13,7 +13,7 @@ from tracking.body import (
     make_template,
     resolve_headings,
 )
-from tracking.camera import Camera, CameraPose, project_with_derivatives
+from tracking.camera import Camera, CameraPose
 from tracking.camera.lens import Array
 from tracking.errors import BodyError, NoUsablePhoto, PhotoError
 from tracking.images import read_pixels
@@ -21,7 +21,7 @@ from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Times, Tracked, finish, observation_of
 from tracking.photos.scene import MarkedTop, Photo, Scene
 from tracking.photos.workers import Progress, batches_of, run_batches
-from tracking.pose import BodyPose, BodyPrior, fit_pose, rotation_with_derivatives
+from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior, fit_pose
 
 _REACH = 0.6  # radius around the last position that is searched first [m]
 _WORTH_WORKERS = 6  # photographs; each takes a second to match
@@ -152,31 +152,31 @@ def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> tuple[B
     pixels = read_pixels(files[top.photo], size=scene.camera.size)
     pose = pose_of_top(top, scene, view)
     template = make_template(pixels, scene.camera, view, pose=pose, plate=top.plate)
-    return template, annotation_covariance(top, scene, view, pose)
+    return template, annotation_covariance(pose, scene.prior)
 
 
-def annotation_covariance(top: MarkedTop, scene: Scene, view: CameraPose, pose: BodyPose) -> Array:
+def annotation_covariance(pose: BodyPose, prior: BodyPrior) -> Array:
     """Compute the covariance of an annotated pose by the clicks alone, in the body frame.
 
-    A template cut out at this pose moves all poses by the same x, y and yaw of the body. Height and
-    tilt of the robot in the annotated photograph are taken as known: what is wrong with them is
-    wrong in the same way where the template is found again.
+    A template cut out at this pose moves all poses by the same x, y and yaw of the body. What is
+    wrong with the stated height and tilt is left out: it is wrong in the same way where the
+    template is found again. With C the covariance of the pose and Q^-1 the information of the
+    prior, clicks make C - C Q^-1 C of it.
 
     Args:
-        top: The top, with the clicked corners.
-        scene: Scene, of which the camera is used.
-        view: Pose of the camera in the annotated photograph.
         pose: The annotated pose, by `pose_of_top`.
+        prior: Prior with which it was fitted.
 
     Returns:
         Covariance of x, y [m] and yaw [rad] in the body frame, shape (3, 3).
     """
-    R, dR = rotation_with_derivatives(*pose.state[3:])
-    corners = top.plate.corners_body
-    by_point = project_with_derivatives(scene.camera, view, corners @ R.T + pose.state[:3]).by_point
-    moved = np.concatenate((np.tile(R[:, :2], (4, 1, 1)), (corners @ dR[2].T)[:, :, None]), axis=2)
-    J = (by_point @ moved).reshape(8, 3)
-    return top.corner_sd_px**2 * np.linalg.inv(J.T @ J)
+    known = np.zeros((6, 6))
+    known[np.ix_(HELD, HELD)] = np.linalg.inv(prior.covariance)
+    C = pose.covariance
+    by_clicks = (C - C @ known @ C)[np.ix_(PLANAR, PLANAR)]
+    c, s = np.cos(pose.state[5]), np.sin(pose.state[5])
+    into_body = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+    return into_body @ by_clicks @ into_body.T
 
 
 def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:

@@ -104,7 +104,7 @@ def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> t
 def _annotation(scene: Scene, seen: FloorSeen, photo: Photo) -> Array:
     """Compute the covariance (3, 3) of the annotated exposure's pose by the clicks."""
     top, view = marked_top(scene, seen, [photo]), seen.fit.pose_of(photo.name)
-    return annotation_covariance(top, scene, view, pose_of_top(top, scene, view))
+    return annotation_covariance(pose_of_top(top, scene, view), scene.prior)
 
 
 def _rough_note(exposures: Sequence[Exposure]) -> list[str]:

@@ -48,15 +48,13 @@ def test_clicks_on_the_top_give_the_robots_pose(scene, photos, walk, top):
 def test_an_annotated_pose_errs_by_the_covariance_of_its_clicks(scene, photos, top):
     seen = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress())
     view = seen.fit.pose_of("p0.png")
-    sure = replace(scene.prior, height_sd=1e-6, tilt_sd=1e-6)  # the same robot, clicked on again
-    bare, rng = replace(scene, prior=sure), np.random.default_rng(1)
-    first = pose_of_top(top, bare, view)
+    rng, first = np.random.default_rng(1), pose_of_top(top, scene, view)
     errors = []
     for _ in range(400):
         clicks = np.add(top.corners_px, top.corner_sd_px * rng.standard_normal((4, 2)))
-        again = pose_of_top(replace(top, corners_px=tuple(map(tuple, clicks))), bare, view)
+        again = pose_of_top(replace(top, corners_px=tuple(map(tuple, clicks))), scene, view)
         errors.append(relative(again.planar, first.planar))
-    stated = annotation_covariance(top, bare, view, first)
+    stated = annotation_covariance(first, scene.prior)
     sd = np.sqrt(np.diag(stated))
     np.testing.assert_allclose(np.std(errors, axis=0), sd, rtol=0.15)
     np.testing.assert_allclose(np.corrcoef(np.transpose(errors)), stated / np.outer(sd, sd),

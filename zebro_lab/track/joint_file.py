@@ -64,8 +64,8 @@ def read_joint(
             for each in lost_output(file)
         )
     times, joint = _read(file)
-    rows = np.searchsorted(times, t).clip(max=len(times) - 1)
-    if not np.allclose(times[rows], t, rtol=1e-8, atol=1e-9):
+    rows = np.searchsorted((times[1:] + times[:-1]) / 2, t)  # the nearest: `t` is rounded
+    if not np.allclose(times[rows], t, rtol=1e-9, atol=1e-9):
         return independent, (_of_others(file, "has other times"),)
     part = joint if len(rows) == len(joint) else joint.part(rows)
     unit = np.sqrt(np.diagonal(part.marginal, axis1=1, axis2=2))

@@ -11,7 +11,7 @@ from zebro_lab.track.file import read_track
 from zebro_lab.track.folder import track_folder
 from zebro_lab.track.joint_file import JOINT, write_joint
 
-T = np.array([0.0, 2.0, 4.0, 6.0])
+T = np.array([0.0, 1.0, 2.0, 7.0]) / 3  # as the table cannot write them
 COVARIANCE = ("xx", "xy", "xyaw", "yy", "yyaw", "yawyaw")
 
 

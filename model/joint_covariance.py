@@ -75,7 +75,7 @@ class JointCovariance:
     def dense(self) -> Array:
         """Covariance of x, y and yaw of all poses, one pose after the other, shape (3n, 3n)."""
         n = len(self)
-        by_error = self.by_error.reshape(3 * n, -1)
+        by_error = self.by_error.reshape(3 * n, len(self.errors))
         whole = (by_error @ self.errors @ by_error.T).reshape(n, 3, n, 3)
         across = self.own  # of each pose with the one `lag` poses later
         for lag in range(n):

@@ -123,6 +123,7 @@ def judge(
         raise InsufficientData("the track has no headings to start a path; pass anchor=False")
 
     def placed(path: Poses) -> Poses:
+        """Return the draws of a path, anchored at the track's first pose if asked for."""
         return anchored(path.draws(), first, at=at, rng=rng) if anchor else path.draws()
 
     candidates = {PREDICTION: prediction.path, **prediction.baselines}

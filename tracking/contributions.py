@@ -31,7 +31,8 @@ ADVICE = {
     TURN: "measure how the marker is turned on the body, and state marker.yaw_sd_deg",
     HEIGHT: "measure how high the marker is while the robot walks, and state --height-sd",
     TILT: "mount the marker level, near the body's centre",
-    ANNOTATION: "annotate the robot in another photograph too",
+    ANNOTATION: "annotate the photograph in which the robot is largest, click its corners more "
+    "exactly, and state corner_sd_px",
 }
 """By cause, what to do for a track of smaller uncertainty."""
 
@@ -77,12 +78,18 @@ def contributions(track: Track) -> tuple[Contribution, ...]:
     return tuple(sorted(found, key=lambda each: -max(each.position, each.yaw)))
 
 
-def shared_part(track: Track) -> Contribution:
-    """Compute which part of the variance all shared errors make together; the rest averages out."""
-    position, yaw = 1 - _variances(track.covariance_given(list(track.shared.slots))) / _variances(
-        track.covariance
-    )
-    return Contribution("all", float(position), float(yaw))
+def shared_part(track: Track) -> tuple[float, float]:
+    """Compute which part of the variance all shared errors make together; the rest averages out.
+
+    Args:
+        track: The track.
+
+    Returns:
+        Part of the mean variance of x and y, and of yaw [-].
+    """
+    known = _variances(track.covariance_given(list(track.shared.slots)))
+    position, yaw = 1 - known / _variances(track.covariance)
+    return float(position), float(yaw)
 
 
 def _variances(covariance: Array) -> Array:

@@ -16,7 +16,9 @@ from model.similar_name import similar_name
 from tracking.errors import CorrectionError
 from tracking.path import PoseObservation
 from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior
-from tracking.shared import CAMERA, LENS
+from tracking.shared import ANNOTATION, CAMERA, LENS, PLACE
+
+_IN_BODY = (ANNOTATION, PLACE)  # causes whose x and y are of the body frame
 
 
 @dataclass(frozen=True)
@@ -186,10 +188,22 @@ def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
 
 
 def _flipped(seen: PoseObservation) -> PoseObservation:
-    # The position stays; only head and tail are exchanged.
-    state = seen.pose.state.copy()
+    """Exchange head and tail: the place stays, and what the body's frame has turns by half a turn.
+
+    Roll and pitch change their signs, as do their covariances with the other coordinates, and the
+    displacements by errors that are given in the body frame.
+    """
+    pose, turn = seen.pose, np.diag([1.0, 1.0, 1.0, -1.0, -1.0, 1.0])
+    state = turn @ pose.state
     state[5] = float(np.angle(np.exp(1j * (state[5] + np.pi))))
-    return replace(seen, pose=replace(seen.pose, state=state))
+    covariance = turn @ pose.covariance @ turn
+    by_cause = {}
+    for cause, derivative in pose.by_cause.items():
+        by_cause[cause] = turn @ derivative
+        if cause in _IN_BODY:
+            by_cause[cause][:2] *= -1.0
+    flipped = replace(pose, state=state, covariance=covariance, by_cause=by_cause)
+    return replace(seen, pose=flipped)
 
 
 def _moved(

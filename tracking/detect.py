@@ -160,6 +160,10 @@ def observe(
     Returns:
         One observation for each photograph that shows the robot's marker and for which `fit` has
         a camera pose, in the order of `detections`.
+
+    Raises:
+        ValueError: The line of sight to a corner of the robot's marker does not meet the plane of
+            its expected height.
     """
     return tuple(
         _observation(fit, detection.photo, detection.robot, robot, times, edge_sd)
@@ -189,6 +193,9 @@ def pose_of_marker(
         sighting: The robot's marker in the photograph.
         robot: The robot's marker and prior.
         edge_sd: Standard deviation of the edges of one marker [px]; None for that of `fit`.
+
+    Raises:
+        ValueError: The line of sight to a corner does not meet the plane of its expected height.
     """
     edge_sd = fit.edge_spread.sd if edge_sd is None else edge_sd
     growth = edge_growth(sighting.corners_px).ravel()
@@ -204,6 +211,6 @@ def pose_of_marker(
         corners_px=sighting.corners_px - by_edges @ fit.edges,
         covariance=spread + edge_sd**2 * np.outer(growth, growth),
         prior=robot.prior,
-        points_by=robot.marker.derivatives,
+        points_by=robot.marker.derivatives_at(robot.marker.points_body),
         pixels_by={EDGES: by_edges},
     )

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from model.joint_covariance import JointCovariance
 from tracking.camera.lens import Array
+from tracking.constant_twist import Process
 from tracking.errors import PathError
 from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior
 from tracking.shared import CAMERA, HEIGHT, TILT, SharedErrors, stand_name
-from tracking.smooth import Process, SharedInput, SmoothPath, smooth
+from tracking.smooth import SharedInput, SmoothPath, smooth
 
 TRACK_COLUMNS = (
     "t_s", "t_sigma", "x_m", "y_m", "yaw_rad", "cov_xx", "cov_xy", "cov_xyaw", "cov_yy",

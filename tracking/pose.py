@@ -31,7 +31,7 @@ from tracking.camera.lens import (
     project_with_derivatives,
     to_floor,
 )
-from tracking.errors import MarkerError
+from tracking.errors import BodyError, MarkerError
 from tracking.markers import marker_corners
 from tracking.shared import CAMERA, HEIGHT, LENS, PLACE, SIDE, TILT, TURN
 
@@ -70,12 +70,19 @@ class RobotMarker:
         """Corners of the marker in the body frame, OpenCV's order, shape (4, 3) [m]."""
         return marker_corners(self.side, self.position, self.yaw)
 
-    @property
-    def derivatives(self) -> dict[str, Array]:
-        """Derivative of `points_body` by cause: side, place (x, y) and turn, shape (4, 3, k)."""
-        arm = self.points_body - np.asarray(self.position)
-        turned = np.column_stack((-arm[:, 1], arm[:, 0], np.zeros(4)))
-        along = np.tile(np.eye(3)[:, :2], (4, 1, 1))
+    def derivatives_at(self, points_body: Array) -> dict[str, Array]:
+        """Compute how points that are printed on the marker move with what is stated of it.
+
+        Args:
+            points_body: The points in the body frame, shape (n, 3) [m].
+
+        Returns:
+            By cause, derivative of the points by the side, the place (x, y) and the turn of the
+            marker, shape (n, 3, k).
+        """
+        arm = points_body - np.asarray(self.position)
+        turned = np.column_stack((-arm[:, 1], arm[:, 0], np.zeros(len(arm))))
+        along = np.tile(np.eye(3)[:, :2], (len(arm), 1, 1))
         return {SIDE: arm[:, :, None] / self.side, PLACE: along, TURN: turned[:, :, None]}
 
     @property
@@ -88,6 +95,9 @@ class RobotMarker:
 @dataclass(frozen=True)
 class BodyPrior:
     """Prior on the body's height and tilt: of their means over a walk, and about these means.
+
+    Raises BodyError where a standard deviation in a photograph is not above 0, or one of a mean is
+    below 0.
 
     Attributes:
         height: Height of the body's origin over the floor, mean of a walk [m].
@@ -102,6 +112,21 @@ class BodyPrior:
     tilt_sd: float = 0.02
     mean_height_sd: float = 0.0
     mean_tilt_sd: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the standard deviations."""
+        for what, sd, unit in (("height", self.height_sd, "m"), ("tilt", self.tilt_sd, "rad")):
+            if not sd > 0:
+                raise BodyError(
+                    f"the standard deviation of the body's {what} in a photograph is {sd:g} {unit};"
+                    " expected more than 0"
+                )
+        for what, sd in (("height", self.mean_height_sd), ("tilt", self.mean_tilt_sd)):
+            if not sd >= 0:
+                raise BodyError(
+                    f"the standard deviation of the body's mean {what} is {sd:g}; expected 0 or"
+                    " more"
+                )
 
     @property
     def covariance(self) -> Array:
@@ -271,10 +296,12 @@ class _PoseProblem:
         return np.array([*xy, self.prior.height, 0.0, 0.0, yaw])
 
     def points_world(self, state: Array) -> Array:
+        """Transform the points to the floor frame for a state (6,), shape (n, 3) [m]."""
         R, _ = rotation_with_derivatives(*state[3:])
         return self.points_body @ R.T + state[:3]
 
     def residual(self, state: Array) -> Array:
+        """Compute the whitened residuals of pixels, then of height, roll and pitch, (2n + 3,)."""
         pixels = project(self.camera, self.view, self.points_world(state))
         prior = self.prior
         held = (
@@ -285,6 +312,7 @@ class _PoseProblem:
         return np.concatenate((self.whiten @ (pixels - self.corners_px).ravel(), held))
 
     def jacobian(self, state: Array) -> Array:
+        """Compute the derivative of `residual` by the state, shape (2n + 3, 6)."""
         _, dR = rotation_with_derivatives(*state[3:])
         by_state = np.empty((len(self.points_body), 3, 6))
         by_state[:, :, :3] = np.eye(3)

@@ -124,7 +124,8 @@ class SharedErrors:
 
     def given(self, causes: Sequence[str]) -> Array:
         """Compute the covariance of all errors if those of some causes were known, shape (q, q)."""
-        known = np.concatenate([np.arange(self.size)[self.slots[cause]] for cause in causes])
+        rows = [np.arange(self.size)[self.slots[cause]] for cause in causes]
+        known = np.concatenate([np.zeros(0, dtype=int), *rows])
         sd = np.sqrt(np.diag(self.covariance))
         unit = np.where(sd > 0, sd, 1.0)  # pixels beside radians: cut-offs need one unit
         scaled = self.covariance / np.outer(unit, unit)

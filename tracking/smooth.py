@@ -2,20 +2,14 @@
 """Smooth planar poses at irregular times (Gaussian-process smoother); gaps stay gaps.
 
 Between photographs the robot is assumed to keep its twist (forward speed, sideways speed, turning
-rate in its own frame), disturbed by white noise. A constant twist is an arc, so the corners of a
-turning path are not cut. For neighbours k and k + 1, dt apart (Barfoot, State Estimation for
-Robotics, 2017, section 11.3, written for the plane):
-
-    e = [ log(T_k^-1 T_k+1) - dt w_k ;  w_k+1 - w_k ],   cov e = [ dt³/3 dt²/2 ; dt²/2 dt ] x Q_c
+rate in its own frame), disturbed by white noise (`tracking.constant_twist`). A constant twist is an
+arc, so the corners of a turning path are not cut.
 
 Errors that the measurements share (camera, lens, height) are unknowns as well. With u these errors,
 independent and of variance 1, a measured pose m is the true pose minus F u plus noise of its own.
 The normal equations of all are an arrow: block tridiagonal for the poses and twists, with a border
-for u, which is eliminated last. The two noise densities of Q_c are those with the greatest marginal
-likelihood (Laplace's approximation) unless they are given.
-
-The second line leaves out the Jacobian of the logarithm, which differs from one by half the turn
-between two photographs; the noise density absorbs the difference.
+for u, which is eliminated last. The two noise densities of the twist are those with the greatest
+marginal likelihood (Laplace's approximation) unless they are given.
 """
 
 from collections.abc import Callable
@@ -24,25 +18,20 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.optimize import minimize
 
+from tracking.block_tridiagonal import Factors, factorised, inverse_blocks, solve_blocks
 from tracking.camera.lens import Array
+from tracking.constant_twist import (
+    Process,
+    link_derivatives,
+    link_error,
+    link_weights,
+    log_between,
+)
 from tracking.errors import PathError
 
 _LONGEST_SEARCH = 200
-
-
-class Process(NamedTuple):
-    """Noise densities of the process: white noise on the twist's derivative.
-
-    Attributes:
-        travel: Noise density of the forward and of the sideways speed [m²/s³].
-        turn: Noise density of the turning rate [rad²/s³].
-    """
-
-    travel: float
-    turn: float
 
 
 @dataclass(frozen=True)
@@ -141,7 +130,8 @@ def smooth(
         The path, at the times `t` only.
 
     Raises:
-        PathError: When there is no pose, times do not increase or shapes disagree.
+        PathError: When there is no pose, times do not increase, shapes disagree, or a covariance
+            is not positive definite.
     """
     times, measured, spread = _checked(t, poses, covariance)
     stamp_sd = np.broadcast_to(np.asarray(time_sd, dtype=float), times.shape)
@@ -153,8 +143,14 @@ def smooth(
         for part in rows
     ]
     problem = _Problem(parts, known)
-    found = process or _likeliest(problem, start)
-    solved = problem.solve(found)
+    try:
+        found = process or _likeliest(problem, start)
+        solved = problem.solve(found)
+    except np.linalg.LinAlgError as error:
+        raise PathError(
+            "no path can be computed through these poses: standard deviations and intervals of "
+            "time differ by more than numbers can hold; correct the times (--times)"
+        ) from error
     state, own = np.concatenate(solved.states), np.concatenate(solved.covariances)
     by_error = problem.gain(solved, known.by_error)
     common = by_error @ solved.shared_covariance @ by_error.transpose(0, 2, 1)
@@ -188,7 +184,22 @@ def _checked(t: ArrayLike, poses: ArrayLike, covariance: ArrayLike) -> tuple[Arr
             f"pose {k + 2} is at {times[k + 1]:g} s and the one before it at {times[k]:g} s; times "
             f"must increase: correct them (--times), or delete one (`zebro-lab annotate --delete`)"
         )
+    _require_definite(spread)
     return times, measured, spread
+
+
+def _require_definite(spread: Array) -> None:
+    sd = np.sqrt(np.maximum(np.diagonal(spread, axis1=1, axis2=2), 0.0))
+    unit = np.where(sd > 0, sd, 1.0)
+    scaled = spread / (unit[:, :, None] * unit[:, None, :])
+    bad = np.flatnonzero(~(np.linalg.eigvalsh(scaled)[:, 0] > 1e-12))
+    if bad.size:
+        k = int(bad[0])
+        raise PathError(
+            f"the covariance of pose {k + 1} is not positive definite (standard deviations "
+            f"{sd[k, 0]:.3g} m, {sd[k, 1]:.3g} m, {sd[k, 2]:.3g} rad); expected above 0 in every "
+            "direction"
+        )
 
 
 def _segments(times: Array, gap: float | None) -> NDArray[np.int64]:
@@ -216,7 +227,10 @@ def _likeliest(problem: "_Problem", near: Process | None) -> Process:
         # at all (all its scatter is measurement noise) from sending them to zero.
         prior = 0.5 * float(np.sum(((logs - np.log([1e-4, 1e-3])) / 4.0) ** 2))
         process = Process(*(float(q) for q in np.exp(logs)))
-        fitted = searched.fit(process, point[0])
+        try:
+            fitted = searched.fit(process, point[0])
+        except np.linalg.LinAlgError:
+            return np.inf  # far from any walk: densities that numbers cannot hold
         point[0] = fitted.point
         return prior - fitted.log_likelihood
 
@@ -272,7 +286,7 @@ class _Chain:
         state = np.concatenate((self.measured, np.zeros_like(self.measured)), axis=1)
         if len(self.times) > 1:
             dt = np.diff(self.times)[:, None]
-            twist = _log_between(self.measured[:-1], self.measured[1:]) / dt
+            twist = log_between(self.measured[:-1], self.measured[1:]) / dt
             state[:, 3:] = np.concatenate((twist, twist[-1:]))
         return state
 
@@ -281,13 +295,13 @@ class _Chain:
 class _Solution:
     """By segment states (n, 6), covariances (n, 6, 6) given u, and those with the next sample.
 
-    `factors` are what `_solve_blocks` needs to solve again; `shared` is u, with its covariance.
+    `factors` are what `solve_blocks` needs to solve again; `shared` is u, with its covariance.
     """
 
     states: list[Array]
     covariances: list[Array]
     following: list[Array]
-    factors: "list[_Factors]"
+    factors: "list[Factors]"
     shared: Array
     shared_covariance: Array
     log_likelihood: float
@@ -307,7 +321,7 @@ class _Problem:
     def fit(self, process: Process, start: "_Point") -> "_Fitted":
         """Fit states and shared errors by Gauss-Newton, at most 8 steps, for given densities."""
         weights = [np.linalg.inv(part.spread) for part in self.parts]
-        links = [_link_weights(np.diff(part.times), process) for part in self.parts]
+        links = [link_weights(np.diff(part.times), process) for part in self.parts]
         point, step, cost = start, self._step(start, weights, links), np.inf
         for _ in range(8):
             if abs(cost - step.cost) < 1e-4 * max(1.0, step.cost):
@@ -326,7 +340,7 @@ class _Problem:
     def solve(self, process: Process) -> _Solution:
         """Fit states and shared errors for given densities, with their covariances."""
         point, step, log_likelihood = self.fit(process, self.start())
-        pairs = [_inverse_blocks(factors) for factors in step.factors]
+        pairs = [inverse_blocks(factors) for factors in step.factors]
         return _Solution(
             point.states, [own for own, _ in pairs], [cross for _, cross in pairs], step.factors,
             point.errors, np.linalg.inv(step.normal), log_likelihood,
@@ -340,7 +354,7 @@ class _Problem:
             start += len(part.times)
             pull = np.zeros((len(own), 6, by_error.shape[2]))
             pull[:, :3] = np.linalg.inv(part.spread) @ own
-            moved.append(_solve_blocks(factors, pull)[:, :3])
+            moved.append(solve_blocks(factors, pull)[:, :3])
         return np.concatenate(moved)
 
     def _step(
@@ -357,8 +371,8 @@ class _Problem:
             diagonal, upper, rise, own = _normal_blocks(part, state, missed, weight, link)
             border = np.zeros((len(state), 6, known.size))
             border[:, :3] = -weight @ part.by_error
-            factors = _factorised(diagonal, upper)
-            solution = _solve_blocks(factors, np.concatenate((rise[:, :, None], border), axis=2))
+            factors = factorised(diagonal, upper)
+            solution = solve_blocks(factors, np.concatenate((rise[:, :, None], border), axis=2))
             by_error = part.by_error
             normal += np.einsum("nai,nab,nbj->ij", by_error, weight, by_error)
             normal -= np.einsum("nai,naj->ij", border, solution[:, :, 1:])
@@ -393,48 +407,13 @@ class _Step(NamedTuple):
     states: list[Array]
     errors: Array
     normal: Array
-    factors: "list[_Factors]"
+    factors: "list[Factors]"
     cost: float
 
 
 _TWIST_SD = np.array([1.0, 1.0, 3.0])
 """Prior standard deviation of a segment's first twist, about 0, far above any walking robot's
 [m/s, m/s, rad/s]."""
-
-
-def _link_weights(dt: Array, process: Process) -> tuple[Array, float]:
-    """Compute the inverse of cov e (module docstring) for every interval `dt`, shape (n-1,) [s].
-
-    Returns:
-        Inverses, shape (n-1, 6, 6), and the sum of the logarithms of their determinants.
-    """
-    q = np.array([process.travel, process.travel, process.turn])
-    time_part = np.linalg.inv(
-        np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]]).transpose(2, 0, 1)
-    )
-    weights = np.einsum("nab,cd->nacbd", time_part, np.diag(1 / q)).reshape(-1, 6, 6)
-    return weights, float(np.linalg.slogdet(weights)[1].sum())
-
-
-def _log_between(a: Array, b: Array) -> Array:
-    """Compute log(A^-1 B) of planar poses a, b: the constant twists that lead from a to b in 1 s.
-
-    All of shape (n, 3): x, y, yaw, and forward, left, turn.
-    """
-    turn = b[:, 2] - a[:, 2]
-    c, s = np.cos(a[:, 2]), np.sin(a[:, 2])
-    dx, dy = b[:, 0] - a[:, 0], b[:, 1] - a[:, 1]
-    forward, left = c * dx + s * dy, -s * dx + c * dy
-    half = turn / 2
-    # (turn/2) / tan(turn/2), whose limit for no turn is 1 - turn²/12.
-    small = np.abs(half) < 1e-4
-    cot = np.where(small, 1 - half**2 / 3, half / np.tan(np.where(small, 1.0, half)))
-    return np.column_stack((cot * forward + half * left, cot * left - half * forward, turn))
-
-
-def _link_error(a: Array, b: Array, dt: Array) -> Array:
-    travelled = _log_between(a[:, :3], b[:, :3]) - dt[:, None] * a[:, 3:]
-    return np.concatenate((travelled, b[:, 3:] - a[:, 3:]), axis=1)
 
 
 def _normal_blocks(
@@ -454,91 +433,11 @@ def _normal_blocks(
     gradient[0, 3:] -= state[0, 3:] / _TWIST_SD**2
     cost += float(np.sum((state[0, 3:] / _TWIST_SD) ** 2))
     a, b, dt = state[:-1], state[1:], np.diff(chain.times)
-    error = _link_error(a, b, dt)
-    A, B = _derivatives(a, b, dt)
+    error = link_error(a, b, dt)
+    A, B = link_derivatives(a, b, dt)
     diagonal[:-1] += A.transpose(0, 2, 1) @ links @ A
     diagonal[1:] += B.transpose(0, 2, 1) @ links @ B
     gradient[:-1] -= np.einsum("nji,njk,nk->ni", A, links, error)
     gradient[1:] -= np.einsum("nji,njk,nk->ni", B, links, error)
     cost += float(np.einsum("ni,nij,nj->", error, links, error))
     return diagonal, A.transpose(0, 2, 1) @ links @ B, gradient, cost
-
-
-def _derivatives(a: Array, b: Array, dt: Array) -> tuple[Array, Array]:
-    """Differentiate `_link_error` by a and by b, shape (n, 6, 6) each.
-
-    With f and l the displacement ahead and to the left, h half the turn and k = h / tan h, what is
-    travelled is (k f + h l, k l - h f, 2 h).
-    """
-    h = (b[:, 2] - a[:, 2]) / 2
-    c, s = np.cos(a[:, 2]), np.sin(a[:, 2])
-    dx, dy = b[:, 0] - a[:, 0], b[:, 1] - a[:, 1]
-    f, l = c * dx + s * dy, -s * dx + c * dy  # noqa: E741 as in the docstring
-    small = np.abs(h) < 1e-4
-    safe = np.where(small, 1.0, h)
-    k = np.where(small, 1 - h**2 / 3, h / np.tan(safe))
-    slope = np.where(small, -2 * h / 3, 1 / np.tan(safe) - h / np.sin(safe) ** 2)  # dk / dh
-    by_turn = np.stack((slope * f + l, slope * l - f), axis=1) / 2
-    by_a, by_b = np.zeros((len(a), 6, 6)), np.zeros((len(a), 6, 6))
-    by_b[:, 0, 0], by_b[:, 0, 1] = k * c - h * s, k * s + h * c
-    by_b[:, 1, 0], by_b[:, 1, 1] = -k * s - h * c, k * c - h * s
-    by_b[:, :2, 2], by_b[:, 2, 2] = by_turn, 1.0
-    by_a[:, :3, :3] = -by_b[:, :3, :3]
-    by_a[:, 0, 2] += k * l - h * f
-    by_a[:, 1, 2] += -k * f - h * l
-    by_a[:, :3, 3:] = -dt[:, None, None] * np.eye(3)
-    by_a[:, 3:, 3:], by_b[:, 3:, 3:] = -np.eye(3), np.eye(3)
-    return by_a, by_b
-
-
-class _Factors(NamedTuple):
-    """Cholesky factor of a symmetric block-tridiagonal matrix.
-
-    Attributes:
-        banded: The factor in LAPACK's upper banded storage, shape (2 b, n b).
-        diagonal: Blocks on the matrix's diagonal, shape (n, b, b).
-        upper: Blocks above it, shape (n - 1, b, b).
-    """
-
-    banded: Array
-    diagonal: Array
-    upper: Array
-
-    @property
-    def log_det(self) -> float:
-        """Logarithm of the matrix's determinant."""
-        return 2 * float(np.log(self.banded[-1]).sum())
-
-
-def _factorised(diagonal: Array, upper: Array) -> _Factors:
-    n, b, _ = diagonal.shape
-    banded = np.zeros((2 * b, n, b))
-    for i in range(b):
-        for j in range(b):
-            # LAPACK: the element of row r and column c is at row 2 b - 1 + r - c of column c.
-            if i <= j:
-                banded[2 * b - 1 + i - j, :, j] = diagonal[:, i, j]
-            banded[b - 1 + i - j, 1:, j] = upper[:, i, j]
-    factor = cholesky_banded(banded.reshape(2 * b, n * b), overwrite_ab=True, check_finite=False)
-    return _Factors(factor, diagonal, upper)
-
-
-def _solve_blocks(factors: _Factors, sides: Array) -> Array:
-    """Solve for right-hand sides of shape (n, b, k); return the same shape."""
-    n, b, k = sides.shape
-    flat = sides.reshape(n * b, k)
-    return cho_solve_banded((factors.banded, False), flat, check_finite=False).reshape(n, b, k)
-
-
-def _inverse_blocks(factors: _Factors) -> tuple[Array, Array]:
-    """Compute the blocks of the inverse on the diagonal (n, b, b), and above it (n - 1, b, b)."""
-    _, diagonal, upper = factors
-    covariance, following = np.empty_like(diagonal), np.empty_like(upper)
-    for k, block in enumerate(diagonal):  # forward elimination: inverses of the pivots
-        pivot = block if k == 0 else block - upper[k - 1].T @ covariance[k - 1] @ upper[k - 1]
-        covariance[k] = np.linalg.inv(pivot)
-    for k in reversed(range(len(upper))):
-        gain = covariance[k] @ upper[k]
-        following[k] = -gain @ covariance[k + 1]
-        covariance[k] -= following[k] @ gain.T
-    return covariance, following

@@ -29,11 +29,12 @@ from support.synthetic import (
     take_photo,
 )
 from tracking.camera import Camera
+from tracking.constant_twist import Process
 from tracking.detect import Detection, MarkedRobot, detect, observe
 from tracking.floor import FloorMap, FloorMarker, refine_floor
 from tracking.path import assemble_track
 from tracking.pose import BodyPrior, RobotMarker
-from tracking.smooth import Process, smooth
+from tracking.smooth import smooth
 
 SIZE = (4000, 3000)
 PHOTOS = 8

@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 
+from tracking.constant_twist import Process
 from tracking.contributions import ADVICE, contributions, shared_part
 from tracking.path import PoseObservation, Track, assemble_track
 from tracking.pose import BodyPose, BodyPrior
 from tracking.shared import LENS, MARKS, SIDE, SharedErrors, mark_name
-from tracking.smooth import Process
 
 PRIOR = BodyPrior(0.06)
 MOVES_X = np.eye(6)[:, :1]
@@ -52,5 +52,12 @@ def test_marks_are_one_cause_and_position_is_apart_from_heading():
 def test_all_causes_together_take_what_does_not_average_out():
     walk = track({SIDE: (MOVES_X, 1e-3), LENS: (MOVES_X, 1e-3)})
     single = max(each.position for each in contributions(walk))
-    assert shared_part(walk).position > single + 0.2
-    assert shared_part(walk).position < 1.0
+    position, yaw = shared_part(walk)
+    assert single + 0.2 < position < 1.0
+    assert yaw == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_walk_without_shared_errors_has_no_part_of_them():
+    walk = track({})
+    assert contributions(walk) == ()
+    np.testing.assert_allclose(shared_part(walk), 0.0, atol=1e-12)

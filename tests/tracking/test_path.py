@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 
+from tracking.constant_twist import Process
 from tracking.errors import PathError
 from tracking.path import TRACK_COLUMNS, PoseObservation, assemble_track
 from tracking.pose import BodyPose, BodyPrior
 from tracking.shared import HEIGHT, SharedErrors
-from tracking.smooth import Process
 
 PROCESS = Process(1e-5, 1e-4)
 

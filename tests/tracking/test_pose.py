@@ -105,7 +105,8 @@ def test_a_pose_follows_what_is_shared_by_its_derivative(cause):
             prior = replace(PRIOR, height=PRIOR.height + share * error[0])
         return fit_pose(
             lens, VIEW, points_body=marker.points_body, corners_px=seen,
-            covariance=0.05**2 * np.eye(8), prior=prior, points_by=marker.derivatives,
+            covariance=0.05**2 * np.eye(8), prior=prior,
+            points_by=marker.derivatives_at(marker.points_body),
             pixels_by={EDGES: growth[:, :, None]},
         )  # fmt: skip
 

@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tracking.constant_twist import Process
 from tracking.errors import PathError
-from tracking.smooth import Process, SharedInput, smooth
+from tracking.smooth import SharedInput, smooth
 
 SD = np.array([2e-3, 2e-3, 5e-3])
 COV = np.diag(SD**2)
@@ -165,3 +166,27 @@ def test_neighbours_covariance_is_that_of_a_dense_inverse():
                   process=Process(1e-6, 1e-6))  # fmt: skip
     joint = np.block([[path.own[1], path.following[1]], [path.following[1].T, path.own[2]]])
     assert np.linalg.eigvalsh(joint).min() > 0
+
+
+@pytest.mark.parametrize("apart", [1e-3, 1e-4, 1e-7])
+def test_two_photographs_of_nearly_one_time_are_one_pose_measured_twice(apart):
+    t = np.array([0.0, 1.0, 2.0, 2.0 + apart, 3.0, 4.0])
+    rng, truth = np.random.default_rng(2), arc(t)
+    measured = truth + SD * rng.standard_normal(truth.shape)
+    path = smooth(t, measured, covariance=np.tile(COV, (6, 1, 1)), gap=2.0)
+    np.testing.assert_allclose(path.poses[2], path.poses[3], atol=0.2 * apart + 2e-5)
+    assert np.all(np.abs(path.poses - truth) < 4 * SD)
+
+
+@pytest.mark.parametrize("sd", [1e-3, 1e-9])
+def test_poses_exactly_on_a_line_stay_there(sd):
+    t = np.arange(300.0)
+    line = np.column_stack((0.1 * t, 0 * t, 0 * t))
+    path = smooth(t, line, covariance=np.tile(sd**2 * np.eye(3), (300, 1, 1)))
+    np.testing.assert_allclose(path.poses, line, atol=1e-8)
+    assert np.all(np.linalg.eigvalsh(path.covariance) > 0)
+
+
+def test_a_covariance_that_is_none_is_named():
+    with pytest.raises(PathError, match="not positive definite"):
+        smooth([0, 1, 2], arc(np.arange(3.0)), covariance=np.zeros((3, 3, 3)))

@@ -9,6 +9,7 @@ homography's eight, so that the prior on height and tilt enters as it does for a
 uncertain by some tenths of a percent, which must not bias the height.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import cv2
@@ -130,7 +131,8 @@ class _Job:
     derivatives by column (3 colours) and row, `hidden` 1 at pixels not to use, `points` (n, 3) in
     the body frame and `colours` (n, 3) the template's, blurred alike, `correlated` the number of
     values that count as one independent value, `floor` a covariance (6, 6) added to the pose's,
-    `raster` the template's rows and columns if it is high-pass filtered.
+    `raster` the template's rows and columns if it is high-pass filtered, `points_by` as of the
+    template.
     """
 
     origin: Array
@@ -147,6 +149,7 @@ class _Job:
     least_visible: float
     raster: tuple[int, int] | None
     outlier_sd: float
+    points_by: Mapping[str, Array]
 
     @classmethod
     def prepare(
@@ -193,6 +196,7 @@ class _Job:
             least_visible,
             template.colours.shape[:2] if shines_through else None,
             outlier_sd,
+            template.points_by,
         )
 
     def solve(self, state: Array, least_hope: float) -> Alignment | None:
@@ -228,17 +232,22 @@ class _Job:
         drawn = project_with_derivatives(self.camera, self.view, _world(self.points, state))
         seen = drawn.pixels
         used = self._used(seen)
-        moved = np.concatenate((drawn.by_pose, drawn.by_lens), axis=2)[used]
-        by_camera = self._slopes_at(seen[used]) @ moved
-        if self.raster is not None:
-            by_camera = _without_slow(by_camera, used, self.raster)
+        R, _ = rotation_with_derivatives(*state[3:6])
+        moved = {CAMERA: drawn.by_pose, LENS: drawn.by_lens}
+        moved |= {cause: drawn.by_point @ R @ each for cause, each in self.points_by.items()}
         weighed = (weight / (noise * self.correlated)).reshape(-1, 1) * J.reshape(-1, 7)
-        follow = (-spread @ weighed.T @ by_camera.reshape(-1, 15))[:6]
+        by_cause = {}
+        for cause, pixels in moved.items():
+            colours = self._slopes_at(seen[used]) @ pixels[used]
+            if self.raster is not None:
+                colours = _without_slow(colours, used, self.raster)
+            by_colours = weighed.T @ colours.reshape(-1, pixels.shape[2])
+            by_cause[cause] = (-spread @ by_colours)[:6]
         wrapped = state[:6].copy()
         wrapped[5] = np.arctan2(np.sin(state[5]), np.cos(state[5]))
         effective = residual.size / self.correlated
         covariance = spread[:6, :6] + self.floor
-        pose = BodyPose(wrapped, covariance, {CAMERA: follow[:, :6], LENS: follow[:, 6:]})
+        pose = BodyPose(wrapped, covariance, by_cause)
         log_likelihood = -0.5 * effective * float(np.log(max(noise.mean(), 1e-6)))
         return Alignment(pose, score, log_likelihood)
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Template of the robot: colours of its top by place in the body frame."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -76,6 +77,8 @@ class BodyTemplate:
             right, as seen from above with the head up, shape (rows, columns, 3) [m].
         colours: BGR at these points, shape (rows, columns, 3) [grey levels].
         drawn: Whether the colours are computed, not cut out of a photograph.
+        points_by: By cause of shared errors, derivative of `points_body`, shape (rows * columns, 3,
+            k).
     """
 
     plate: TopPlate
@@ -83,6 +86,7 @@ class BodyTemplate:
     points_body: Array
     colours: NDArray[np.float32]
     drawn: bool = False
+    points_by: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def contrast(self) -> float:
@@ -206,7 +210,8 @@ def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
         axis=-1,
     )
     colours = np.repeat(grey[:, :, None], 3, axis=2)
-    return BodyTemplate(plate, width / points, xyz, colours, drawn=True)
+    by_cause = marker.derivatives_at(xyz.reshape(-1, 3))
+    return BodyTemplate(plate, width / points, xyz, colours, drawn=True, points_by=by_cause)
 
 
 def _grid(plate: TopPlate, step: float) -> Array:

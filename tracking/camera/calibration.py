@@ -34,6 +34,7 @@ _FITTED = {"none": list(range(4)), "k1": list(range(5)), "k1-k2": list(range(6))
 _FOLDS, _AS_GOOD = 5, 1.01
 _ALIKE, _LEAST_ALIKE = 3.0, 0.3  # smooth error over noise [-], and [px], that is worth a remark
 _BLURRED = 0.5  # noise of a corner that is worth a remark [px]
+_LONGEST_FOCAL = 100.0  # picture widths; the longest telephoto lenses have 30
 _GRID = (8, 6)
 
 
@@ -94,8 +95,8 @@ def calibrate(
 
     Raises:
         CalibrationError: When there are fewer than 3 views, `lens_model` is unknown, OpenCV fails
-            for a model tried, or the standard deviation of the focal length is 0, not finite, or
-            5 % of it or more.
+            for a model tried, the standard deviation of the focal length is 0, not finite, or
+            5 % of it or more, or the focal length is over 100 widths of the picture.
     """
     if len(views) < 3:
         raise CalibrationError(
@@ -219,10 +220,17 @@ def _corners_seen(views: Sequence[SeenBoard], size: tuple[int, int]) -> NDArray[
 
 def _check_determined(fit: CameraCalibration) -> None:
     focal, sd = fit.camera.matrix[0, 0], fit.sd[0]
+    tilted = "photograph the board tilted by 20 to 45 degrees, each another way"
     if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
         raise CalibrationError(
             f"focal length {focal:.0f} px has a standard deviation of {sd:.3g} px, expected over 0 "
-            f"and below 5 %; photograph the board tilted by 20 to 45 degrees, each another way"
+            f"and below 5 %; {tilted}"
+        )
+    width = fit.camera.size[0]
+    if not focal < _LONGEST_FOCAL * width:
+        raise CalibrationError(
+            f"focal length {focal:.3g} px is {focal / width:.3g} times the width of the picture, "
+            f"expected below {_LONGEST_FOCAL:g}; {tilted}"
         )
 
 

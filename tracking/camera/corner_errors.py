@@ -20,6 +20,7 @@ from tracking.camera.lens import Array
 
 RATIOS = np.concatenate(([0.0], np.geomspace(0.1, 10.0, 17)))
 """Ratios of smooth error to noise that are tried [-]."""
+_LEAST_NOISE = 1e-6  # px, of corners that fit as exactly as numbers hold
 REACHES = (0.1, 0.2, 0.4)
 """Reaches that are tried, in diagonals of the board [-]."""
 
@@ -94,7 +95,7 @@ def _likelihood(boards: Sequence[FittedBoard], reach: float) -> tuple[Array, Arr
             square += float(rest[k, k])
         square -= float(pull @ np.linalg.solve(information, pull)) if k else 0.0
         log_det += float(np.linalg.slogdet(information)[1]) if k else 0.0
-        variances[j] = square / (free - k)
+        variances[j] = max(square, _LEAST_NOISE**2 * (free - k)) / (free - k)
         logs[j] = -0.5 * (log_det + (free - k) * np.log(variances[j]))
     return logs, variances
 

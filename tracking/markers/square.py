@@ -113,6 +113,9 @@ def edge_growth(corners: ArrayLike) -> Array:
     Returns:
         Movement of the corners, shape (..., 4, 2) [px per px].
 
+    Raises:
+        LinAlgError: Three successive corners lie on a line.
+
     >>> edge_growth([[0, 0], [10, 0], [10, 10], [0, 10]]).tolist()
     [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
     """

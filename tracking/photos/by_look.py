@@ -2,7 +2,7 @@
 """Track a robot without a marker, by aligning a template of its top with each photograph."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,6 +65,7 @@ def track_by_look(
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
+    scene = replace(scene, camera=seen.fit.camera)  # the poses of the camera are for this lens
     template, annotation = _template(scene, seen, photos)
     usable = [photo for photo in photos if photo.name not in seen.lost]
     found = _found(scene, seen, template, usable, workers=workers, progress=progress)
@@ -184,7 +185,8 @@ def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:
 
     Args:
         top: The top, with the clicked corners.
-        scene: Scene, of which the camera and the prior of height and tilt are used.
+        scene: Scene, of which the camera and the prior of height and tilt are used; the camera
+            is that for which `view` was fitted.
         view: Pose of the camera in the annotated photograph.
     """
     return fit_pose(

@@ -47,7 +47,7 @@ def track_by_marker(
     seen = see_floor(scene, photos, robot=robot, workers=workers, progress=progress)
     edges = edge_spread(
         seen.fit, seen.detections, robot=robot, times=times, shared=shared_errors(scene, seen),
-        gap=gap,
+        gap=gap, corrections=scene.corrections,
     )  # fmt: skip
     observations = observe(seen.fit, seen.detections, robot=robot, times=times, edge_sd=edges.sd)
     if not observations and not scene.corrections:

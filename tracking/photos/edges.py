@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tracking.corrections import Correction, Flip, replay
 from tracking.detect import Detection, MarkedRobot, observe
 from tracking.floor import EDGE_SPREADS, EdgeSpread, FloorFit
 from tracking.path import assemble_track
@@ -24,7 +25,7 @@ _NEGLIGIBLE = 1e-3
 
 def edge_spread(
     fit: FloorFit, detections: Sequence[Detection], *, robot: MarkedRobot, times: Times,
-    shared: SharedErrors, gap: float | None,
+    shared: SharedErrors, gap: float | None, corrections: Sequence[Correction] = (),
 ) -> EdgeSpread:  # fmt: skip
     """Weigh the spreads that the floor's markers leave by the likelihood of the walk.
 
@@ -37,9 +38,24 @@ def edge_spread(
         shared: Covariance of the errors that photographs share.
         gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
             interval.
+        corrections: Manual corrections; photographs whose pose they delete or set are not used.
+
+    Raises:
+        CorrectionError: A correction names a photograph without a pose, or one twice.
+        PathError: Two photographs have the same time, after corrections of it.
     """
     usable = [each for each in detections if each.robot is not None]
-    usable = [each for each in usable if each.photo not in fit.unused][:_LONGEST]
+    usable = [each for each in usable if each.photo not in fit.unused]
+    flips: list[Flip] = []
+    if corrections:
+        poses = observe(fit, usable, robot=robot, times=times)
+        poses = replay(poses, corrections, prior=robot.prior, times=times)
+        kept = {each.photo: (each.t, each.t_sd) for each in poses if each.source == "marker"}
+        usable, times = [each for each in usable if each.photo in kept], kept
+        usable.sort(key=lambda each: kept[each.photo])
+        flips = [each for each in corrections if isinstance(each, Flip)]
+    usable = usable[:_LONGEST]
+    flips = [each for each in flips if each.photo in {seen.photo for seen in usable}]
     known = fit.edge_spread
     if len(usable) < 3:
         return known
@@ -47,6 +63,7 @@ def edge_spread(
     process = None
     for k in np.flatnonzero(known.weights > _NEGLIGIBLE):
         seen = observe(fit, usable, robot=robot, times=times, edge_sd=float(EDGE_SPREADS[k]))
+        seen = replay(seen, flips, prior=robot.prior)
         track = assemble_track(seen, shared=shared, prior=robot.prior, gap=gap, start=process)
         process = track.smoothed.process
         logs[k] = track.smoothed.log_likelihood + sum(each.pose.log_evidence for each in seen)

@@ -56,6 +56,7 @@ def track_exposures(
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)
+    scene = replace(scene, camera=seen.fit.camera)  # the pose of the camera is for this lens
     progress.step("exposures", None)
     exposures = _exposures(scene, seen, photo, merged)
     order = order_exposures(np.array([each.alignment.pose.planar for each in exposures]))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Preview of a track: detections in one photograph, its scale, and check of measured distances."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
-from tracking.camera import CameraPose, to_floor
+from tracking.camera import Camera, CameraPose, to_floor
 from tracking.detect import Detection, pose_of_marker
 from tracking.errors import PhotoError
 from tracking.floor import FloorFit, FloorView, refine_floor
@@ -43,6 +43,7 @@ class Preview:
 
     Attributes:
         detection: Markers detected in the photograph.
+        camera: The camera with its lens as fitted to the floor.
         pose: Pose of the camera.
         marks: Numbers or names of the floor's marks that are detected or clicked.
         unseen: Numbers or names of the floor's marks that are not.
@@ -57,6 +58,7 @@ class Preview:
     """
 
     detection: Detection
+    camera: Camera
     pose: CameraPose
     marks: tuple[str, ...]
     unseen: tuple[str, ...]
@@ -94,10 +96,11 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
         raise PhotoError(photo.name, str(look.problem))
     view = scene.with_clicks(look.seen.floor)
     fit = refine_floor(scene.camera, scene.floor, [view])
+    scene = replace(scene, camera=fit.camera)  # the pose of the camera is for this lens
     pose, marks = fit.stands[0].pose, scene.floor.marks
     seen = [key for key in marks if key in view.pixels]
     return Preview(
-        look.seen, pose, tuple(map(str, seen)),
+        look.seen, fit.camera, pose, tuple(map(str, seen)),
         tuple(str(key) for key in marks if key not in view.pixels),
         fit.misfit_px, _scale(scene, view, pose), _robot_pose(scene, fit, look.seen),
         None if look.seen.robot is None else _side_px(look.seen.robot.corners_px),

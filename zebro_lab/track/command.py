@@ -127,10 +127,10 @@ def _uncertainty_lines(track: "Track") -> list[str]:
     """Format which part of the variance all photographs share, and the largest cause of it."""
     from tracking.contributions import contributions, shared_part
 
-    common, causes = shared_part(track), contributions(track)
+    (position, yaw), causes = shared_part(track), contributions(track)
     kinds = (
-        ("x and y", common.position, {each: each.position for each in causes}),
-        ("yaw", common.yaw, {each: each.yaw for each in causes}),
+        ("x and y", position, {each: each.position for each in causes}),
+        ("yaw", yaw, {each: each.yaw for each in causes}),
     )
     lines = []
     for what, part, parts in kinds:

@@ -46,7 +46,7 @@ def preview(request: TrackRequest, file: Path) -> Preview:
         found = preview_photo(scene, photo)
         drawn = BytesIO()
         draw_preview(
-            drawn, PlacedPhoto(read_pixels(photo.path), scene.camera, found.pose),
+            drawn, PlacedPhoto(read_pixels(photo.path), found.camera, found.pose),
             floor=scene.floor, detection=found.detection, title=f"Preview: {photo.name}",
             simulated=is_simulated(inputs.source_of(sequence)), command=PREVIEW.command,
         )  # fmt: skip

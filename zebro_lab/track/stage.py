@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tracking import Scene, Tracked, track_photos
-from tracking.contributions import Contribution, contributions, shared_part
+from tracking import Tracked, track_photos
+from tracking.contributions import contributions, shared_part
 from tracking.images import PhotoTimes, read_pixels
 from tracking.photos.workers import Progress
 from zebro_lab.files.picture_format import PictureFormat
@@ -123,12 +123,10 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
         (draft / FLOOR_FILE).write_text(render_floor_file(seen.fit.floor, heading=heading))
         if request.annotations is not None:
             (draft / ANNOTATIONS_FILE).write_text(render_annotations(inputs.annotations))
-        _draw(draft, result, inputs.scene_of(sequence), sequence, request.form)
+        _draw(draft, result, sequence, request.form)
 
 
-def _draw(
-    draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequence, form: PictureFormat
-) -> None:
+def _draw(draft: Path, result: TrackResult, sequence: PhotoSequence, form: PictureFormat) -> None:
     track, seen = result.tracked.track, result.tracked.floor
     # In the last photograph the robot no longer hides the floor where the path begins.
     last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None
@@ -136,7 +134,7 @@ def _draw(
     path = next(photo.path for photo in sequence.photos if photo.name == shown)
     detection = next((each for each in seen.detections if each.photo == shown), None)
     draw_track(
-        draft, track, PlacedPhoto(read_pixels(path), scene.camera, seen.fit.pose_of(shown)),
+        draft, track, PlacedPhoto(read_pixels(path), seen.fit.camera, seen.fit.pose_of(shown)),
         floor=seen.fit.floor, detection=detection,
         title=sequence.origin.name,
         simulated=is_simulated(result.source), form=form,
@@ -152,16 +150,19 @@ def _report(result: TrackResult) -> Mapping[str, object]:
         "left_out": dict(result.tracked.lost),
         "notes": list(result.tracked.notes),
         "uncertainty": {
-            "shared": _parts(shared_part(result.tracked.track)),
-            "causes": {each.cause: _parts(each) for each in contributions(result.tracked.track)},
+            "shared": _parts(*shared_part(result.tracked.track)),
+            "causes": {
+                each.cause: _parts(each.position, each.yaw)
+                for each in contributions(result.tracked.track)
+            },
         },
         "floor_misfit_px": fit.misfit_px,
         "camera_stands": len(fit.stands),
     }
 
 
-def _parts(each: Contribution) -> Mapping[str, float]:
-    return {"position": round(each.position, 4), "yaw": round(each.yaw, 4)}
+def _parts(position: float, yaw: float) -> Mapping[str, float]:
+    return {"position": round(position, 4), "yaw": round(yaw, 4)}
 
 
 def _settings(inputs: TrackInputs) -> Mapping[str, object]:

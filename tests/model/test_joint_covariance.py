@@ -67,3 +67,10 @@ def test_parts_that_do_not_match_are_refused():
     with pytest.raises(DomainError, match="parts of shape"):
         JointCovariance(np.zeros((3, 3, 3)), np.zeros((1, 3, 3)), np.zeros((3, 3, 0)),
                         np.zeros((0, 0)))  # fmt: skip
+
+
+def test_no_poses_have_no_covariance():
+    none = JointCovariance.independent(np.zeros((0, 3, 3)))
+    assert none.dense.shape == (0, 0)
+    assert none.marginal.shape == (0, 3, 3)
+    assert none.part(slice(0, 0)).dense.shape == (0, 0)

@@ -10,6 +10,7 @@ from tracking.corrections import Delete, Flip, Move, Order, correction_from, pla
 from tracking.errors import CorrectionError
 from tracking.path import PoseObservation
 from tracking.pose import BodyPose, BodyPrior
+from tracking.shared import LENS, PLACE
 
 PRIOR = BodyPrior(0.1)
 
@@ -110,3 +111,19 @@ def test_a_correction_of_nothing_is_named(correction, message):
 def test_a_faulty_entry_is_named(entry, message):
     with pytest.raises(CorrectionError, match=message):
         correction_from(entry)
+
+
+def test_a_flip_turns_what_belongs_to_the_body():
+    rng = np.random.default_rng(4)
+    root, by = rng.normal(size=(6, 6)), rng.normal(size=(6, 2))
+    state = np.array([1.0, 2.0, 0.06, 0.01, -0.02, 0.3])
+    pose = BodyPose(state, root @ root.T, {LENS: by, PLACE: by})
+    seen = PoseObservation("p0.jpg", 0.0, 0.0, pose, 1.0, "marker")
+    (once,) = replay([seen], [Flip("p0.jpg")], prior=PRIOR)
+    np.testing.assert_allclose(once.pose.state, [1, 2, 0.06, -0.01, 0.02, 0.3 - np.pi])
+    np.testing.assert_allclose(once.pose.by_cause[LENS][:2], by[:2])
+    np.testing.assert_allclose(once.pose.by_cause[PLACE][:2], -by[:2])
+    assert once.pose.covariance[0, 3] == -pose.covariance[0, 3]
+    (twice,) = replay([once], [Flip("p0.jpg")], prior=PRIOR)
+    np.testing.assert_allclose(twice.pose.covariance, pose.covariance)
+    np.testing.assert_allclose(twice.pose.by_cause[PLACE], by)

@@ -99,3 +99,25 @@ def test_boards_of_the_virtual_world_give_its_camera(shared):
     assert fit.lens_model == "none"
     assert abs(fit.camera.matrix[0, 0] - 1394.02) < 3 * fit.sd[0]
     assert abs(fit.camera.matrix[1, 1] - 1394.02) < 3 * fit.sd[1]
+
+
+def test_boards_seen_from_afar_by_a_telescope_are_refused():
+    far = Camera(LENS.size, LENS.matrix * [[200, 1, 1], [1, 200, 1], [1, 1, 1]], np.zeros(5))
+    views = [
+        SeenBoard(f"view {k}", view.points, project(far, CameraPose(turn, shift, np.zeros((6, 6))),
+                                                    view.points))
+        for k, (view, turn, shift) in enumerate(
+            (view, np.array([0.5 * np.cos(k), 0.5 * np.sin(k), 0.1 * k]), np.array([0, 0, 140.0]))
+            for k, view in enumerate(board_views(LENS, 0.0, np.random.default_rng(6)))
+        )
+    ]  # fmt: skip
+    with pytest.raises(
+        CalibrationError, match=r"times the width of the picture|standard deviation"
+    ):
+        calibrate(views, LENS.size)
+
+
+def test_corners_that_fit_exactly_leave_a_lens():
+    fit = calibrate(board_views(LENS, 0.0, np.random.default_rng(7)), LENS.size)
+    assert fit.camera.matrix[0, 0] == pytest.approx(1400.0, abs=0.1)
+    assert np.all(np.isfinite(fit.sd))

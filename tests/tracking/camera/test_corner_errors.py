@@ -72,3 +72,9 @@ def test_independent_noise_would_be_overconfident_of_smooth_errors():
         left = left - flat @ np.linalg.lstsq(flat, left, rcond=None)[0]
         information += left.T @ left / noise**2
     assert np.all(np.diag(honest) > 3 * np.diag(np.linalg.inv(information)))
+
+
+def test_corners_without_errors_leave_next_to_none():
+    errors = corner_errors(fitted(0.0, np.random.default_rng(5), noise=0.0)[0])
+    assert 0 <= errors.noise < 1e-5
+    assert np.all(np.isfinite(errors.covariance))

@@ -79,3 +79,18 @@ def test_clicks_that_are_off_move_the_whole_track_and_the_covariance_says_so(
     known = wrong.covariance_given([ANNOTATION])[0]
     assert wrong.covariance[0, 2, 2] > 2 * known[2, 2]
     assert wrong.joint.by_error[1][:, slot].any()
+
+
+def test_a_poorly_known_lens_is_corrected_by_the_floor_for_the_robot_too(scene, photos, walk, top):
+    # The camera's poses are those of the lens that the floor fits, not of the stated one.
+    lens = scene.camera
+    wrong = lens.matrix * [[1.08, 1, 1], [1, 1.08, 1], [1, 1, 1]]
+    bent = [*lens.distortion, 0.15, 0, 0, 0, 0]
+    sd = np.array([*(0.06 * lens.matrix[[0, 1], [0, 1]]), 3.0, 3.0, 0.1, 0, 0, 0, 0])
+    poorly = replace(lens, matrix=wrong, distortion=bent, covariance=np.diag(sd**2))
+    bare = replace(scene, camera=poorly, robot=None, top=top)
+    found = track_by_look(bare, photos[:2], times=TIMES, gap=None, workers=1, progress=NoProgress())
+    off = found.track.poses - walk[:2]
+    assert np.all(np.abs(off[:, 0]) < 2e-3)  # across the line of sight
+    sd = np.sqrt(np.diagonal(found.track.covariance, axis1=1, axis2=2))
+    assert np.all(np.abs(off) < 3 * sd)

@@ -2,9 +2,12 @@
 """A walk whose marker changes size from photograph to photograph has edges that scatter."""
 
 import numpy as np
+import pytest
 
 from benchmarks.accuracy.drawn_walks.world import PLAIN, Spreads, draw_walk
 from benchmarks.accuracy.tracked_walks import photographed
+from tracking.corrections import Delete, Move, Order
+from tracking.errors import PathError
 from tracking.photos.edges import edge_spread
 from tracking.photos.result import shared_errors
 
@@ -39,3 +42,34 @@ def test_a_few_photographs_say_nothing():
         shared=shared_errors(scene, seen), gap=None,
     )  # fmt: skip
     assert found is seen.fit.edge_spread
+
+
+def test_a_second_photograph_of_one_time_may_be_deleted_by_a_correction():
+    walk = draw_walk(np.random.default_rng(0), lens=PLAIN, distance=3.4, spreads=Spreads())
+    scene, seen, times = photographed(walk)
+    assert scene.robot is not None
+    names = [each.photo for each in seen.detections if each.robot is not None]
+    twice = {**times, names[1]: times[names[0]]}
+    given = {"robot": scene.robot, "times": twice, "shared": shared_errors(scene, seen),
+             "gap": None}  # fmt: skip
+    with pytest.raises(PathError, match="times must increase"):
+        edge_spread(seen.fit, seen.detections, **given)
+    mended = edge_spread(seen.fit, seen.detections, corrections=[Delete(names[1])], **given)
+    without = [each for each in seen.detections if each.photo != names[1]]
+    assert mended.sd == edge_spread(seen.fit, without, **{**given, "times": times}).sd
+
+
+def test_a_pose_set_by_hand_or_of_another_time_is_followed():
+    walk = draw_walk(np.random.default_rng(0), lens=PLAIN, distance=3.4, spreads=Spreads())
+    scene, seen, times = photographed(walk)
+    assert scene.robot is not None
+    names = [each.photo for each in seen.detections if each.robot is not None]
+    swapped = {**times, names[0]: times[names[1]], names[1]: times[names[0]]}
+    given = {"robot": scene.robot, "shared": shared_errors(scene, seen), "gap": None}
+    right = edge_spread(seen.fit, seen.detections, times=times, **given)
+    order = Order((names[0], names[1]))
+    again = edge_spread(seen.fit, seen.detections, times=swapped, corrections=[order], **given)
+    assert again.sd == right.sd
+    move = Move(names[2], 5.0, 5.0, 0.0)  # far away: were it used, the walk would be in pieces
+    moved = edge_spread(seen.fit, seen.detections, times=times, corrections=[move], **given)
+    assert moved.sd == pytest.approx(right.sd, rel=0.5)

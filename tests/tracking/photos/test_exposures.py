@@ -8,14 +8,16 @@ import numpy as np
 import pytest
 
 from tracking import Photo
-from tracking.body import Alignment
+from tracking.body import Alignment, align, marker_template
 from tracking.composite import Exposure, Merged
 from tracking.errors import CompositeError
 from tracking.images import PhotoTimes
 from tracking.photos import exposures
 from tracking.photos.exposures import track_exposures
+from tracking.photos.floor_seen import see_floor
 from tracking.photos.workers import NoProgress
 from tracking.pose import BodyPose
+from tracking.shared import PLACE, SIDE, TURN
 
 
 def every_four_seconds(names):
@@ -69,3 +71,36 @@ def test_a_mean_whose_exposures_overlap_is_noted_as_less_sure_than_it_says(
 def test_the_size_of_the_body_must_be_known(scene, photos):
     with pytest.raises(CompositeError, match="body has no size"):
         tracked(scene, photos[0])
+
+
+@pytest.mark.parametrize("shines_through", [False, True])
+def test_what_is_stated_of_the_marker_moves_an_exposure_as_its_derivative_says(
+    scene, photos, walk, shines_through
+):
+    pixels = cv2.imread(str(photos[0].path))
+    view = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress()).fit.pose_of(
+        photos[0].name
+    )
+
+    def pose(**changed):
+        template = marker_template(replace(scene.robot.marker, **changed))
+        found = align(pixels, scene.camera, view, template=template, prior=scene.prior,
+                      start=walk[0], shines_through=shines_through)  # fmt: skip
+        assert found is not None
+        return found.pose
+
+    marker, base = scene.robot.marker, pose()
+    x, y, z = marker.position
+    moved = {
+        (PLACE, 0): (2e-3, pose(position=(x + 2e-3, y, z))),
+        (PLACE, 1): (2e-3, pose(position=(x, y + 2e-3, z))),
+        (TURN, 0): (0.02, pose(yaw=marker.yaw + 0.02)),
+        (SIDE, 0): (2e-4, pose(side=marker.side + 2e-4)),
+    }
+    for (cause, k), (step, other) in moved.items():
+        expected = base.by_cause[cause][[0, 1, 5], k] * step
+        np.testing.assert_array_less(
+            np.abs(other.planar - base.planar - expected), [3e-4, 3e-4, 2e-3]
+        )
+    assert abs(base.by_cause[TURN][5, 0] + 1) < 0.05
+    assert np.linalg.norm(base.by_cause[PLACE][:2, 0]) == pytest.approx(1, abs=0.05)

@@ -38,3 +38,13 @@ def test_a_photograph_that_cannot_be_used_is_named(scene, photos, tmp_path):
     (tmp_path / "empty.jpg").write_bytes(b"")
     with pytest.raises(PhotoError, match=photos[0].name):
         preview_photo(scene, replace(photos[0], path=tmp_path / "empty.jpg"))
+
+
+def test_marks_are_drawn_and_measured_by_the_lens_that_the_floor_fits(scene, photos):
+    lens = scene.camera
+    wrong = lens.matrix * [[1.03, 1, 1], [1, 1.03, 1], [1, 1, 1]]
+    sd = np.array([*(0.02 * lens.matrix[[0, 1], [0, 1]]), 3.0, 3.0, 0, 0, 0, 0, 0])
+    poorly = replace(lens, matrix=wrong, covariance=np.diag(sd**2))
+    seen = preview_photo(replace(scene, camera=poorly), photos[0])
+    assert abs(seen.camera.matrix[0, 0] / lens.matrix[0, 0] - 1) < 0.025
+    assert not any(check.is_off for check in seen.tape)

@@ -20,6 +20,7 @@ from tracking.markers import (
     edge_growth,
     find_markers,
     guess_dictionary,
+    marker_family,
     neighbourhood,
 )
 from tracking.path import PoseObservation
@@ -198,11 +199,15 @@ def pose_of_marker(
         ValueError: The line of sight to a corner does not meet the plane of its expected height.
     """
     edge_sd = fit.edge_spread.sd if edge_sd is None else edge_sd
+    # What makes a black square larger makes a white one smaller.
+    floor, own = (
+        marker_family(of).is_reversed for of in (fit.floor.dictionary, robot.marker.dictionary)
+    )
     growth = edge_growth(sighting.corners_px).ravel()
     height = robot.prior.height + robot.marker.position[2]
     about = to_floor(fit.camera, view, sighting.corners_px, height)
     points = np.column_stack((about, np.full(len(about), height)))
-    by_edges = fit.edge_derivative(sighting.corners_px, points, view)
+    by_edges = fit.edge_derivative(sighting.corners_px, points, view) * (1 if floor == own else -1)
     spread = fit.noise_factor**2 * sighting.covariance
     return fit_pose(
         fit.camera,

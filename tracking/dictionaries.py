@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Dictionaries (families) of ArUco and AprilTag markers, by name."""
 
+import re
 from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import cv2
@@ -10,6 +13,7 @@ from numpy.typing import NDArray
 
 from model.similar_name import similar_name
 from tracking.errors import MarkerError
+from tracking.tag_families import STANDARD, TagFamily, tag_family
 
 DICTIONARIES = {
     name.removeprefix("DICT_").lower(): int(getattr(cv2.aruco, name))
@@ -21,8 +25,82 @@ DICTIONARIES = {
 _USUAL = ("4x4_50", "5x5_50", "6x6_250", "apriltag_36h11", "aruco_original", "7x7_50")
 
 
+@dataclass(frozen=True)
+class MarkerFamily:
+    """Markers of one dictionary.
+
+    Attributes:
+        source: OpenCV's dictionary, or a family of AprilTags that OpenCV does not have.
+    """
+
+    source: cv2.aruco.Dictionary | TagFamily
+
+    @property
+    def is_in_opencv(self) -> bool:
+        """Whether OpenCV can detect the markers."""
+        return not isinstance(self.source, TagFamily)
+
+    @property
+    def count(self) -> int:
+        """Number of markers; they are numbered from 0."""
+        if isinstance(self.source, TagFamily):
+            return len(self.source.codes)
+        return len(self.source.bytesList)
+
+    @property
+    def is_reversed(self) -> bool:
+        """Whether the square of which the corners are detected is white on black."""
+        return isinstance(self.source, TagFamily) and self.source.is_reversed
+
+    def cells_of(self, number: int) -> NDArray[np.float32]:
+        """Draw a marker with one cell around the square of which corners are detected.
+
+        Args:
+            number: Number of the marker, below `count`.
+
+        Returns:
+            Brightness of the cells, 0 black and 1 white, shape (n, n).
+        """
+        if isinstance(self.source, TagFamily):
+            return self.source.cells_of(number)
+        inner = cv2.aruco.generateImageMarker(self.source, number, self.source.markerSize + 2)
+        return np.pad(inner.astype(np.float32) / 255, 1, constant_values=1.0)
+
+
+@cache
+def marker_family(name: str) -> MarkerFamily:
+    """Return the markers of a dictionary by its name.
+
+    Args:
+        name: A name as for `dictionary_named`, or one of `STANDARD`.
+
+    Raises:
+        MarkerError: When the name is unknown, the package that its tags need is not installed, or
+            the file is missing or holds no dictionary.
+    """
+    key = key_of(name)
+    if key not in STANDARD:
+        return MarkerFamily(dictionary_named(name))
+    tags = tag_family(key)
+    if tags is None:
+        raise MarkerError(
+            f"dictionary '{name}' needs the package pupil-apriltags, which is not installed: "
+            "install zebro-lab with its extra 'apriltag' (pip install '.[apriltag]')"
+        )
+    return MarkerFamily(tags)
+
+
+def key_of(name: str) -> str:
+    """Return a dictionary's name without OpenCV's prefix, in lower case.
+
+    >>> key_of("DICT_4X4_50")
+    '4x4_50'
+    """
+    return name.lower().removeprefix("dict_")
+
+
 def dictionary_named(name: str) -> cv2.aruco.Dictionary:
-    """Return a dictionary of markers by its name.
+    """Return a dictionary of OpenCV by its name.
 
     Args:
         name: A key of `DICTIONARIES`, where case and a leading "DICT_" do not matter, or the path
@@ -34,12 +112,21 @@ def dictionary_named(name: str) -> cv2.aruco.Dictionary:
     """
     if Path(name).suffix in {".yml", ".yaml", ".json", ".xml"}:
         return _dictionary_of_file(name)
-    key = name.lower().removeprefix("dict_")
+    key = key_of(name)
     if key not in DICTIONARIES:
-        near = similar_name(key, DICTIONARIES)
-        hint = f"did you mean '{near}'?" if near else f"known: {', '.join(DICTIONARIES)}"
+        names = (*DICTIONARIES, *STANDARD)
+        near = _tag_name(key) or similar_name(key, names)
+        hint = f"did you mean '{near}'?" if near else f"known: {', '.join(names)}"
         raise MarkerError(f"dictionary '{name}' is unknown; {hint}")
     return cv2.aruco.getPredefinedDictionary(DICTIONARIES[key])
+
+
+def _tag_name(key: str) -> str | None:
+    """Return the dictionary of AprilTags that a name such as "tag36h11" means; None for others."""
+    bits = re.search(r"(?:^|tag|standard|april|_)_?(\d+h\d+)$", key)
+    known = (*DICTIONARIES, *STANDARD)
+    name = f"apriltag_{bits[1]}" if bits else ""
+    return name if name in known else None
 
 
 def _dictionary_of_file(path: str) -> cv2.aruco.Dictionary:

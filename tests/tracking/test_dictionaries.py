@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tracking.errors import MarkerError
-from tracking.markers import DICTIONARIES, dictionary_named, guess_dictionary
+from tracking.markers import DICTIONARIES, dictionary_named, guess_dictionary, marker_family
 
 
 def test_the_family_of_markers_is_guessed_for_the_message():
@@ -20,9 +20,22 @@ def test_the_family_of_markers_is_guessed_for_the_message():
     assert guess_dictionary(np.full((300, 300), 255, np.uint8)) is None
 
 
-def test_a_misspelt_dictionary_is_named_with_the_nearest():
-    with pytest.raises(MarkerError, match="apriltag_36h11"):
-        dictionary_named("apriltag36h11")
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("apriltag36h11", "apriltag_36h11"),
+        ("tag36h11", "apriltag_36h11"),
+        ("36h11", "apriltag_36h11"),
+        ("tagStandard41h12", "apriltag_41h12"),
+        ("AprilTag_52h13x", "apriltag_52h13"),
+        ("tag16h5", "apriltag_16h5"),
+        ("4x4-50", "4x4_50"),
+        ("aruco_orignal", "aruco_original"),
+    ],
+)
+def test_a_misspelt_dictionary_is_named_with_the_one_that_is_meant(name, meant):
+    with pytest.raises(MarkerError, match=f"did you mean '{meant}'"):
+        marker_family(name)
 
 
 def test_names_of_dictionaries_are_opencvs_without_the_prefix():

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Square markers (ArUco, AprilTag): geometry, and detection to a few hundredths of a pixel."""
 
-from tracking.dictionaries import DICTIONARIES, dictionary_named, guess_dictionary
+from tracking.dictionaries import (
+    DICTIONARIES,
+    dictionary_named,
+    guess_dictionary,
+    marker_family,
+)
 from tracking.markers.find import Region, find_markers, neighbourhood
 from tracking.markers.refine import Sighting, refine_corners
 from tracking.markers.square import (
@@ -20,6 +25,7 @@ __all__ = [
     "find_markers",
     "guess_dictionary",
     "marker_corners",
+    "marker_family",
     "marker_picture",
     "neighbourhood",
     "refine_corners",

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.camera.lens import Array
-from tracking.dictionaries import dictionary_named
+from tracking.dictionaries import dictionary_named, marker_family
 from tracking.markers.apriltags import apriltag_quads
 from tracking.markers.refine import Sighting, refine_corners
 from tracking.markers.square import marker_picture
@@ -63,6 +63,7 @@ def find_markers(
     wanted: Iterable[int],
     region: Region | None = None,
     effort: int = 2,
+    several: bool = False,
 ) -> tuple[Sighting, ...]:
     """Detect the wanted markers in a picture.
 
@@ -75,6 +76,8 @@ def find_markers(
             missing markers also by pupil-apriltags and among quadrilaterals that OpenCV rejected.
             2: markers still missing also in a brightened picture (if it is dark) and in an
             enlarged picture with equalised contrast.
+        several: Whether the picture may show several markers of one number, which are then all
+            sought with the whole effort; otherwise further ones are found only by chance.
 
     Returns:
         Markers detected, ordered by number, in pixels of the whole picture. A number occurs twice
@@ -90,12 +93,15 @@ def find_markers(
     numbers = sorted(set(wanted))
     if effort == 0:
         return tuple(_moved(s, (area.left, area.top)) for s in _plain(grey, dictionary, numbers))
-    found = _with_opencv(grey, dictionary, numbers)
-    missing = _missing(numbers, found)
-    for again in (_brightened, _enlarged) if effort > 1 else ():
+    is_in_opencv = marker_family(dictionary).is_in_opencv
+    found = (_with_opencv if is_in_opencv else _as_tags)(grey, dictionary, numbers, several)
+    again = (_brightened, _enlarged) if is_in_opencv else (_as_enlarged_tags,)
+    for seek in again if effort > 1 else ():
+        missing = _missing(numbers, found, several)
         if missing:
-            found += again(grey, dictionary, missing)
-            missing = _missing(numbers, found)
+            found += seek(grey, dictionary, missing)
+    if several:
+        found = _apart(found)
     moved = (_moved(sighting, (area.left, area.top)) for sighting in found)
     return tuple(sorted(moved, key=lambda sighting: sighting.marker_id))
 
@@ -116,16 +122,31 @@ def _detector(dictionary: str, *, patient: bool) -> cv2.aruco.ArucoDetector:
 
 
 def _with_opencv(
-    grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
+    grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int], several: bool
 ) -> list[Sighting]:
     corners, ids, others = _detector(dictionary, patient=False).detectMarkers(grey)
     found = _fitted(grey, _decoded(corners, ids, numbers), dictionary, LEAST_SCORE)
-    missing = _missing(numbers, found)
+    missing = _missing(numbers, found, several)
     if missing:
         quads = apriltag_quads(grey, dictionary, missing)
         found += _fitted(grey, quads, dictionary, ACCEPTED_SCORE)
-        missing = _missing(numbers, found)
+        missing = _missing(numbers, found, several)
     return found + recognise(grey, others, dictionary, missing) if missing else found
+
+
+def _as_tags(
+    grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int], _: bool = False
+) -> list[Sighting]:
+    """Detect tags that OpenCV does not have; each is decoded, so that its score may be low."""
+    return _fitted(grey, apriltag_quads(grey, dictionary, numbers), dictionary, LEAST_SCORE)
+
+
+def _as_enlarged_tags(
+    grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
+) -> list[Sighting]:
+    quads = apriltag_quads(_twice_as_large(grey), dictionary, numbers)
+    small = [(_in_small(corners), number) for corners, number in quads]
+    return _fitted(grey, small, dictionary, LEAST_SCORE)
 
 
 def _fitted(
@@ -138,18 +159,22 @@ def _fitted(
     return [each for each in sightings if each is not None and each.score >= least]
 
 
-def _missing(numbers: Iterable[int], found: Iterable[Sighting]) -> list[int]:
+def _missing(numbers: Iterable[int], found: Iterable[Sighting], several: bool = False) -> list[int]:
+    """Return the numbers that are not found; all of them if there may be several of each."""
+    if several:
+        return list(numbers)
     seen = {sighting.marker_id for sighting in found}
     return [number for number in numbers if number not in seen]
 
 
 def _plain(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
-    corners, ids, _ = _detector(dictionary, patient=False).detectMarkers(grey)
+    if not marker_family(dictionary).is_in_opencv:
+        quads = apriltag_quads(grey, dictionary, numbers)
+    else:
+        corners, ids, _ = _detector(dictionary, patient=False).detectMarkers(grey)
+        quads = _decoded(corners, ids, numbers)
     whole_px = 0.5**2 * np.eye(8)
-    found = [
-        Sighting(number, quad, whole_px, 1.0, 0.0)
-        for quad, number in _decoded(corners, ids, numbers)
-    ]
+    found = [Sighting(number, quad, whole_px, 1.0, 0.0) for quad, number in quads]
     return sorted(found, key=lambda sighting: sighting.marker_id)
 
 
@@ -177,13 +202,23 @@ def _brightened(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
 
 
 def _enlarged(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
-    large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
-    large = cv2.createCLAHE(clipLimit=3.0, tileGridSize=(8, 8)).apply(large)
+    large = _twice_as_large(grey)
     corners, _, others = _detector(dictionary, patient=True).detectMarkers(large)
     # Corners are refined in the original pixels in either case.
-    # Pixel centres: the middle of large pixels 2u and 2u + 1 is the small pixel u.
-    quads = [(np.asarray(quad, dtype=float) + 0.5) / 2 - 0.5 for quad in (*corners, *others)]
+    quads = [_in_small(quad) for quad in (*corners, *others)]
     return recognise(grey, quads, dictionary, numbers)
+
+
+def _twice_as_large(grey: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Enlarge a picture twofold and equalise its contrast in 8 x 8 parts."""
+    large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
+    large = cv2.createCLAHE(clipLimit=3.0, tileGridSize=(8, 8)).apply(large)
+    return np.asarray(large, dtype=np.uint8)
+
+
+def _in_small(corners_px: ArrayLike) -> Array:
+    # Pixel centres: the middle of large pixels 2u and 2u + 1 is the small pixel u.
+    return (np.asarray(corners_px, dtype=float) + 0.5) / 2 - 0.5
 
 
 def recognise(
@@ -270,7 +305,7 @@ def _cells_of_all(dictionary: str) -> Array:
 
     Shape (4 n, cells): rows 4 k to 4 k + 3 are the rotations of marker k of n.
     """
-    count = dictionary_named(dictionary).bytesList.shape[0]
+    count = marker_family(dictionary).count
     inner = [marker_picture(dictionary, number, 1)[1:-1, 1:-1] for number in range(count)]
     turned = np.array([np.rot90(cells, turn).ravel() for cells in inner for turn in range(4)])
     turned -= turned.mean(axis=1, keepdims=True)
@@ -280,16 +315,21 @@ def _cells_of_all(dictionary: str) -> Array:
 def _apart(candidates: list[Sighting]) -> list[Sighting]:
     """Keep of overlapping sightings the one of highest score (non-maximum suppression).
 
-    Two overlap if their centres are within half the extent of the one of lower score, whatever
-    their numbers. The result is ordered by score, highest first.
+    Two overlap if the centre of one is inside the other, whatever their numbers. The result is
+    ordered by score, highest first.
     """
     kept: list[Sighting] = []
     for sighting in sorted(candidates, key=lambda candidate: -candidate.score):
-        centre = sighting.corners_px.mean(axis=0)
-        reach = 0.5 * np.ptp(sighting.corners_px, axis=0).max()
-        if all(np.linalg.norm(other.corners_px.mean(axis=0) - centre) > reach for other in kept):
+        if not any(_is_inside(sighting, of) or _is_inside(of, sighting) for of in kept):
             kept.append(sighting)
     return kept
+
+
+def _is_inside(sighting: Sighting, other: Sighting) -> bool:
+    """Return whether the centre of a marker is inside another, or on its edge."""
+    outline = other.corners_px.astype(np.float32)
+    x, y = sighting.corners_px.mean(axis=0).tolist()
+    return cv2.pointPolygonTest(outline, (x, y), measureDist=False) >= 0
 
 
 def _moved(sighting: Sighting, offset: tuple[int, int]) -> Sighting:

@@ -200,7 +200,8 @@ def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
     Returns:
         By lag of rows and columns, lag 0 in the middle, shape (2 lags + 1, 2 lags + 1).
     """
-    shape = (left.shape[0] + lags, left.shape[1] + lags)
+    # Padded, so that no lag wraps around; a patch may be smaller than the largest lag.
+    shape = tuple(max(length + lags, 2 * lags + 1) for length in left.shape)
     power = [np.abs(np.fft.rfft2(part, shape)) ** 2 for part in (left, used)]
     product, pairs = (np.fft.irfft2(part, shape) for part in power)
     mean = product / np.maximum(pairs, 1.0)

@@ -7,12 +7,11 @@ printed.
 
 from functools import lru_cache
 
-import cv2
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tracking.camera.lens import Array
-from tracking.dictionaries import dictionary_named
+from tracking.dictionaries import marker_family
 
 UNIT_SQUARE: Array = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 """Corners in the marker's own coordinates: across to the right, down, side 1."""
@@ -38,7 +37,7 @@ def marker_corners(side: float, position: ArrayLike = (0.0, 0.0, 0.0), yaw: floa
 
 @lru_cache(maxsize=64)
 def marker_picture(dictionary: str, marker_id: int, cell_px: int) -> Array:
-    """Draw a marker with a white margin one cell wide.
+    """Draw a marker with a margin one cell wide: white, or black where its border is white.
 
     Args:
         dictionary: Name of the dictionary.
@@ -53,10 +52,8 @@ def marker_picture(dictionary: str, marker_id: int, cell_px: int) -> Array:
         MarkerError: When there is no such dictionary.
         cv2.error: When the dictionary has no such number.
     """
-    family = dictionary_named(dictionary)
-    cells = family.markerSize + 2
-    inner = cv2.aruco.generateImageMarker(family, marker_id, cells * cell_px)
-    picture = np.pad(inner.astype(np.float32) / 255, cell_px, constant_values=1.0)
+    cells = marker_family(dictionary).cells_of(marker_id)
+    picture = np.kron(cells, np.ones((cell_px, cell_px), dtype=np.float32))
     picture.setflags(write=False)
     return picture
 

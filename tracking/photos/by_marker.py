@@ -10,7 +10,7 @@ from tracking.detect import MarkedRobot, observe
 from tracking.errors import NoUsablePhoto
 from tracking.floor import FloorMap
 from tracking.images import read_pixels
-from tracking.markers import dictionary_named, find_markers, guess_dictionary
+from tracking.markers import find_markers, guess_dictionary, marker_family
 from tracking.photos.edges import edge_spread
 from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Times, Tracked, finish, shared_errors
@@ -92,7 +92,7 @@ def other_markers(pixels: NDArray[np.uint8], robot: MarkedRobot, floor: FloorMap
     """
     names = (robot.marker.dictionary, floor.dictionary, guess_dictionary(pixels))
     for dictionary in dict.fromkeys(name for name in names if name is not None):
-        numbers = range(len(dictionary_named(dictionary).bytesList))
+        numbers = range(marker_family(dictionary).count)
         found = {s.marker_id for s in find_markers(pixels, dictionary, wanted=numbers, effort=0)}
         if dictionary == floor.dictionary:
             found -= set(floor.marker_ids)

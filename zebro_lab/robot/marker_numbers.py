@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from tracking.detect import MarkedRobot
 from tracking.errors import MarkerError
 from tracking.floor import FloorMap
-from tracking.markers import dictionary_named
+from tracking.markers import marker_family
 
 
 def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
@@ -19,7 +19,7 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
     Raises:
         MarkerError: There is no such dictionary, or a number is not below its count of markers.
     """
-    count = len(dictionary_named(dictionary).bytesList)
+    count = marker_family(dictionary).count
     for number in numbers:
         if number >= count:
             raise MarkerError(

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from support.drawn_markers import photograph, random_quad
-from tracking.markers import find_markers
+from tracking.markers import find_markers, marker_picture, refine_corners
 
 
 @given(seed=st.integers(0, 10_000), side=st.floats(25, 90))
@@ -93,3 +93,17 @@ def _inset(corners, width):
     offsets = np.einsum("ia,ia->i", normals, corners) + width
     pairs = [((i - 1) % 4, i) for i in range(4)]
     return np.array([np.linalg.solve(normals[list(p)], offsets[list(p)]) for p in pairs])
+
+
+def test_a_marker_flatter_than_the_largest_lag_has_a_covariance():
+    grey = np.full((60, 120), 200, np.uint8)
+    quad = np.array([[40.0, 28], [76, 28], [78, 34], [38, 34]])
+    flat = cv2.getPerspectiveTransform(
+        np.array([[0, 0], [240, 0], [240, 240], [0, 240]], np.float32), quad.astype(np.float32)
+    )
+    drawn = (255 * marker_picture("4x4_50", 3, 40)[40:-40, 40:-40]).astype(np.uint8)
+    grey = cv2.warpPerspective(drawn, flat, (120, 60), grey, borderMode=cv2.BORDER_TRANSPARENT,
+                               flags=cv2.INTER_AREA)  # fmt: skip
+    found = refine_corners(np.asarray(grey), quad, dictionary="4x4_50", marker_id=3)
+    assert found is not None
+    assert np.linalg.eigvalsh(found.covariance).min() > 0

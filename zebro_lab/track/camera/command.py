@@ -29,19 +29,36 @@ zebro-lab camera calibrate board-photos --board checkerboard:9x6:25mm --out came
 """
 
 
-@app.command()
+KIT_EPILOG = """
+Examples:
+
+zebro-lab camera kit
+
+zebro-lab camera kit --board checkerboard:9x6:25mm --paper letter
+"""
+
+
+@app.command(epilog=KIT_EPILOG)
 @request_command()
 def kit(
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder to write.")] = Path(
         "tracking-kit"
     ),
     paper: Annotated[Paper, typer.Option(help="Size of the paper.")] = "a4",
+    board: Annotated[
+        str,
+        typer.Option(
+            metavar="BOARD",
+            help="Calibration board to print, as for camera calibrate: kit, or "
+            "checkerboard:COLUMNSxROWS:SQUARE (inner corners).",
+        ),
+    ] = "kit",
     output: Output = TEXT,
 ) -> None:
     """Write a true-scale PDF of markers, board and ruler, and a floor.toml to edit."""
     from zebro_lab.track.camera.stage import write_kit
 
-    files = list(write_kit(out, paper=paper))
+    files = list(write_kit(out, paper=paper, board=board))
     for file in files:
         output.say(f"wrote {file}")
     output.say("print kit.pdf at 100 % and measure the 100 mm bar of every page")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera import CharucoBoard
+from tracking.camera import Board, CharucoBoard
 from tracking.floor import FloorMap, FloorMarker
 from tracking.markers import marker_picture
 from zebro_lab.files.errors import SettingsError
@@ -29,6 +29,7 @@ BOARD = CharucoBoard(7, 5, 0.035, 0.026, "5x5_50")
 """The board that the kit prints and `camera calibrate` expects by default."""
 
 _BAR = 100.0
+_EDGE, _FOOT = 8.0, 19.0  # left free beside and below a board [mm]
 
 
 @dataclass(frozen=True)
@@ -84,14 +85,15 @@ class KitPage:
     texts: tuple[Text, ...]
 
 
-def kit_pages(paper: str = "a4") -> tuple[KitPage, ...]:
+def kit_pages(paper: str = "a4", board: Board = BOARD) -> tuple[KitPage, ...]:
     """Lay out the pages: instructions with ruler, robot's marker, four floor markers, board.
 
     Args:
         paper: Size of the paper, a key of `PAPERS`; the board's page is landscape.
+        board: Calibration board of the last page.
 
     Raises:
-        SettingsError: The paper is unknown.
+        SettingsError: The paper is unknown, or the board does not fit on it.
     """
     if paper not in PAPERS:
         raise SettingsError(f"'{paper}' is unknown; expected {' or '.join(PAPERS)}", key="--paper")
@@ -104,7 +106,7 @@ def kit_pages(paper: str = "a4") -> tuple[KitPage, ...]:
         *(_marker_page(size, number, FLOOR_SIDE, f"Floor: {DICTIONARY}, number {number}",
                        "x →   (yaw_deg = 0 where this arrow points along x)")
           for number in FLOOR_MARKERS),
-        _board_page((size[1], size[0])),
+        _board_page((size[1], size[0]), board),
     )  # fmt: skip
 
 
@@ -152,26 +154,40 @@ def _runs(black: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(start, end - start) for start, end in edges.reshape(-1, 2).tolist()]
 
 
-def board_rectangles(board: CharucoBoard, *, left: float, bottom: float) -> tuple[Rectangle, ...]:
-    """Compute a ChArUco board's rectangles: black where row plus column is even, else a marker.
+def squares_of(board: Board) -> tuple[int, int]:
+    """Return the numbers of squares along a row and along a column of a board.
+
+    Args:
+        board: The board; of a checkerboard `columns` and `rows` count inner corners.
+    """
+    more = 0 if isinstance(board, CharucoBoard) else 1
+    return board.columns + more, board.rows + more
+
+
+def board_rectangles(board: Board, *, left: float, bottom: float) -> tuple[Rectangle, ...]:
+    """Compute a board's rectangles: black where row plus column is even; ChArUco: else a marker.
 
     Rows are counted from the top, from 0; markers are numbered from 0 along the rows.
 
     Args:
-        board: The board; OpenCV's pattern since 4.6.
+        board: The board; of ChArUco boards OpenCV's pattern since 4.6.
         left: Left edge of the board [mm].
         bottom: Lower edge of the board [mm].
     """
-    square, side = 1e3 * board.square, 1e3 * board.marker
-    inset = (square - side) / 2
+    square = 1e3 * board.square
+    columns, rows = squares_of(board)
     rectangles: list[Rectangle] = []
     number = 0
-    for row in range(board.rows):
-        for column in range(board.columns):
-            x, y = left + column * square, bottom + (board.rows - 1 - row) * square
+    for row in range(rows):
+        for column in range(columns):
+            x, y = left + column * square, bottom + (rows - 1 - row) * square
             if (row + column) % 2 == 0:
                 rectangles.append(Rectangle(x, y, square, square))
                 continue
+            if not isinstance(board, CharucoBoard):
+                continue
+            side = 1e3 * board.marker
+            inset = (square - side) / 2
             rectangles += marker_rectangles(
                 board.dictionary, number, side, left=x + inset, bottom=y + inset
             )
@@ -194,18 +210,34 @@ def _marker_page(
     return KitPage(width, height, (*cells, *_bar(width)), (*texts, _bar_text(width)))
 
 
-def _board_page(size: tuple[float, float]) -> KitPage:
+def _board_page(size: tuple[float, float], board: Board) -> KitPage:
     width, height = size
-    across, up = 1e3 * BOARD.square * BOARD.columns, 1e3 * BOARD.square * BOARD.rows
+    columns, rows = squares_of(board)
+    across, up = 1e3 * board.square * columns, 1e3 * board.square * rows
     left, bottom = (width - across) / 2, height - up - 12
-    text = (
-        f"Calibration board: charuco:{BOARD.columns}x{BOARD.rows}:{1e3 * BOARD.square:g}mm:"
-        f"{1e3 * BOARD.marker:g}mm:{BOARD.dictionary}. Glue it flat on glass or aluminium."
-    )
+    if left < _EDGE or bottom < _FOOT:
+        raise SettingsError(
+            f"{columns} x {rows} squares are {across:g} x {up:g} mm; the paper has room for "
+            f"{width - 2 * _EDGE:g} x {height - 12 - _FOOT:g} mm: take smaller or fewer squares",
+            key="--board",
+        )
+    text = f"Calibration board: {_in_words(board)}. Glue it flat on glass or aluminium."
     return KitPage(
-        width, height, (*board_rectangles(BOARD, left=left, bottom=bottom), *_bar(width)),
+        width, height, (*board_rectangles(board, left=left, bottom=bottom), *_bar(width)),
         (Text(12, 5, text, 7), _bar_text(width)),
     )  # fmt: skip
+
+
+def _in_words(board: Board) -> str:
+    square = f"{1e3 * board.square:g}mm"
+    if isinstance(board, CharucoBoard):
+        marker = f"{1e3 * board.marker:g}mm"
+        return f"charuco:{board.columns}x{board.rows}:{square}:{marker}:{board.dictionary}"
+    columns, rows = squares_of(board)
+    return (
+        f"{columns} x {rows} squares, with {board.columns} x {board.rows} corners between them: "
+        f"--board checkerboard:{board.columns}x{board.rows}:{square}"
+    )
 
 
 def _bar(width: float) -> tuple[Rectangle, ...]:

@@ -138,23 +138,24 @@ def _other_count(board: Board, paths: Sequence[Path], found: int) -> str | None:
     )
 
 
-def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
+def write_kit(out: Path, *, paper: str = "a4", board: str = "kit") -> tuple[Path, ...]:
     """Write the printable kit as `kit.pdf` and a starter `floor.toml`.
 
     Args:
         out: Folder to write into; created when missing.
         paper: Size of the paper, "a4" or "letter".
+        board: Calibration board of the last page, as for `camera calibrate --board`.
 
     Returns:
         The files `kit.pdf` and `floor.toml`.
 
     Raises:
         AlreadyExists: `out` is a file, has any `floor.toml`, or a `kit.pdf` with other content.
-        SettingsError: The paper is unknown.
+        SettingsError: The paper is unknown, or the board is invalid or does not fit on it.
     """
     from zebro_lab.track.camera.pictures import save_pages  # matplotlib takes most of a second
 
-    pages = kit_pages(paper)
+    pages = kit_pages(paper, parse_board(board))
     if (out / FLOOR_FILE).exists():
         raise AlreadyExists(
             f"{out / FLOOR_FILE} exists and may hold measured positions; choose another --out"

@@ -13,12 +13,14 @@ from tracking.camera import find_board
 from tracking.markers import find_markers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_print import KIT_PRINT
+from zebro_lab.track.camera.board_argument import parse_board
 from zebro_lab.track.camera.kit import (
     BOARD,
     FLOOR_MARKERS,
     FLOOR_SIDE,
     PAPERS,
     kit_pages,
+    squares_of,
     starter_floor,
 )
 from zebro_lab.track.camera.pictures import draw_page, save_pages
@@ -109,6 +111,24 @@ def test_the_printed_board_is_the_one_that_calibrates():
     assert len(view.points) == (BOARD.columns - 1) * (BOARD.rows - 1)
     scale = cv2.estimateAffine2D(1e3 * view.points[:, :2], view.corners_px)[0][0, 0]
     assert scale == pytest.approx(100 / 25.4, rel=1e-3)
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_a_checkerboard_is_printed_with_the_corners_that_it_is_named_by(paper):
+    board = parse_board("checkerboard:10x7:15mm")
+    page = kit_pages(paper, board)[BOARD_PAGE]
+    assert squares_of(board) == (11, 8)
+    view = find_board(picture(page, 100), board)
+    assert view is not None
+    assert len(view.points) == 70
+    mm = view.corners_px / (100 / 25.4)
+    np.testing.assert_allclose(np.linalg.norm(mm[1] - mm[0]), 15.0, atol=0.1)
+    assert any("11 x 8 squares, with 10 x 7 corners" in text.text for text in page.texts)
+
+
+def test_a_board_that_does_not_fit_on_the_paper_is_refused():
+    with pytest.raises(SettingsError, match=r"10 x 7 squares are 400 x 280 mm; .* 281 x 179 mm"):
+        kit_pages("a4", parse_board("checkerboard:9x6:40mm"))
 
 
 def test_the_starting_floor_has_the_markers_that_are_printed():

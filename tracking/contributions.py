@@ -31,8 +31,8 @@ ADVICE = {
     TURN: "measure how the marker is turned on the body, and state marker.yaw_sd_deg",
     HEIGHT: "measure how high the marker is while the robot walks, and state --height-sd",
     TILT: "mount the marker level, near the body's centre",
-    ANNOTATION: "annotate the photograph in which the robot is largest, click its corners more "
-    "exactly, and state corner_sd_px",
+    ANNOTATION: "annotate the robot in another photograph too, or click its corners more exactly "
+    "and state corner_sd_px",
 }
 """By cause, what to do for a track of smaller uncertainty."""
 

@@ -12,7 +12,15 @@ from tracking.camera.lens import Array
 from tracking.constant_twist import Process
 from tracking.errors import PathError
 from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior
-from tracking.shared import CAMERA, HEIGHT, TILT, SharedErrors, stand_name
+from tracking.shared import (
+    ANNOTATION,
+    CAMERA,
+    HEIGHT,
+    TILT,
+    SharedErrors,
+    annotation_name,
+    stand_name,
+)
 from tracking.smooth import SharedInput, SmoothPath, smooth
 
 TRACK_COLUMNS = (
@@ -37,6 +45,7 @@ class PoseObservation:
         source: How the pose was found: "marker", "body" (template) or "hand" (set by a person; a
             pose of which only head and tail were exchanged keeps its source).
         stand: Number of the camera's stand in which the photograph was taken, from 0.
+        annotated: Name of the annotated photograph whose template found the pose; "" for none.
     """
 
     photo: str
@@ -46,6 +55,7 @@ class PoseObservation:
     score: float
     source: str
     stand: int = 0
+    annotated: str = ""
 
     @property
     def planar(self) -> Array:
@@ -62,6 +72,8 @@ class PoseObservation:
         by_cause = dict(self.pose.with_prior(prior))
         if CAMERA in by_cause:
             by_cause[stand_name(self.stand)] = by_cause.pop(CAMERA)
+        if ANNOTATION in by_cause:
+            by_cause[annotation_name(self.annotated)] = by_cause.pop(ANNOTATION)
         return shared.columns(by_cause, 6)
 
 
@@ -151,6 +163,7 @@ def assemble_track(
     gap: float | None = None,
     process: Process | None = None,
     start: Process | None = None,
+    average: bool = True,
 ) -> Track:
     """Sort observations by time; estimate their path and the errors that they share.
 
@@ -162,6 +175,7 @@ def assemble_track(
             interval.
         process: Noise densities of the motion model; None to estimate them.
         start: Noise densities from which to start their estimate; None for a walking robot's.
+        average: As for `tracking.smooth.smooth`.
 
     Returns:
         The path, smoothed with `tracking.smooth.smooth`, with its joint covariance.
@@ -182,6 +196,7 @@ def assemble_track(
         gap=gap,
         process=process,
         start=start,
+        average=average,
         shared=SharedInput(
             by_error[:, PLANAR] @ root,
             *_from_heights(ordered, by_error @ root, root, shared, prior),

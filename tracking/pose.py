@@ -181,10 +181,14 @@ class BodyPose:
         """Return `by_cause` with the mean height and tilt of the prior that was used in the fit.
 
         The estimate is (C^-1)^-1 times the sum of each information times its value; the prior's is
-        P^-1, so that the estimate moves with the prior's means by C P^-1.
+        P^-1, so that the estimate moves with the prior's means by C P^-1. What moves it besides,
+        as through a template, is in `by_cause` and is added.
         """
         by_mean = self.covariance[:, HELD] @ np.linalg.inv(prior.covariance)
-        return {**self.by_cause, HEIGHT: by_mean[:, :1], TILT: by_mean[:, 1:]}
+        by_cause = dict(self.by_cause)
+        for cause, moved in ((HEIGHT, by_mean[:, :1]), (TILT, by_mean[:, 1:])):
+            by_cause[cause] = moved + by_cause.get(cause, np.zeros_like(moved))
+        return by_cause
 
 
 def rotation_with_derivatives(roll: float, pitch: float, yaw: float) -> tuple[Array, Array]:

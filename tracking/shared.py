@@ -30,8 +30,11 @@ HEIGHT = "body height"
 TILT = "body tilt"
 """Cause: mean roll and pitch of the body over the walk [rad]."""
 ANNOTATION = "annotation"
-"""Cause: x, y [m] and yaw [rad] of the annotated robot in its body frame, by the clicks."""
+"""Cause: x, y along the body, z [m], roll, pitch and yaw [rad] of the annotated robot, by clicks
+and by its height and tilt in that photograph (`tracking.body.annotated`)."""
 
+
+_ANNOTATED = f"{ANNOTATION} of "
 
 STANDS = "camera's pose"
 """Cause: all of `stand_name`."""
@@ -50,11 +53,15 @@ def mark_name(key: int | str) -> str:
     return f"{_MARK}{key}"
 
 
+def annotation_name(photo: str) -> str:
+    """Return the cause's name of the annotation of a photograph, by the photograph's name."""
+    return f"{_ANNOTATED}{photo}"
+
+
 def family_of(cause: str) -> str:
-    """Return `STANDS` for a stand of the camera, `MARKS` for a mark, else the cause's own name."""
-    if cause.startswith(_STAND):
-        return STANDS
-    return MARKS if cause.startswith(_MARK) else cause
+    """Return the family of a cause: `STANDS`, `MARKS`, `ANNOTATION`, or else its own name."""
+    families = {_STAND: STANDS, _MARK: MARKS, _ANNOTATED: ANNOTATION}
+    return next((name for start, name in families.items() if cause.startswith(start)), cause)
 
 
 @dataclass(frozen=True)

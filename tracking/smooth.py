@@ -8,8 +8,10 @@ arc, so the corners of a turning path are not cut.
 Errors that the measurements share (camera, lens, height) are unknowns as well. With u these errors,
 independent and of variance 1, a measured pose m is the true pose minus F u plus noise of its own.
 The normal equations of all are an arrow: block tridiagonal for the poses and twists, with a border
-for u, which is eliminated last. The two noise densities of the twist are those with the greatest
-marginal likelihood (Laplace's approximation) unless they are given.
+for u, which is eliminated last. The two noise densities of the twist, unless they are given, are
+their means over the marginal likelihood (Laplace's approximation) with a wide prior. Where poses
+are uncertain, any small density explains them: the likeliest one may be next to none, and the path
+would be claimed to be as smooth as that.
 """
 
 from collections.abc import Callable
@@ -32,6 +34,7 @@ from tracking.constant_twist import (
 from tracking.errors import PathError
 
 _LONGEST_SEARCH = 200
+_AROUND = np.linspace(-8.0, 6.0, 15)  # logarithms of densities over the likeliest
 
 
 @dataclass(frozen=True)
@@ -110,6 +113,7 @@ def smooth(
     process: Process | None = None,
     start: Process | None = None,
     shared: SharedInput | None = None,
+    average: bool = True,
 ) -> SmoothPath:
     """Smooth measured poses by least squares with a constant-twist motion model.
 
@@ -125,6 +129,8 @@ def smooth(
             1e-2 rad²/s³ where no segment has three poses.
         start: Noise densities near those to be estimated; None if none are known.
         shared: Errors that the measured poses share; None for none.
+        average: Whether densities that are estimated are means over the likelihood; False takes
+            the likeliest, in half the time.
 
     Returns:
         The path, at the times `t` only.
@@ -144,7 +150,7 @@ def smooth(
     ]
     problem = _Problem(parts, known)
     try:
-        found = process or _likeliest(problem, start)
+        found = process or _estimated(problem, start, average)
         solved = problem.solve(found)
     except np.linalg.LinAlgError as error:
         raise PathError(
@@ -210,8 +216,8 @@ def _segments(times: Array, gap: float | None) -> NDArray[np.int64]:
     return np.concatenate(([0], np.cumsum(intervals > longest))).astype(np.int64)
 
 
-def _likeliest(problem: "_Problem", near: Process | None) -> Process:
-    """Estimate the noise densities by maximum marginal likelihood, with a wide prior.
+def _estimated(problem: "_Problem", near: Process | None, average: bool) -> Process:
+    """Estimate the noise densities by marginal likelihood, with a wide prior.
 
     Of each segment the first 200 poses are used, segments of one or two poses are not. Without a
     segment of three poses the densities are 1e-3 m²/s³ and 1e-2 rad²/s³.
@@ -238,7 +244,14 @@ def _likeliest(problem: "_Problem", near: Process | None) -> Process:
     simplex = start + reach * np.array([[0, 0], [1, 0], [0, 1]])
     options = {"xatol": 0.05, "fatol": 0.05, "maxfev": 80, "initial_simplex": simplex}
     fit = minimize(minus_log_likelihood, start, method="Nelder-Mead", options=options)
-    return Process(*(float(q) for q in np.exp(fit.x)))
+    if not average:
+        return Process(*np.exp(fit.x).tolist())
+    means = []
+    for axis in np.eye(2):  # given the other density at its likeliest
+        costs = np.array([minus_log_likelihood(fit.x + log * axis) for log in _AROUND])
+        weights = np.exp(costs.min() - costs)
+        means.append(np.sum(weights * np.exp(_AROUND)) / np.sum(weights))
+    return Process(*(np.exp(fit.x) * means).tolist())
 
 
 @dataclass(frozen=True)

@@ -2,39 +2,64 @@
 """Whether a track's errors are as large as its covariances say, on simulated walks.
 
     python -m benchmarks.accuracy.tracked_walks 400
+    python -m benchmarks.accuracy.tracked_walks 400 --unmarked 1 3
 
 Walks are drawn by `benchmarks.accuracy.drawn_walks`, whose code is not the tracker's: every value
 that the tracker is told has an error of the standard deviation that is told with it. SIMULATED:
 corners, not pictures. Printed are, over all walks, the squared error by the covariance divided by
 its degrees of freedom (NEES) of single poses and of all poses of a walk jointly, with 99 %
 intervals from a bootstrap over walks, and how often 90 % intervals of the last pose hold the truth.
+
+With `--unmarked` the robot has no marker: a person clicks on the corners of its top in one or more
+photographs, and what lies there is found again in the others, with errors of `OUTLINE_SD` and of
+its size; the outlines are drawn, the search for them in pictures is not part of this table.
 """
 
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import binom
 
-from benchmarks.accuracy.drawn_walks.world import PLAIN, WIDE, DrawnWalk, Lens, Spreads, draw_walk
+from benchmarks.accuracy.drawn_walks.world import (
+    PLAIN,
+    TOP_HEIGHT,
+    WIDE,
+    DrawnWalk,
+    Lens,
+    Spreads,
+    draw_walk,
+    places_on_top,
+    top_in_photo,
+)
 from benchmarks.tables import print_table
-from tracking.camera import Camera
+from tracking.body import Alignment, AnnotatedPose, TopPlate
+from tracking.body.align import SCALE_SD
+from tracking.camera import Camera, project
 from tracking.detect import Detection, MarkedRobot, observe
 from tracking.floor import EDGE_SPREADS, FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.floor.adjustment import EDGE_SCALE
 from tracking.markers import Sighting
+from tracking.next_annotation import next_annotation
 from tracking.path import Track
+from tracking.photos.by_look import nearest_of, pose_of_top
 from tracking.photos.edges import edge_spread
 from tracking.photos.floor_seen import FloorSeen
-from tracking.photos.result import Times, Tracked, finish, shared_errors
-from tracking.photos.scene import Scene
-from tracking.pose import BodyPrior, RobotMarker
+from tracking.photos.result import Times, Tracked, finish, observation_of, shared_errors
+from tracking.photos.scene import MarkedTop, Scene
+from tracking.pose import BodyPose, BodyPrior, RobotMarker, fit_pose, rotation_with_derivatives
 
 DISTANCES = (2.0, 2.6, 3.4, 4.4, 5.7)  # m
 EDGES = (None, 0.0, 0.03, 0.06)
 """Spread of edges of the rows [px]; None for one of each walk, drawn from the tracker's prior."""
+OUTLINE_SD = 0.15
+"""Standard deviation of a corner of the robot's outline as found again [px]."""
+CLICK_SD = 0.5
+"""Standard deviation of a click [px]."""
+PLATE = TopPlate(0.176, 0.176, TOP_HEIGHT)
 NEAR = 3.4  # m, the farthest distance that counts as near
 
 
@@ -57,6 +82,16 @@ class Scored:
     last: np.ndarray
     sd: np.ndarray
     largest: float
+
+
+class Job(NamedTuple):
+    """A walk to draw and track."""
+
+    seed: int
+    lens: Lens
+    distance: float
+    spreads: Spreads
+    annotated: int = 0  # photographs clicked on; 0: the robot has a marker
 
 
 def photographed(walk: DrawnWalk) -> tuple[Scene, FloorSeen, Times]:
@@ -111,11 +146,76 @@ def track_drawn_whole(walk: DrawnWalk) -> Tracked:
     return finish(scene, seen, observations, unseen={}, times=times, gap=None)
 
 
-def score(job: tuple[int, Lens, float, Spreads]) -> Scored:
+def track_unmarked(walk: DrawnWalk, rng: np.random.Generator, annotated: int = 1) -> Tracked:
+    """Track a drawn walk by the outline of its top, clicked on in some of the photographs.
+
+    Args:
+        walk: The walk.
+        rng: Source of randomness of clicks and outlines.
+        annotated: Number of photographs clicked on, spread over the walk from the first.
+    """
+    scene, seen, times = photographed(walk)
+    scene = replace(scene, camera=seen.fit.camera, robot=None)
+    names = list(times)
+    numbers = np.linspace(0, len(names), annotated, endpoint=False).astype(int).tolist()
+    clicked = {names[k]: _clicked(walk, k, scene, seen, rng) for k in numbers}
+    nearest = nearest_of(names, list(clicked))
+    observations = []
+    for k, name in enumerate(names):
+        pose, places = clicked[nearest[name]]
+        pixels = top_in_photo(walk, k, places)
+        larger = (pixels - pixels.mean(axis=0)).ravel()
+        covariance = OUTLINE_SD**2 * np.eye(8) + SCALE_SD**2 * np.outer(larger, larger)
+        pixels = pixels + rng.multivariate_normal(np.zeros(8), covariance).reshape(4, 2)
+        found = fit_pose(
+            scene.camera, seen.fit.pose_of(name), points_body=PLATE.corners_body,
+            corners_px=pixels, covariance=covariance, prior=scene.prior,
+            points_by=pose.points_by(PLATE.corners_body),
+        )  # fmt: skip
+        observations.append(
+            observation_of(name, Alignment(found, 1.0, 0.0), times[name], source="body",
+                           annotated=(nearest[name], pose))
+        )  # fmt: skip
+    tracked = finish(
+        scene, seen, observations, unseen={}, times=times, gap=None,
+        annotations={name: pose for name, (pose, _) in clicked.items()},
+    )  # fmt: skip
+    suggested = next_annotation(
+        tracked.track, {name: seen.fit.pose_of(name) for name in names}, camera=scene.camera,
+        prior=scene.prior, plate=PLATE, corner_sd_px=CLICK_SD, annotated=clicked,
+    )  # fmt: skip
+    return replace(tracked, next_annotation=suggested)
+
+
+def _clicked(
+    walk: DrawnWalk, photo: int, scene: Scene, seen: FloorSeen, rng: np.random.Generator
+) -> tuple[AnnotatedPose, np.ndarray]:
+    """Click on the top's corners: the pose fitted, and what its outline shows, in the body frame.
+
+    The latter is x and y of four places, shape (4, 2) [m].
+    """
+    name = f"p{photo}.jpg"
+    clean = top_in_photo(walk, photo, PLATE.corners_body[:, :2])
+    clicks = clean + CLICK_SD * rng.standard_normal((4, 2))
+    top = MarkedTop(name, tuple((u, v) for u, v in clicks.tolist()), PLATE, CLICK_SD)
+    annotated = pose_of_top(top, scene, seen.fit.pose_of(name))
+    outline = _outline(scene, seen, name, annotated.pose)
+    return annotated, places_on_top(walk, photo, outline)
+
+
+def _outline(scene: Scene, seen: FloorSeen, photo: str, pose: BodyPose) -> np.ndarray:
+    """Project the corners of the top at a pose, by what the tracker knows, shape (4, 2) [px]."""
+    R, _ = rotation_with_derivatives(*pose.state[3:])
+    corners = PLATE.corners_body @ R.T + pose.state[:3]
+    return project(scene.camera, seen.fit.pose_of(photo), corners)
+
+
+def score(job: Job) -> Scored:
     """Draw and track a walk, and compare it with the truth."""
-    seed, lens, distance, spreads = job
-    walk = draw_walk(np.random.default_rng(seed), lens=lens, distance=distance, spreads=spreads)
-    track = track_drawn(walk)
+    rng = np.random.default_rng(job.seed)
+    walk = draw_walk(rng, lens=job.lens, distance=job.distance, spreads=job.spreads)
+    track = track_unmarked(walk, rng, job.annotated).track if job.annotated else track_drawn(walk)
+    distance = job.distance
     error = track.poses - walk.poses
     error[:, 2] = np.angle(np.exp(1j * error[:, 2]))
     n, covariance = len(error), track.covariance
@@ -128,13 +228,13 @@ def score(job: tuple[int, Lens, float, Spreads]) -> Scored:
     return Scored(distance, float(marginal), joint, error[-1] / sd, sd, largest)
 
 
-def jobs(walks: int, edges: float | None) -> list[tuple[int, Lens, float, Spreads]]:
+def jobs(walks: int, edges: float | None, *, annotated: int = 0) -> list[Job]:
     """List the walks to draw: both lenses and all distances in turn."""
     kinds = list(product((PLAIN, WIDE), DISTANCES))
     rng = np.random.default_rng(7)
     return [
-        (1000 + k, *kinds[k % len(kinds)],
-         replace(Spreads(), edges=_drawn_spread(rng) if edges is None else edges))
+        Job(1000 + k, *kinds[k % len(kinds)],
+            replace(Spreads(), edges=_drawn_spread(rng) if edges is None else edges), annotated)
         for k in range(walks)
     ]  # fmt: skip
 
@@ -156,22 +256,32 @@ def main() -> None:
     """Draw walks, track them and print the table."""
     parser = argparse.ArgumentParser(description=str(__doc__).split("\n")[0])
     parser.add_argument("walks", type=int, nargs="?", default=400)
-    walks = parser.parse_args().walks
+    parser.add_argument(
+        "--unmarked", type=int, nargs="*", help="robots without a marker: photographs annotated"
+    )
+    asked = parser.parse_args()
+    kinds = [(edges, 0) for edges in EDGES]
+    if asked.unmarked is not None:
+        kinds = [(0.03, annotated) for annotated in asked.unmarked or [1]]
     rng = np.random.default_rng(0)
     rows = []
     with ProcessPoolExecutor() as pool:
-        for edges in EDGES:
-            scored = list(pool.map(score, jobs(walks, edges), chunksize=4))
-            rows.append(_row(edges, scored, rng))
+        for edges, annotated in kinds:
+            drawn = jobs(asked.walks, edges, annotated=annotated)
+            scored = list(pool.map(score, drawn, chunksize=4))
+            name = "drawn edges" if edges is None else f"edges {edges:g} px"
+            if annotated:
+                name = f"no marker, {annotated} annotated"
+            rows.append((name, *_row(scored, rng)))
     print_table(
-        ("edges", "NEES", "99 %", "joint NEES", "99 %", "near: x, y, yaw hold", "far", "of",
+        ("walks", "NEES", "99 %", "joint NEES", "99 %", "near: x, y, yaw hold", "far", "of",
          "sd x, y, yaw", "largest error"),
         *rows,
     )  # fmt: skip
 
 
-def _row(edges: float | None, scored: list[Scored], rng: np.random.Generator) -> tuple[str, ...]:
-    cells = ["drawn" if edges is None else f"{edges:g} px"]
+def _row(scored: list[Scored], rng: np.random.Generator) -> tuple[str, ...]:
+    cells = []
     for values in (np.array([s.marginal for s in scored]), np.array([s.joint for s in scored])):
         low, high = interval(values, rng)
         cells += [f"{values.mean():.3f}", f"{low:.3f} to {high:.3f}"]

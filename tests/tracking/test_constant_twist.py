@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 from tracking.constant_twist import (
+    SWAY_SD,
+    SWAY_TIME,
     Process,
     link_derivatives,
     link_error,
@@ -25,17 +27,18 @@ def test_a_constant_twist_has_no_error():
 
 
 @pytest.mark.parametrize("dt", [0.03, 1.0, 8.0])
-def test_weights_are_the_inverse_of_the_covariance_of_white_noise(dt):
+def test_weights_are_the_inverse_of_the_covariance_of_white_noise_and_sway(dt):
     process = Process(2e-3, 5e-2)
     weights, log_det = link_weights(np.array([dt, 2 * dt]), process)
     of_time = np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]])
     covariance = np.kron(of_time, np.diag([process.travel, process.travel, process.turn]))
+    covariance[:3, :3] += np.diag(2 * SWAY_SD**2 * min(dt / SWAY_TIME, 1.0))
     np.testing.assert_allclose(weights[0] @ covariance, np.eye(6), atol=1e-3)
     assert log_det == pytest.approx(np.linalg.slogdet(weights)[1].sum(), rel=1e-3)
 
 
 def test_links_of_an_instant_are_finite_and_hold_to_a_micrometre():
-    weights, log_det = link_weights(np.array([1e-9]), Process(1e-4, 1e-3))
+    weights, log_det = link_weights(np.array([1e-12]), Process(1e-4, 1e-3))
     assert np.isfinite(log_det)
     np.testing.assert_allclose(np.linalg.inv(weights[0])[:3, :3], 1e-12 * np.eye(3), rtol=1e-3)
 

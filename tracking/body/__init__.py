@@ -2,6 +2,7 @@
 """Markerless tracking: find the robot by a template annotated in one photograph."""
 
 from tracking.body.align import Alignment, align
+from tracking.body.annotated import AnnotatedPose
 from tracking.body.heading import resolve_headings
 from tracking.body.search import BodyCandidates, find_body, floor_in_view, match_turned
 from tracking.body.template import (
@@ -14,6 +15,7 @@ from tracking.body.template import (
 
 __all__ = [
     "Alignment",
+    "AnnotatedPose",
     "BodyCandidates",
     "BodyTemplate",
     "TopPlate",

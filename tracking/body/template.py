@@ -8,10 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.body.annotated import AnnotatedPose
 from tracking.camera.lens import Array, Camera, CameraPose, project
 from tracking.errors import BodyError
 from tracking.markers import marker_picture
-from tracking.pose import BodyPose, RobotMarker, rotation_with_derivatives
+from tracking.pose import BodyPose, BodyPrior, RobotMarker, rotation_with_derivatives
 
 MOST_POINTS = 2500
 """Default of the approximate largest number of points in a template."""
@@ -130,7 +131,7 @@ def pixel_on_top(camera: Camera, view: CameraPose, *, pose: BodyPose, plate: Top
 
 def make_template(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate,
-    most_points: int = MOST_POINTS,
+    most_points: int = MOST_POINTS, prior: BodyPrior | None = None,
 ) -> BodyTemplate:  # fmt: skip
     """Cut the robot's template out of an annotated photograph.
 
@@ -141,6 +142,8 @@ def make_template(
         pose: Pose of the robot: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
         plate: The robot's top.
         most_points: Approximate largest number of points; a larger top is sampled more coarsely.
+        prior: Prior of height and tilt with which `pose` was fitted; None leaves out how the
+            template errs with it.
 
     Returns:
         The template, with one point for each pixel of the photograph, or fewer.
@@ -162,7 +165,12 @@ def make_template(
         )
     points = _grid(plate, step)
     seen = project(camera, view, points.reshape(-1, 3) @ R.T + pose.state[:3])
-    template = BodyTemplate(plate, step, points, sample(pixels, seen.reshape(*points.shape[:2], 2)))
+    colours = sample(pixels, seen.reshape(*points.shape[:2], 2))
+    by_cause = {}
+    if prior is not None:
+        annotated = AnnotatedPose(camera, view, pose, prior, plate.corners_body)
+        by_cause = annotated.points_by(points.reshape(-1, 3))
+    template = BodyTemplate(plate, step, points, colours, points_by=by_cause)
     if template.contrast < 4.0:
         raise BodyError(
             f"the colours of the robot's top and its margin vary by {template.contrast:.1f} grey "

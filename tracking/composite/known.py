@@ -102,7 +102,7 @@ class KnownExposure:
         try:
             return make_template(
                 pixels, self.camera, self.view, pose=self.pose, plate=plate,
-                most_points=most_points,
+                most_points=most_points, prior=self.prior,
             )  # fmt: skip
         except BodyError as error:
             raise CompositeError(str(error)) from error

@@ -64,7 +64,8 @@ def edge_spread(
     for k in np.flatnonzero(known.weights > _NEGLIGIBLE):
         seen = observe(fit, usable, robot=robot, times=times, edge_sd=float(EDGE_SPREADS[k]))
         seen = replay(seen, flips, prior=robot.prior)
-        track = assemble_track(seen, shared=shared, prior=robot.prior, gap=gap, start=process)
+        track = assemble_track(seen, shared=shared, prior=robot.prior, gap=gap, start=process,
+                               average=False)  # fmt: skip
         process = track.smoothed.process
         logs[k] = track.smoothed.log_likelihood + sum(each.pose.log_evidence for each in seen)
     at_least = np.maximum.accumulate(logs)

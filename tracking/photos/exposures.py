@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracking.body import marker_template
-from tracking.camera.lens import Array
+from tracking.body import AnnotatedPose, marker_template
 from tracking.composite import (
     Exposure,
     Merged,
@@ -18,7 +17,7 @@ from tracking.composite import (
 from tracking.composite.steps import usual_step
 from tracking.errors import CompositeError
 from tracking.images import PhotoTimes, read_pixels
-from tracking.photos.by_look import annotation_covariance, marked_top, pose_of_top
+from tracking.photos.by_look import marked_tops, pose_of_top
 from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Tracked, finish, observation_of, times_by_name
 from tracking.photos.scene import Photo, Scene
@@ -62,17 +61,21 @@ def track_exposures(
     order = order_exposures(np.array([each.alignment.pose.planar for each in exposures]))
     names = tuple(f"{photo.name}#{number}" for number in range(1, len(order) + 1))
     times = times_by_name(names, times_of(names))
-    is_annotated = scene.robot is None
-    source = "body" if is_annotated else "marker"
+    annotated = None if scene.robot is not None else _annotated(scene, seen, photo)
+    source = "marker" if annotated is None else "body"
     observations = [
         observation_of(
-            name, exposures[k].alignment, times[name], source=source, annotated=is_annotated
+            name,
+            exposures[k].alignment,
+            times[name],
+            source=source,
+            annotated=None if annotated is None else (photo.name, annotated),
         )
         for name, k in zip(names, order, strict=True)
     ]
     tracked = finish(
         scene, seen, observations, unseen={}, times=times, gap=gap,
-        annotation=_annotation(scene, seen, photo) if is_annotated else None,
+        annotations=None if annotated is None else {photo.name: annotated},
     )  # fmt: skip
     notes = (*tracked.notes, *_rough_note(exposures), *_overlap_note(scene, merged, exposures))
     return replace(tracked, notes=notes)
@@ -81,7 +84,7 @@ def track_exposures(
 def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> tuple[Exposure, ...]:
     """Find exposures by the robot's marker, or without one by the exposure of annotated top.
 
-    Raises CompositeError if `scene.body_size` is None or none is found, and as `marked_top`.
+    Raises CompositeError if `scene.body_size` is None or none is found, and as `marked_tops`.
     """
     size = scene.body_size
     if size is None:
@@ -95,17 +98,16 @@ def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> t
             pixels, scene.camera, view, template=marker_template(scene.robot.marker),
             prior=scene.prior, merged=merged, body_size=size, hidden=hidden,
         )  # fmt: skip
-    top = marked_top(scene, seen, [photo])
+    top = marked_tops(scene, seen, [photo])[0]
     return find_exposures_like(
-        pixels, scene.camera, view, known=pose_of_top(top, scene, view), plate=top.plate,
+        pixels, scene.camera, view, known=pose_of_top(top, scene, view).pose, plate=top.plate,
         prior=scene.prior, merged=merged, body_size=size, hidden=hidden,
     )  # fmt: skip
 
 
-def _annotation(scene: Scene, seen: FloorSeen, photo: Photo) -> Array:
-    """Compute the covariance (3, 3) of the annotated exposure's pose by the clicks."""
-    top, view = marked_top(scene, seen, [photo]), seen.fit.pose_of(photo.name)
-    return annotation_covariance(pose_of_top(top, scene, view), scene.prior)
+def _annotated(scene: Scene, seen: FloorSeen, photo: Photo) -> AnnotatedPose:
+    """Fit the pose of the annotated exposure to its clicks; raise as `marked_tops`."""
+    return pose_of_top(marked_tops(scene, seen, [photo])[0], scene, seen.fit.pose_of(photo.name))
 
 
 def _rough_note(exposures: Sequence[Exposure]) -> list[str]:

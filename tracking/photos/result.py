@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracking.body import Alignment
-from tracking.camera.lens import Array
+from tracking.body import Alignment, AnnotatedPose
 from tracking.corrections import Correction, Move, replay
 from tracking.doubt import doubts, heading_doubts
 from tracking.images import PhotoTimes
+from tracking.next_annotation import NextAnnotation
 from tracking.path import PoseObservation, Track, assemble_track
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.scene import Scene
-from tracking.shared import ANNOTATION, SharedErrors
+from tracking.shared import ANNOTATION, SharedErrors, annotation_name
 from tracking.suspect import suspicion
 
 Times = Mapping[str, tuple[float, float]]
@@ -31,12 +31,14 @@ class Tracked:
         lost: By name of each photograph without a pose in the track, the reason: it cannot be used,
             does not show the robot, or its pose was deleted by a correction.
         notes: Notes and warnings for the user, one line each.
+        next_annotation: Without a marker, the photograph to annotate next; None where none gains.
     """
 
     track: Track
     floor: FloorSeen
     lost: Mapping[str, str]
     notes: tuple[str, ...]
+    next_annotation: NextAnnotation | None = None
 
 
 def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
@@ -51,7 +53,7 @@ def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
 
 def observation_of(
     photo: str, alignment: Alignment, time: tuple[float, float], *, source: str, stand: int = 0,
-    annotated: bool = False,
+    annotated: tuple[str, AnnotatedPose] | None = None,
 ) -> PoseObservation:  # fmt: skip
     """Convert a template alignment to an observation of the pose.
 
@@ -61,22 +63,22 @@ def observation_of(
         time: Time of the photograph and its standard deviation [s].
         source: "marker" or "body": what the template shows.
         stand: Number of the camera's stand, from 0.
-        annotated: Whether the template was cut out at an annotated pose, whose error in the body
-            frame is then an error of this pose too.
+        annotated: Where the template was cut out at an annotated pose, the name of its photograph
+            and this pose, whose error is an error of the found pose too.
     """
     t, t_sd = time
     pose = alignment.pose
-    if annotated:
-        c, s = np.cos(pose.state[5]), np.sin(pose.state[5])
-        moved = np.zeros((6, 3))
-        moved[:2, :2], moved[5, 2] = [[c, -s], [s, c]], 1.0
-        pose = replace(pose, by_cause={**pose.by_cause, ANNOTATION: moved})
-    return PoseObservation(photo, t, t_sd, pose, alignment.score, source, stand)
+    name = "" if annotated is None else annotated[0]
+    if annotated is not None and ANNOTATION not in pose.by_cause:
+        moved = annotated[1].as_a_whole(float(pose.state[5]))
+        pose = replace(pose, by_cause={**pose.by_cause, **moved})
+    return PoseObservation(photo, t, t_sd, pose, alignment.score, source, stand, name)
 
 
 def finish(
     scene: Scene, seen: FloorSeen, observations: Sequence[PoseObservation], *,
-    unseen: Mapping[str, str], times: Times, gap: float | None, annotation: Array | None = None,
+    unseen: Mapping[str, str], times: Times, gap: float | None,
+    annotations: Mapping[str, AnnotatedPose] | None = None,
 ) -> Tracked:  # fmt: skip
     """Apply corrections, smooth the poses, and collect notes for the user.
 
@@ -88,8 +90,8 @@ def finish(
         times: By photograph, time and its standard deviation [s].
         gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
             interval.
-        annotation: Covariance of the annotated pose in the body frame, of observations with
-            `annotated`, shape (3, 3); None without a template that was cut out.
+        annotations: By name of photograph, the annotated poses at which templates were cut out;
+            None for none.
 
     Returns:
         The track, with the warnings of the floor fit and notes on stated values that do not fit,
@@ -100,8 +102,8 @@ def finish(
     """
     kept = replay(observations, scene.corrections, times=times, prior=scene.prior)
     shared = shared_errors(scene, seen)
-    if annotation is not None:
-        shared = shared.also(ANNOTATION, annotation)
+    for photo, annotated in (annotations or {}).items():
+        shared = shared.also(annotation_name(photo), annotated.covariance)
     track = assemble_track(kept, shared=shared, prior=scene.prior, gap=gap)
     tracked = {seen.photo for seen in track.observations}
     deleted = {o.photo: "deleted by a correction" for o in observations if o.photo not in tracked}

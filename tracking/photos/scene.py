@@ -57,7 +57,7 @@ class Scene:
         floor: The floor's marks as measured.
         prior: Prior of the body's height and tilt.
         robot: The robot with its marker; None to track it by a template.
-        top: Annotation of the robot's top in one photograph, to track it by a template.
+        tops: Annotations of the robot's top, each in another photograph, to track it by templates.
         clicks: By name of photograph and name of floor point, the pixel u, v clicked on [px].
         corrections: Manual corrections of the poses found, in the order in which they were made.
         merged: How the exposures of one composite picture were merged; None for separate
@@ -69,7 +69,7 @@ class Scene:
     floor: FloorMap
     prior: BodyPrior
     robot: MarkedRobot | None
-    top: MarkedTop | None = None
+    tops: tuple[MarkedTop, ...] = ()
     clicks: Mapping[str, Mapping[str, Click]] = field(default_factory=dict)
     corrections: tuple[Correction, ...] = ()
     merged: Merged | None = None

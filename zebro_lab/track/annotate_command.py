@@ -74,7 +74,8 @@ def _annotate(request: AnnotateRequest, output: Output) -> None:
             param_hint="'annotate'",
         )
     written, out = annotate_stage.annotate(request), request.out
-    template = "" if written.template is None else f"robot's top in {written.template.photo}, "
+    photos = ", ".join(top.photo for top in written.templates)
+    template = f"robot's top in {photos}, " if photos else ""
     clicks = sum(len(points) for points in written.clicks.values())
     output.say(f"{template}{clicks} points of the floor, {len(written.corrections)} corrections")
     output.say(f"wrote {out}; give it to track as --annotations {out}")

@@ -48,7 +48,7 @@ def annotate(request: AnnotateRequest) -> Annotations:
     """
     if request.added is not None and request.out.exists() and request.out.samefile(request.added):
         raise AlreadyExists(f"{request.out} is the file given as --from; choose another with --out")
-    new = Annotations(_template(request), _clicks(request), _corrections(request))
+    new = Annotations(_templates(request), _clicks(request), _corrections(request))
     names = photo_names(request.photos)
     if request.added is not None:
         new = new.merged(read_annotations(request.added))
@@ -107,9 +107,9 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     atomic_write_bytes(target, drawn.getvalue())
 
 
-def _template(request: AnnotateRequest) -> MarkedTop | None:
+def _templates(request: AnnotateRequest) -> tuple[MarkedTop, ...]:
     if request.corners is None:
-        return None
+        return ()
     corners = tuple(_pair(text, "--corners") for text in request.corners.split())
     if len(corners) != 4:
         raise SettingsError(
@@ -119,7 +119,7 @@ def _template(request: AnnotateRequest) -> MarkedTop | None:
         )
     if request.photo is None:
         raise SettingsError("missing: name the photograph of --corners", key="--photo")
-    return MarkedTop(request.photo, corners, _plate(request))
+    return (MarkedTop(request.photo, corners, _plate(request)),)
 
 
 def _plate(request: AnnotateRequest) -> TopPlate:
@@ -193,8 +193,7 @@ def _numbers(text: str, key: str) -> list[float]:
 
 
 def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
-    template = annotations.template
-    photos = [*([template.photo] if template else []), *annotations.clicks]
+    photos = [*(top.photo for top in annotations.templates), *annotations.clicks]
     for each in annotations.corrections:
         photos += each.photos if isinstance(each, Order) else (each.photo,)
     for photo in photos:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read and format `annotations.toml`: a person's annotations of photographs, used in tracking.
 
-New corrections are appended; a new template or click replaces the earlier one.
+New corrections are appended; a new template of a photograph, or a new click, replaces the earlier.
 """
 
 from collections.abc import Mapping
@@ -24,24 +24,28 @@ class Annotations:
     """A person's annotations of photographs.
 
     Attributes:
-        template: Corners of the robot's top in one photograph, and its size; None without one.
+        templates: Corners of the robot's top, and its size, each in another photograph.
         clicks: Clicked pixel (u, v) of each floor point, by photograph and the point's name [px].
         corrections: Corrections of the tracker's poses, in the order in which they are applied.
     """
 
-    template: MarkedTop | None = None
+    templates: tuple[MarkedTop, ...] = ()
     clicks: Mapping[str, Mapping[str, Click]] = field(default_factory=dict)
     corrections: tuple[Correction, ...] = ()
 
     def merged(self, later: "Annotations") -> "Annotations":
-        """Return both: template and clicks of `later` prevail, its corrections are appended."""
+        """Return both: clicks of `later` prevail, also its templates of the same photographs.
+
+        Its corrections are appended.
+        """
+        tops = {top.photo: top for top in (*self.templates, *later.templates)}
         names = {**self.clicks, **later.clicks}
         clicks = {
             photo: {**self.clicks.get(photo, {}), **later.clicks.get(photo, {})} for photo in names
         }
         return replace(
             self,
-            template=later.template or self.template,
+            templates=tuple(tops.values()),
             clicks=clicks,
             corrections=self.corrections + later.corrections,
         )
@@ -55,15 +59,32 @@ def read_annotations(file: Path) -> Annotations:
         SettingsError: The file is not TOML, or holds an unknown key or an impossible value.
     """
     table = read_settings(file, advice="`zebro-lab annotate PHOTOS` writes one")
-    template = _template(table.table("template")) if "template" in table else None
+    templates = _templates(table)
     clicks = table.table("clicks")
     points = {photo: clicks.table(photo) for photo in clicks.left}
     by_photo = {
         photo: {name: _pixel(own, name) for name in own.left} for photo, own in points.items()
     }
-    annotations = Annotations(template, by_photo, _corrections(table))
+    annotations = Annotations(templates, by_photo, _corrections(table))
     table.finish()
     return annotations
+
+
+def _templates(table: SettingsTable) -> tuple[MarkedTop, ...]:
+    """Read `[template]`, or several `[[template]]`, each of another photograph."""
+    if "template" not in table:
+        return ()
+    found = table.value("template", [])
+    if not isinstance(found, list):
+        return (_template(table.as_table("template", found)),)
+    tops = tuple(
+        _template(table.as_table(f"template[{k}]", each)) for k, each in enumerate(found, 1)
+    )
+    photos = [top.photo for top in tops]
+    twice = next((photo for photo in photos if photos.count(photo) > 1), None)
+    if twice is not None:
+        raise table.fault(f"'{twice}' is annotated twice; remove one of the tables", "template")
+    return tops
 
 
 def _template(table: SettingsTable) -> MarkedTop:
@@ -111,9 +132,11 @@ def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
 def render_annotations(annotations: Annotations) -> str:
     """Format annotations as commented TOML, from which `read_annotations` reads the same."""
     template, values = _HEADING, {}
-    if annotations.template is not None:
+    if len(annotations.templates) == 1:
         template += _TEMPLATE_SECTION
-        values["template"] = _template_values(annotations.template)
+        values["template"] = _template_values(annotations.templates[0])
+    elif annotations.templates:
+        values["template"] = [_template_values(each) for each in annotations.templates]
     if annotations.clicks:
         values["clicks"] = annotations.clicks
     if annotations.corrections:

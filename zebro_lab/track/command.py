@@ -111,6 +111,8 @@ def track_lines(result: "TrackResult") -> list[str]:
         f"y {1e3 * np.median(spread[:, 1]):.2f} mm, "
         f"yaw {np.degrees(np.median(spread[:, 2])):.3f} deg",
         *_uncertainty_lines(track),
+        *([] if result.tracked.next_annotation is None
+          else [result.tracked.next_annotation.sentence]),
         f"floor: marks are off by {fit.misfit_px:.3f} px (rms), camera "
         f"{fit.stands[0].pose.position[2]:.3f} m high",
         *(f"left out: {photo}: {reason}" for photo, reason in lost[:_MOST_LISTED]),

@@ -73,7 +73,7 @@ class TrackInputs:
             with open_picture(sequence.photos[0].path):
                 pass  # files that are no pictures have their own error
             raise HowMergedUnknown(_HOW_MERGED, key="--merged")
-        if self.scene.robot is None and self.scene.top is None:
+        if self.scene.robot is None and not self.scene.tops:
             raise SettingsError(
                 "needed: without a marker the robot is found by its look; annotate its top in one "
                 "photograph with `zebro-lab annotate PHOTOS --photo NAME --corners ...`",
@@ -120,7 +120,7 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
         require_apart(robot, floor)
     length, width = described.robot.body_size[:2]
     scene = Scene(
-        camera, floor, prior, robot, top=annotations.template, clicks=annotations.clicks,
+        camera, floor, prior, robot, tops=annotations.templates, clicks=annotations.clicks,
         corrections=annotations.corrections,
         merged=None if request.merged is None else Merged(request.merged),
         body_size=(length, width),

@@ -115,6 +115,8 @@ class DrawnWalk:
         robot: The robot's marker in each photograph.
         floor: By photograph and number, the floor's markers.
         distance: Distance of the camera from the middle of the floor [m].
+        bodies: x, y, z [m], roll, pitch and yaw [rad] of the body, shape (n, 6).
+        camera: Rotation of the camera, world to camera, shape (3, 3), and its place, (3,) [m].
     """
 
     lens: Lens
@@ -125,6 +127,8 @@ class DrawnWalk:
     robot: list[Sight]
     floor: list[dict[int, Sight]]
     distance: float
+    bodies: Array
+    camera: tuple[Array, Array]
     size: tuple[int, int] = field(default=(1280, 960))
 
 
@@ -166,8 +170,58 @@ def draw_walk(
         lens, s, Told(told_lens, told_marks, told_robot, height), t, poses,
         [_drawn(rng, lens, R, eye, _on_body(robot, state), s, edges + rng.normal(0, s.edges))
          for state in body],
-        [{number: _again(rng, sight) for number, sight in seen.items()} for _ in t], distance,
+        [{number: _again(rng, sight) for number, sight in seen.items()} for _ in t], distance, body,
+        (R, eye),
     )  # fmt: skip
+
+
+TOP_HEIGHT = 0.0385
+"""Height of the body's flat top, and of the marker on it, over the body's origin [m]."""
+
+
+def top_in_photo(walk: DrawnWalk, photo: int, places: Array) -> Array:
+    """Project places on the body's top.
+
+    Args:
+        walk: The walk.
+        photo: Number of the photograph, from 0.
+        places: x and y in the body frame, shape (n, 2) [m].
+
+    Returns:
+        Pixels, shape (n, 2).
+    """
+    flat = np.column_stack((places, np.full(len(places), TOP_HEIGHT)))
+    state = walk.bodies[photo]
+    return project(walk.lens.values, *walk.camera, flat @ _turn(state).T + state[:3])
+
+
+def places_on_top(walk: DrawnWalk, photo: int, pixels: Array) -> Array:
+    """Find the places on the body's top that are at given pixels, by Newton's method.
+
+    Args:
+        walk: The walk.
+        photo: Number of the photograph, from 0.
+        pixels: Pixels, shape (n, 2).
+
+    Returns:
+        x and y in the body frame, shape (n, 2) [m].
+    """
+    places, h = np.zeros((len(pixels), 2)), 1e-5
+    for _ in range(20):
+        missed = pixels - top_in_photo(walk, photo, places)
+        slope = np.stack(
+            [
+                (
+                    top_in_photo(walk, photo, places + h * e)
+                    - top_in_photo(walk, photo, places - h * e)
+                )
+                / (2 * h)
+                for e in np.eye(2)
+            ],
+            axis=2,
+        )
+        places = places + np.linalg.solve(slope, missed[:, :, None])[:, :, 0]
+    return places
 
 
 def _camera(rng: np.random.Generator, distance: float) -> tuple[Array, Array]:
@@ -215,15 +269,18 @@ def _on_body(robot: Array, state: Array) -> Array:
     c, s = np.cos(turn), np.sin(turn)
     # The print's top points ahead: up is x of the body, across is minus y.
     x, y = ahead + c * up + s * across, left + s * up - c * across
-    points = np.column_stack((x, y, np.full(4, 0.0385)))
+    return np.column_stack((x, y, np.full(4, TOP_HEIGHT))) @ _turn(state).T + state[:3]
+
+
+def _turn(state: Array) -> Array:
+    """Compute the rotation of a body, body to world."""
     roll, pitch, yaw = state[3:]
     cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (np.cos, np.sin))
-    R = np.array([
+    return np.array([
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
         [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
         [-sp, cp * sr, cp * cr],
     ])  # fmt: skip
-    return points @ R.T + state[:3]
 
 
 def project(lens: Array, R: Array, eye: Array, points: Array) -> Array:

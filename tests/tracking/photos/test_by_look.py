@@ -7,22 +7,24 @@ import numpy as np
 import pytest
 
 from model.poses import relative
+from tracking.camera import project
 from tracking.errors import BodyError, NoUsablePhoto
 from tracking.photos.by_look import (
-    annotation_covariance,
-    marked_top,
+    marked_tops,
+    nearest_of,
     pose_of_top,
     track_by_look,
 )
 from tracking.photos.floor_seen import see_floor
 from tracking.photos.workers import NoProgress
-from tracking.shared import ANNOTATION
+from tracking.pose import rotation_with_derivatives
+from tracking.shared import annotation_name
 
 TIMES = {"p0.png": (0.0, 0.0), "p1.png": (2.0, 0.0)}
 
 
 def test_the_robot_is_found_where_it_was(scene, photos, walk, top):
-    bare = replace(scene, robot=None, top=top)
+    bare = replace(scene, robot=None, tops=(top,))
     found = track_by_look(bare, photos[:2], times=TIMES, gap=None, workers=1, progress=NoProgress())
     np.testing.assert_allclose(found.track.poses[:, :2], walk[:2, :2], atol=4e-3)
 
@@ -30,53 +32,38 @@ def test_the_robot_is_found_where_it_was(scene, photos, walk, top):
 def test_the_marked_top_must_be_known_and_its_photograph_usable(scene, photos, top, unreadable):
     seen = see_floor(scene, [photos[0], unreadable], robot=None, workers=1, progress=NoProgress())
     with pytest.raises(BodyError, match="not annotated"):
-        marked_top(scene, seen, photos)
+        marked_tops(scene, seen, photos)
     with pytest.raises(NoUsablePhoto, match="not among"):
-        marked_top(replace(scene, top=replace(top, photo="p9.png")), seen, photos)
-    bad = replace(scene, top=replace(top, photo="bad.png"))
+        marked_tops(replace(scene, tops=(replace(top, photo="p9.png"),)), seen, photos)
+    bad = replace(scene, tops=(replace(top, photo="bad.png"),))
     with pytest.raises(NoUsablePhoto, match=r"bad.png: not a readable picture"):
-        marked_top(bad, seen, [*photos, unreadable])
-    assert marked_top(replace(scene, top=top), seen, photos) is top
+        marked_tops(bad, seen, [*photos, unreadable])
+    assert marked_tops(replace(scene, tops=(top,)), seen, photos) == (top,)
 
 
 def test_clicks_on_the_top_give_the_robots_pose(scene, photos, walk, top):
     seen = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress())
-    pose = pose_of_top(top, scene, seen.fit.pose_of("p0.png"))
+    pose = pose_of_top(top, scene, seen.fit.pose_of("p0.png")).pose
     np.testing.assert_allclose(pose.planar, walk[0], atol=2e-3)
-
-
-def test_an_annotated_pose_errs_by_the_covariance_of_its_clicks(scene, photos, top):
-    seen = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress())
-    view = seen.fit.pose_of("p0.png")
-    rng, first = np.random.default_rng(1), pose_of_top(top, scene, view)
-    errors = []
-    for _ in range(400):
-        clicks = np.add(top.corners_px, top.corner_sd_px * rng.standard_normal((4, 2)))
-        again = pose_of_top(replace(top, corners_px=tuple(map(tuple, clicks))), scene, view)
-        errors.append(relative(again.planar, first.planar))
-    stated = annotation_covariance(first, scene.prior)
-    sd = np.sqrt(np.diag(stated))
-    np.testing.assert_allclose(np.std(errors, axis=0), sd, rtol=0.15)
-    np.testing.assert_allclose(np.corrcoef(np.transpose(errors)), stated / np.outer(sd, sd),
-                               atol=0.2)  # fmt: skip
 
 
 def test_clicks_that_are_off_move_the_whole_track_and_the_covariance_says_so(
     scene, photos, walk, top
 ):
-    bare = replace(scene, robot=None, top=top)
+    bare = replace(scene, robot=None, tops=(top,))
     run = {"times": TIMES, "gap": None, "workers": 1, "progress": NoProgress()}
     right = track_by_look(bare, photos[:2], **run).track
     c, s = np.cos(0.03), np.sin(0.03)
     middle = np.mean(top.corners_px, axis=0)
     turned = (np.subtract(top.corners_px, middle) @ [[c, -s], [s, c]]) + middle + [0.8, 0.0]
     off = replace(top, corners_px=tuple(map(tuple, turned)))
-    wrong = track_by_look(replace(bare, top=off), photos[:2], **run).track
+    wrong = track_by_look(replace(bare, tops=(off,)), photos[:2], **run).track
     moved = [relative(a, b) for a, b in zip(right.poses, wrong.poses, strict=True)]
     assert np.all(np.abs(moved[0] - moved[1]) < [1e-3, 1e-3, 6e-3])  # alike, on the body
     assert abs(moved[0][2]) > 0.02
-    slot = wrong.shared.slots[ANNOTATION]
-    known = wrong.covariance_given([ANNOTATION])[0]
+    name = annotation_name(top.photo)
+    slot = wrong.shared.slots[name]
+    known = wrong.covariance_given([name])[0]
     assert wrong.covariance[0, 2, 2] > 2 * known[2, 2]
     assert wrong.joint.by_error[1][:, slot].any()
 
@@ -85,12 +72,35 @@ def test_a_poorly_known_lens_is_corrected_by_the_floor_for_the_robot_too(scene, 
     # The camera's poses are those of the lens that the floor fits, not of the stated one.
     lens = scene.camera
     wrong = lens.matrix * [[1.08, 1, 1], [1, 1.08, 1], [1, 1, 1]]
-    bent = [*lens.distortion, 0.15, 0, 0, 0, 0]
+    bent = np.add(lens.distortion, [0.15, 0, 0, 0, 0])
     sd = np.array([*(0.06 * lens.matrix[[0, 1], [0, 1]]), 3.0, 3.0, 0.1, 0, 0, 0, 0])
     poorly = replace(lens, matrix=wrong, distortion=bent, covariance=np.diag(sd**2))
-    bare = replace(scene, camera=poorly, robot=None, top=top)
+    bare = replace(scene, camera=poorly, robot=None, tops=(top,))
     found = track_by_look(bare, photos[:2], times=TIMES, gap=None, workers=1, progress=NoProgress())
     off = found.track.poses - walk[:2]
     assert np.all(np.abs(off[:, 0]) < 2e-3)  # across the line of sight
     sd = np.sqrt(np.diagonal(found.track.covariance, axis1=1, axis2=2))
     assert np.all(np.abs(off) < 3 * sd)
+
+
+def test_with_several_annotated_photographs_each_gives_the_template_of_those_near_it(
+    scene, photos, walk, top
+):
+    assert nearest_of(["a", "b", "c", "d", "e"], ["d", "a"]) == {
+        "a": "a", "b": "a", "c": "d", "d": "d", "e": "d",
+    }  # fmt: skip
+    times = {photo.name: (2.0 * k, 0.0) for k, photo in enumerate(photos)}
+    run = {"times": times, "gap": None, "workers": 1, "progress": NoProgress()}
+    one = track_by_look(replace(scene, robot=None, tops=(top,)), photos, **run)
+    x, y, yaw = walk[2]
+    R, _ = rotation_with_derivatives(0.0, 0.0, yaw)
+    view = one.floor.fit.pose_of(photos[2].name)
+    at = project(scene.camera, view, top.plate.corners_body @ R.T + [x, y, scene.prior.height])
+    last = replace(top, photo=photos[2].name, corners_px=tuple(map(tuple, at)))
+    both = track_by_look(replace(scene, robot=None, tops=(top, last)), photos, **run)
+    assert [seen.annotated for seen in both.track.observations] == ["p0.png", "p0.png", "p2.png"]
+    assert {annotation_name("p0.png"), annotation_name("p2.png")} <= set(both.track.shared.slots)
+    assert np.all(both.track.covariance[:, 2, 2] < 0.97 * one.track.covariance[:, 2, 2])
+    assert one.next_annotation is not None
+    assert one.next_annotation.photo != top.photo
+    np.testing.assert_allclose(both.track.poses[:, :2], walk[:, :2], atol=4e-3)

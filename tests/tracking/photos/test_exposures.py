@@ -63,7 +63,7 @@ def test_a_mean_whose_exposures_overlap_is_noted_as_less_sure_than_it_says(
     ]
     found = tuple(Exposure(Alignment(pose, 0.9, 0.0), 1.0) for pose in poses)
     monkeypatch.setattr(exposures, "find_exposures_like", lambda *_, **__: found)
-    unmarked = replace(scene, robot=None, top=top, body_size=(0.24, 0.2))
+    unmarked = replace(scene, robot=None, tops=(top,), body_size=(0.24, 0.2))
     notes = tracked(unmarked, photos[0], merged).notes
     assert any("standard deviations" in note for note in notes) == told
 

@@ -25,7 +25,9 @@ def test_a_marked_walk_is_tracked(scene, photos, walk):
 
 
 def test_without_a_marker_the_marked_top_is_tracked(scene, photos, walk, top):
-    tracked = track_photos(replace(scene, robot=None, top=top), photos, times_of=every_two_seconds)
+    tracked = track_photos(
+        replace(scene, robot=None, tops=(top,)), photos, times_of=every_two_seconds
+    )
     np.testing.assert_allclose(tracked.track.poses[:, :2], walk[:, :2], atol=4e-3)
     assert {seen.source for seen in tracked.track.observations} == {"body"}
 

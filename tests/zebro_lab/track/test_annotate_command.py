@@ -22,8 +22,7 @@ def test_annotations_are_added_to_those_before(run_command, tmp_path):
     assert code == 0
     assert "robot's top in simulated_01.jpg, 1 points of the floor, 3 corrections" in out
     said = read_annotations(file)
-    assert said.template is not None
-    assert said.template.plate.width == 0.14
+    assert said.templates[0].plate.width == 0.14
     assert len(said.corrections) == 3
 
 

@@ -55,9 +55,8 @@ def test_the_top_and_points_of_the_floor_are_clicked_on(asked):
         asked, photo="p1.png", corners=corners, plate="194mmx251mm@35mm", margin="10mm",
         clicks=("p2.png:door=10,20.5",),
     ))  # fmt: skip
-    assert said.template is not None
-    assert said.template.corners_px == ((1, 2), (3, 2), (3, 8), (1, 8))
-    plate = said.template.plate
+    assert said.templates[0].corners_px == ((1, 2), (3, 2), (3, 8), (1, 8))
+    plate = said.templates[0].plate
     assert (plate.length, plate.width, plate.height, plate.margin) == (0.194, 0.251, 0.035, 0.01)
     assert said.clicks == {"p2.png": {"door": (10.0, 20.5)}}
 
@@ -70,8 +69,7 @@ def test_a_plate_in_millimetres_needs_their_unit(asked):
 
 def test_without_a_plate_the_top_is_the_body_of_the_robot(asked):
     said = annotate(replace(asked, photo="p1.png", corners="1,2 3,2 3,8 1,8"))
-    assert said.template is not None
-    plate, (length, width, height) = said.template.plate, RobotFile().robot.body_size
+    plate, (length, width, height) = said.templates[0].plate, RobotFile().robot.body_size
     assert (plate.length, plate.width, plate.height) == (length, width, height / 2)
 
 

@@ -52,7 +52,8 @@ def link_weights(dt: Array, process: Process) -> tuple[Array, float]:
         process: Noise densities.
 
     Returns:
-        Inverses of cov e with the sway, shape (n, 6, 6), and the sum of the logarithms of their determinants.
+        Inverses of cov e with the sway, shape (n, 6, 6), and the sum of the logarithms of their
+        determinants.
     """
     q = np.array([process.travel, process.travel, process.turn])
     dt, least = dt[:, None], _LEAST_SD**2

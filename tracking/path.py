@@ -164,6 +164,7 @@ def assemble_track(
     process: Process | None = None,
     start: Process | None = None,
     average: bool = True,
+    again: Sequence[PoseObservation] = (),
 ) -> Track:
     """Sort observations by time; estimate their path and the errors that they share.
 
@@ -176,6 +177,9 @@ def assemble_track(
         process: Noise densities of the motion model; None to estimate them.
         start: Noise densities from which to start their estimate; None for a walking robot's.
         average: As for `tracking.smooth.smooth`.
+        again: Further poses in photographs that have one among `observations`, found with another
+            template. As height and tilt of the body are the same there, they tell only of the
+            errors that the two poses do not share.
 
     Returns:
         The path, smoothed with `tracking.smooth.smooth`, with its joint covariance.
@@ -188,6 +192,12 @@ def assemble_track(
     ordered = tuple(sorted(observations, key=lambda seen: seen.t))
     by_error = np.stack([seen.by_error(shared, prior) for seen in ordered])
     root = shared.root
+    information, gradient = _from_heights(ordered, by_error @ root, root, shared, prior)
+    first = {seen.photo: seen for seen in ordered}
+    for other in again:
+        if other.photo in first:
+            more, slope = _from_difference(first[other.photo], other, shared, prior, root)
+            information, gradient = information + more, gradient + slope
     path = smooth(
         [seen.t for seen in ordered],
         np.array([seen.planar for seen in ordered]),
@@ -197,10 +207,7 @@ def assemble_track(
         process=process,
         start=start,
         average=average,
-        shared=SharedInput(
-            by_error[:, PLANAR] @ root,
-            *_from_heights(ordered, by_error @ root, root, shared, prior),
-        ),
+        shared=SharedInput(by_error[:, PLANAR] @ root, information, gradient),
     )
     left = SharedErrors(root @ path.shared_covariance @ root.T, shared.slots)
     parts = (path.own, path.following, path.gain(by_error[:, PLANAR]), left.covariance)
@@ -236,6 +243,26 @@ def _from_heights(
         information += moved.T @ spread @ moved
         gradient += moved.T @ spread @ held @ e
     return information, gradient
+
+
+def _from_difference(
+    one: PoseObservation, other: PoseObservation, shared: SharedErrors, prior: BodyPrior,
+    root: Array,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Compute what two poses found in one photograph tell of the shared errors u.
+
+    The true pose is either plus its derivative times u plus noise, so that their difference is
+    that of the derivatives times u, plus noise of the pixels alone.
+
+    Returns:
+        Information on u, shape (r, r), and gradient of minus the log likelihood at u = 0, (r,).
+    """
+    apart = other.planar - one.planar
+    apart[2] = np.angle(np.exp(1j * apart[2]))
+    by_error = (one.by_error(shared, prior) - other.by_error(shared, prior))[PLANAR] @ root
+    noise = one.pose.by_pixels(prior) + other.pose.by_pixels(prior)
+    weighed = by_error.T @ np.linalg.inv(noise)
+    return weighed @ by_error, -weighed @ apart
 
 
 def _inverse_where_known(G: Array, held: Array) -> Array:

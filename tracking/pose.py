@@ -177,6 +177,18 @@ class BodyPose:
         """Covariance of x, y and yaw without shared errors, shape (3, 3)."""
         return self.covariance[np.ix_(PLANAR, PLANAR)]
 
+    def by_pixels(self, prior: BodyPrior) -> Array:
+        """Compute the covariance of x, y and yaw by errors of the pixels alone, shape (3, 3).
+
+        With C the whole covariance and Q that of the prior, it is C - C Q^-1 C.
+
+        Args:
+            prior: Prior of height and tilt with which the pose was fitted.
+        """
+        known = self.covariance[:, HELD] @ np.linalg.inv(prior.covariance)
+        by_pixels = self.covariance - known @ self.covariance[HELD]
+        return by_pixels[np.ix_(PLANAR, PLANAR)]
+
     def with_prior(self, prior: BodyPrior) -> Mapping[str, Array]:
         """Return `by_cause` with the mean height and tilt of the prior that was used in the fit.
 

@@ -38,7 +38,7 @@ from benchmarks.accuracy.drawn_walks.world import (
 from benchmarks.tables import print_table
 from tracking.body import Alignment, AnnotatedPose, TopPlate
 from tracking.body.align import SCALE_SD
-from tracking.camera import Camera, project
+from tracking.camera import Camera, CameraPose, project
 from tracking.detect import Detection, MarkedRobot, observe
 from tracking.floor import EDGE_SPREADS, FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.floor.adjustment import EDGE_SCALE
@@ -160,24 +160,19 @@ def track_unmarked(walk: DrawnWalk, rng: np.random.Generator, annotated: int = 1
     numbers = np.linspace(0, len(names), annotated, endpoint=False).astype(int).tolist()
     clicked = {names[k]: _clicked(walk, k, scene, seen, rng) for k in numbers}
     nearest = nearest_of(names, list(clicked))
-    observations = []
+    observations, again = [], []
     for k, name in enumerate(names):
-        pose, places = clicked[nearest[name]]
-        pixels = top_in_photo(walk, k, places)
-        larger = (pixels - pixels.mean(axis=0)).ravel()
-        covariance = OUTLINE_SD**2 * np.eye(8) + SCALE_SD**2 * np.outer(larger, larger)
-        pixels = pixels + rng.multivariate_normal(np.zeros(8), covariance).reshape(4, 2)
-        found = fit_pose(
-            scene.camera, seen.fit.pose_of(name), points_body=PLATE.corners_body,
-            corners_px=pixels, covariance=covariance, prior=scene.prior,
-            points_by=pose.points_by(PLATE.corners_body),
-        )  # fmt: skip
-        observations.append(
-            observation_of(name, Alignment(found, 1.0, 0.0), times[name], source="body",
-                           annotated=(nearest[name], pose))
-        )  # fmt: skip
+        sought = list(clicked) if name in clicked else [nearest[name]]
+        for annotated_in in sought:
+            pose, places = clicked[annotated_in]
+            found = _found(walk, k, places, pose, seen.fit.pose_of(name), rng)
+            observation = observation_of(
+                name, Alignment(found, 1.0, 0.0), times[name], source="body",
+                annotated=(annotated_in, pose),
+            )  # fmt: skip
+            (observations if annotated_in == nearest[name] else again).append(observation)
     tracked = finish(
-        scene, seen, observations, unseen={}, times=times, gap=None,
+        scene, seen, observations, unseen={}, times=times, gap=None, again=again,
         annotations={name: pose for name, (pose, _) in clicked.items()},
     )  # fmt: skip
     suggested = next_annotation(
@@ -185,6 +180,22 @@ def track_unmarked(walk: DrawnWalk, rng: np.random.Generator, annotated: int = 1
         prior=scene.prior, plate=PLATE, corner_sd_px=CLICK_SD, annotated=clicked,
     )  # fmt: skip
     return replace(tracked, next_annotation=suggested)
+
+
+def _found(
+    walk: DrawnWalk, photo: int, places: np.ndarray, annotated: AnnotatedPose, view: CameraPose,
+    rng: np.random.Generator,
+) -> BodyPose:  # fmt: skip
+    """Find places of the robot's top in a photograph, and the pose that follows from a template."""
+    pixels = top_in_photo(walk, photo, places)
+    larger = (pixels - pixels.mean(axis=0)).ravel()
+    covariance = OUTLINE_SD**2 * np.eye(8) + SCALE_SD**2 * np.outer(larger, larger)
+    pixels = pixels + rng.multivariate_normal(np.zeros(8), covariance).reshape(4, 2)
+    return fit_pose(
+        annotated.camera, view, points_body=PLATE.corners_body, corners_px=pixels,
+        covariance=covariance, prior=annotated.prior,
+        points_by=annotated.points_by(PLATE.corners_body),
+    )  # fmt: skip
 
 
 def _clicked(

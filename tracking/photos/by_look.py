@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Track a robot without a marker, by aligning a template of its top with each photograph."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from tracking.body import (
     AnnotatedPose,
     BodyCandidates,
     BodyTemplate,
+    align,
     find_body,
     make_template,
     resolve_headings,
@@ -19,6 +20,7 @@ from tracking.camera.lens import Array
 from tracking.errors import BodyError, NoUsablePhoto, PhotoError
 from tracking.images import read_pixels
 from tracking.next_annotation import next_annotation
+from tracking.path import PoseObservation
 from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Times, Tracked, finish, observation_of
 from tracking.photos.scene import MarkedTop, Photo, Scene
@@ -26,6 +28,7 @@ from tracking.photos.workers import Progress, batches_of, run_batches
 from tracking.pose import BodyPrior, fit_pose
 
 _REACH = 0.6  # radius around the last position that is searched first [m]
+_LIKE = 0.6  # least correlation with the template of another annotated photograph
 _WORTH_WORKERS = 6  # photographs; each takes a second to match
 
 
@@ -45,7 +48,8 @@ def track_by_look(
     """Track a robot by a template of its top, annotated in one photograph or in several.
 
     In each photograph the template of the annotated photograph nearest in order is sought: the
-    robot looks much the same there.
+    robot looks much the same there. In annotated photographs all others are aligned too, which
+    tells how their annotations differ.
 
     Args:
         scene: Camera, floor and robot, with its annotated tops.
@@ -99,6 +103,7 @@ def track_by_look(
     tracked = finish(
         scene, seen, observations, unseen=unseen, times=times, gap=gap,
         annotations={name: annotated for name, (_, annotated) in templates.items()},
+        again=_again(scene, photos, templates, observations),
     )  # fmt: skip
     top = scene.tops[-1]
     return replace(tracked, next_annotation=next_annotation(
@@ -106,6 +111,31 @@ def track_by_look(
         camera=scene.camera, prior=scene.prior, plate=top.plate, corner_sd_px=top.corner_sd_px,
         annotated=templates,
     ))  # fmt: skip
+
+
+def _again(
+    scene: Scene, photos: Sequence[Photo],
+    templates: Mapping[str, tuple[BodyTemplate, AnnotatedPose]],
+    observations: Sequence[PoseObservation],
+) -> list[PoseObservation]:  # fmt: skip
+    """Align, in each annotated photograph, the templates of all others, from the pose found."""
+    files = {photo.name: photo.path for photo in photos}
+    found = []
+    for seen in observations if len(templates) > 1 else ():
+        if seen.photo not in templates:
+            continue
+        pixels = read_pixels(files[seen.photo], size=scene.camera.size)
+        view = templates[seen.photo][1].view
+        for name in templates.keys() - {seen.annotated}:
+            template, annotated = templates[name]
+            alignment = align(pixels, scene.camera, view, template=template, prior=scene.prior,
+                              start=seen.planar)  # fmt: skip
+            if alignment is not None and alignment.score > _LIKE:
+                found.append(
+                    observation_of(seen.photo, alignment, (seen.t, seen.t_sd), source="body",
+                                   stand=seen.stand, annotated=(name, annotated))
+                )  # fmt: skip
+    return found
 
 
 def nearest_of(names: Sequence[str], annotated: Sequence[str]) -> dict[str, str]:

@@ -79,6 +79,7 @@ def finish(
     scene: Scene, seen: FloorSeen, observations: Sequence[PoseObservation], *,
     unseen: Mapping[str, str], times: Times, gap: float | None,
     annotations: Mapping[str, AnnotatedPose] | None = None,
+    again: Sequence[PoseObservation] = (),
 ) -> Tracked:  # fmt: skip
     """Apply corrections, smooth the poses, and collect notes for the user.
 
@@ -92,6 +93,7 @@ def finish(
             interval.
         annotations: By name of photograph, the annotated poses at which templates were cut out;
             None for none.
+        again: Poses in annotated photographs by the templates of other annotated photographs.
 
     Returns:
         The track, with the warnings of the floor fit and notes on stated values that do not fit,
@@ -104,7 +106,10 @@ def finish(
     shared = shared_errors(scene, seen)
     for photo, annotated in (annotations or {}).items():
         shared = shared.also(annotation_name(photo), annotated.covariance)
-    track = assemble_track(kept, shared=shared, prior=scene.prior, gap=gap)
+    unchanged = {id(each) for each in kept} & {id(each) for each in observations}
+    same = {each.photo for each in observations if id(each) in unchanged}
+    again = [each for each in again if each.photo in same]
+    track = assemble_track(kept, shared=shared, prior=scene.prior, gap=gap, again=again)
     tracked = {seen.photo for seen in track.observations}
     deleted = {o.photo: "deleted by a correction" for o in observations if o.photo not in tracked}
     lost = {**seen.lost, **unseen, **deleted}

@@ -3,6 +3,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -98,11 +99,40 @@ def test_the_unmarked_walk_is_within_five_millimetres(lab, world, shared, run_co
     assert_within(poses, truth, 5e-3, 2.0)
 
 
-def clicked(world: dict, pose: np.ndarray) -> str:
+@pytest.mark.long
+def test_the_photograph_that_track_suggests_makes_an_unmarked_walk_surer(
+    lab, world, shared, run_command
+):
+    photos = shared / "virtual-world/photos/s1.10_D"
+    truth, names = read_truth(photos), sorted(path.name for path in photos.glob("*.jpg"))
+
+    def tracked(number: int) -> tuple[np.ndarray, str]:
+        corners = ("--corners", clicked(world, truth[number], seed=number))
+        told = (*corners, "--plate", "150mmx150mm@38.5mm")
+        assert run_command("annotate", photos, "--photo", names[number], *told).code == 0
+        ended = run_command(
+            "track", photos, "--camera", "camera.toml", "--floor", "floor.toml", "--robot",
+            "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out",
+            "--workers", 1, "--without-marker", "--annotations", "annotations.toml",
+        )  # fmt: skip
+        assert ended.code == 0
+        table = pd.read_csv("out/track.csv")
+        assert_within(table[["x_m", "y_m", "yaw_rad"]].to_numpy(), truth, 5e-3, 1.0)
+        return np.sqrt(table["cov_yawyaw"].to_numpy()), ended.out
+
+    once, said = tracked(7)
+    suggested = re.search(r"annotate the robot's top in (\S+) too: .*, that of yaw by (\d+)%", said)
+    assert suggested is not None
+    twice, _ = tracked(names.index(suggested[1]))
+    assert 1 - np.median(twice) / np.median(once) > 0.5 * float(suggested[2]) / 100
+    assert Path("annotations.toml").read_text().count("[[template]]") == 2
+
+
+def clicked(world: dict, pose: np.ndarray, seed: int = 0) -> str:
     """Click on the corners of the robot's top as a person would, to a third of a pixel."""
     R, _ = rotation_with_derivatives(*pose[3:])
     top = np.array([[75, 75, 38.5], [75, -75, 38.5], [-75, -75, 38.5], [-75, 75, 38.5]]) / 1e3
     lens = Camera(tuple(world["image_size"]), np.array(world["K"]), np.zeros(5))
     clicks = project(lens, CameraPose.from_matrix(world["R"], world["t"]), top @ R.T + pose[:3])
-    clicks += np.random.default_rng(0).normal(0, 0.3, clicks.shape)
+    clicks += np.random.default_rng(seed).normal(0, 0.3, clicks.shape)
     return " ".join(f"{u:.1f},{v:.1f}" for u, v in clicks)

@@ -20,8 +20,8 @@ import numpy as np
 
 from tracking.camera.lens import Array
 
-SWAY_SD = np.array([1e-3, 1e-3, 2e-3])
-"""Standard deviation of a gait's sway ahead, to the left [m] and of the heading [rad].
+SWAY_SD = np.array([0.8e-3, 0.3e-3, 2e-3])
+"""Usual standard deviation of a gait's sway ahead, to the left [m] and of the heading [rad].
 
 About a mean over 4 s, walks of a simulated rigid body on six legs (reference data, tripod gaits)
 sway by 0.6 to 0.9 mm, 0.1 to 0.3 mm and 0.6 to 3 mrad."""
@@ -33,15 +33,17 @@ keeps links of photographs that are microseconds apart from being stiffer than n
 
 
 class Process(NamedTuple):
-    """Noise densities of the process: white noise on the twist's derivative.
+    """Noise of the process: densities of white noise on the twist's derivative, and the sway.
 
     Attributes:
         travel: Noise density of the forward and of the sideways speed [m²/s³].
         turn: Noise density of the turning rate [rad²/s³].
+        sway: The gait's sway over `SWAY_SD` [-].
     """
 
     travel: float
     turn: float
+    sway: float = 1.0
 
 
 def link_weights(dt: Array, process: Process) -> tuple[Array, float]:
@@ -49,7 +51,7 @@ def link_weights(dt: Array, process: Process) -> tuple[Array, float]:
 
     Args:
         dt: Intervals, shape (n,), above 0 [s].
-        process: Noise densities.
+        process: Noise densities and sway.
 
     Returns:
         Inverses of cov e with the sway, shape (n, 6, 6), and the sum of the logarithms of their
@@ -57,7 +59,7 @@ def link_weights(dt: Array, process: Process) -> tuple[Array, float]:
     """
     q = np.array([process.travel, process.travel, process.turn])
     dt, least = dt[:, None], _LEAST_SD**2
-    sway = 2 * SWAY_SD**2 * np.minimum(dt / SWAY_TIME, 1.0) + least
+    sway = 2 * (process.sway * SWAY_SD) ** 2 * np.minimum(dt / SWAY_TIME, 1.0) + least
     pose, both, twist = q * dt**3 / 3 + sway, q * dt**2 / 2, q * dt + least
     determinant = q**2 * dt**4 / 12 + least * pose + sway * q * dt
     weights = np.zeros((len(dt), 6, 6))

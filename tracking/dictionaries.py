@@ -64,7 +64,7 @@ class MarkerFamily:
         if isinstance(self.source, TagFamily):
             return self.source.cells_of(number)
         inner = cv2.aruco.generateImageMarker(self.source, number, self.source.markerSize + 2)
-        return np.pad(inner.astype(np.float32) / 255, 1, constant_values=1.0)
+        return np.pad(inner / 255, 1, constant_values=1.0).astype(np.float32)
 
 
 @cache

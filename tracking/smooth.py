@@ -8,10 +8,10 @@ arc, so the corners of a turning path are not cut.
 Errors that the measurements share (camera, lens, height) are unknowns as well. With u these errors,
 independent and of variance 1, a measured pose m is the true pose minus F u plus noise of its own.
 The normal equations of all are an arrow: block tridiagonal for the poses and twists, with a border
-for u, which is eliminated last. The two noise densities of the twist, unless they are given, are
-their means over the marginal likelihood (Laplace's approximation) with a wide prior. Where poses
-are uncertain, any small density explains them: the likeliest one may be next to none, and the path
-would be claimed to be as smooth as that.
+for u, which is eliminated last. The noise densities of the twist and the gait's sway, unless they
+are given, are means over the marginal likelihood (Laplace's approximation) with a wide prior. Where
+poses are uncertain, any small density explains them: the likeliest one may be next to none, and the
+path would be claimed to be as smooth as that.
 """
 
 from collections.abc import Callable
@@ -34,6 +34,7 @@ from tracking.constant_twist import (
 from tracking.errors import PathError
 
 _LONGEST_SEARCH = 200
+_USUAL, _USUAL_SD = Process(1e-4, 1e-3, 1.0), np.array([4.0, 4.0, 2.0])  # of their logarithms
 _AROUND = np.linspace(-8.0, 6.0, 15)  # logarithms of densities over the likeliest
 
 
@@ -129,8 +130,8 @@ def smooth(
             1e-2 rad²/s³ where no segment has three poses.
         start: Noise densities near those to be estimated; None if none are known.
         shared: Errors that the measured poses share; None for none.
-        average: Whether densities that are estimated are means over the likelihood; False takes
-            the likeliest, in half the time.
+        average: Whether densities that are estimated are means of their roots over the likelihood,
+            squared; False takes the likeliest, in half the time.
 
     Returns:
         The path, at the times `t` only.
@@ -229,9 +230,9 @@ def _estimated(problem: "_Problem", near: Process | None, average: bool) -> Proc
     point = [searched.start()]
 
     def minus_log_likelihood(logs: Array) -> float:
-        # A wide prior around a walking robot's densities keeps a path that shows no disturbance
+        # A wide prior around a walking robot's values keeps a path that shows no disturbance
         # at all (all its scatter is measurement noise) from sending them to zero.
-        prior = 0.5 * float(np.sum(((logs - np.log([1e-4, 1e-3])) / 4.0) ** 2))
+        prior = 0.5 * float(np.sum(((logs - np.log(_USUAL)) / _USUAL_SD) ** 2))
         process = Process(*(float(q) for q in np.exp(logs)))
         try:
             fitted = searched.fit(process, point[0])
@@ -240,17 +241,18 @@ def _estimated(problem: "_Problem", near: Process | None, average: bool) -> Proc
         point[0] = fitted.point
         return prior - fitted.log_likelihood
 
-    start, reach = (np.log([1e-4, 1e-3]), 2.0) if near is None else (np.log(near), 0.4)
-    simplex = start + reach * np.array([[0, 0], [1, 0], [0, 1]])
-    options = {"xatol": 0.05, "fatol": 0.05, "maxfev": 80, "initial_simplex": simplex}
+    start, reach = (np.log(_USUAL), 2.0) if near is None else (np.log(near), 0.4)
+    simplex = start + reach * np.vstack((np.zeros(3), np.diag([1.0, 1.0, -0.5])))
+    options = {"xatol": 0.05, "fatol": 0.05, "maxfev": 120, "initial_simplex": simplex}
     fit = minimize(minus_log_likelihood, start, method="Nelder-Mead", options=options)
     if not average:
         return Process(*np.exp(fit.x).tolist())
     means = []
-    for axis in np.eye(2):  # given the other density at its likeliest
+    for axis in np.eye(3):  # given the others at their likeliest
         costs = np.array([minus_log_likelihood(fit.x + log * axis) for log in _AROUND])
         weights = np.exp(costs.min() - costs)
-        means.append(np.sum(weights * np.exp(_AROUND)) / np.sum(weights))
+        # Of roots: the covariance of a smoothed path grows with less than the root of a density.
+        means.append((np.sum(weights * np.exp(_AROUND / 2)) / np.sum(weights)) ** 2)
     return Process(*(np.exp(fit.x) * means).tolist())
 
 

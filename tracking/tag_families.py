@@ -98,7 +98,8 @@ def tag_family(dictionary: str) -> TagFamily | None:
     detector = Detector(families="tag16h5", nthreads=1, quad_decimate=1.0)
     # Its destructor frees families that the library still uses, which crashes the process.
     detector.tag_families = {}
-    library, pointer = detector.libc, detector.tag_detector_ptr
+    library: Any = detector.libc
+    pointer = detector.tag_detector_ptr
     library.apriltag_detector_clear_families.restype = None
     library.apriltag_detector_clear_families(pointer)
     create = library[f"{FAMILIES[dictionary]}_create"]

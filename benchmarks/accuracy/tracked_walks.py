@@ -206,7 +206,7 @@ def _clicked(
     The latter is x and y of four places, shape (4, 2) [m].
     """
     name = f"p{photo}.jpg"
-    clean = top_in_photo(walk, photo, PLATE.corners_body[:, :2])
+    clean = top_in_photo(walk, photo, np.asarray(PLATE.corners_body[:, :2], dtype=np.float64))
     clicks = clean + CLICK_SD * rng.standard_normal((4, 2))
     top = MarkedTop(name, tuple((u, v) for u, v in clicks.tolist()), PLATE, CLICK_SD)
     annotated = pose_of_top(top, scene, seen.fit.pose_of(name))

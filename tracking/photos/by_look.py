@@ -126,7 +126,7 @@ def _again(
             continue
         pixels = read_pixels(files[seen.photo], size=scene.camera.size)
         view = templates[seen.photo][1].view
-        for name in templates.keys() - {seen.annotated}:
+        for name in sorted(templates.keys() - {seen.annotated}):
             template, annotated = templates[name]
             alignment = align(pixels, scene.camera, view, template=template, prior=scene.prior,
                               start=seen.planar)  # fmt: skip

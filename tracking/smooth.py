@@ -9,8 +9,8 @@ Errors that the measurements share (camera, lens, height) are unknowns as well. 
 independent and of variance 1, a measured pose m is the true pose minus F u plus noise of its own.
 The normal equations of all are an arrow: block tridiagonal for the poses and twists, with a border
 for u, which is eliminated last. The noise densities of the twist and the gait's sway, unless they
-are given, are means over the marginal likelihood (Laplace's approximation) with a wide prior. Where
-poses are uncertain, any small density explains them: the likeliest one may be next to none, and the
+are given, are means (of standard deviations) over the marginal likelihood (Laplace's approximation)
+with a wide prior. Where poses are uncertain, any small density explains them: the likeliest one may be next to none, and the
 path would be claimed to be as smooth as that.
 """
 
@@ -34,7 +34,8 @@ from tracking.constant_twist import (
 from tracking.errors import PathError
 
 _LONGEST_SEARCH = 200
-_USUAL, _USUAL_SD = Process(1e-4, 1e-3, 1.0), np.array([4.0, 4.0, 2.0])  # of their logarithms
+_USUAL, _USUAL_SD = Process(1e-4, 1e-3, 1.0), np.array([4.0, 4.0, 1.0])  # of their logarithms
+_OF_SD = np.array([0.5, 0.5, 1.0])  # powers that make standard deviations: densities are variances
 _AROUND = np.linspace(-8.0, 6.0, 15)  # logarithms of densities over the likeliest
 
 
@@ -130,8 +131,8 @@ def smooth(
             1e-2 rad²/s³ where no segment has three poses.
         start: Noise densities near those to be estimated; None if none are known.
         shared: Errors that the measured poses share; None for none.
-        average: Whether densities that are estimated are means of their roots over the likelihood,
-            squared; False takes the likeliest, in half the time.
+        average: Whether what is estimated is a mean of standard deviations over the likelihood;
+            False takes the likeliest, in half the time.
 
     Returns:
         The path, at the times `t` only.
@@ -251,8 +252,8 @@ def _estimated(problem: "_Problem", near: Process | None, average: bool) -> Proc
     for axis in np.eye(3):  # given the others at their likeliest
         costs = np.array([minus_log_likelihood(fit.x + log * axis) for log in _AROUND])
         weights = np.exp(costs.min() - costs)
-        # Of roots: the covariance of a smoothed path grows with less than the root of a density.
-        means.append((np.sum(weights * np.exp(_AROUND / 2)) / np.sum(weights)) ** 2)
+        power = _OF_SD @ axis
+        means.append((weights @ np.exp(power * _AROUND) / np.sum(weights)) ** (1 / power))
     return Process(*(np.exp(fit.x) * means).tolist())
 
 

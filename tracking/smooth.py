@@ -10,8 +10,8 @@ independent and of variance 1, a measured pose m is the true pose minus F u plus
 The normal equations of all are an arrow: block tridiagonal for the poses and twists, with a border
 for u, which is eliminated last. The noise densities of the twist and the gait's sway, unless they
 are given, are means (of standard deviations) over the marginal likelihood (Laplace's approximation)
-with a wide prior. Where poses are uncertain, any small density explains them: the likeliest one may be next to none, and the
-path would be claimed to be as smooth as that.
+with a wide prior. Where poses are uncertain, any small density explains them: the likeliest one may
+be next to none, and the path would be claimed to be as smooth as that.
 """
 
 from collections.abc import Callable

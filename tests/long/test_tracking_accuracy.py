@@ -110,7 +110,7 @@ def tracked(pixels: np.ndarray, case: Case, truth: DrawnPose) -> np.ndarray | No
     if seen.robot is None:
         return None
     fit = refine_floor(lens, FLOOR, [seen.floor])
-    pose = observe(lens, fit, [seen], robot=robot, times={"photo": (0.0, 0.0)})[0].planar
+    pose = observe(fit, [seen], robot=robot, times={"photo": (0.0, 0.0)})[0].planar
     error = pose - (truth.x, truth.y, truth.yaw)
     error[2] = np.angle(np.exp(1j * error[2]))
     return error

@@ -29,7 +29,7 @@ def track(spreads: dict[str, tuple[np.ndarray, float]]) -> Track:
         )
         for k in range(8)
     ]  # fmt: skip
-    return assemble_track(seen, shared=shared, prior=PRIOR, process=Process(1e-6, 1e-6))
+    return assemble_track(seen, shared=shared, prior=PRIOR, process=Process(1e-6, 1e-6, sway=0.0))
 
 
 def test_the_cause_of_most_of_the_variance_comes_first_with_its_advice():

@@ -231,6 +231,7 @@ def _estimated(problem: "_Problem", near: Process | None, average: bool) -> Proc
     point = [searched.start()]
 
     def minus_log_likelihood(logs: Array) -> float:
+        """Return minus the log posterior of the logarithms (3,) of a `Process`."""
         # A wide prior around a walking robot's values keeps a path that shows no disturbance
         # at all (all its scatter is measurement noise) from sending them to zero.
         prior = 0.5 * float(np.sum(((logs - np.log(_USUAL)) / _USUAL_SD) ** 2))

@@ -94,6 +94,7 @@ def whole(photos: Sequence[np.ndarray], count: int) -> tuple[float, float]:
     """Time everything from decoded photographs to the smoothed path."""
 
     def work() -> None:
+        """Detect in the photographs, fit the floor, and smooth the path."""
         hint, found = None, []
         for number, pixels in enumerate(photos[:count]):
             hint = detect(f"{number}", pixels, floor=FLOOR, robot=ROBOT, hint=hint)
@@ -118,6 +119,7 @@ def smoothing(count: int) -> tuple[float, float]:
     )  # fmt: skip
 
     def splines() -> None:
+        """Fit a smoothing spline to each of x, y and yaw."""
         for column in poses.T:  # scipy 1.14 fits one column at a time
             make_smoothing_spline(t, column, lam=1.0)
 

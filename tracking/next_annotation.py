@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracking.body import TopPlate
+from tracking.body import TopPlate, expected_covariance
 from tracking.camera.lens import Array, Camera, CameraPose, project
 from tracking.path import Track
 from tracking.pose import PLANAR, BodyPrior, fit_pose, rotation_with_derivatives
@@ -48,7 +48,7 @@ class NextAnnotation:
 
 def next_annotation(
     track: Track, views: dict[str, CameraPose], *, camera: Camera, prior: BodyPrior,
-    plate: TopPlate, corner_sd_px: float, annotated: Iterable[str],
+    plate: TopPlate, corner_sd_px: float, annotated: Iterable[str], by_edges: bool = False,
 ) -> NextAnnotation | None:  # fmt: skip
     """Find the photograph whose annotation would lower the track's variance most.
 
@@ -60,6 +60,7 @@ def next_annotation(
         plate: The robot's flat top.
         corner_sd_px: Standard deviation of u and of v of a click [px].
         annotated: Names of the photographs that are annotated already.
+        by_edges: Whether the edges of the top are clear, so that they refine clicks.
 
     Returns:
         The photograph; None where no annotation would lower either standard deviation by a tenth.
@@ -74,7 +75,8 @@ def next_annotation(
         if seen.photo in done or seen.photo not in views:
             continue
         own = slice(3 * place, 3 * place + 3)
-        clicks = _by_clicks(track.poses[row], views[seen.photo], camera, prior, plate, corner_sd_px)
+        clicks = _by_clicks(track.poses[row], views[seen.photo], camera, prior, plate, corner_sd_px,
+                            by_edges)  # fmt: skip
         gained = np.linalg.solve(known[own, own] + clicks, known[own])
         fall = _mean_variances(np.einsum("ij,ij->j", known[own], gained).reshape(-1, 3))
         part = 1 - np.sqrt(np.maximum(1 - fall / whole, 0.0))
@@ -90,13 +92,14 @@ def _mean_variances(variances: Array) -> Array:
 
 
 def _by_clicks(
-    planar: Array, view: CameraPose, camera: Camera, prior: BodyPrior, plate: TopPlate, sd: float
-) -> Array:
-    """Compute the covariance (3, 3) of a pose by clicks on the corners of the top."""
+    planar: Array, view: CameraPose, camera: Camera, prior: BodyPrior, plate: TopPlate, sd: float,
+    by_edges: bool,
+) -> Array:  # fmt: skip
+    """Compute the covariance (3, 3) of a pose by clicks on the corners of the top, or by edges."""
     R, _ = rotation_with_derivatives(0.0, 0.0, planar[2])
     corners = plate.corners_body @ R.T + [planar[0], planar[1], prior.height]
-    pose = fit_pose(
-        camera, view, points_body=plate.corners_body, corners_px=project(camera, view, corners),
-        covariance=sd**2 * np.eye(8), prior=prior,
-    )  # fmt: skip
+    seen = project(camera, view, corners)
+    covariance = expected_covariance(seen, sd_px=sd) if by_edges else sd**2 * np.eye(8)
+    pose = fit_pose(camera, view, points_body=plate.corners_body, corners_px=seen,
+                    covariance=covariance, prior=prior)  # fmt: skip
     return pose.covariance[np.ix_(PLANAR, PLANAR)]

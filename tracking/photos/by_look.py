@@ -5,14 +5,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracking.body import (
     AnnotatedPose,
     BodyCandidates,
     BodyTemplate,
+    RefinedCorners,
     align,
     find_body,
     make_template,
+    refine_corners,
     resolve_headings,
 )
 from tracking.camera import Camera, CameraPose
@@ -74,7 +77,7 @@ def track_by_look(
     """
     seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
     scene = replace(scene, camera=seen.fit.camera)  # the poses of the camera are for this lens
-    templates = _templates(scene, seen, photos)
+    templates, corners = _templates(scene, seen, photos)
     usable = [photo for photo in photos if photo.name not in seen.lost]
     nearest = nearest_of([photo.name for photo in usable], list(templates))
     jobs = [
@@ -106,11 +109,23 @@ def track_by_look(
         again=_again(scene, photos, templates, observations),
     )  # fmt: skip
     top = scene.tops[-1]
-    return replace(tracked, next_annotation=next_annotation(
+    suggested = next_annotation(
         tracked.track, {photo.name: seen.fit.pose_of(photo.name) for photo in usable},
         camera=scene.camera, prior=scene.prior, plate=top.plate, corner_sd_px=top.corner_sd_px,
-        annotated=templates,
-    ))  # fmt: skip
+        annotated=templates, by_edges=corners[top.photo].sides == len(top.corners_px),
+    )  # fmt: skip
+    notes = (*_edge_notes(corners), *tracked.notes)
+    return replace(tracked, notes=notes, next_annotation=suggested)
+
+
+def _edge_notes(corners: Mapping[str, RefinedCorners]) -> list[str]:
+    return [
+        f"the edges seen near the clicked corners of the robot's top in {photo} do not fit the "
+        "clicks, which are used without them: click again, check the length and width of the top, "
+        "or state a larger corner_sd_px"
+        for photo, found in corners.items()
+        if found.contradicts
+    ]
 
 
 def _again(
@@ -194,27 +209,47 @@ def marked_tops(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> tuple
 
 def _templates(
     scene: Scene, seen: FloorSeen, photos: Sequence[Photo]
-) -> dict[str, tuple[BodyTemplate, AnnotatedPose]]:
+) -> tuple[dict[str, tuple[BodyTemplate, AnnotatedPose]], dict[str, RefinedCorners]]:
     """Cut a template of the robot out of each annotated photograph.
 
     Returns:
-        By name of the photograph, the template and the pose at which it is cut out.
+        By name of the photograph, the template and the pose at which it is cut out; and the corners
+        of the top by clicks and edges.
 
     Raises:
         BodyError: No top is annotated, or one cannot serve as template (see `make_template`).
         NoUsablePhoto: An annotated photograph is not among `photos`, or cannot be used.
     """
     files = {photo.name: photo.path for photo in photos}
-    templates = {}
+    templates, corners = {}, {}
     for top in marked_tops(scene, seen, photos):
         view = seen.fit.pose_of(top.photo)
         pixels = read_pixels(files[top.photo], size=scene.camera.size)
-        annotated = pose_of_top(top, scene, view)
+        annotated, corners[top.photo] = refined_pose(top, scene, view, pixels)
         template = make_template(
             pixels, scene.camera, view, pose=annotated.pose, plate=top.plate, prior=scene.prior
         )
         templates[top.photo] = (template, annotated)
-    return templates
+    return templates, corners
+
+
+def refined_pose(
+    top: MarkedTop, scene: Scene, view: CameraPose, pixels: NDArray[np.uint8]
+) -> tuple[AnnotatedPose, RefinedCorners]:
+    """Fit the robot's pose to clicks on the corners of its top, refined by the top's edges.
+
+    Args:
+        top: The top, with the clicked corners.
+        scene: As of `pose_of_top`.
+        view: Pose of the camera in the annotated photograph.
+        pixels: The annotated photograph, BGR, shape (height, width, 3).
+
+    Returns:
+        The pose, and the refined corners it was fitted to.
+    """
+    clicked = pose_of_top(top, scene, view)
+    corners = refine_corners(pixels, clicked, np.array(top.corners_px), sd_px=top.corner_sd_px)
+    return _pose_at(corners.corners_px, corners.covariance, top, scene, view), corners
 
 
 def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> AnnotatedPose:
@@ -226,11 +261,16 @@ def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> AnnotatedPose
             is that for which `view` was fitted.
         view: Pose of the camera in the annotated photograph.
     """
+    covariance = top.corner_sd_px**2 * np.eye(8)
+    return _pose_at(np.array(top.corners_px), covariance, top, scene, view)
+
+
+def _pose_at(
+    corners_px: Array, covariance: Array, top: MarkedTop, scene: Scene, view: CameraPose
+) -> AnnotatedPose:
     corners = top.plate.corners_body
-    pose = fit_pose(
-        scene.camera, view, points_body=corners, corners_px=top.corners_px,
-        covariance=top.corner_sd_px**2 * np.eye(8), prior=scene.prior,
-    )  # fmt: skip
+    pose = fit_pose(scene.camera, view, points_body=corners, corners_px=corners_px,
+                    covariance=covariance, prior=scene.prior)  # fmt: skip
     return AnnotatedPose(scene.camera, view, pose, scene.prior, corners)
 
 

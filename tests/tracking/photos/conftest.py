@@ -40,14 +40,24 @@ def walk() -> np.ndarray:
 @pytest.fixture(scope="session")
 def photos(tmp_path_factory) -> tuple[Photo, ...]:
     """Photograph a robot with a marker and tail unlike its head."""
-    folder, rng = tmp_path_factory.mktemp("walk"), np.random.default_rng(0)
+    return photographed(tmp_path_factory.mktemp("walk"), RobotLook(DrawnRobotMarker(0, SIDE)))
+
+
+@pytest.fixture(scope="session")
+def plain_photos(tmp_path_factory) -> tuple[Photo, ...]:
+    """Photograph a robot without marker, nothing on its top, in the first two places."""
+    return photographed(tmp_path_factory.mktemp("plain"), RobotLook(None, parts=0))[:2]
+
+
+def photographed(folder: Path, look: RobotLook) -> tuple[Photo, ...]:
+    """Draw photographs of the walk."""
+    rng = np.random.default_rng(0)
     scene = DrawnScene(DRAWN, tuple(
         DrawnFloorMarker(10 + k, (x, y), SIDE, yaw) for k, (x, y, yaw) in enumerate(PLACES)
     ))  # fmt: skip
     background, found = render_background(scene), []
     for number, (x, y, yaw) in enumerate(WALK):
         state = RobotState(DrawnPose(x, y, yaw, HEIGHT))
-        look = RobotLook(DrawnRobotMarker(0, SIDE))
         picture = take_photo(scene, state, look=look, rng=rng, background=background)
         found.append(Photo(f"p{number}.png", folder / f"p{number}.png"))
         cv2.imwrite(str(found[-1].path), picture.pixels)

@@ -9,10 +9,12 @@ import pytest
 from model.poses import relative
 from tracking.camera import project
 from tracking.errors import BodyError, NoUsablePhoto
+from tracking.images import read_pixels
 from tracking.photos.by_look import (
     marked_tops,
     nearest_of,
     pose_of_top,
+    refined_pose,
     track_by_look,
 )
 from tracking.photos.floor_seen import see_floor
@@ -45,6 +47,24 @@ def test_clicks_on_the_top_give_the_robots_pose(scene, photos, walk, top):
     seen = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress())
     pose = pose_of_top(top, scene, seen.fit.pose_of("p0.png")).pose
     np.testing.assert_allclose(pose.planar, walk[0], atol=2e-3)
+
+
+def test_edges_of_the_top_refine_its_heading_and_a_contradiction_is_said(
+    scene, plain_photos, walk, top
+):
+    seen = see_floor(scene, plain_photos, robot=None, workers=1, progress=NoProgress())
+    view, pixels = seen.fit.pose_of("p0.png"), read_pixels(plain_photos[0].path)
+    clicked = pose_of_top(top, scene, view).covariance
+    annotated, corners = refined_pose(top, scene, view, pixels)
+    assert corners.sides >= 3
+    np.testing.assert_allclose(annotated.pose.planar, walk[0], atol=2e-3)
+    assert annotated.covariance[5, 5] < 0.5 * clicked[5, 5]
+    aside = tuple((u + 3.0, v) for u, v in top.corners_px)
+    off = replace(scene, robot=None, tops=(replace(top, corners_px=aside, corner_sd_px=0.2),))
+    found = track_by_look(
+        off, plain_photos, times=TIMES, gap=None, workers=1, progress=NoProgress()
+    )
+    assert any("clicked corners of the robot's top in p0.png do not fit" in n for n in found.notes)
 
 
 def test_clicks_that_are_off_move_the_whole_track_and_the_covariance_says_so(

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: MIT
+"""Clicks on the corners of the robot's top, refined by the edges of the top in the photograph.
+
+A person clicks to half a pixel; an edge of tens of pixels is seen to a tenth of one. Each side of
+the outline is followed along its projection at the pose that the clicks give, which bends with the
+lens. The estimate is Gaussian: the eight coordinates of the corners, with the clicks as prior, are
+measured by the distances of the four edges from that outline at both ends. Errors of a side:
+
+* scatter of the points along the edge;
+* an offset of the whole side: the plate's thickness and its shadow (0.2 px and 0.4 % of the side);
+* a tilt of the side (0.05 px and 0.1 %);
+* offsets that opposite sides have in common, outwards: the plate is larger than stated, or was
+  clicked inside its edges (1 px and 1 %). They change neither the place nor the turn of the plate.
+
+A side without one clear edge is left out. Where edges and clicks contradict each other, the clicks
+are kept and the contradiction is reported.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+from scipy.stats import chi2
+
+from tracking.body.annotated import AnnotatedPose
+from tracking.body.template import sample
+from tracking.camera.lens import Array, project
+from tracking.pose import rotation_with_derivatives
+
+OFFSET_SD = (0.2, 0.004)
+TILT_SD = (0.05, 0.001)
+OUTLINE_SD = (1.0, 0.01)
+"""Standard deviations of the errors of a side: in pixels, and as a part of its length."""
+
+_REACH_SD = 3.0  # of clicks and outline: how far from the outline an edge is sought
+_STEP, _BLUR = 0.25, 0.7  # of profiles across an edge [px]
+_ENDS = 0.1  # part of a side at each end that is left out
+_SHORTEST = 10.0  # side of the outline [px]
+_AMBIGUOUS, _APART = 0.5, 1.5  # a second edge: part of the step's height, distance [px]
+_CLEAR = 6.0  # height of a step over the median of the profile's slopes
+_SEGMENTS, _FOLLOWED = 12, 0.7  # along an edge; least part of them on one line
+_ON_LINE = 0.6  # largest distance of a segment's edge from the line [px]
+_ALARM = 1e-4
+
+
+@dataclass(frozen=True)
+class RefinedCorners:
+    """Corners of the robot's top by clicks and edges.
+
+    Attributes:
+        corners_px: Corners u, v, in the order of the clicks, shape (4, 2) [px].
+        covariance: Covariance of `corners_px.ravel()`, shape (8, 8) [px²].
+        sides: Number of sides whose edge was used, 0 to 4.
+        contradicts: Whether edges were found that the clicks contradict, and were left out.
+        moved: Root mean square distance of the corners from the clicks [px].
+    """
+
+    corners_px: Array
+    covariance: Array
+    sides: int
+    contradicts: bool = False
+    moved: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Edge:
+    """Distance of an edge from its side of the outline, outwards, at both ends, (2,) [px]."""
+
+    offsets: Array
+    covariance: Array
+
+
+def refine_corners(
+    pixels: NDArray[np.uint8], clicked: AnnotatedPose, clicks_px: Array, *, sd_px: float
+) -> RefinedCorners:
+    """Refine clicks on the corners of the robot's top by its edges.
+
+    Args:
+        pixels: The photograph, BGR, shape (height, width, 3).
+        clicked: The robot's pose by the clicks.
+        clicks_px: Clicks u, v on the corners in order around the top, shape (4, 2) [px].
+        sd_px: Standard deviation of u and of v of a click [px].
+
+    Returns:
+        The corners; the clicks with their covariance where no edge is clear, or where the edges
+        contradict them with a probability below 1e-4.
+    """
+    clicks = np.asarray(clicks_px, dtype=float)
+    kept = RefinedCorners(clicks, sd_px**2 * np.eye(8), 0)
+    outline = [_side(clicked, k) for k in range(4)]
+    lengths = [_length(side) for side in outline]
+    if min(lengths) < _SHORTEST:
+        return kept
+    middle = np.mean([side[0] for side in outline], axis=0)
+    edges = {}
+    for k, side in enumerate(outline):
+        reach = _REACH_SD * np.hypot(sd_px, _sd(OUTLINE_SD, lengths[k]))
+        # An edge farther away than a quarter of the top is another one's.
+        edge = _find_edge(pixels, side, _outwards(side, middle), min(reach, 0.25 * min(lengths)))
+        if edge is not None:
+            edges[k] = edge
+    if not edges:
+        return kept
+    by_corner, noise = _measurement(outline, middle, edges)
+    corners = np.array([side[0] for side in outline])
+    # The outline is that of the pose, from which the clicks differ.
+    expected = by_corner @ (clicks - corners).ravel()
+    surprise = np.concatenate([edge.offsets for edge in edges.values()]) - expected
+    variance = sd_px**2 * by_corner @ by_corner.T + noise
+    if surprise @ np.linalg.solve(variance, surprise) > chi2.isf(_ALARM, len(surprise)):
+        return RefinedCorners(clicks, kept.covariance, 0, contradicts=True)
+    gain = sd_px**2 * np.linalg.solve(variance, by_corner).T
+    refined = clicks + (gain @ surprise).reshape(4, 2)
+    covariance = sd_px**2 * (np.eye(8) - gain @ by_corner)
+    moved = float(np.sqrt(np.mean(np.sum((refined - clicks) ** 2, axis=1))))
+    return RefinedCorners(refined, (covariance + covariance.T) / 2, len(edges), moved=moved)
+
+
+def expected_covariance(corners_px: Array, *, sd_px: float) -> Array:
+    """Compute the covariance of refined corners where all four edges are clear, shape (8, 8) [px²].
+
+    Args:
+        corners_px: Corners u, v in order around the top, shape (4, 2) [px].
+        sd_px: Standard deviation of u and of v of a click [px].
+    """
+    corners = np.asarray(corners_px, dtype=float)
+    outline = [np.array([corners[k], corners[(k + 1) % 4]]) for k in range(4)]
+    edges = {k: _Edge(np.zeros(2), _side_errors(_length(side))) for k, side in enumerate(outline)}
+    by_corner, noise = _measurement(outline, corners.mean(axis=0), edges)
+    information = np.eye(8) / sd_px**2 + by_corner.T @ np.linalg.solve(noise, by_corner)
+    return np.linalg.inv(information)
+
+
+def _sd(of: tuple[float, float], length: float) -> float:
+    """Return a standard deviation [px] of a side of a length [px]."""
+    return float(np.hypot(of[0], of[1] * length))
+
+
+def _length(side: Array) -> float:
+    return float(np.linalg.norm(side[-1] - side[0]))
+
+
+def _side_errors(length: float) -> Array:
+    """Compute the covariance (2, 2) at a side's ends by its own offset and tilt [px²]."""
+    offset, tilt = _sd(OFFSET_SD, length) ** 2, _sd(TILT_SD, length) ** 2
+    return np.array([[offset + tilt, offset - tilt], [offset - tilt, offset + tilt]])
+
+
+def _side(clicked: AnnotatedPose, k: int) -> Array:
+    """Project a side of the top, from corner k to the next, shape (points, 2) [px]."""
+    R, _ = rotation_with_derivatives(*clicked.pose.state[3:])
+    first, last = clicked.corners_body[k], clicked.corners_body[(k + 1) % 4]
+    along = first + np.linspace(0.0, 1.0, 201)[:, None] * (last - first)
+    return project(clicked.camera, clicked.view, along @ R.T + clicked.pose.state[:3])
+
+
+def _outwards(side: Array, middle: Array) -> Array:
+    """Compute the unit normals of a side that point away from the middle, shape (points, 2)."""
+    along = np.gradient(side, axis=0)
+    normal = np.column_stack((along[:, 1], -along[:, 0]))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    return normal if np.sum(normal * (side - middle)) > 0 else -normal
+
+
+def _measurement(
+    outline: list[Array], middle: Array, edges: dict[int, _Edge]
+) -> tuple[Array, Array]:
+    """Return how edges follow the corners, (2m, 8), and the covariance of their errors (2m, 2m)."""
+    by_corner, common = np.zeros((2 * len(edges), 8)), np.zeros((2 * len(edges), 2))
+    noise = np.zeros((2 * len(edges), 2 * len(edges)))
+    for row, (k, edge) in enumerate(edges.items()):
+        normal = _outwards(outline[k], middle)
+        for place, (corner, at) in enumerate(((k, 0), ((k + 1) % 4, -1))):
+            by_corner[2 * row + place, 2 * corner : 2 * corner + 2] = normal[at]
+        own = slice(2 * row, 2 * row + 2)
+        noise[own, own] = edge.covariance
+        common[own, k % 2] = _sd(OUTLINE_SD, _length(outline[(k + 1) % 4]))
+    return by_corner, noise + common @ common.T
+
+
+def _find_edge(pixels: NDArray[np.uint8], side: Array, normal: Array, reach: float) -> _Edge | None:
+    """Find the one clear edge along a side; None where there is none, or more than one."""
+    inner = slice(round(_ENDS * len(side)), len(side) - round(_ENDS * len(side)))
+    at, across, along = side[inner], normal[inner], np.linspace(-1.0, 1.0, len(side))[inner]
+    # First the side as a whole, shifted; then shifted and tilted along the line found.
+    first = _strongest(_profiles(pixels, at, across, reach).mean(axis=0), reach)
+    if first is None:
+        return None
+    line = np.array([first[0], 0.0])
+    spread = np.zeros((2, 2))
+    for near in (min(2.5, reach), 1.5):
+        moved = at + (line[0] + line[1] * along)[:, None] * across
+        seen = _profiles(pixels, moved, across, near) @ first[1]
+        followed = _follow(seen, along)
+        if followed is None:
+            return None
+        line, spread = line + followed[0], followed[1]
+    if abs(line[0]) + abs(line[1]) > reach:
+        return None
+    ends = np.array([[1.0, -1.0], [1.0, 1.0]])
+    return _Edge(ends @ line, ends @ spread @ ends.T + _side_errors(_length(side)))
+
+
+def _profiles(pixels: NDArray[np.uint8], at: Array, across: Array, reach: float) -> Array:
+    """Interpolate the slope of the colours across a side, shape (points, distances, 3)."""
+    extra = 3 * _BLUR
+    distances = np.arange(-reach - extra, reach + extra + _STEP / 2, _STEP)
+    places = at[:, None, :] + distances[:, None] * across[:, None, :]
+    values = sample(pixels, places).astype(float)
+    found = gaussian_filter1d(values, _BLUR / _STEP, axis=1, order=1) / _STEP
+    trim = round(extra / _STEP)
+    return found[:, trim:-trim]
+
+
+def _distances(count: int) -> Array:
+    return _STEP * (np.arange(count) - (count - 1) / 2)
+
+
+def _strongest(slope: Array, reach: float) -> tuple[float, Array] | None:
+    """Find the strongest step of a mean profile of slopes (distances, 3).
+
+    Returns:
+        Its distance [px] and its unit direction among the colours, (3,); None where it is at the
+        border, weak, or another one is half as high.
+    """
+    strength = np.linalg.norm(slope, axis=1)
+    distances = _distances(len(strength))
+    peak = int(strength.argmax())
+    if not 0 < peak < len(strength) - 1 or strength[peak] < _CLEAR:
+        return None
+    inside = strength[1:-1]
+    tops = 1 + np.flatnonzero((inside >= strength[:-2]) & (inside >= strength[2:]))
+    others = tops[np.abs(distances[tops] - distances[peak]) > _APART]
+    if len(others) and strength[others].max() > _AMBIGUOUS * strength[peak]:
+        return None
+    return _vertex(strength, peak), slope[peak] / strength[peak]
+
+
+def _vertex(values: Array, peak: int) -> float:
+    """Return the distance of a parabola's vertex through a peak and its neighbours [px]."""
+    before, top, after = values[peak - 1 : peak + 2]
+    bend = before - 2 * top + after
+    shift = 0.5 * (before - after) / bend if bend < 0 else 0.0
+    return float(_distances(len(values))[peak] + _STEP * np.clip(shift, -0.5, 0.5))
+
+
+def _follow(slope: Array, along: Array) -> tuple[Array, Array] | None:
+    """Fit a line to the strongest steps of segments of a side.
+
+    Args:
+        slope: Slopes of one colour across the side, shape (points, distances).
+        along: Place of the points along the side, -1 to 1, shape (points,).
+
+    Returns:
+        Offset and tilt of the line [px] and their covariance, (2, 2); None where less than 70 % of
+        the segments lie on one line.
+    """
+    parts = np.array_split(np.arange(len(along)), _SEGMENTS)
+    found, places = [], []
+    for part in parts:
+        mean = slope[part].mean(axis=0)
+        peak = int(mean.argmax())
+        if 0 < peak < len(mean) - 1:
+            found.append(_vertex(mean, peak))
+            places.append(along[part].mean())
+    if len(found) < _FOLLOWED * _SEGMENTS:
+        return None
+    values, design = np.array(found), np.column_stack((np.ones(len(places)), places))
+    used, line, left = np.ones(len(values), dtype=bool), np.zeros(2), np.zeros(len(values))
+    for _ in range(5):
+        line = np.linalg.lstsq(design[used], values[used], rcond=None)[0]
+        left = np.abs(values - design @ line)
+        used = left <= max(3 * 1.4826 * float(np.median(left)), 0.1)
+    if used.sum() < _FOLLOWED * _SEGMENTS or left[used].max() > _ON_LINE:
+        return None
+    variance = float(np.sum(left[used] ** 2)) / (used.sum() - 2)
+    return line, variance * np.linalg.inv(design[used].T @ design[used])

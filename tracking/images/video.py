@@ -2,7 +2,7 @@
 """Read frames of a video with their own time stamps."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 
 import cv2
@@ -15,12 +15,18 @@ FRAME_TIME_SD = 2e-3
 """Standard deviation given to a frame's time stamp: phones store milliseconds [s]."""
 
 
-_EXPECTED = "expected a whole MP4, MOV, AVI, MKV or WebM"
+_EXPECTED = (
+    "expected a whole MP4, MOV, AVI, MKV or WebM; an MP4 or MOV that is cut short cannot be read: "
+    "copy it again"
+)
+_ROUNDED, _ROUNDED_PART = 2, 0.02  # of the number of frames, which some files state by duration
 _ATOMS = (b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot")  # MP4 and QuickTime
 _MARKS = (b"RIFF", b"\x1a\x45\xdf\xa3")  # AVI; Matroska and WebM
 
 
-def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
+def video_frames(
+    path: Path, *, every: float = 0.0, cut_short: Callable[[int, int], None] | None = None
+) -> Iterator[Image]:
     """Yield frames of a video, rotated upright, with their time stamps.
 
     Times are the frames' own stamps, not their number divided by a rate: phones vary the rate.
@@ -28,6 +34,8 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
     Args:
         path: The video.
         every: Least time between two frames that are yielded, to 2 ms; 0 for all frames [s].
+        cut_short: Called after the last frame if the file ends before as many as it states (by over
+            2 % and more than two), with the numbers of frames read and stated.
 
     Yields:
         Frames named `FILE#NUMBER`, numbers from 0, with seconds since the start of the video.
@@ -49,7 +57,10 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
             raise PhotoError(path.name, f"not a video that can be read; {_EXPECTED}")
         _refuse_large(capture, path.name)
         capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
-        yield from _frames(capture, path.name, every)
+        stated = int(capture.get(cv2.CAP_PROP_FRAME_COUNT))
+        read = yield from _frames(capture, path.name, every)
+        if cut_short is not None and read < min(stated - _ROUNDED, (1 - _ROUNDED_PART) * stated):
+            cut_short(read, stated)
     finally:
         capture.release()
 
@@ -77,7 +88,8 @@ def _refuse_large(capture: cv2.VideoCapture, name: str) -> None:
         )
 
 
-def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Image]:
+def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Generator[Image, None, int]:
+    """Yield frames; return how many the file has, those left out included."""
     last, number = -np.inf, -1
     while capture.grab():
         number += 1
@@ -94,3 +106,4 @@ def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Imag
         raise PhotoError(
             name, "no frame of the video can be decoded; copy it again or record another"
         )
+    return number + 1

@@ -33,6 +33,21 @@ def test_frames_come_with_their_own_times(tmp_path):
     assert thinned[1].pixels.mean() == pytest.approx(30, abs=3)
 
 
+def test_a_file_that_is_cut_short_is_read_as_far_as_it_goes_and_said(tmp_path):
+    whole, said = write_video(tmp_path / "a.avi", 24), []
+    assert len(list(video_frames(whole, cut_short=lambda *counts: said.append(counts)))) == 24
+    assert not said
+    content = whole.read_bytes()
+    whole.write_bytes(content[: 3 * len(content) // 4])
+    frames = list(video_frames(whole, every=0.5, cut_short=lambda *counts: said.append(counts)))
+    ((read, stated),) = said
+    assert 4 < read < 20
+    assert stated == 24
+    np.testing.assert_allclose(
+        [frame.t for frame in frames], 0.5 * np.arange(len(frames)), atol=0.1
+    )
+
+
 @pytest.mark.parametrize("kind", ["empty", "text", "no frames"])
 def test_a_video_without_frames_is_named(tmp_path, kind, capfd):
     path = tmp_path / "v.avi"

@@ -12,7 +12,8 @@ intervals from a bootstrap over walks, and how often 90 % intervals of the last 
 
 With `--unmarked` the robot has no marker: a person clicks on the corners of its top in one or more
 photographs, and what lies there is found again in the others, with errors of `OUTLINE_SD` and of
-its size; the outlines are drawn, the search for them in pictures is not part of this table.
+its size; the outlines are drawn, the search for them in pictures is not part of this table, nor
+is the refinement of clicks by the edges of the top.
 """
 
 import argparse

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.camera.lens import Array, Camera, CameraPose, project_with_derivatives
+from tracking.camera.lens import Array, Camera, CameraPose, project, project_with_derivatives
 from tracking.pose import HELD, BodyPose, BodyPrior, rotation_with_derivatives
 from tracking.shared import ANNOTATION, HEIGHT, TILT
 
@@ -40,6 +40,13 @@ class AnnotatedPose:
     pose: BodyPose
     prior: BodyPrior
     corners_body: Array
+
+    @property
+    def corners_px(self) -> Array:
+        """Corners of the top in the photograph, projected at the pose, shape (4, 2) [px]."""
+        R, _ = rotation_with_derivatives(*self.pose.state[3:])
+        at = self.corners_body @ R.T + self.pose.state[:3]
+        return project(self.camera, self.view, at)
 
     @property
     def covariance(self) -> Array:

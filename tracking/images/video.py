@@ -19,13 +19,13 @@ _EXPECTED = (
     "expected a whole MP4, MOV, AVI, MKV or WebM; an MP4 or MOV that is cut short cannot be read: "
     "copy it again"
 )
-_ROUNDED, _ROUNDED_PART = 2, 0.02  # of the number of frames, which some files state by duration
 _ATOMS = (b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot")  # MP4 and QuickTime
 _MARKS = (b"RIFF", b"\x1a\x45\xdf\xa3")  # AVI; Matroska and WebM
+_EBML = (b"\x1a\x45\xdf\xa3", b"\x18\x53\x80\x67")  # the header of Matroska, and its one segment
 
 
 def video_frames(
-    path: Path, *, every: float = 0.0, cut_short: Callable[[int, int], None] | None = None
+    path: Path, *, every: float = 0.0, cut_short: Callable[[int], None] | None = None
 ) -> Iterator[Image]:
     """Yield frames of a video, rotated upright, with their time stamps.
 
@@ -34,8 +34,8 @@ def video_frames(
     Args:
         path: The video.
         every: Least time between two frames that are yielded, to 2 ms; 0 for all frames [s].
-        cut_short: Called after the last frame if the file ends before as many as it states (by over
-            2 % and more than two), with the numbers of frames read and stated.
+        cut_short: Called after the last frame if the file is shorter than it states, with the
+            number of frames read.
 
     Yields:
         Frames named `FILE#NUMBER`, numbers from 0, with seconds since the start of the video.
@@ -57,10 +57,9 @@ def video_frames(
             raise PhotoError(path.name, f"not a video that can be read; {_EXPECTED}")
         _refuse_large(capture, path.name)
         capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
-        stated = int(capture.get(cv2.CAP_PROP_FRAME_COUNT))
         read = yield from _frames(capture, path.name, every)
-        if cut_short is not None and read < min(stated - _ROUNDED, (1 - _ROUNDED_PART) * stated):
-            cut_short(read, stated)
+        if cut_short is not None and is_cut_short(path):
+            cut_short(read)
     finally:
         capture.release()
 
@@ -107,3 +106,45 @@ def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Generator[Ima
             name, "no frame of the video can be decoded; copy it again or record another"
         )
     return number + 1
+
+
+def is_cut_short(path: Path) -> bool:
+    """Return whether a video file is shorter than its outermost parts state.
+
+    These are the boxes of MP4 and QuickTime (ISO/IEC 14496-12), the chunks of RIFF (AVI), and the
+    elements of EBML (RFC 8794: Matroska, WebM). A part without a stated size goes to the end.
+
+    Args:
+        path: The video.
+    """
+    end, size = 0, path.stat().st_size
+    with path.open("rb") as file:
+        while end < size:
+            file.seek(end)
+            length = _stated_length(file.read(16))
+            if length is None:
+                return False
+            end += length
+    return end > size
+
+
+def _stated_length(head: bytes) -> int | None:
+    """Return the length of an outermost part by its first 16 bytes; None if it states none."""
+    if head.startswith(b"RIFF"):
+        length = int.from_bytes(head[4:8], "little")
+        return 8 + length + length % 2 if length else None
+    if head.startswith(_EBML):
+        return _element_length(head)
+    length = int.from_bytes(head[:4], "big")
+    if length == 1:
+        length = int.from_bytes(head[8:16], "big")
+    return length if length >= 8 else None
+
+
+def _element_length(head: bytes) -> int | None:
+    """Return the length of an element of EBML with an identifier of four bytes."""
+    width = 9 - head[4].bit_length() if len(head) > 4 else 9
+    if width > 8 or len(head) < 4 + width:
+        return None
+    stated = int.from_bytes(head[4 : 4 + width], "big") - (1 << 7 * width)
+    return None if stated == (1 << 7 * width) - 1 else 4 + width + stated

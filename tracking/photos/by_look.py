@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 
 from tracking.body import (
     AnnotatedPose,
@@ -32,6 +33,7 @@ from tracking.pose import BodyPrior, fit_pose
 
 _REACH = 0.6  # radius around the last position that is searched first [m]
 _LIKE = 0.6  # least correlation with the template of another annotated photograph
+_NO_TOP = 1e-6  # probability of clicks farther from any pose of the top
 _WORTH_WORKERS = 6  # photographs; each takes a second to match
 
 
@@ -114,18 +116,50 @@ def track_by_look(
         camera=scene.camera, prior=scene.prior, plate=top.plate, corner_sd_px=top.corner_sd_px,
         annotated=templates, by_edges=corners[top.photo].sides == len(top.corners_px),
     )  # fmt: skip
-    notes = (*_edge_notes(corners), *tracked.notes)
-    return replace(tracked, notes=notes, next_annotation=suggested)
+    views = {top.photo: seen.fit.pose_of(top.photo) for top in scene.tops}
+    notes = (*_click_notes(scene, views, corners), *tracked.notes)
+    return replace(tracked, notes=notes, next_annotation=suggested, corners=corners)
 
 
-def _edge_notes(corners: Mapping[str, RefinedCorners]) -> list[str]:
-    return [
-        f"the edges seen near the clicked corners of the robot's top in {photo} do not fit the "
-        "clicks, which are used without them: click again, check the length and width of the top, "
-        "or state a larger corner_sd_px"
-        for photo, found in corners.items()
-        if found.contradicts
-    ]
+def _click_notes(
+    scene: Scene, views: Mapping[str, CameraPose], corners: Mapping[str, RefinedCorners]
+) -> list[str]:
+    """Say which clicks do not fit the top as it is stated, or its edges."""
+    notes = []
+    for top in scene.tops:
+        clicked = pose_of_top(top, scene, views[top.photo])
+        missed = np.array(top.corners_px) - clicked.corners_px
+        if missed_too_far(clicked, missed, top.corner_sd_px):
+            farthest = float(np.linalg.norm(missed, axis=1).max())
+            notes.append(
+                f"the clicks on the robot's top in {top.photo} are up to {farthest:.1f} px from "
+                f"where a top of {top.plate.length:g} x {top.plate.width:g} m can be: check its "
+                "length and width, and the order of the clicks (front left, front right, rear "
+                "right, rear left); or click again"
+            )
+        elif corners[top.photo].contradicts:
+            notes.append(
+                f"the edges seen near the clicked corners of the robot's top in {top.photo} do not "
+                "fit the clicks, which are used without them: click again on the corners of a "
+                "plate whose edges are seen, or state a larger corner_sd_px"
+            )
+    return notes
+
+
+def missed_too_far(pose: AnnotatedPose, missed: Array, sd_px: float) -> bool:
+    """Return whether clicks on corners do not fit any pose of the top, with probability 1e-6.
+
+    Args:
+        pose: Pose fitted to the clicks.
+        missed: Clicked minus projected corners, shape (4, 2) [px].
+        sd_px: Standard deviation of u and of v of a click [px].
+    """
+    state, prior = pose.pose.state, pose.prior
+    height_sd = np.hypot(prior.height_sd, prior.mean_height_sd)
+    tilt_sd = np.hypot(prior.tilt_sd, prior.mean_tilt_sd)
+    held = np.array([(state[2] - prior.height) / height_sd, *(state[3:5] / tilt_sd)])
+    square = float(np.sum((missed / sd_px) ** 2) + held @ held)
+    return square > float(chi2.isf(_NO_TOP, missed.size + 3 - 6))
 
 
 def _again(
@@ -248,6 +282,9 @@ def refined_pose(
         The pose, and the refined corners it was fitted to.
     """
     clicked = pose_of_top(top, scene, view)
+    if not top.edges:
+        clicks = np.array(top.corners_px)
+        return clicked, RefinedCorners(clicks, top.corner_sd_px**2 * np.eye(8), 0)
     corners = refine_corners(pixels, clicked, np.array(top.corners_px), sd_px=top.corner_sd_px)
     return _pose_at(corners.corners_px, corners.covariance, top, scene, view), corners
 

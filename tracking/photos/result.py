@@ -2,11 +2,11 @@
 """Assemble a track from observed poses: corrections, smoothing, notes for the user."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tracking.body import Alignment, AnnotatedPose
+from tracking.body import Alignment, AnnotatedPose, RefinedCorners
 from tracking.corrections import Correction, Move, replay
 from tracking.doubt import doubts, heading_doubts
 from tracking.images import PhotoTimes
@@ -32,6 +32,7 @@ class Tracked:
             does not show the robot, or its pose was deleted by a correction.
         notes: Notes and warnings for the user, one line each.
         next_annotation: Without a marker, the photograph to annotate next; None where none gains.
+        corners: By name of annotated photograph, the corners of the top by clicks and edges.
     """
 
     track: Track
@@ -39,6 +40,7 @@ class Tracked:
     lost: Mapping[str, str]
     notes: tuple[str, ...]
     next_annotation: NextAnnotation | None = None
+    corners: Mapping[str, RefinedCorners] = field(default_factory=dict)
 
 
 def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:

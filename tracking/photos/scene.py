@@ -40,12 +40,14 @@ class MarkedTop:
             the plate [px].
         plate: Dimensions of the robot's top.
         corner_sd_px: Standard deviation of u and of v of a click [px].
+        edges: Whether edges of the top that are seen in the photograph refine the clicks.
     """
 
     photo: str
     corners_px: tuple[Click, ...]
     plate: TopPlate
     corner_sd_px: float = 0.5
+    edges: bool = True
 
 
 @dataclass(frozen=True)

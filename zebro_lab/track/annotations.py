@@ -105,7 +105,8 @@ def _template(table: SettingsTable) -> MarkedTop:
     except TrackingError as error:
         raise table.fault(str(error)) from error
     sd = table.quantity("corner_sd_px", "dimensionless", default=MarkedTop.corner_sd_px, above=0.0)
-    return MarkedTop(table.text("photo", least=1), corners, plate, sd)
+    edges = table.value("edges", True)
+    return MarkedTop(table.text("photo", least=1), corners, plate, sd, edges)
 
 
 def _pixel(table: SettingsTable, key: str) -> Click:
@@ -161,5 +162,5 @@ def _template_values(template: MarkedTop) -> Mapping[str, Any]:
         "photo": template.photo, "corners_px": template.corners_px,
         "length": plate.length, "width": plate.width, "height": plate.height,
         "centre_x": plate.centre_x, "margin": plate.margin, "front_margin": plate.front_margin,
-        "corner_sd_px": template.corner_sd_px,
+        "corner_sd_px": template.corner_sd_px, "edges": template.edges,
     }  # fmt: skip

@@ -111,6 +111,8 @@ def track_lines(result: "TrackResult") -> list[str]:
         f"y {1e3 * np.median(spread[:, 1]):.2f} mm, "
         f"yaw {np.degrees(np.median(spread[:, 2])):.3f} deg",
         *_uncertainty_lines(track),
+        *(f"{photo}: {each.sides} of 4 edges of the robot's top refined the clicks, by "
+          f"{each.moved:.2f} px (rms)" for photo, each in result.tracked.corners.items()),
         *([] if result.tracked.next_annotation is None
           else [result.tracked.next_annotation.sentence]),
         f"floor: marks are off by {fit.misfit_px:.3f} px (rms), camera "

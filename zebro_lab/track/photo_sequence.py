@@ -263,11 +263,11 @@ def _of_video(
 ) -> PhotoSequence:
     photos, t, sd, notes = [], [], [], []
 
-    def cut_short(read: int, stated: int) -> None:
+    def cut_short(read: int) -> None:
         """Note that the file ends early."""
         notes.append(
-            f"{video.name} ends after {read} of the {stated} frames it states: it is cut short, "
-            "and tracked as far as it goes; copy it again for the rest"
+            f"{video.name} is shorter than it states and ends after {read} frames: it is cut "
+            "short, and tracked as far as it goes; copy it again for the rest"
         )
 
     for frame in islice(video_frames(video, every=every, cut_short=cut_short), most):

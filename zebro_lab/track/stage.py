@@ -156,6 +156,10 @@ def _report(result: TrackResult) -> Mapping[str, object]:
                 for each in contributions(result.tracked.track)
             },
         },
+        "annotated": {
+            photo: {"edges": each.sides, "moved_px": round(each.moved, 3)}
+            for photo, each in result.tracked.corners.items()
+        },
         "floor_misfit_px": fit.misfit_px,
         "camera_stands": len(fit.stands),
     }

@@ -7,6 +7,7 @@ import pytest
 
 from support.synthetic import look_at
 from tracking.body import AnnotatedPose, TopPlate, expected_covariance, refine_corners
+from tracking.body.plate_edges import OFFSET_SD, OUTLINE_SD
 from tracking.camera import Camera, CameraPose, project, to_floor
 from tracking.pose import BodyPrior, fit_pose, rotation_with_derivatives
 
@@ -20,34 +21,41 @@ PRIOR = BodyPrior(0.0645, 5e-3, 0.02)
 GREY, BLUE, WOOD = (160, 160, 165), (140, 70, 30), (90, 130, 170)
 
 
-def corners(plate: TopPlate = PLATE) -> np.ndarray:
+def corners(plate: TopPlate = PLATE, yaw: float = TRUE[5]) -> np.ndarray:
     """Project the corners of the top at the true pose."""
-    R, _ = rotation_with_derivatives(*TRUE[3:])
+    R, _ = rotation_with_derivatives(0.0, 0.0, yaw)
     return project(LENS, VIEW, plate.corners_body @ R.T + TRUE[:3])
 
 
-def drawn(*, stripe: float | None = None, rim: tuple[int, int, int] = BLUE, seed: int = 0):
+def drawn(
+    *, stripe: float | None = None, rim: tuple[int, int, int] = BLUE, beside: float | None = None,
+    covered: float = 0.0, bulge: float = 0.0, plate: TopPlate = PLATE, yaw: float = TRUE[5],
+):  # fmt: skip
     """Draw the top on a body 20 mm wider, with 4 x 4 samples a pixel, blur and noise.
 
-    A stripe of the rim's colour may run inside the left edge, up to so many metres from it.
+    A stripe of the rim's colour may run inside the left edge, up to so many metres from it. The
+    left edge may be missing, and another one so many metres beside it. A part of the left side may
+    be covered by a bar across it, and the left side bulge out in the middle.
     """
     u, v = np.meshgrid(np.arange(4 * SIZE[0]), np.arange(4 * SIZE[1]))
     at = np.column_stack((u.ravel(), v.ravel())) / 4 - 0.375
-    x, y = (to_floor(LENS, VIEW, at, TRUE[2] + PLATE.height)[:, :2] - TRUE[:2]).T
-    c, s = np.cos(TRUE[5]), np.sin(TRUE[5])
+    x, y = (to_floor(LENS, VIEW, at, TRUE[2] + plate.height)[:, :2] - TRUE[:2]).T
+    c, s = np.cos(yaw), np.sin(yaw)
     x, y = c * x + s * y, -s * x + c * y
-    ahead, left = np.abs(x) - PLATE.length / 2, np.abs(y) - PLATE.width / 2
-    outside = np.maximum(ahead, left)
+    length, half = plate.length / 2, plate.width / 2
+    left = half + (beside or 0.0) + bulge * (1 - np.minimum(np.abs(x) / length, 1) ** 2)
+    outside = np.max([np.abs(x) - length, y - left, -half - y], axis=0)
     colours = np.select(
         [(outside < 0)[:, None], (outside < 0.02)[:, None]], [np.array(GREY), np.array(rim)], WOOD
     ).astype(float)
     if stripe is not None:
-        inside = PLATE.width / 2 - y
+        inside = half - y
         colours[(inside > stripe / 2) & (inside < stripe) & (outside < 0)] = rim
+    colours[(x < length) & (x > length - 2 * length * covered) & (np.abs(y - half) < 0.03)] = WOOD
     fine = colours.reshape(4 * SIZE[1], 4 * SIZE[0], 3)
     picture = fine.reshape(SIZE[1], 4, SIZE[0], 4, 3).mean(axis=(1, 3))
     picture = cv2.GaussianBlur(picture, (0, 0), 0.8)
-    picture += np.random.default_rng(seed).normal(0, 2.0, picture.shape)
+    picture += np.random.default_rng(0).normal(0, 2.0, picture.shape)
     return np.clip(np.round(picture), 0, 255).astype(np.uint8)
 
 
@@ -112,17 +120,44 @@ def test_a_side_with_two_edges_is_left_out():
     assert np.abs(found.corners_px - corners()).max() < 0.3
 
 
-def test_without_edges_the_clicks_are_kept():
+@pytest.mark.parametrize("drawing", [{"covered": 0.55}, {"bulge": 0.012}])
+def test_a_side_that_is_half_covered_or_no_line_is_left_out(drawing):
+    assert refined(drawn(**drawing), corners()).sides == 3
+
+
+def test_an_edge_beside_the_top_is_contradicted_by_the_others():
+    picture = drawn(beside=0.009)  # 3 px outside the left edge, which is not seen
+    for seed in range(5):
+        clicks = corners() + np.random.default_rng(seed).normal(0, 0.3, (4, 2))
+        found = refined(picture, clicks, sd=0.3)
+        assert found.sides < 4
+        off = (found.corners_px - corners()).ravel()
+        assert off @ np.linalg.solve(found.covariance, off) < 30  # of 8 degrees of freedom
+
+
+def test_the_border_of_the_picture_is_no_edge():
+    yaw = float(np.arctan2(0.1, 0.7))
+    level = corners(yaw=yaw)  # its right side runs along the rows
+    lowest = round(level[:, 1].max()) + 3
+    found = refined(np.ascontiguousarray(drawn(rim=GREY, yaw=yaw)[:lowest]), level)
+    assert found.sides == 0
+    np.testing.assert_array_equal(found.corners_px, level)
+
+
+@pytest.mark.parametrize("rim", [GREY, tuple(np.subtract(GREY, 6))])
+def test_without_edges_the_clicks_are_kept(rim):
     clicks = corners() + 0.2
-    found = refined(drawn(rim=GREY), clicks)
+    found = refined(drawn(rim=rim), clicks)
     assert found.sides == 0
     assert not found.contradicts
     np.testing.assert_array_equal(found.corners_px, clicks)
 
 
 def test_a_top_of_a_few_pixels_keeps_its_clicks():
-    tiny = TopPlate(0.02, 0.02, PLATE.height)
-    assert refined(PICTURE, corners(tiny), plate=tiny).sides == 0
+    tiny = TopPlate(0.018, 0.018, PLATE.height)
+    picture = drawn(plate=tiny)
+    assert np.ptp(corners(tiny), axis=0).max() < 15
+    assert refined(picture, corners(tiny), plate=tiny).sides == 0
 
 
 def test_what_is_expected_of_edges_is_what_is_found():
@@ -130,3 +165,25 @@ def test_what_is_expected_of_edges_is_what_is_found():
     expected = expected_covariance(corners(), sd_px=0.5)
     ratio = np.sqrt(np.diag(found.covariance) / np.diag(expected))
     assert np.all((ratio > 0.95) & (ratio < 1.2))
+
+
+def test_the_outline_may_be_larger_but_not_shifted():
+    # Of a top 200 px long and 50 px wide, clicked so badly that only edges count.
+    long, wide = 200.0, 50.0
+    box = np.array([[long, 0.0], [long, wide], [0.0, wide], [0.0, 0.0]])
+    covariance = expected_covariance(box, sd_px=100.0)
+
+    def variance(weights: list[float]) -> float:
+        """Compute the variance of a weighted sum of u0, v0, u1, v1 and so on."""
+        return float(np.array(weights) @ covariance @ weights)
+
+    length = variance([0.5, 0, 0.5, 0, -0.5, 0, -0.5, 0])
+    width = variance([0, -0.5, 0, 0.5, 0, 0.5, 0, -0.5])
+    ends, flanks = (np.hypot(OFFSET_SD[0], OFFSET_SD[1] * side) for side in (wide, long))
+    for found, apart, own in ((length, long, ends), (width, wide, flanks)):
+        common = 2 * np.hypot(OUTLINE_SD[0], OUTLINE_SD[1] * apart)
+        assert found == pytest.approx(common**2 + 2 * own**2, rel=0.02)
+    both = np.array([0.5, -0.5, 0.5, 0.5, -0.5, 0.5, -0.5, -0.5])
+    assert variance(both.tolist()) == pytest.approx(length + width, rel=0.02)
+    middle = variance([0.25, 0] * 4), variance([0, 0.25] * 4)
+    assert middle == pytest.approx((ends**2 / 2, flanks**2 / 2), rel=0.02)

@@ -12,6 +12,7 @@ from tracking.errors import BodyError, NoUsablePhoto
 from tracking.images import read_pixels
 from tracking.photos.by_look import (
     marked_tops,
+    missed_too_far,
     nearest_of,
     pose_of_top,
     refined_pose,
@@ -65,6 +66,32 @@ def test_edges_of_the_top_refine_its_heading_and_a_contradiction_is_said(
         off, plain_photos, times=TIMES, gap=None, workers=1, progress=NoProgress()
     )
     assert any("clicked corners of the robot's top in p0.png do not fit" in n for n in found.notes)
+
+
+def test_edges_may_be_left_out(scene, plain_photos, top):
+    seen = see_floor(scene, plain_photos, robot=None, workers=1, progress=NoProgress())
+    view, pixels = seen.fit.pose_of("p0.png"), read_pixels(plain_photos[0].path)
+    annotated, corners = refined_pose(replace(top, edges=False), scene, view, pixels)
+    assert corners.sides == 0
+    np.testing.assert_array_equal(annotated.covariance, pose_of_top(top, scene, view).covariance)
+
+
+def test_clicks_that_no_pose_of_the_top_explains_are_told(scene, photos, top):
+    view = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress()).fit.pose_of(
+        "p0.png"
+    )
+
+    def too_far(clicks, plate=top.plate) -> bool:
+        """Fit the pose to clicks and compare."""
+        clicked = replace(top, corners_px=tuple(map(tuple, clicks)), plate=plate)
+        pose = pose_of_top(clicked, scene, view)
+        return missed_too_far(pose, np.subtract(clicks, pose.corners_px), top.corner_sd_px)
+
+    clicks = np.array(top.corners_px)
+    noise = np.random.default_rng(0).normal(0, top.corner_sd_px, (50, 4, 2))
+    assert not any(too_far(clicks + each) for each in noise)
+    assert too_far(clicks[[1, 0, 3, 2]])  # left and right taken for each other
+    assert too_far(clicks, replace(top.plate, length=top.plate.length - 0.02))
 
 
 def test_clicks_that_are_off_move_the_whole_track_and_the_covariance_says_so(

@@ -3,9 +3,10 @@
 
 Clicks in a further photograph measure its pose without the error of the template that all poses
 share. With S the joint covariance of the poses and R the covariance of a pose by clicks in
-photograph k, the covariance falls by S_:k (S_kk + R)^-1 S_k: (conditioning of a Gaussian). Mean
-height and tilt of the body are wrong for these clicks too: that part of S is left out of the gain.
-A further template of its own, which such clicks also give, is not counted.
+photograph k, and by finding what was cut out there again, the covariance falls by
+S_:k (S_kk + R)^-1 S_k: (conditioning of a Gaussian). Mean height and tilt of the body are wrong for
+these clicks too: that part of S is left out of the gain. A further template of its own, which such
+clicks also give, is not counted.
 """
 
 from collections.abc import Iterable
@@ -77,7 +78,8 @@ def next_annotation(
         own = slice(3 * place, 3 * place + 3)
         clicks = _by_clicks(track.poses[row], views[seen.photo], camera, prior, plate, corner_sd_px,
                             by_edges)  # fmt: skip
-        gained = np.linalg.solve(known[own, own] + clicks, known[own])
+        again = clicks + seen.pose.planar_covariance
+        gained = np.linalg.solve(known[own, own] + again, known[own])
         fall = _mean_variances(np.einsum("ij,ij->j", known[own], gained).reshape(-1, 3))
         part = 1 - np.sqrt(np.maximum(1 - fall / whole, 0.0))
         if best is None or part.sum() > best.position + best.yaw:

@@ -100,16 +100,21 @@ def test_the_unmarked_walk_is_within_five_millimetres(lab, world, shared, run_co
 
 
 @pytest.mark.long
-def test_the_photograph_that_track_suggests_makes_an_unmarked_walk_surer(
+def test_the_photograph_that_track_suggests_makes_an_unmarked_walk_surer_and_edges_more(
     lab, world, shared, run_command
 ):
     photos = shared / "virtual-world/photos/s1.10_D"
     truth, names = read_truth(photos), sorted(path.name for path in photos.glob("*.jpg"))
+    annotations = Path("annotations.toml")
 
-    def tracked(number: int) -> tuple[np.ndarray, str]:
+    def annotate(number: int) -> None:
         corners = ("--corners", clicked(world, truth[number], seed=number))
         told = (*corners, "--plate", "150mmx150mm@38.5mm")
         assert run_command("annotate", photos, "--photo", names[number], *told).code == 0
+
+    def tracked(edges: str) -> tuple[float, str]:
+        said = annotations.read_text()
+        annotations.write_text(re.sub("edges = (true|false)", f"edges = {edges}", said))
         ended = run_command(
             "track", photos, "--camera", "camera.toml", "--floor", "floor.toml", "--robot",
             "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out",
@@ -118,14 +123,19 @@ def test_the_photograph_that_track_suggests_makes_an_unmarked_walk_surer(
         assert ended.code == 0
         table = pd.read_csv("out/track.csv")
         assert_within(table[["x_m", "y_m", "yaw_rad"]].to_numpy(), truth, 5e-3, 1.0)
-        return np.sqrt(table["cov_yawyaw"].to_numpy()), ended.out
+        return float(np.sqrt(table["cov_yawyaw"]).median()), ended.out
 
-    once, said = tracked(7)
+    annotate(7)
+    by_edges, said = tracked("true")
+    assert f"{names[7]}: 4 of 4 edges" in said
+    once, said = tracked("false")
+    assert by_edges < 0.5 * once
     suggested = re.search(r"annotate the robot's top in (\S+) too: .*, that of yaw by (\d+)%", said)
     assert suggested is not None
-    twice, _ = tracked(names.index(suggested[1]))
-    assert 1 - np.median(twice) / np.median(once) > 0.5 * float(suggested[2]) / 100
-    assert Path("annotations.toml").read_text().count("[[template]]") == 2
+    annotate(names.index(suggested[1]))
+    twice, _ = tracked("false")
+    assert 1 - twice / once > 0.5 * float(suggested[2]) / 100
+    assert annotations.read_text().count("[[template]]") == 2
 
 
 def clicked(world: dict, pose: np.ndarray, seed: int = 0) -> str:

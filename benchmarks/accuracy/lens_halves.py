@@ -4,7 +4,7 @@
     python -m benchmarks.accuracy.lens_halves FOLDER
 
 FOLDER holds the reference data. Each of its sets of checkerboards is split at random into disjoint
-halves, twenty times; of fx, fy, cx, cy the root mean square of the difference over √2 is divided by
+halves, sixty times; of fx, fy, cx, cy the root mean square of the difference over √2 is divided by
 that of the claimed standard deviations. 1 is right. What all photographs of a set have in common,
 such as a bent board, no halves can show.
 """
@@ -26,7 +26,7 @@ SETS = {
         "virtual-world/photos/calib/*.jpg", Checkerboard(9, 6, 0.03)
     ),
 }  # fmt: skip
-PAIRS = 20
+PAIRS = 60
 
 
 def seen_boards(

@@ -20,8 +20,9 @@ sampler; `test_recovery.py` shows that both give the same posterior.
 
 import time
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -181,7 +182,7 @@ def replicate(seed: int) -> dict[str, Fit]:
 def run_all(n: int) -> list[dict[str, Fit]]:
     """Fit n replicates, two at once; print what it took and the table."""
     began = time.perf_counter()
-    with ThreadPoolExecutor(2) as pool:
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         replicates = list(pool.map(replicate, range(n)))
     say(table(replicates))
     say(cost(replicates, time.perf_counter() - began))

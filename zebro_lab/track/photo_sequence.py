@@ -63,6 +63,11 @@ class PhotoSequence:
         """Whether the photographs are one picture with many exposures."""
         return self.times is None
 
+    @property
+    def is_video(self) -> bool:
+        """Whether the photographs are frames of a video."""
+        return self.origin.suffix.lower() in VIDEOS and not self.origin.is_dir()
+
 
 @contextmanager
 def open_photos(
@@ -115,7 +120,9 @@ def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
     Raises:
         DataError: The photographs' aspect ratio differs from the calibration's.
     """
-    sizes = Counter(size for photo in sequence.photos if (size := upright_size(photo.path)))
+    # Frames of a video have one size, and Pillow decodes a PNG to look for its EXIF data.
+    looked_at = sequence.photos[: 1 if sequence.is_video else None]
+    sizes = Counter(size for photo in looked_at if (size := upright_size(photo.path)))
     if not sizes:
         return camera
     try:

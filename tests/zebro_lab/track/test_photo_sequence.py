@@ -129,6 +129,9 @@ def test_frames_of_a_video_keep_their_own_times_and_leave_no_files(tmp_path):
         kept = [photo.path for photo in sequence.photos]
         assert all(path.is_file() for path in kept)
         assert sequence.notes == ()
+        assert sequence.is_video
+        lens = Camera((160, 120), np.diag([100.0, 100.0, 1.0]), np.zeros(5))
+        assert calibrated_for(lens, sequence).size == (80, 60)
     assert not any(path.exists() for path in kept)
     content = video.read_bytes()
     video.write_bytes(content[: len(content) - len(content) // 4])

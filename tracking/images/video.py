@@ -119,22 +119,33 @@ def is_cut_short(path: Path) -> bool:
     """
     end, size = 0, path.stat().st_size
     with path.open("rb") as file:
+        stated = _stated_by(file.read(4))
         while end < size:
             file.seek(end)
-            length = _stated_length(file.read(16))
+            length = stated(file.read(16))
             if length is None:
                 return False
             end += length
     return end > size
 
 
-def _stated_length(head: bytes) -> int | None:
-    """Return the length of an outermost part by its first 16 bytes; None if it states none."""
-    if head.startswith(b"RIFF"):
-        length = int.from_bytes(head[4:8], "little")
-        return 8 + length + length % 2 if length else None
-    if head.startswith(_EBML):
-        return _element_length(head)
+def _stated_by(head: bytes) -> Callable[[bytes], int | None]:
+    """Choose how lengths are stated in a file, by its first four bytes.
+
+    The function takes the first 16 bytes of an outermost part and returns its length; None for a
+    part that states none, or is of no known kind.
+    """
+    if head in _EBML:
+        return _element_length
+    return _chunk_length if head == b"RIFF" else _box_length
+
+
+def _chunk_length(head: bytes) -> int | None:
+    length = int.from_bytes(head[4:8], "little")
+    return 8 + length + length % 2 if length and head.startswith(b"RIFF") else None
+
+
+def _box_length(head: bytes) -> int | None:
     length = int.from_bytes(head[:4], "big")
     if length == 1:
         length = int.from_bytes(head[8:16], "big")
@@ -144,7 +155,7 @@ def _stated_length(head: bytes) -> int | None:
 def _element_length(head: bytes) -> int | None:
     """Return the length of an element of EBML with an identifier of four bytes."""
     width = 9 - head[4].bit_length() if len(head) > 4 else 9
-    if width > 8 or len(head) < 4 + width:
+    if not head.startswith(_EBML) or width > 8 or len(head) < 4 + width:
         return None
     stated = int.from_bytes(head[4 : 4 + width], "big") - (1 << 7 * width)
     return None if stated == (1 << 7 * width) - 1 else 4 + width + stated

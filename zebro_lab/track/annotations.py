@@ -106,6 +106,8 @@ def _template(table: SettingsTable) -> MarkedTop:
         raise table.fault(str(error)) from error
     sd = table.quantity("corner_sd_px", "dimensionless", default=MarkedTop.corner_sd_px, above=0.0)
     edges = table.value("edges", True)
+    if not isinstance(edges, bool):
+        raise table.fault(f"found {edges!r}; expected true or false", "edges")
     return MarkedTop(table.text("photo", least=1), corners, plate, sd, edges)
 
 

@@ -46,8 +46,10 @@ def test_a_file_that_is_cut_short_is_read_as_far_as_it_goes_and_said(tmp_path, e
         writer.write(cv2.resize(frame, (320, 240)))
     writer.release()
     assert len(list(video_frames(whole, cut_short=said.append))) == 40
-    assert not said
     content = whole.read_bytes()
+    whole.write_bytes(content + bytes(range(200, 250)))  # of another's, after the end
+    assert not is_cut_short(whole)
+    assert not said
     whole.write_bytes(content[: 6 * len(content) // 10])
     frames = list(video_frames(whole, every=0.5, cut_short=said.append))
     assert 15 < said[0] < 35

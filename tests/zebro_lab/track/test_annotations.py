@@ -64,6 +64,10 @@ FAULTS = {
         '[template]\nphoto = "a"\ncorners_px = [[1, 2], [3, 4], [5, 6], [7, 8]]\nlength = 0\n'
         "width = 1\nheight = 1", "above 0 m",
     ),
+    "edges in quotes": (
+        '[template]\nphoto = "a"\ncorners_px = [[1, 2], [3, 4], [5, 6], [7, 8]]\nlength = 1\n'
+        'width = 1\nheight = 1\nedges = "false"', "edges.*'false'; expected true or false",
+    ),
     "unknown table": ("[corrections]", "did you mean 'correction'"),
 }  # fmt: skip
 

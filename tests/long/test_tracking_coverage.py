@@ -3,9 +3,9 @@
 
 Simulated photographs, each with its own draw of everything the tracker is told with a standard
 deviation: tape and print of the floor's markers, side of the robot's marker, height and tilt of its
-body. The picture stays and what is told is drawn around it, which is the same and spares drawing
-the floor anew. Only the neighbourhoods of robot and markers are drawn, in the frame of the whole
-picture.
+body, and of how far the edges of markers lie outwards, which it expects of any picture. The picture
+stays and what is told is drawn around it, which is the same and spares drawing the floor anew. Only
+the neighbourhoods of robot and markers are drawn, in the frame of the whole picture.
 
 Without a marker the robot's picture is cut out at a pose that is known exactly: an error of the
 annotation is a constant turn and shift of what is called the body, not one of tracking it.
@@ -38,8 +38,16 @@ from support.synthetic import (
 from tracking.body import BodyTemplate, TopPlate, find_body, make_template
 from tracking.camera import Camera
 from tracking.detect import Detection, MarkedRobot, observe
-from tracking.floor import FloorFit, FloorMap, FloorMarker, FloorView, refine_floor
-from tracking.markers import Sighting, find_markers
+from tracking.floor import (
+    EDGE_SPREADS,
+    FloorFit,
+    FloorMap,
+    FloorMarker,
+    FloorView,
+    refine_floor,
+)
+from tracking.floor.adjustment import EDGE_REACH, EDGE_SCALE
+from tracking.markers import Sighting, edge_growth, find_markers
 from tracking.path import PoseObservation
 from tracking.pose import PLANAR, BodyPose, BodyPrior, RobotMarker
 from tracking.shared import SIDE as PRINTED_SIDE
@@ -73,7 +81,7 @@ class Kind:
 
 KINDS = (
     Kind("marker, steady", 0.5, 0.2, 1.0),
-    Kind("marker, 5 mm bounce, 2 degrees tilt", 4.0, 0.3, 0.99, height_sd=5e-3,
+    Kind("marker, 5 mm bounce, 2 degrees tilt", 5.0, 0.3, 0.99, height_sd=5e-3,
          tilt_sd=np.radians(2)),
     Kind("marker, harsh", 1.0, 0.3, 0.9, conditions=HARSH),
     Kind("no marker, 2 degrees tilt", 2.0, 2.0, 0.99, tilt_sd=np.radians(2), marked=False,
@@ -131,20 +139,63 @@ def floor_as_told(rng: np.random.Generator) -> FloorMap:
     ))  # fmt: skip
 
 
-def see_floor(conditions: Conditions, rng: np.random.Generator) -> FloorView:
+@dataclass(frozen=True)
+class Edges:
+    """How far the edges of markers lie outwards in one photograph [px].
+
+    Attributes:
+        everywhere: Of all markers.
+        farther: Of all markers, more for each `EDGE_REACH` of the logarithm of distance.
+        sd: Standard deviation of those of each marker besides.
+    """
+
+    everywhere: float = 0.0
+    farther: float = 0.0
+    sd: float = 0.0
+
+    @classmethod
+    def drawn(cls, rng: np.random.Generator) -> "Edges":
+        """Draw them from what the tracker expects: a half-Cauchy spread within its limits."""
+        low, high = np.arctan(EDGE_SPREADS[[0, -1]] / EDGE_SCALE)
+        sd = float(EDGE_SCALE * np.tan(rng.uniform(low, high)))
+        return cls(*rng.normal(0, sd, 2), sd)
+
+    def outwards(
+        self, corners_px: np.ndarray, middle: np.ndarray, rng: np.random.Generator
+    ) -> np.ndarray:
+        """Move the corners of a marker, whose middle in the floor frame is given [m]."""
+        usual = np.mean(
+            [_log_distance(each.corners.mean(axis=0)) for each in stage().scene.markers]
+        )
+        along = (_log_distance(middle) - usual) / EDGE_REACH
+        by = self.everywhere + self.farther * along + rng.normal(0, self.sd)
+        return corners_px + by * edge_growth(corners_px)
+
+
+def _log_distance(point: np.ndarray) -> float:
+    return float(np.log(np.linalg.norm(point - stage().scene.camera.position)))
+
+
+def see_floor(conditions: Conditions, edges: Edges, rng: np.random.Generator) -> FloorView:
     """Photograph the floor's markers and find them."""
     place, found = stage(), []
     for marker in place.scene.markers:
         window = place.window(place.scene.camera.project(marker.corners), 40)
         pixels, _ = develop(place.background[window], conditions, rng=rng)
         sightings = find_markers(pixels, "4x4_50", wanted=[marker.marker_id])
-        found += [_shifted(sighting, window) for sighting in sightings]
+        middle = marker.corners.mean(axis=0)
+        found += [_as_seen(sighting, window, edges, middle, rng) for sighting in sightings]
     return FloorView.of("photo", found)
 
 
-def _shifted(sighting: Sighting, window: tuple[slice, slice]) -> Sighting:
+def _as_seen(
+    sighting: Sighting, window: tuple[slice, slice], edges: Edges, middle: np.ndarray,
+    rng: np.random.Generator,
+) -> Sighting:  # fmt: skip
+    """Return a marker found in a window as in the whole picture, with edges that lie outwards."""
     rows, columns = window
-    return replace(sighting, corners_px=np.add(sighting.corners_px, (columns.start, rows.start)))
+    corners = np.add(sighting.corners_px, (columns.start, rows.start))
+    return replace(sighting, corners_px=edges.outwards(corners, middle, rng))
 
 
 def draw_pose(kind: Kind, rng: np.random.Generator) -> DrawnPose:
@@ -170,7 +221,7 @@ def photograph(
 
 
 def by_marker(
-    truth: DrawnPose, kind: Kind, fit: FloorFit, rng: np.random.Generator
+    truth: DrawnPose, kind: Kind, fit: FloorFit, edges: Edges, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Find the robot by its marker; return x, y, yaw and their covariance."""
     pixels, window = photograph(truth, kind, rng)
@@ -182,7 +233,8 @@ def by_marker(
         side_sd=SIDE_SD,
     )  # fmt: skip
     robot = MarkedRobot(marker, BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd))
-    detection = Detection("photo", FloorView.of("photo"), _shifted(found[0], window))
+    sighting = _as_seen(found[0], window, edges, truth.position, rng)
+    detection = Detection("photo", FloorView.of("photo"), sighting)
     seen = observe(fit, [detection], robot=robot, times={"photo": (0.0, 0.0)})[0]
     shared = fit.shared.also(PRINTED_SIDE, marker.spreads[PRINTED_SIDE])
     return seen.planar, whole_covariance(seen, shared, robot.prior)
@@ -201,7 +253,7 @@ def template(seed: int) -> BodyTemplate:
     kind = replace(KINDS[-1], height_sd=0.0, tilt_sd=0.0)
     truth = draw_pose(kind, rng)
     pixels, window = photograph(truth, kind, rng)
-    fit = refine_floor(place.lens, true_floor(), [see_floor(GOOD, rng)])
+    fit = refine_floor(place.lens, true_floor(), [see_floor(GOOD, Edges(), rng)])
     state = np.array([truth.x, truth.y, truth.z, 0.0, 0.0, truth.yaw])
     pose = BodyPose(state, np.zeros((6, 6)))
     return make_template(pasted(pixels, window), place.lens, fit.stands[0].pose, pose=pose,
@@ -243,9 +295,13 @@ def one_pose(task: tuple[int, int]) -> tuple[np.ndarray, np.ndarray] | None:
     """Photograph and track one pose; return the errors of x, y, yaw and what is said of them."""
     index, _ = task
     kind, rng = KINDS[index], np.random.default_rng(task)
-    fit = refine_floor(stage().lens, floor_as_told(rng), [see_floor(kind.conditions, rng)])
+    edges = Edges.drawn(rng)
+    fit = refine_floor(stage().lens, floor_as_told(rng), [see_floor(kind.conditions, edges, rng)])
     truth = draw_pose(kind, rng)
-    found = (by_marker if kind.marked else by_picture)(truth, kind, fit, rng)
+    if kind.marked:
+        found = by_marker(truth, kind, fit, edges, rng)
+    else:
+        found = by_picture(truth, kind, fit, rng)
     if found is None:
         return None
     error = found[0] - (truth.x, truth.y, truth.yaw)

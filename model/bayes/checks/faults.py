@@ -11,7 +11,14 @@ from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.fast_noise import fast_noise
 from model.bayes.checks.linear import Linearised
 from model.bayes.checks.periodic import block_times, find_swing
-from model.bayes.checks.raw import clipped, delay, opposed_runs, outliers, raw_residuals
+from model.bayes.checks.raw import (
+    clipped,
+    delay,
+    opposed_runs,
+    outliers,
+    raw_residuals,
+    reach_of_slip_noise,
+)
 from model.bayes.checks.scatter import friction_scatter
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
@@ -51,7 +58,7 @@ def faults(
     residual, slope = raw_residuals(samples, posterior.law, fit.values)
     return (
         _sign(samples),
-        _outliers(samples, residual, slope, allowed=not math.isinf(posterior.tail)),
+        _outliers(samples, posterior, fit.values, residual),
         _clipped(samples),
         _delay(samples, residual, slope),
         *_friction(fit, explained),
@@ -83,10 +90,15 @@ def _counted(names: tuple[str, ...]) -> str:
     return f"{len(names)} run{'s' * (len(names) != 1)}"
 
 
-def _outliers(samples: SlipSamples, residual: Array, slope: Array, *, allowed: bool) -> Check:
-    """Check that no samples leap so far that the fit suffers; it does not if they are allowed."""
-    fine = samples.fine
-    found = outliers(samples, residual, slope) if fine is None else fine.outliers
+def _outliers(
+    samples: SlipSamples, posterior: SlipPosterior, values: Array, residual: Array
+) -> Check:
+    """Check that no samples leap so far that the fit suffers; Student-t noise allows for them."""
+    fine, allowed = samples.fine, not math.isinf(posterior.tail)
+    if fine is None:
+        found = outliers(samples, residual, reach_of_slip_noise(samples, posterior.law, values))
+    else:
+        found = fine.outliers
     total = len(samples) if fine is None else int(fine.length.sum())
     cause = f"outliers: {found.count} samples leap by about {found.size:.3g} N"
     advice: Advice = CorrectData(
@@ -98,8 +110,8 @@ def _outliers(samples: SlipSamples, residual: Array, slope: Array, *, allowed: b
     check = decided(
         "no samples leap from their neighbours",
         allowed or not found.matter,
-        f"samples that leap by more than 8 robust standard deviations: {found.count} of "
-        f"{total}"
+        f"samples that leap by more than 8 robust standard deviations, and than noise of slip "
+        f"explains: {found.count} of {total}"
         + (f", most in run '{samples.run_names[found.run]}'" if found.count else "")
         + ("; Student-t noise allows for them" if found.count and allowed else ""),
         advice,

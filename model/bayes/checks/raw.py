@@ -18,6 +18,7 @@ from model.slip.law import Array, SlipLaw
 Levels: TypeAlias = tuple[tuple[float, int], ...]
 
 OUTLYING = 8.0  # robust standard deviations of a run, which no Gaussian sample reaches
+FARTHEST = 4.5  # standard deviations of slip noise: one sample in 150,000 lies beyond
 LONG_RUN = 50  # samples, from which a run shows its own scatter
 FEWEST_CLIPPED = 8
 CLIPPED_EXCESS = 4.0  # samples at the extreme over samples at the next level
@@ -40,41 +41,71 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
         Residuals and slopes, shape (n,) each [N].
     """
     k, law = len(law.parameters), law_at(law, samples.coordinate)
-    g_t, g_n, b_n, c, epsilon, c_r = values[k : k + 6]
-    slip = samples.slip - epsilon * slip_per_radius_error(samples.slip, samples.definition)
-    load = (1 + g_n) * samples.normal_force - b_n + c * samples.traction_force
-    load = np.maximum(load, 1e-9)
+    g_t, _, _, _, _, c_r = values[k : k + 6]
+    slip, load = _corrected(samples, values[k : k + 6])
     force = (1 + g_t) * (law.force(slip, load, values[:k]) - c_r * load)
     slope = (1 + g_t) * law.slip_derivative(slip, load, values[:k])
     return samples.traction_force - force, np.broadcast_to(slope, force.shape)
 
 
-def outliers(samples: SlipSamples, residual: Array, slope: Array) -> Outliers:
-    """Find samples whose residual leaps from both neighbours, by `OUTLYING` robust deviations.
+def reach_of_slip_noise(samples: SlipSamples, law: SlipLaw, values: Array) -> Array:
+    """Compute how far noise of the slip sensors may move the residual of each sample.
 
-    A leap is the residual less the mean of its neighbours. Its deviation is that of slip noise
-    times the slope there, and with it 1.4826 times the median absolute leap of the run or, of runs
-    shorter than `LONG_RUN`, of all, and no less than half of all.
+    It is the larger change of force over 4.5 standard deviations of slip on either side. The slope
+    would do where the curve is straight; at its peak the slope is zero, and noise that carries
+    slip over the peak moves the force all the same.
+
+    Args:
+        samples: The samples, n of them.
+        law: The slip law, of k parameters.
+        values: Law and measurement parameters, shape (k + 12,).
+
+    Returns:
+        Changes of force, shape (n,) [N].
+    """
+    k, law = len(law.parameters), law_at(law, samples.coordinate)
+    slip, load = _corrected(samples, values[k : k + 6])
+    reach = FARTHEST * np.sqrt(slip_noise_variance(samples))[samples.run]
+    force = law.force(slip, load, values[:k])
+    low, high = (law.force(slip + sign * reach, load, values[:k]) for sign in (-1, 1))
+    return (1 + values[k]) * np.maximum(np.abs(low - force), np.abs(high - force))
+
+
+def _corrected(samples: SlipSamples, measurement: Array) -> tuple[Array, Array]:
+    """Correct slip [-] and load [N] by the errors of radius and load cell, shape (n,) each."""
+    _, g_n, b_n, c, epsilon, _ = measurement
+    slip = samples.slip - epsilon * slip_per_radius_error(samples.slip, samples.definition)
+    load = (1 + g_n) * samples.normal_force - b_n + c * samples.traction_force
+    return slip, np.maximum(load, 1e-9)
+
+
+def outliers(samples: SlipSamples, residual: Array, by_slip: Array) -> Outliers:
+    """Find samples whose residual leaps from both neighbours by more than noise makes.
+
+    A leap is the residual less the mean of its neighbours. It is too large beyond `OUTLYING` robust
+    deviations and beyond the reach of slip noise in the three. A robust deviation is 1.4826 times
+    the median absolute leap of the run or, of runs shorter than `LONG_RUN`, of all, and no less
+    than half of all.
 
     Args:
         samples: The samples.
         residual: Residual of each sample, shape (n,) [N].
-        slope: Slope of force in slip, shape (n,) [N].
+        by_slip: How far noise of slip may move each residual, shape (n,) [N].
     """
-    leap = np.zeros(len(samples))
+    leap, reach = np.zeros(len(samples)), np.zeros(len(samples))
     for part in samples.slices():
-        own = residual[part]
+        own, square = residual[part], by_slip[part] ** 2
         if len(own) > 2:
             leap[part][1:-1] = own[1:-1] - 0.5 * (own[2:] + own[:-2])
+            reach[part][1:-1] = np.sqrt(square[1:-1] + 0.25 * (square[2:] + square[:-2]))
     size = np.abs(leap)
     long = np.array([part.stop - part.start >= LONG_RUN for part in samples.slices()])
     every = 1.4826 * float(np.median(size[leap != 0])) if leap.any() else 0.0
     own = np.array([1.4826 * np.median(size[part]) for part in samples.slices()])
     own = np.where(long, np.maximum(own, 0.5 * every), every)
-    by_slip = np.sqrt(1.5 * slip_noise_variance(samples))[samples.run] * np.abs(slope)
-    scale = np.hypot(own[samples.run], by_slip)
+    limit = np.maximum(OUTLYING * own[samples.run], reach)
     # A leap of one sample makes two of half the size, of the other sign, beside it.
-    far = (size > OUTLYING * scale) & (scale > 0) & _is_peak(size)
+    far = (size > limit) & (limit > 0) & _is_peak(size)
     count = int(far.sum())
     run = int(np.bincount(samples.run[far], minlength=samples.n_runs).argmax()) if count else 0
     typical = float(np.median(size[far])) if count else 0.0

@@ -6,8 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.checks.raw import clipped, delay, opposed_runs, outliers, raw_residuals
-from model.slip.thesis import THESIS_LAW
+from model.bayes.checks.raw import (
+    clipped,
+    delay,
+    opposed_runs,
+    outliers,
+    raw_residuals,
+    reach_of_slip_noise,
+)
+from model.bayes.samples import SlipSamples
+from model.slip.definition import SlipDefinition
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from support.linearised_fits import linearised, sound_sweep, with_force
 
 RNG = np.random.default_rng(1)
@@ -16,6 +25,12 @@ RNG = np.random.default_rng(1)
 def raw(change=None):
     _, fit, samples = linearised(*([change] if change else []))
     return samples, *raw_residuals(samples, THESIS_LAW, fit.values)
+
+
+def leaps(change=None):
+    _, fit, samples = linearised(*([change] if change else []))
+    residual, _ = raw_residuals(samples, THESIS_LAW, fit.values)
+    return outliers(samples, residual, reach_of_slip_noise(samples, THESIS_LAW, fit.values))
 
 
 def late(steps):
@@ -29,12 +44,29 @@ def late(steps):
 
 
 def test_noise_is_no_outlier_and_a_few_spikes_are_counted():
-    assert not outliers(*raw()).matter
+    assert not leaps().matter
     hit = RNG.random(len(sound_sweep().samples)) < 0.004
-    found = outliers(*raw(with_force(lambda s: 3.0 * hit)))
+    found = leaps(with_force(lambda s: 3.0 * hit))
     assert found.matter
     assert found.count == pytest.approx(hit.sum(), rel=0.3)
     assert found.size == pytest.approx(3.0, rel=0.3)
+
+
+def test_noise_that_carries_slip_over_the_peak_of_a_light_load_is_no_outlier():
+    rng, n = np.random.default_rng(3), 20_000
+    values = np.concatenate([THESIS_VALUES, np.zeros(12)])
+    swing = 0.005 * (1 + np.sin(np.arange(n) / 3.0))  # of the discs; the peak is at 0.014
+    slip = np.where(np.arange(n) < n // 5, swing, 0.2)  # most of the sweep is far from it
+    exact = SlipSamples(
+        slip, np.full(n, 2.13), np.zeros(n), np.zeros(n, np.intp), ("light",),
+        SlipDefinition.MATERIAL,
+    )  # fmt: skip
+    force = -raw_residuals(exact, THESIS_LAW, values)[0] + rng.normal(0, 0.01, n)
+    seen = replace(exact, slip=slip + rng.normal(0, 0.0055, n), traction_force=force)
+    residual, slope = raw_residuals(seen, THESIS_LAW, values)
+    assert not outliers(seen, residual, reach_of_slip_noise(seen, THESIS_LAW, values)).matter
+    by_slope = 4.5 * 0.0055 * np.abs(slope)  # zero at the peak
+    assert outliers(seen, residual, by_slope).matter
 
 
 def test_a_force_that_stops_at_a_limit_is_clipped_and_counts_are_not():

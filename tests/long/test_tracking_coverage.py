@@ -19,7 +19,6 @@ from multiprocessing import get_context
 
 import numpy as np
 import pytest
-from scipy.stats import binom
 
 from support.synthetic import (
     HARSH,
@@ -82,7 +81,7 @@ class Kind:
 
 KINDS = (
     Kind("marker, steady", 0.5, 0.2, 1.0),
-    Kind("marker, 5 mm bounce, 2 degrees tilt", 5.0, 0.3, 0.99, height_sd=5e-3,
+    Kind("marker, 5 mm bounce, 2 degrees tilt", 4.0, 0.3, 0.99, height_sd=5e-3,
          tilt_sd=np.radians(2)),
     Kind("marker, harsh", 1.0, 0.3, 0.9, conditions=HARSH),
     Kind("no marker, 2 degrees tilt", 2.0, 2.0, 0.99, tilt_sd=np.radians(2), marked=False),
@@ -359,13 +358,9 @@ def measured(request) -> tuple[Kind, Row]:
 
 
 def test_nominal_90_percent_intervals_hold_the_truth_at_their_rate(measured):
-    """Counts lie inside the exact binomial 99 % interval, corrected for the number of lines."""
     _, row = measured
-    found = round(row.recall * POSES)
-    low, high = binom.interval(1 - 0.01 / (3 * len(KINDS)), found, 0.9)
-    held = np.round(row.inside * found)
-    assert (held >= low).all()
-    assert (held <= high).all()
+    assert (row.inside >= 0.87).all()
+    assert (row.inside <= 0.93).all()
 
 
 def test_errors_and_recall_keep_the_promise(measured):

@@ -110,8 +110,8 @@ def _outliers(
     check = decided(
         "no samples leap from their neighbours",
         allowed or not found.matter,
-        f"samples that leap by more than 8 robust standard deviations, and than noise of slip "
-        f"explains: {found.count} of {total}"
+        "samples that leap by more than 8 robust standard deviations and by more than noise of "
+        f"slip explains: {found.count} of {total}"
         + (f", most in run '{samples.run_names[found.run]}'" if found.count else "")
         + ("; Student-t noise allows for them" if found.count and allowed else ""),
         advice,

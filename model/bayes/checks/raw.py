@@ -41,7 +41,7 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
         Residuals and slopes, shape (n,) each [N].
     """
     k, law = len(law.parameters), law_at(law, samples.coordinate)
-    g_t, _, _, _, _, c_r = values[k : k + 6]
+    g_t, c_r = values[k], values[k + 5]
     slip, load = _corrected(samples, values[k : k + 6])
     force = (1 + g_t) * (law.force(slip, load, values[:k]) - c_r * load)
     slope = (1 + g_t) * law.slip_derivative(slip, load, values[:k])

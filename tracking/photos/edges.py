@@ -61,12 +61,14 @@ def edge_spread(
         return known
     logs = np.full(len(EDGE_SPREADS), -np.inf)
     process = None
-    for k in np.flatnonzero(known.weights > _NEGLIGIBLE):
+    first = int(np.argmax(known.weights > _NEGLIGIBLE))
+    for k in range(first, len(EDGE_SPREADS)):
+        if known.weights[k] <= _NEGLIGIBLE and logs[k - 1] < logs.max():
+            break  # neither the floor's markers nor the walk ask for still larger spreads
         seen = observe(fit, usable, robot=robot, times=times, edge_sd=float(EDGE_SPREADS[k]))
         seen = replay(seen, flips, prior=robot.prior)
         track = assemble_track(seen, shared=shared, prior=robot.prior, gap=gap, start=process,
                                average=False)  # fmt: skip
         process = track.smoothed.process
         logs[k] = track.smoothed.log_likelihood + sum(each.pose.log_evidence for each in seen)
-    at_least = np.maximum.accumulate(logs)
-    return EdgeSpread(np.where(np.isfinite(logs), known.log_weights + at_least, -np.inf))
+    return EdgeSpread(known.log_weights + np.maximum.accumulate(logs))

@@ -28,7 +28,7 @@ def spreads(edges: float, seed: int) -> tuple[float, float]:
 
 def test_a_walk_to_and_fro_raises_the_spread_and_a_steady_one_does_not_lower_it():
     steady = [spreads(0.0, seed) for seed in range(3)]
-    assert all(walk >= 0.98 * floor for floor, walk in steady)
+    assert all(walk >= 0.999999 * floor for floor, walk in steady)
     rough = [spreads(0.3, seed)[1] for seed in range(3)]
     assert np.mean(rough) > 2 * np.mean([walk for _, walk in steady])
 

@@ -14,10 +14,12 @@ Gauss-Newton. The residual gives the noise and its correlation, the normal equat
 """
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy import fft
 
 from tracking.camera.lens import Array
 from tracking.markers.square import (
@@ -26,11 +28,17 @@ from tracking.markers.square import (
     square_homography,
 )
 
+Field: TypeAlias = NDArray[np.float32]
+Waves: TypeAlias = NDArray[np.complex64]
+
 CORNER_FLOOR_PX = 0.003
 """Standard deviation of model errors added to each corner coordinate, in a sharp picture [px]."""
 
 _LAGS_PX = 8
 """Largest lag of the residual's autocovariance: a block of JPEG [px]."""
+
+_CORRECTIONS = 2
+"""How often the part of the error that the fit takes is added to the residual's autocovariance."""
 
 _SLOPE = np.array([[1.0, -8.0, 0.0, 8.0, -1.0]]) / 12
 """Five-point central difference; that of three points underestimates the slope of a sharp edge."""
@@ -173,42 +181,109 @@ class _Look:
     def covariance(self, patch: _Patch) -> Array:
         """Compute the covariance of the corners in the patch, shape (8, 8) [px²].
 
-        Least squares of design J with a residual of covariance R: (J'J)^-1 J'RJ (J'J)^-1. R is
+        Least squares of design J with a residual of covariance R: W J'RJ W, W = (J'J)^-1. R is
         estimated from the residual itself: compression and model errors make neighbouring pixels
         correlated, so that the number of pixels overstates the information.
+
+        The fit takes a part of the error into its unknowns. What is left has the covariance
+        M R M, M = 1 - J W J', and lacks what is most like a moved corner. The missing part,
+        R - M R M = R J W J' + J W J' R - J V J' with V = W J'RJ W, follows from R and is added.
         """
-        column, row = (self.points - self.points.min(axis=0)).astype(int).T
-        shape = (int(row.max()) + 1, int(column.max()) + 1)
-        used, left = np.zeros(shape), np.zeros(shape)
-        used[row, column], left[row, column] = 1.0, self.residual
-        kernel = _autocovariance(left, used, lags=max(2, round(_LAGS_PX / patch.shrink)))
-        freedom = len(self.points) / max(len(self.points) - 14, 1)
-        smeared = np.empty_like(self.design)
-        laid = np.zeros(shape)
-        for index, slope in enumerate(self.design.T):
-            laid[row, column] = slope
-            smeared[:, index] = cv2.filter2D(
-                laid, cv2.CV_64F, kernel, borderType=cv2.BORDER_CONSTANT
-            )[row, column]
-        whole = freedom * self.inverse @ (self.design.T @ smeared) @ self.inverse
-        return whole[:8, :8]
+        rectangle = _Rectangle.around(self.points, lags=max(2, round(_LAGS_PX / patch.shrink)))
+        left = rectangle.transform(rectangle.laid(self.residual[:, None]))
+        design = rectangle.laid(self.design)
+        waves = rectangle.transform(design)
+        weighted = _mixed(self.inverse, waves)
+        seen = rectangle.mean_products(left, left)
+        kernel = seen
+        for _ in range(_CORRECTIONS):
+            smeared = rectangle.smeared(waves, kernel)
+            by_fit = _mixed(self._whole_covariance(design, smeared), waves)
+            missing = 2 * rectangle.mean_products(rectangle.transform(smeared), weighted)
+            kernel = seen + missing - rectangle.mean_products(waves, by_fit)
+        return self._whole_covariance(design, rectangle.smeared(waves, kernel))[:8, :8]
+
+    def _whole_covariance(self, design: Field, smeared: Field) -> Array:
+        """Compute W J'RJ W of J and RJ laid on a rectangle, shape (14, 14)."""
+        inner = np.tensordot(design, smeared, axes=((1, 2), (1, 2)))
+        values, vectors = np.linalg.eigh((inner + inner.T) / 2)
+        # A taper that is flat in the middle may leave a slightly negative variance.
+        root = self.inverse @ vectors * np.sqrt(np.maximum(values, 0.0))
+        return root @ root.T
 
 
-def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
-    """Compute the autocovariance of residuals `left` where `used` is 1, with Bartlett's taper.
+def _mixed(matrix: Array, waves: Waves) -> Waves:
+    """Sum transformed fields with the factors of each row of a matrix."""
+    return np.asarray(np.tensordot(matrix.astype(np.float32), waves, axes=1), np.complex64)
 
-    Returns:
-        By lag of rows and columns, lag 0 in the middle, shape (2 lags + 1, 2 lags + 1).
+
+@dataclass(frozen=True)
+class _Rectangle:
+    """A rectangle around pixels, with room for lags between them, so that none wraps around.
+
+    Fields on it are of single precision: a covariance needs no more, and it takes half the time.
+
+    Attributes:
+        row: Row of each pixel, from the topmost one, shape (n,).
+        column: Column of each pixel, from the leftmost one, shape (n,).
+        used: 1 where a pixel is, 0 elsewhere, shape (height, width).
+        pairs: Number of pairs of pixels by their lag, at least 1, shape (height, width); negative
+            lags from the end.
+        lags: Largest lag of rows and of columns [px].
     """
-    # Padded, so that no lag wraps around; a patch may be smaller than the largest lag.
-    shape = tuple(max(length + lags, 2 * lags + 1) for length in left.shape)
-    power = [np.abs(np.fft.rfft2(part, shape)) ** 2 for part in (left, used)]
-    product, pairs = (np.fft.irfft2(part, shape) for part in power)
-    mean = product / np.maximum(pairs, 1.0)
-    near = np.roll(mean, (lags, lags), axis=(0, 1))[: 2 * lags + 1, : 2 * lags + 1]
-    # Bartlett's window in both directions keeps the covariance positive.
-    taper = 1 - np.abs(np.arange(-lags, lags + 1)) / (lags + 1)
-    return near * np.outer(taper, taper)
+
+    row: NDArray[np.intp]
+    column: NDArray[np.intp]
+    used: Field
+    pairs: Field
+    lags: int
+
+    @classmethod
+    def around(cls, points: Array, *, lags: int) -> "_Rectangle":
+        """Draw it around pixels at columns and rows `points`, shape (n, 2)."""
+        column, row = (points - points.min(axis=0)).astype(int).T
+        # A patch may be smaller than the largest lag.
+        height, width = (
+            cv2.getOptimalDFTSize(max(int(each.max()) + 1 + lags, 2 * lags + 1))
+            for each in (row, column)
+        )
+        used = np.zeros((height, width), np.float32)
+        used[row, column] = 1.0
+        power = np.abs(np.asarray(fft.rfft2(used))) ** 2
+        pairs = np.maximum(np.asarray(fft.irfft2(power, used.shape), np.float32), 1.0)
+        return cls(row, column, used, pairs, lags)
+
+    def laid(self, fields: Array) -> Field:
+        """Lay k values of each pixel, shape (n, k), on the rectangle, shape (k, height, width)."""
+        laid = np.zeros((fields.shape[1], *self.used.shape), np.float32)
+        laid[:, self.row, self.column] = fields.T
+        return laid
+
+    def transform(self, laid: Field) -> Waves:
+        """Compute the Fourier transform of fields laid on the rectangle."""
+        return np.asarray(fft.rfft2(laid), np.complex64)
+
+    def mean_products(self, left: Waves, right: Waves) -> Field:
+        """Average left(p) right(p + lag), summed over the k transformed fields, by lag.
+
+        Lags of either sign are taken alike. Shape (height, width), negative lags from the end.
+        """
+        power = np.einsum("kij,kij->ij", left, right.conj()).real
+        return np.asarray(fft.irfft2(power, self.used.shape), np.float32) / self.pairs
+
+    def smeared(self, waves: Waves, kernel: Field) -> Field:
+        """Multiply transformed fields by the covariance of pixels that `kernel` gives by lag.
+
+        It is tapered: whole to half the largest lag, then less and less, to 0 beyond it. Estimates
+        of far lags are mostly noise; Bartlett's taper, which falls at once, takes a third off the
+        correlation of near ones.
+        """
+        down, across = (
+            np.clip(2 * (1 - np.minimum(lag, len(lag) - lag) / (self.lags + 1)), 0.0, 1.0)
+            for lag in map(np.arange, self.used.shape)
+        )
+        spectrum = self.transform(kernel * np.outer(down, across).astype(np.float32)).real
+        return np.asarray(fft.irfft2(waves * spectrum, self.used.shape), np.float32) * self.used
 
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:

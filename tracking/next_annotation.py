@@ -17,7 +17,7 @@ import numpy as np
 from tracking.body import TopPlate, expected_covariance
 from tracking.camera.lens import Array, Camera, CameraPose, project
 from tracking.path import Track
-from tracking.pose import PLANAR, BodyPrior, fit_pose, rotation_with_derivatives
+from tracking.pose import PLANAR, BodyPrior, body_to_floor, fit_pose
 from tracking.shared import HEIGHT, TILT
 
 _MOST = 150  # photographs that are compared, evenly spread over the walk
@@ -98,9 +98,8 @@ def _by_clicks(
     by_edges: bool,
 ) -> Array:  # fmt: skip
     """Compute the covariance (3, 3) of a pose by clicks on the corners of the top, or by edges."""
-    R, _ = rotation_with_derivatives(0.0, 0.0, planar[2])
-    corners = plate.corners_body @ R.T + [planar[0], planar[1], prior.height]
-    seen = project(camera, view, corners)
+    state = np.array([planar[0], planar[1], prior.height, 0.0, 0.0, planar[2]])
+    seen = project(camera, view, body_to_floor(plate.corners_body, state))
     covariance = expected_covariance(seen, sd_px=sd) if by_edges else sd**2 * np.eye(8)
     pose = fit_pose(camera, view, points_body=plate.corners_body, corners_px=seen,
                     covariance=covariance, prior=prior)  # fmt: skip

@@ -226,6 +226,20 @@ def rotation_with_derivatives(roll: float, pitch: float, yaw: float) -> tuple[Ar
     return Rz @ Ry @ Rx, np.stack((Rz @ Ry @ dRx, Rz @ dRy @ Rx, dRz @ Ry @ Rx))
 
 
+def body_to_floor(points_body: Array, state: Array) -> Array:
+    """Transform points of the body to the floor frame.
+
+    Args:
+        points_body: Points in the body frame, shape (n, 3) [m].
+        state: x, y, z [m], roll, pitch, yaw [rad] of the body in the floor frame, shape (6,).
+
+    Returns:
+        Shape (n, 3) [m].
+    """
+    R, _ = rotation_with_derivatives(*state[3:])
+    return points_body @ R.T + state[:3]
+
+
 def fit_pose(
     camera: Camera,
     view: CameraPose,
@@ -311,14 +325,9 @@ class _PoseProblem:
         xy = seen.mean(axis=0) - turn @ body.mean(axis=0)
         return np.array([*xy, self.prior.height, 0.0, 0.0, yaw])
 
-    def points_world(self, state: Array) -> Array:
-        """Transform the points to the floor frame for a state (6,), shape (n, 3) [m]."""
-        R, _ = rotation_with_derivatives(*state[3:])
-        return self.points_body @ R.T + state[:3]
-
     def residual(self, state: Array) -> Array:
         """Compute the whitened residuals of pixels, then of height, roll and pitch, (2n + 3,)."""
-        pixels = project(self.camera, self.view, self.points_world(state))
+        pixels = project(self.camera, self.view, body_to_floor(self.points_body, state))
         prior = self.prior
         held = (
             (state[2] - prior.height) / prior.height_sd,
@@ -334,7 +343,7 @@ class _PoseProblem:
         by_state[:, :, :3] = np.eye(3)
         by_state[:, :, 3:] = np.einsum("kab,nb->nak", dR, self.points_body)
         by_point = project_with_derivatives(
-            self.camera, self.view, self.points_world(state)
+            self.camera, self.view, body_to_floor(self.points_body, state)
         ).by_point
         pixels = self.whiten @ (by_point @ by_state).reshape(-1, 6)
         held = np.zeros((3, 6))
@@ -350,7 +359,8 @@ class _PoseProblem:
         The last 3 rows (prior) are 0.
         """
         R, _ = rotation_with_derivatives(*state[3:])
-        seen = project_with_derivatives(self.camera, self.view, self.points_world(state))
+        points = body_to_floor(self.points_body, state)
+        seen = project_with_derivatives(self.camera, self.view, points)
         by_cause = {CAMERA: seen.by_pose, LENS: seen.by_lens}
         for cause, of_points in points_by.items():
             by_cause[cause] = seen.by_point @ R @ of_points

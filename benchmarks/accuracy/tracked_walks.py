@@ -51,7 +51,7 @@ from tracking.photos.edges import edge_spread
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.result import Times, Tracked, finish, observation_of, shared_errors
 from tracking.photos.scene import MarkedTop, Scene
-from tracking.pose import BodyPose, BodyPrior, RobotMarker, fit_pose, rotation_with_derivatives
+from tracking.pose import BodyPose, BodyPrior, RobotMarker, body_to_floor, fit_pose
 
 DISTANCES = (2.0, 2.6, 3.4, 4.4, 5.7)  # m
 EDGES = (None, 0.0, 0.03, 0.06)
@@ -211,15 +211,9 @@ def _clicked(
     clicks = clean + CLICK_SD * rng.standard_normal((4, 2))
     top = MarkedTop(name, tuple((u, v) for u, v in clicks.tolist()), PLATE, CLICK_SD)
     annotated = pose_of_top(top, scene, seen.fit.pose_of(name))
-    outline = _outline(scene, seen, name, annotated.pose)
+    corners = body_to_floor(PLATE.corners_body, annotated.pose.state)
+    outline = np.asarray(project(scene.camera, seen.fit.pose_of(name), corners), np.float64)
     return annotated, places_on_top(walk, photo, outline)
-
-
-def _outline(scene: Scene, seen: FloorSeen, photo: str, pose: BodyPose) -> np.ndarray:
-    """Project the corners of the top at a pose, by what the tracker knows, shape (4, 2) [px]."""
-    R, _ = rotation_with_derivatives(*pose.state[3:])
-    corners = PLATE.corners_body @ R.T + pose.state[:3]
-    return project(scene.camera, seen.fit.pose_of(photo), corners)
 
 
 def score(job: Job) -> Scored:

@@ -13,7 +13,13 @@ from scipy.spatial.transform import Rotation
 from tracking.camera import Camera, CameraPose, project
 from tracking.errors import MarkerError
 from tracking.markers import edge_growth
-from tracking.pose import BodyPrior, RobotMarker, fit_pose, rotation_with_derivatives
+from tracking.pose import (
+    BodyPrior,
+    RobotMarker,
+    body_to_floor,
+    fit_pose,
+    rotation_with_derivatives,
+)
 from tracking.shared import CAMERA, EDGES, HEIGHT, LENS, PLACE, SIDE, TURN
 
 GLASS = Camera((1280, 960), np.array([[1394.0, 0, 640], [0, 1394, 480], [0, 0, 1]]), np.zeros(5))
@@ -123,6 +129,15 @@ def test_the_rotation_is_the_conventions_and_its_derivative_is_right(angles):
         step = 1e-6 * np.eye(3)[index]
         ends = [rotation_with_derivatives(*(angles + s * step))[0] for s in (1, -1)]
         np.testing.assert_allclose(dR[index], (ends[0] - ends[1]) / 2e-6, atol=1e-8)
+
+
+@given(st.tuples(*[st.floats(-1, 1)] * 6))
+def test_points_of_the_body_are_turned_and_then_moved_to_the_floor(state):
+    turn = Rotation.from_euler("ZYX", [state[5], state[4], state[3]])
+    expected = turn.apply(MARKER.points_body) + state[:3]
+    np.testing.assert_allclose(
+        body_to_floor(MARKER.points_body, np.array(state)), expected, atol=1e-12
+    )
 
 
 def test_a_marker_without_a_side_is_refused():

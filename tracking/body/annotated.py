@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tracking.camera.lens import Array, Camera, CameraPose, project, project_with_derivatives
-from tracking.pose import HELD, BodyPose, BodyPrior, rotation_with_derivatives
+from tracking.pose import HELD, BodyPose, BodyPrior, body_to_floor, rotation_with_derivatives
 from tracking.shared import ANNOTATION, HEIGHT, TILT
 
 
@@ -44,9 +44,8 @@ class AnnotatedPose:
     @property
     def corners_px(self) -> Array:
         """Corners of the top in the photograph, projected at the pose, shape (4, 2) [px]."""
-        R, _ = rotation_with_derivatives(*self.pose.state[3:])
-        at = self.corners_body @ R.T + self.pose.state[:3]
-        return project(self.camera, self.view, at)
+        corners = body_to_floor(self.corners_body, self.pose.state)
+        return project(self.camera, self.view, corners)
 
     @property
     def covariance(self) -> Array:

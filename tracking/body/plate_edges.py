@@ -27,7 +27,7 @@ from scipy.stats import chi2
 from tracking.body.annotated import AnnotatedPose
 from tracking.body.template import sample
 from tracking.camera.lens import Array, project
-from tracking.pose import rotation_with_derivatives
+from tracking.pose import body_to_floor
 
 OFFSET_SD = (0.2, 0.004)
 TILT_SD = (0.05, 0.001)
@@ -174,10 +174,9 @@ def _side_errors(length: float) -> Array:
 
 def _side(clicked: AnnotatedPose, k: int) -> Array:
     """Project a side of the top, from corner k to the next, shape (points, 2) [px]."""
-    R, _ = rotation_with_derivatives(*clicked.pose.state[3:])
     first, last = clicked.corners_body[k], clicked.corners_body[(k + 1) % 4]
     along = first + np.linspace(0.0, 1.0, 201)[:, None] * (last - first)
-    return project(clicked.camera, clicked.view, along @ R.T + clicked.pose.state[:3])
+    return project(clicked.camera, clicked.view, body_to_floor(along, clicked.pose.state))
 
 
 def _outwards(side: Array, middle: Array) -> Array:

@@ -12,7 +12,7 @@ from tracking.body.annotated import AnnotatedPose
 from tracking.camera.lens import Array, Camera, CameraPose, project
 from tracking.errors import BodyError
 from tracking.markers import marker_picture
-from tracking.pose import BodyPose, BodyPrior, RobotMarker, rotation_with_derivatives
+from tracking.pose import BodyPose, BodyPrior, RobotMarker, body_to_floor
 
 MOST_POINTS = 2500
 """Default of the approximate largest number of points in a template."""
@@ -125,8 +125,9 @@ def pixel_on_top(camera: Camera, view: CameraPose, *, pose: BodyPose, plate: Top
         pose: Pose of the robot.
         plate: The robot's top.
     """
-    corners_px = _corners_px(camera, view, pose, plate).astype(np.float32)
-    return float(np.sqrt(plate.length * plate.width / cv2.contourArea(corners_px)))
+    corners_px = project(camera, view, body_to_floor(plate.corners_body, pose.state))
+    area = cv2.contourArea(corners_px.astype(np.float32))
+    return float(np.sqrt(plate.length * plate.width / area))
 
 
 def make_template(
@@ -152,9 +153,8 @@ def make_template(
         BodyError: When the plate is cut by the photograph's edge or is shorter than 16 points, or
             the standard deviation of the template's colours is below 4 grey levels.
     """
-    R, _ = rotation_with_derivatives(*pose.state[3:])
-    corners_px = _corners_px(camera, view, pose, plate)
-    _refuse_cut(corners_px, camera.size)
+    corners = body_to_floor(plate.corners_body, pose.state)
+    _refuse_cut(project(camera, view, corners), camera.size)
     rear, front, right, left = plate.extent
     most = np.sqrt((front - rear) * (left - right) / most_points)
     step = max(pixel_on_top(camera, view, pose=pose, plate=plate), most)
@@ -164,7 +164,7 @@ def make_template(
             f"expected at least 16: put the camera nearer or take photographs with more pixels"
         )
     points = _grid(plate, step)
-    seen = project(camera, view, points.reshape(-1, 3) @ R.T + pose.state[:3])
+    seen = project(camera, view, body_to_floor(points.reshape(-1, 3), pose.state))
     colours = sample(pixels, seen.reshape(*points.shape[:2], 2))
     by_cause = {}
     if prior is not None:
@@ -228,11 +228,6 @@ def _grid(plate: TopPlate, step: float) -> Array:
     y = np.arange(left, right, -step)
     xx, yy = np.meshgrid(x, y, indexing="ij")
     return np.stack((xx, yy, np.full_like(xx, plate.height)), axis=-1)
-
-
-def _corners_px(camera: Camera, view: CameraPose, pose: BodyPose, plate: TopPlate) -> Array:
-    R, _ = rotation_with_derivatives(*pose.state[3:])
-    return project(camera, view, plate.corners_body @ R.T + pose.state[:3])
 
 
 def _refuse_cut(corners_px: Array, size: tuple[int, int]) -> None:

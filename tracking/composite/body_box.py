@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tracking.body.plane import Plane
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
-from tracking.pose import rotation_with_derivatives
+from tracking.pose import body_to_floor
 
 
 @dataclass(frozen=True)
@@ -88,8 +88,7 @@ class BodyBox:
         ])  # fmt: skip
 
     def _outline(self, state: Array, points_body: Array) -> Array:
-        R, _ = rotation_with_derivatives(*state[3:])
-        return project(self.camera, self.view, points_body @ R.T + state[:3])
+        return project(self.camera, self.view, body_to_floor(points_body, state))
 
 
 def _filled(points: Array, shape: tuple[int, ...]) -> NDArray[np.bool_]:

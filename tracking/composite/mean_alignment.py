@@ -22,7 +22,7 @@ from tracking.composite.floor_pattern import FloorPattern
 from tracking.composite.known import LEVER, KnownExposure
 from tracking.composite.pattern_alignment import AROUND, PatternAlignment
 from tracking.composite.steps import step_between, stepped
-from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
+from tracking.pose import PLANAR, BodyPose, body_to_floor
 
 LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
 """Least correlation of edges to use an alignment of overlapping exposures, and, lower, for the
@@ -180,8 +180,7 @@ class MeanAlignment:
         looks, weights = [], []
         for residual, pose in zip(self.residuals, poses, strict=True):
             state = picture.level(pose)
-            R, _ = rotation_with_derivatives(*state[3:])
-            seen = project(picture.camera, picture.view, points @ R.T + state[:3])
+            seen = project(picture.camera, picture.view, body_to_floor(points, state))
             seen = seen.reshape(*shape, 2)
             weight = (sample(shown, seen) > 0.99)[..., None].astype(float)  # 0 outside, too
             look = sample(residual, seen) * weight

@@ -37,8 +37,8 @@ CORNER_FLOOR_PX = 0.003
 _LAGS_PX = 8
 """Largest lag of the residual's autocovariance: a block of JPEG [px]."""
 
-_CORRECTIONS = 2
-"""How often the part of the error that the fit takes is added to the residual's autocovariance."""
+_LARGEST_SHARE = 0.7
+"""Largest share of the corners' variance by which a residual is taken to be too small."""
 
 _SLOPE = np.array([[1.0, -8.0, 0.0, 8.0, -1.0]]) / 12
 """Five-point central difference; that of three points underestimates the slope of a sharp edge."""
@@ -187,28 +187,31 @@ class _Look:
 
         The fit takes a part of the error into its unknowns. What is left has the covariance
         M R M, M = 1 - J W J', and lacks what is most like a moved corner. The missing part,
-        R - M R M = R J W J' + J W J' R - J V J' with V = W J'RJ W, follows from R and is added.
+        R - M R M = R J W J' + J W J' R - J W J'RJ W J', follows from R and is added.
+        Computed from what is left, the part 1 - q of R, it gives 1 - q² of R; q is by how much it
+        raises the corners' variance.
         """
         rectangle = _Rectangle.around(self.points, lags=max(2, round(_LAGS_PX / patch.shrink)))
-        left = rectangle.transform(rectangle.laid(self.residual[:, None]))
-        design = rectangle.laid(self.design)
-        waves = rectangle.transform(design)
-        weighted = _mixed(self.inverse, waves)
+        left = rectangle.transform(self.residual[:, None])
+        design = rectangle.transform(self.design)
+        weighted = _mixed(self.inverse, design)
         seen = rectangle.mean_products(left, left)
-        kernel = seen
-        for _ in range(_CORRECTIONS):
-            smeared = rectangle.smeared(waves, kernel)
-            by_fit = _mixed(self._whole_covariance(design, smeared), waves)
-            missing = 2 * rectangle.mean_products(rectangle.transform(smeared), weighted)
-            kernel = seen + missing - rectangle.mean_products(waves, by_fit)
-        return self._whole_covariance(design, rectangle.smeared(waves, kernel))[:8, :8]
+        spectrum = rectangle.spectrum(seen)
+        inner = rectangle.inner(design, spectrum)
+        smeared = rectangle.masked(spectrum * design)
+        missing = rectangle.mean_products(2 * smeared - _mixed(inner, weighted), weighted)
+        by_left = self._corners_covariance(inner)
+        inner = rectangle.inner(design, rectangle.spectrum(seen + missing))
+        covariance = self._corners_covariance(inner)
+        raised = np.trace(covariance) / max(np.trace(by_left), 1e-30) - 1
+        share = np.clip(raised, 0.0, _LARGEST_SHARE)
+        return covariance / (1 - share**2)
 
-    def _whole_covariance(self, design: Field, smeared: Field) -> Array:
-        """Compute W J'RJ W of J and RJ laid on a rectangle, shape (14, 14)."""
-        inner = np.tensordot(design, smeared, axes=((1, 2), (1, 2)))
-        values, vectors = np.linalg.eigh((inner + inner.T) / 2)
+    def _corners_covariance(self, inner: Array) -> Array:
+        """Compute the corners' part (8, 8) of W J'RJ W [px²]."""
         # A taper that is flat in the middle may leave a slightly negative variance.
-        root = self.inverse @ vectors * np.sqrt(np.maximum(values, 0.0))
+        values, vectors = np.linalg.eigh(inner)
+        root = self.inverse[:8] @ vectors * np.sqrt(np.maximum(values, 0.0))
         return root @ root.T
 
 
@@ -253,15 +256,16 @@ class _Rectangle:
         pairs = np.maximum(np.asarray(fft.irfft2(power, used.shape), np.float32), 1.0)
         return cls(row, column, used, pairs, lags)
 
-    def laid(self, fields: Array) -> Field:
-        """Lay k values of each pixel, shape (n, k), on the rectangle, shape (k, height, width)."""
+    def transform(self, fields: Array) -> Waves:
+        """Compute the Fourier transforms of k fields, given at the pixels, shape (n, k)."""
         laid = np.zeros((fields.shape[1], *self.used.shape), np.float32)
         laid[:, self.row, self.column] = fields.T
-        return laid
-
-    def transform(self, laid: Field) -> Waves:
-        """Compute the Fourier transform of fields laid on the rectangle."""
         return np.asarray(fft.rfft2(laid), np.complex64)
+
+    def masked(self, waves: Waves) -> Waves:
+        """Set transformed fields to 0 where no pixel is."""
+        fields = np.asarray(fft.irfft2(waves, self.used.shape), np.float32)
+        return np.asarray(fft.rfft2(fields * self.used), np.complex64)
 
     def mean_products(self, left: Waves, right: Waves) -> Field:
         """Average left(p) right(p + lag), summed over the k transformed fields, by lag.
@@ -271,19 +275,31 @@ class _Rectangle:
         power = np.einsum("kij,kij->ij", left, right.conj()).real
         return np.asarray(fft.irfft2(power, self.used.shape), np.float32) / self.pairs
 
-    def smeared(self, waves: Waves, kernel: Field) -> Field:
-        """Multiply transformed fields by the covariance of pixels that `kernel` gives by lag.
+    def spectrum(self, kernel: Field) -> Field:
+        """Transform a covariance by lag, tapered; a product with it smears by the covariance.
 
-        It is tapered: whole to half the largest lag, then less and less, to 0 beyond it. Estimates
-        of far lags are mostly noise; Bartlett's taper, which falls at once, takes a third off the
-        correlation of near ones.
+        The taper is 1 to half the largest lag, then falls to 0 beyond it. Estimates of far lags
+        are mostly noise; Bartlett's taper, which falls at once, takes a third off the correlation
+        of near ones.
         """
         down, across = (
             np.clip(2 * (1 - np.minimum(lag, len(lag) - lag) / (self.lags + 1)), 0.0, 1.0)
             for lag in map(np.arange, self.used.shape)
         )
-        spectrum = self.transform(kernel * np.outer(down, across).astype(np.float32)).real
-        return np.asarray(fft.irfft2(waves * spectrum, self.used.shape), np.float32) * self.used
+        tapered = kernel * np.outer(down, across).astype(np.float32)
+        return np.asarray(fft.rfft2(tapered), np.complex64).real
+
+    def inner(self, waves: Waves, spectrum: Field) -> Array:
+        """Compute J'RJ of transformed fields J (k) and a covariance R, shape (k, k); Parseval."""
+        columns = self.used.shape[1]
+        twice = np.full(waves.shape[2], 2.0, np.float32)  # of each pair of conjugates one is there
+        twice[0] = 1.0
+        if columns % 2 == 0:
+            twice[-1] = 1.0
+        flat = waves.reshape(len(waves), -1)
+        weighed = flat * (spectrum * twice).ravel()
+        inner = (weighed.real @ flat.real.T + weighed.imag @ flat.imag.T) / self.used.size
+        return np.asarray(inner + inner.T, float) / 2
 
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:

@@ -118,6 +118,9 @@ def _detector(dictionary: str, *, patient: bool) -> cv2.aruco.ArucoDetector:
         parameters.adaptiveThreshConstant = 3.0
         parameters.adaptiveThreshWinSizeMax = 53
         parameters.polygonalApproxAccuracyRate = 0.08
+        # Of outlines nearer to each other than this share of their length OpenCV keeps one: of a
+        # marker, its paper and the plate below it sometimes the wrong one.
+        parameters.minMarkerDistanceRate = 0.03
     return cv2.aruco.ArucoDetector(dictionary_named(dictionary), parameters)
 
 

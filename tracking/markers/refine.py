@@ -28,8 +28,8 @@ from tracking.markers.square import (
     square_homography,
 )
 
-Field: TypeAlias = NDArray[np.float32]
-Waves: TypeAlias = NDArray[np.complex64]
+_Field: TypeAlias = NDArray[np.float32]
+_Waves: TypeAlias = NDArray[np.complex64]
 
 CORNER_FLOOR_PX = 0.003
 """Standard deviation of model errors added to each corner coordinate, in a sharp picture [px]."""
@@ -215,7 +215,7 @@ class _Look:
         return root @ root.T
 
 
-def _mixed(matrix: Array, waves: Waves) -> Waves:
+def _mixed(matrix: Array, waves: _Waves) -> _Waves:
     """Sum transformed fields with the factors of each row of a matrix."""
     return np.asarray(np.tensordot(matrix.astype(np.float32), waves, axes=1), np.complex64)
 
@@ -237,8 +237,8 @@ class _Rectangle:
 
     row: NDArray[np.intp]
     column: NDArray[np.intp]
-    used: Field
-    pairs: Field
+    used: _Field
+    pairs: _Field
     lags: int
 
     @classmethod
@@ -256,18 +256,18 @@ class _Rectangle:
         pairs = np.maximum(np.asarray(fft.irfft2(power, used.shape), np.float32), 1.0)
         return cls(row, column, used, pairs, lags)
 
-    def transform(self, fields: Array) -> Waves:
+    def transform(self, fields: Array) -> _Waves:
         """Compute the Fourier transforms of k fields, given at the pixels, shape (n, k)."""
         laid = np.zeros((fields.shape[1], *self.used.shape), np.float32)
         laid[:, self.row, self.column] = fields.T
         return np.asarray(fft.rfft2(laid), np.complex64)
 
-    def masked(self, waves: Waves) -> Waves:
+    def masked(self, waves: _Waves) -> _Waves:
         """Set transformed fields to 0 where no pixel is."""
         fields = np.asarray(fft.irfft2(waves, self.used.shape), np.float32)
         return np.asarray(fft.rfft2(fields * self.used), np.complex64)
 
-    def mean_products(self, left: Waves, right: Waves) -> Field:
+    def mean_products(self, left: _Waves, right: _Waves) -> _Field:
         """Average left(p) right(p + lag), summed over the k transformed fields, by lag.
 
         Lags of either sign are taken alike. Shape (height, width), negative lags from the end.
@@ -275,7 +275,7 @@ class _Rectangle:
         power = np.einsum("kij,kij->ij", left, right.conj()).real
         return np.asarray(fft.irfft2(power, self.used.shape), np.float32) / self.pairs
 
-    def spectrum(self, kernel: Field) -> Field:
+    def spectrum(self, kernel: _Field) -> _Field:
         """Transform a covariance by lag, tapered; a product with it smears by the covariance.
 
         The taper is 1 to half the largest lag, then falls to 0 beyond it. Estimates of far lags
@@ -289,7 +289,7 @@ class _Rectangle:
         tapered = kernel * np.outer(down, across).astype(np.float32)
         return np.asarray(fft.rfft2(tapered), np.complex64).real
 
-    def inner(self, waves: Waves, spectrum: Field) -> Array:
+    def inner(self, waves: _Waves, spectrum: _Field) -> Array:
         """Compute J'RJ of transformed fields J (k) and a covariance R, shape (k, k); Parseval."""
         columns = self.used.shape[1]
         twice = np.full(waves.shape[2], 2.0, np.float32)  # of each pair of conjugates one is there

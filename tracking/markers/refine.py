@@ -14,31 +14,24 @@ Gauss-Newton. The residual gives the noise and its correlation, the normal equat
 """
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft
 
 from tracking.camera.lens import Array
+from tracking.markers.pixel_noise import unknowns_covariance
 from tracking.markers.square import (
     apply_homography,
     marker_picture,
     square_homography,
 )
 
-_Field: TypeAlias = NDArray[np.float32]
-_Waves: TypeAlias = NDArray[np.complex64]
-
 CORNER_FLOOR_PX = 0.003
 """Standard deviation of model errors added to each corner coordinate, in a sharp picture [px]."""
 
 _LAGS_PX = 8
 """Largest lag of the residual's autocovariance: a block of JPEG [px]."""
-
-_LARGEST_SHARE = 0.7
-"""Largest share of the corners' variance by which a residual is taken to be too small."""
 
 _SLOPE = np.array([[1.0, -8.0, 0.0, 8.0, -1.0]]) / 12
 """Five-point central difference; that of three points underestimates the slope of a sharp edge."""
@@ -179,127 +172,15 @@ class _Look:
     score: float
 
     def covariance(self, patch: _Patch) -> Array:
-        """Compute the covariance of the corners in the patch, shape (8, 8) [px²].
-
-        Least squares of design J with a residual of covariance R: W J'RJ W, W = (J'J)^-1. R is
-        estimated from the residual itself: compression and model errors make neighbouring pixels
-        correlated, so that the number of pixels overstates the information.
-
-        The fit takes a part of the error into its unknowns. What is left has the covariance
-        M R M, M = 1 - J W J', and lacks what is most like a moved corner. The missing part,
-        R - M R M = R J W J' + J W J' R - J W J'RJ W J', follows from R and is added.
-        Computed from what is left, the part 1 - q of R, it gives 1 - q² of R; q is by how much it
-        raises the corners' variance.
-        """
-        rectangle = _Rectangle.around(self.points, lags=max(2, round(_LAGS_PX / patch.shrink)))
-        left = rectangle.transform(self.residual[:, None])
-        design = rectangle.transform(self.design)
-        weighted = _mixed(self.inverse, design)
-        seen = rectangle.mean_products(left, left)
-        spectrum = rectangle.spectrum(seen)
-        inner = rectangle.inner(design, spectrum)
-        smeared = rectangle.masked(spectrum * design)
-        missing = rectangle.mean_products(2 * smeared - _mixed(inner, weighted), weighted)
-        by_left = self._corners_covariance(inner)
-        inner = rectangle.inner(design, rectangle.spectrum(seen + missing))
-        covariance = self._corners_covariance(inner)
-        raised = np.trace(covariance) / max(np.trace(by_left), 1e-30) - 1
-        share = np.clip(raised, 0.0, _LARGEST_SHARE)
-        return covariance / (1 - share**2)
-
-    def _corners_covariance(self, inner: Array) -> Array:
-        """Compute the corners' part (8, 8) of W J'RJ W [px²]."""
-        # A taper that is flat in the middle may leave a slightly negative variance.
-        values, vectors = np.linalg.eigh(inner)
-        root = self.inverse[:8] @ vectors * np.sqrt(np.maximum(values, 0.0))
-        return root @ root.T
-
-
-def _mixed(matrix: Array, waves: _Waves) -> _Waves:
-    """Sum transformed fields with the factors of each row of a matrix."""
-    return np.asarray(np.tensordot(matrix.astype(np.float32), waves, axes=1), np.complex64)
-
-
-@dataclass(frozen=True)
-class _Rectangle:
-    """A rectangle around pixels, with room for lags between them, so that none wraps around.
-
-    Fields on it are of single precision: a covariance needs no more, and it takes half the time.
-
-    Attributes:
-        row: Row of each pixel, from the topmost one, shape (n,).
-        column: Column of each pixel, from the leftmost one, shape (n,).
-        used: 1 where a pixel is, 0 elsewhere, shape (height, width).
-        pairs: Number of pairs of pixels by their lag, at least 1, shape (height, width); negative
-            lags from the end.
-        lags: Largest lag of rows and of columns [px].
-    """
-
-    row: NDArray[np.intp]
-    column: NDArray[np.intp]
-    used: _Field
-    pairs: _Field
-    lags: int
-
-    @classmethod
-    def around(cls, points: Array, *, lags: int) -> "_Rectangle":
-        """Draw it around pixels at columns and rows `points`, shape (n, 2)."""
-        column, row = (points - points.min(axis=0)).astype(int).T
-        # A patch may be smaller than the largest lag.
-        height, width = (
-            cv2.getOptimalDFTSize(max(int(each.max()) + 1 + lags, 2 * lags + 1))
-            for each in (row, column)
+        """Compute the covariance of the corners in the patch, shape (8, 8) [px²]."""
+        return unknowns_covariance(
+            self.points,
+            self.design,
+            self.inverse,
+            self.residual,
+            first=8,
+            lags=max(2, round(_LAGS_PX / patch.shrink)),
         )
-        used = np.zeros((height, width), np.float32)
-        used[row, column] = 1.0
-        power = np.abs(np.asarray(fft.rfft2(used))) ** 2
-        pairs = np.maximum(np.asarray(fft.irfft2(power, used.shape), np.float32), 1.0)
-        return cls(row, column, used, pairs, lags)
-
-    def transform(self, fields: Array) -> _Waves:
-        """Compute the Fourier transforms of k fields, given at the pixels, shape (n, k)."""
-        laid = np.zeros((fields.shape[1], *self.used.shape), np.float32)
-        laid[:, self.row, self.column] = fields.T
-        return np.asarray(fft.rfft2(laid), np.complex64)
-
-    def masked(self, waves: _Waves) -> _Waves:
-        """Set transformed fields to 0 where no pixel is."""
-        fields = np.asarray(fft.irfft2(waves, self.used.shape), np.float32)
-        return np.asarray(fft.rfft2(fields * self.used), np.complex64)
-
-    def mean_products(self, left: _Waves, right: _Waves) -> _Field:
-        """Average left(p) right(p + lag), summed over the k transformed fields, by lag.
-
-        Lags of either sign are taken alike. Shape (height, width), negative lags from the end.
-        """
-        power = np.einsum("kij,kij->ij", left, right.conj()).real
-        return np.asarray(fft.irfft2(power, self.used.shape), np.float32) / self.pairs
-
-    def spectrum(self, kernel: _Field) -> _Field:
-        """Transform a covariance by lag, tapered; a product with it smears by the covariance.
-
-        The taper is 1 to half the largest lag, then falls to 0 beyond it. Estimates of far lags
-        are mostly noise; Bartlett's taper, which falls at once, takes a third off the correlation
-        of near ones.
-        """
-        down, across = (
-            np.clip(2 * (1 - np.minimum(lag, len(lag) - lag) / (self.lags + 1)), 0.0, 1.0)
-            for lag in map(np.arange, self.used.shape)
-        )
-        tapered = kernel * np.outer(down, across).astype(np.float32)
-        return np.asarray(fft.rfft2(tapered), np.complex64).real
-
-    def inner(self, waves: _Waves, spectrum: _Field) -> Array:
-        """Compute J'RJ of transformed fields J (k) and a covariance R, shape (k, k); Parseval."""
-        columns = self.used.shape[1]
-        twice = np.full(waves.shape[2], 2.0, np.float32)  # of each pair of conjugates one is there
-        twice[0] = 1.0
-        if columns % 2 == 0:
-            twice[-1] = 1.0
-        flat = waves.reshape(len(waves), -1)
-        weighed = flat * (spectrum * twice).ravel()
-        inner = (weighed.real @ flat.real.T + weighed.imag @ flat.imag.T) / self.used.size
-        return np.asarray(inner + inner.T, float) / 2
 
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:

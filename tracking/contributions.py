@@ -29,7 +29,8 @@ ADVICE = {
     SIDE: "measure the side of the robot's marker with callipers, and state marker.side_sd",
     PLACE: "measure where the marker is on the body, and state marker.position_sd",
     TURN: "measure how the marker is turned on the body, and state marker.yaw_sd_deg",
-    HEIGHT: "measure how high the marker is while the robot walks, and state --height-sd",
+    HEIGHT: "measure how high the body is while the robot walks, and state --body-height and "
+    "--mean-height-sd",
     TILT: "mount the marker level, near the body's centre",
     ANNOTATION: "annotate the robot in another photograph too, or click its corners more exactly "
     "and state corner_sd_px",

@@ -112,8 +112,9 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
     if request.annotations is not None:
         annotations = read_annotations(request.annotations)
     prior = body_prior(
-        described, height=request.standing_height, height_sd=request.walking_height_sd
-    )
+        described, height=request.stated_height, mean_height_sd=request.stated_mean_height_sd,
+        height_sd=request.bounce_sd,
+    )  # fmt: skip
     robot = None
     if not request.without_marker:
         robot = tracked_robot(described, request.marker, prior=prior)

@@ -137,11 +137,23 @@ class TrackRequest:
         str | None,
         Option(
             metavar="LENGTH",
-            help="Height of the body's centre while the robot stands; default: by the marker's.",
+            help="Mean height of the body's centre over the walk; default: its height while the "
+            "robot stands, by the marker's.",
+        ),
+    ] = None
+    mean_height_sd: Annotated[
+        str | None,
+        Option(
+            metavar="LENGTH",
+            help="Standard deviation of that mean height; default: that of --height-sd.",
         ),
     ] = None
     height_sd: Annotated[
-        str, Option(metavar="LENGTH", help="Standard deviation of the body's height over a walk.")
+        str,
+        Option(
+            metavar="LENGTH",
+            help="Standard deviation of the body's height about its mean, as it bounces.",
+        ),
     ] = "5mm"
     gap: Annotated[
         float | None,
@@ -164,7 +176,7 @@ class TrackRequest:
     form: FormatOption = "png"
 
     def __post_init__(self) -> None:
-        _ = self.standing_height, self.walking_height_sd
+        _ = self.stated_height, self.stated_mean_height_sd, self.bounce_sd
         if self.marker is not None:
             parse_marker(self.marker)
         if self.source is not None and not re.fullmatch("real|sim:.+", self.source):
@@ -187,19 +199,21 @@ class TrackRequest:
         return self.run / KIND
 
     @property
-    def standing_height(self) -> float | None:
-        """Height of the body's centre while the robot stands [m]; None: from the marker's."""
-        given = self.body_height
-        return (
-            None
-            if given is None
-            else option_to_si(given, "m", key="--body-height", usual=LARGEST_PRINT)
-        )
+    def stated_height(self) -> float | None:
+        """Mean height of the body's centre [m]; None: the standing robot's, by its marker."""
+        return None if self.body_height is None else _length(self.body_height, "--body-height")
 
     @property
-    def walking_height_sd(self) -> float:
-        """Standard deviation of the height of the body's centre over a walk [m]."""
-        return option_to_si(self.height_sd, "m", key="--height-sd", usual=LARGEST_PRINT)
+    def stated_mean_height_sd(self) -> float:
+        """Standard deviation of the mean height of the body's centre over the walk [m]."""
+        if self.mean_height_sd is None:
+            return self.bounce_sd
+        return _length(self.mean_height_sd, "--mean-height-sd")
+
+    @property
+    def bounce_sd(self) -> float:
+        """Standard deviation of the height of the body's centre about its mean [m]."""
+        return _length(self.height_sd, "--height-sd")
 
     @property
     def named(self) -> tuple[Path, ...]:
@@ -212,3 +226,8 @@ class TrackRequest:
     def inputs(self) -> tuple[Path, ...]:
         """All inputs named by options: photographs, files and run folder."""
         return (self.photos, *self.named, *((self.run,) if self.run is not None else ()))
+
+
+def _length(text: str, key: str) -> float:
+    """Convert an option's length to metres."""
+    return option_to_si(text, "m", key=key, usual=LARGEST_PRINT)

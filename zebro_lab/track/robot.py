@@ -11,9 +11,6 @@ from zebro_lab.robot.marker_numbers import require_in_dictionary
 from zebro_lab.robot.marker_print import parse_marker
 from zebro_lab.robot.robot_file import RobotFile
 
-WALKING_HEIGHT_SD = 5e-3
-"""Standard deviation of a walking body's height about its standing height [m]."""
-
 WALKING_TILT_SD = 0.02
 """Standard deviation of roll and of pitch, both of their means and about these [rad]."""
 
@@ -67,22 +64,33 @@ def tracked_robot(
 
 
 def body_prior(
-    described: RobotFile, *, height: float | None = None, height_sd: float = WALKING_HEIGHT_SD
+    described: RobotFile, *, height: float | None, mean_height_sd: float, height_sd: float
 ) -> BodyPrior:
-    """Compute the prior on the body's height, from a given height or from the marker's.
+    """Return the prior on the body's height, from a given height or from the marker's.
 
     Args:
         described: Content of `robot.toml`.
-        height: Height of the body's origin [m]; None for that of the standing robot's marker.
-        height_sd: Standard deviation of the body's height over a walk [m].
+        height: Mean height of the body's origin over a walk [m]; None for that at which the robot
+            stands, by its marker.
+        mean_height_sd: Standard deviation of that mean [m].
+        height_sd: Standard deviation of the height about its mean [m].
 
     Raises:
-        SettingsError: The height is not known, or its standard deviation is not positive.
+        SettingsError: The height is not known, or a standard deviation is not positive.
     """
-    if not height_sd > 0:
-        raise SettingsError(f"is {height_sd:g} m; expected more than 0", key="--height-sd")
-    if height is not None:
-        return _walking(height, height_sd)
+    for sd, key in ((height_sd, "--height-sd"), (mean_height_sd, "--mean-height-sd")):
+        if not sd > 0:
+            raise SettingsError(f"is {sd:g} m; expected more than 0", key=key)
+    if height is None:
+        height = _standing_height(described)
+    return BodyPrior(
+        height, height_sd, mean_height_sd=mean_height_sd, tilt_sd=WALKING_TILT_SD,
+        mean_tilt_sd=WALKING_TILT_SD,
+    )  # fmt: skip
+
+
+def _standing_height(described: RobotFile) -> float:
+    """Compute how high the body's origin is while the robot stands, by its marker [m]."""
     place = described.marker
     if place is None or place.height is None:
         raise SettingsError(
@@ -90,14 +98,7 @@ def body_prior(
             "give --body-height",
             file=_file(described), key="marker.height",
         )  # fmt: skip
-    return _walking(place.height - place.position[2], height_sd)
-
-
-def _walking(height: float, height_sd: float) -> BodyPrior:
-    return BodyPrior(
-        height, height_sd, mean_height_sd=height_sd, tilt_sd=WALKING_TILT_SD,
-        mean_tilt_sd=WALKING_TILT_SD,
-    )  # fmt: skip
+    return place.height - place.position[2]
 
 
 def _file(described: RobotFile) -> str:

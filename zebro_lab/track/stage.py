@@ -178,8 +178,9 @@ def _settings(inputs: TrackInputs) -> Mapping[str, object]:
         "interval": request.times.interval,
         "every": request.times.frame_step,
         "start": None if request.start is None else request.start.isoformat(),
-        "body_height": request.standing_height,
-        "height_sd": request.walking_height_sd,
+        "body_height": request.stated_height,
+        "mean_height_sd": request.stated_mean_height_sd,
+        "height_sd": request.bounce_sd,
         "gap": request.gap,
         **({"merged": request.merged} if request.merged is not None else {}),
     }

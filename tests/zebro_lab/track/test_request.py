@@ -11,7 +11,6 @@ from support.bundled_walk import COMPOSITE
 from tracking.composite import Merged
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.track.request import MergedAs, TimeRequest, TrackRequest
-from zebro_lab.track.robot import WALKING_HEIGHT_SD
 
 ASKED = TrackRequest(Path("photos"), Path("camera.toml"), Path("floor.toml"))
 
@@ -38,14 +37,24 @@ def test_the_option_knows_all_ways_to_merge():
     assert set(get_args(MergedAs)) == set(Merged)
 
 
+def test_the_mean_height_is_as_uncertain_as_the_bounce_unless_said():
+    bouncing = replace(ASKED, height_sd="8mm")
+    assert bouncing.stated_mean_height_sd == bouncing.bounce_sd
+    known = replace(bouncing, mean_height_sd="0.5mm")
+    assert known.bounce_sd == pytest.approx(8e-3)
+    assert known.stated_mean_height_sd == pytest.approx(5e-4)
+    with pytest.raises(SettingsError, match=r"^--mean-height-sd: is 5 m, which is improbable"):
+        replace(ASKED, mean_height_sd="5")
+
+
 def test_lengths_and_frame_steps_are_those_of_the_help():
-    assert ASKED.walking_height_sd == WALKING_HEIGHT_SD
-    assert replace(ASKED, height_sd="2 cm").walking_height_sd == pytest.approx(0.02)
-    assert ASKED.standing_height is None
-    assert replace(ASKED, body_height="60mm").standing_height == pytest.approx(0.06)
+    assert ASKED.bounce_sd == 5e-3
+    assert replace(ASKED, height_sd="2 cm").bounce_sd == pytest.approx(0.02)
+    assert ASKED.stated_height is None
+    assert replace(ASKED, body_height="60mm").stated_height == pytest.approx(0.06)
     with pytest.raises(SettingsError, match=r'^--body-height: is 60 m, which is .* as "60 mm"'):
-        _ = replace(ASKED, body_height="60").standing_height
+        _ = replace(ASKED, body_height="60").stated_height
     with pytest.raises(SettingsError, match=r"^--height-sd: is 5 m, which is improbable"):
-        _ = replace(ASKED, height_sd="5").walking_height_sd
+        _ = replace(ASKED, height_sd="5").bounce_sd
     assert TimeRequest().frame_step == 0.5
     assert TimeRequest(every=0.0).frame_step == 0.0

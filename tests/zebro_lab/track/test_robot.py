@@ -31,9 +31,10 @@ def test_a_print_turned_to_the_left_has_its_top_to_the_left():
 
 def test_the_body_is_as_high_as_its_marker_less_its_place_on_it():
     described = RobotFile(marker=Marker((0, 0, 0.04), height=0.105))
-    assert body_prior(described).height == pytest.approx(0.065)
-    prior = body_prior(described, height=0.07, height_sd=0.001)
-    assert (prior.height, prior.height_sd, prior.mean_height_sd) == (0.07, 0.001, 0.001)
+    standing = body_prior(described, height=None, mean_height_sd=0.005, height_sd=0.005)
+    assert standing.height == pytest.approx(0.065)
+    prior = body_prior(described, height=0.07, mean_height_sd=0.001, height_sd=0.006)
+    assert (prior.height, prior.height_sd, prior.mean_height_sd) == (0.07, 0.006, 0.001)
 
 
 def test_the_files_own_marker_is_sought_unless_another_is_named():
@@ -58,9 +59,13 @@ def test_what_is_missing_or_impossible_is_named():
     with pytest.raises(SettingsError, match="marker"):
         tracked_robot(RobotFile(), prior=PRIOR)
     with pytest.raises(SettingsError, match=r"marker\.height"):
-        body_prior(RobotFile(marker=Marker((0, 0, 0.04))))
+        body_prior(
+            RobotFile(marker=Marker((0, 0, 0.04))), height=None, mean_height_sd=0.1, height_sd=0.1
+        )
     with pytest.raises(SettingsError, match="--height-sd"):
-        body_prior(RobotFile(), height=0.06, height_sd=0.0)
+        body_prior(RobotFile(), height=0.06, mean_height_sd=0.1, height_sd=0.0)
+    with pytest.raises(SettingsError, match="--mean-height-sd"):
+        body_prior(RobotFile(), height=0.06, mean_height_sd=0.0, height_sd=0.1)
     tilted = RobotFile(marker=Marker((0, 0, 0.04), (0.3, 0, 0)))
     with pytest.raises(SettingsError, match="level"):
         tracked_robot(tilted, prior=PRIOR)

@@ -66,6 +66,18 @@ def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(f
         track(few, Nobody())
 
 
+def test_a_mean_height_known_better_makes_all_poses_surer_and_keeps_the_bounce(
+    request_, tmp_path, undrawn
+):
+    known = replace(request_, mean_height_sd="0.2mm", out=tmp_path / "known")
+    usual, surer = (track(each, Nobody()).tracked.track.covariance for each in (request_, known))
+    # The mean height is half of the variance of place here.
+    deviations = [np.sqrt(np.trace(each[:, :2, :2], axis1=1, axis2=2)) for each in (usual, surer)]
+    assert (deviations[1] < 0.8 * deviations[0]).all()
+    settings = json.loads((known.folder / "manifest.json").read_text())["settings"]
+    assert (settings["mean_height_sd"], settings["height_sd"]) == (2e-4, 5e-3)
+
+
 def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
     monkeypatch.setattr(search, "WORTH_WORKERS", 0.0)
     one = track(request_, Nobody())

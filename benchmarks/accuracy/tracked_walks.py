@@ -8,7 +8,9 @@ Walks are drawn by `benchmarks.accuracy.drawn_walks`, whose code is not the trac
 that the tracker is told has an error of the standard deviation that is told with it. SIMULATED:
 corners, not pictures. Printed are, over all walks, the squared error by the covariance divided by
 its degrees of freedom (NEES) of single poses and of all poses of a walk jointly, with 99 %
-intervals from a bootstrap over walks, and how often 90 % intervals of the last pose hold the truth.
+intervals from a bootstrap over walks, how often 90 % intervals of the last pose hold the truth, and
+its median standard deviations, also as a multiple of those of an estimator told all true
+covariances (`drawn_walks.bound`).
 
 With `--unmarked` the robot has no marker: a person clicks on the corners of its top in one or more
 photographs, and what lies there is found again in the others, with errors of `OUTLINE_SD` and of
@@ -25,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import binom
 
+from benchmarks.accuracy.drawn_walks.bound import Clicks, least_sd
 from benchmarks.accuracy.drawn_walks.world import (
     PLAIN,
     TOP_HEIGHT,
@@ -74,6 +77,7 @@ class Scored:
         joint: NEES of all poses together over its degrees of freedom [-].
         last: Error of the last pose over its standard deviation, x, y and yaw, shape (3,) [-].
         sd: Standard deviation of the last pose, shape (3,) [m, m, rad].
+        least_sd: What `sd` would be of an estimator told all true covariances, shape (3,).
         largest: Largest distance from the truth [m].
     """
 
@@ -82,6 +86,7 @@ class Scored:
     joint: float
     last: np.ndarray
     sd: np.ndarray
+    least_sd: np.ndarray
     largest: float
 
 
@@ -158,7 +163,7 @@ def track_unmarked(walk: DrawnWalk, rng: np.random.Generator, annotated: int = 1
     scene, seen, times = photographed(walk)
     scene = replace(scene, camera=seen.fit.camera, robot=None)
     names = list(times)
-    numbers = np.linspace(0, len(names), annotated, endpoint=False).astype(int).tolist()
+    numbers = _clicked_on(len(names), annotated)
     clicked = {names[k]: _clicked(walk, k, scene, seen, rng) for k in numbers}
     nearest = nearest_of(names, list(clicked))
     observations, again = [], []
@@ -181,6 +186,23 @@ def track_unmarked(walk: DrawnWalk, rng: np.random.Generator, annotated: int = 1
         prior=scene.prior, plate=PLATE, corner_sd_px=CLICK_SD, annotated=clicked,
     )  # fmt: skip
     return replace(tracked, next_annotation=suggested)
+
+
+def _clicked_on(photos: int, annotated: int) -> list[int]:
+    """Choose the numbers of the photographs to annotate, spread over the walk from the first."""
+    return np.linspace(0, photos, annotated, endpoint=False).astype(int).tolist()
+
+
+def _clicks(photos: int, annotated: int) -> Clicks:
+    """Return what is seen of a robot without a marker, for the least standard deviation."""
+    names = [f"p{k}.jpg" for k in range(photos)]
+    numbers = _clicked_on(photos, annotated)
+    nearest = nearest_of(names, [names[k] for k in numbers])
+    found = [
+        (k, a) for k in range(photos)
+        for a in (numbers if k in numbers else [names.index(nearest[names[k]])])
+    ]  # fmt: skip
+    return Clicks(PLATE.corners_body[:, :2], CLICK_SD, OUTLINE_SD, SCALE_SD, found)
 
 
 def _found(
@@ -231,7 +253,10 @@ def score(job: Job) -> Scored:
     joint = float(flat @ np.linalg.solve(dense, flat)) / (3 * n)
     sd = np.sqrt(np.diag(covariance[-1]))
     largest = float(np.hypot(*error[:, :2].T).max())
-    return Scored(distance, float(marginal), joint, error[-1] / sd, sd, largest)
+    clicks = _clicks(n, job.annotated) if job.annotated else None
+    return Scored(
+        distance, float(marginal), joint, error[-1] / sd, sd, least_sd(walk, clicks), largest
+    )
 
 
 def jobs(walks: int, edges: float | None, *, annotated: int = 0) -> list[Job]:
@@ -281,7 +306,7 @@ def main() -> None:
             rows.append((name, *_row(scored, rng)))
     print_table(
         ("walks", "NEES", "99 %", "joint NEES", "99 %", "near: x, y, yaw hold", "far", "of",
-         "sd x, y, yaw", "largest error"),
+         "sd x, y, yaw", "of the least", "largest error"),
         *rows,
     )  # fmt: skip
 
@@ -300,6 +325,8 @@ def _row(scored: list[Scored], rng: np.random.Generator) -> tuple[str, ...]:
     cells.append(f"{len(near)} + {len(far)}")
     sd = np.median([s.sd for s in scored], axis=0)
     cells.append(f"{1e3 * sd[0]:.2f} mm, {1e3 * sd[1]:.2f} mm, {np.degrees(sd[2]):.3f}°")
+    least = np.median([s.least_sd for s in scored], axis=0)
+    cells.append(", ".join(f"{each:.2f}" for each in sd / least))
     cells.append(f"{1e3 * max(s.largest for s in scored):.1f} mm")
     return tuple(cells)
 

@@ -17,6 +17,13 @@ Array = NDArray[np.float64]
 SQUARE = np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]])
 """Corners of a print of side 1: top left, top right, bottom right, bottom left; right and up."""
 
+INTERVAL = 2.0
+"""Time between photographs [s]."""
+LENGTH = 1.3
+"""Length of a walk, times its scale [m]."""
+WOBBLE = (1e-3, 1e-3, 2e-3)
+"""Standard deviation of the gait's sway at each photograph, x, y [m] and yaw [rad]."""
+
 
 @dataclass(frozen=True)
 class Lens:
@@ -103,6 +110,38 @@ class Told:
 
 
 @dataclass(frozen=True)
+class Course:
+    """An arc walked with wandering speed and curvature, through the middle of the floor.
+
+    Attributes:
+        heading: At its start [rad].
+        turn: By how much it turns in all, but for the wandering [rad].
+        speed_period: Period of the wandering speed, by a tenth [s].
+        speed_phase: Its phase at the start [rad].
+        turn_period: Period of the wandering curvature, by 0.3 [s].
+    """
+
+    heading: float
+    turn: float
+    speed_period: float
+    speed_phase: float
+    turn_period: float
+
+    def poses(self, t: Array, scale: float) -> Array:
+        """Compute x, y [m] and yaw [rad] at times that are `INTERVAL` apart, shape (n, 3)."""
+        fine = np.linspace(0, t[-1], 50 * len(t))
+        wave = np.sin(2 * np.pi * fine / self.speed_period + self.speed_phase)
+        speed = LENGTH * scale / t[-1] * (1 + 0.1 * wave)
+        turn = self.turn / t[-1] * (1 + 0.3 * np.sin(2 * np.pi * fine / self.turn_period))
+        step = fine[1] - fine[0]
+        yaw = self.heading + np.cumsum(turn) * step
+        xy = np.cumsum(speed * step * np.stack((np.cos(yaw), np.sin(yaw))), axis=1).T
+        xy -= xy.mean(axis=0)
+        rows = np.searchsorted(fine, t - 1e-9)
+        return np.column_stack((xy, yaw))[rows]
+
+
+@dataclass(frozen=True)
 class DrawnWalk:
     """A walk as drawn.
 
@@ -117,6 +156,8 @@ class DrawnWalk:
         distance: Distance of the camera from the middle of the floor [m].
         bodies: x, y, z [m], roll, pitch and yaw [rad] of the body, shape (n, 6).
         camera: Rotation of the camera, world to camera, shape (3, 3), and its place, (3,) [m].
+        course: What it walked, at `scale`, but for `WOBBLE`.
+        scale: By which the floor is larger than one seen from 3.4 m by a lens of 1394 px [-].
     """
 
     lens: Lens
@@ -129,6 +170,8 @@ class DrawnWalk:
     distance: float
     bodies: Array
     camera: tuple[Array, Array]
+    course: Course
+    scale: float
     size: tuple[int, int] = field(default=(1280, 960))
 
 
@@ -156,22 +199,23 @@ def draw_walk(
     robot = np.array([0.12, 0.0, 0.0, 0.0])
     told_robot = robot + rng.normal(0, 1, 4) * [s.side, s.place, s.place, s.turn]
     height = 0.0615
-    t = np.arange(photos, dtype=np.float64) * 2.0
-    poses = _path(rng, t, scale)
+    t = np.arange(photos, dtype=np.float64) * INTERVAL
+    course = _course(rng)
+    poses = course.poses(t, scale) + rng.normal(0, 1, (photos, 3)) * WOBBLE
     body = np.zeros((photos, 6))
     body[:, [0, 1, 5]] = poses
     body[:, 2] = height + rng.normal(0, s.height) + rng.normal(0, s.bounce, photos)
     body[:, 3:5] = rng.normal(0, s.tilt, 2) + rng.normal(0, s.tilt, (photos, 2))
     edges = rng.normal(0, s.edges)
     own_edges = {number: rng.normal(0, s.edges) for number in marks}
-    seen = {number: _drawn(rng, lens, R, eye, _on_floor(mark), s, edges + own_edges[number])
+    seen = {number: _drawn(rng, lens, R, eye, on_floor(mark), s, edges + own_edges[number])
             for number, mark in marks.items()}  # fmt: skip
     return DrawnWalk(
         lens, s, Told(told_lens, told_marks, told_robot, height), t, poses,
-        [_drawn(rng, lens, R, eye, _on_body(robot, state), s, edges + rng.normal(0, s.edges))
+        [_drawn(rng, lens, R, eye, on_body(robot, state), s, edges + rng.normal(0, s.edges))
          for state in body],
         [{number: _again(rng, sight) for number, sight in seen.items()} for _ in t], distance, body,
-        (R, eye),
+        (R, eye), course, scale,
     )  # fmt: skip
 
 
@@ -192,7 +236,7 @@ def top_in_photo(walk: DrawnWalk, photo: int, places: Array) -> Array:
     """
     flat = np.column_stack((places, np.full(len(places), TOP_HEIGHT)))
     state = walk.bodies[photo]
-    return project(walk.lens.values, *walk.camera, flat @ _turn(state).T + state[:3])
+    return project(walk.lens.values, *walk.camera, flat @ rotation(state).T + state[:3])
 
 
 def places_on_top(walk: DrawnWalk, photo: int, pixels: Array) -> Array:
@@ -235,44 +279,36 @@ def _camera(rng: np.random.Generator, distance: float) -> tuple[Array, Array]:
     return np.stack((right, np.cross(ahead, right), ahead)), distance * away
 
 
-def _path(rng: np.random.Generator, t: Array, scale: float) -> Array:
-    """Walk an arc whose speed and curvature wander, through the middle of the floor."""
-    fine = np.linspace(0, t[-1], 50 * len(t))
-    length = 1.3 * scale
-    speed = (
-        length
-        / t[-1]
-        * (1 + 0.1 * np.sin(2 * np.pi * fine / rng.uniform(8, 30) + rng.uniform(0, 6)))
-    )
-    turn = (
-        rng.uniform(-1.2, 1.2) / t[-1] * (1 + 0.3 * np.sin(2 * np.pi * fine / rng.uniform(10, 40)))
-    )
-    step = fine[1] - fine[0]
-    yaw = rng.uniform(-np.pi, np.pi) + np.cumsum(turn) * step
-    xy = np.cumsum(speed * step * np.stack((np.cos(yaw), np.sin(yaw))), axis=1).T
-    xy -= xy.mean(axis=0)
-    rows = np.searchsorted(fine, t - 1e-9)
-    wobble = rng.normal(0, 1, (len(t), 3)) * [1e-3, 1e-3, 2e-3]  # the gait's, at each photograph
-    return np.column_stack((xy, yaw))[rows] + wobble
+def _course(rng: np.random.Generator) -> Course:
+    speed_period, speed_phase = rng.uniform(8, 30), rng.uniform(0, 6)
+    turn, turn_period = rng.uniform(-1.2, 1.2), rng.uniform(10, 40)
+    return Course(rng.uniform(-np.pi, np.pi), turn, speed_period, speed_phase, turn_period)
 
 
-def _on_floor(mark: Array) -> Array:
+def on_floor(mark: Array) -> Array:
+    """Compute the corners of a mark at x, y, with a yaw and a side, shape (4, 3) [m]."""
     x, y, yaw, side = mark
     c, s = np.cos(yaw), np.sin(yaw)
     across, up = side * SQUARE.T
     return np.column_stack((x + c * across - s * up, y + s * across + c * up, np.zeros(4)))
 
 
-def _on_body(robot: Array, state: Array) -> Array:
+def on_body(robot: Array, state: Array) -> Array:
+    """Compute the corners of the robot's marker in the floor frame, shape (4, 3) [m].
+
+    Args:
+        robot: Its side, x and y of its place on the body [m] and its turn [rad].
+        state: x, y, z [m], roll, pitch and yaw [rad] of the body.
+    """
     side, ahead, left, turn = robot
     across, up = side * SQUARE.T
     c, s = np.cos(turn), np.sin(turn)
     # The print's top points ahead: up is x of the body, across is minus y.
     x, y = ahead + c * up + s * across, left + s * up - c * across
-    return np.column_stack((x, y, np.full(4, TOP_HEIGHT))) @ _turn(state).T + state[:3]
+    return np.column_stack((x, y, np.full(4, TOP_HEIGHT))) @ rotation(state).T + state[:3]
 
 
-def _turn(state: Array) -> Array:
+def rotation(state: Array) -> Array:
     """Compute the rotation of a body, body to world."""
     roll, pitch, yaw = state[3:]
     cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (np.cos, np.sin))
@@ -305,7 +341,7 @@ def _drawn(
     sd = s.corner * 50 / side
     covariance = sd**2 * (0.7 * np.eye(8) + 0.3 * np.kron(np.ones((4, 4)), np.eye(2)))
     noise = rng.multivariate_normal(np.zeros(8), covariance).reshape(4, 2)
-    return Sight(_outwards(clean, edges) + noise, covariance)
+    return Sight(outwards(clean, edges) + noise, covariance)
 
 
 def _again(rng: np.random.Generator, sight: Sight) -> Sight:
@@ -313,7 +349,7 @@ def _again(rng: np.random.Generator, sight: Sight) -> Sight:
     return Sight(sight.corners + rng.normal(0, 1e-3, (4, 2)), sight.covariance)
 
 
-def _outwards(corners: Array, by: float) -> Array:
+def outwards(corners: Array, by: float) -> Array:
     """Move the four edges of a quadrilateral outwards and return where they meet."""
     middle = corners.mean(axis=0)
     lines = []

@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from scipy.stats import binom
 
@@ -88,7 +87,7 @@ def calibrated(seed: int) -> Calibrated | None:
     for place in range(PHOTOGRAPHS):
         seen = paint_sheets(wall, [held(camera, place, rng)], camera=camera, light=light)
         pixels, _ = develop(seen, conditions, rng=rng)
-        found = find_board(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), BOARD, name=f"p{place}")
+        found = find_board(pixels, BOARD, name=f"p{place}")
         if found is not None:
             boards.append(found)
     if len(boards) < PHOTOGRAPHS:

@@ -202,7 +202,8 @@ def _clicks(photos: int, annotated: int) -> Clicks:
         (k, a) for k in range(photos)
         for a in (numbers if k in numbers else [names.index(nearest[names[k]])])
     ]  # fmt: skip
-    return Clicks(PLATE.corners_body[:, :2], CLICK_SD, OUTLINE_SD, SCALE_SD, found)
+    corners = np.asarray(PLATE.corners_body[:, :2], np.float64)
+    return Clicks(corners, CLICK_SD, OUTLINE_SD, SCALE_SD, found)
 
 
 def _found(

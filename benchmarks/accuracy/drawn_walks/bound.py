@@ -94,7 +94,7 @@ def least_sd(walk: DrawnWalk, clicks: Clicks | None = None) -> Array:
     J = sd * _derivative(
         lambda u: np.concatenate([each.pixels.ravel() for each in seen(u)]), steps, own, photo
     )
-    noise = block_diag(*_noise(walk, clicks, seen(np.zeros(len(sd)))))
+    noise = np.asarray(block_diag(*_noise(walk, clicks, seen(np.zeros(len(sd))))), np.float64)
     covariance = np.linalg.inv(np.eye(len(sd)) + J.T @ np.linalg.solve(noise, J))
     last = sd * _derivative(
         lambda u: _bodies(walk, unknowns, u)[-1, [0, 1, 5]], steps, own,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Dark, blurred, compressed photographs go all the way: to a judged prediction and its pictures."""
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from support.synthetic import (
     DrawnPose,
     DrawnScene,
     RobotState,
-    look_at,
+    SyntheticCamera,
     render_background,
     take_photo,
 )
@@ -24,26 +25,34 @@ from zebro_lab.track.file import read_track
 
 pytestmark = pytest.mark.long
 
-SCENE = DrawnScene(
-    look_at(
-        (1.0, -1.6, 2.4), (0.85, 0.55, 0.0), width=1600, height=1200,
-        field_of_view=np.radians(56.0), distortion=(-0.12, 0.03, 0.0005, -0.0004, 0.0),
-    ),
-    tuple(
-        DrawnFloorMarker(number, centre, 0.15)
-        for number, centre in ((10, (0.1, -0.6)), (11, (1.8, -0.6)), (12, (2.2, 1.6)),
-                               (13, (-0.5, 1.5)))
-    ),
-)  # fmt: skip
 TRUTH = pd.read_csv(WALK / "photos.csv")
 MOVING = replace(HARSH, exposure_time=1 / 60)
+
+
+def bundled_scene() -> DrawnScene:
+    """Return the camera and the floor that the bundled walk was photographed with."""
+    told = tomllib.loads((WALK / "truth.toml").read_text())
+    camera = told["camera"]
+    width, height = camera["size"]
+    return DrawnScene(
+        SyntheticCamera(
+            width, height, tuple(camera["focal"]), tuple(camera["centre"]),
+            tuple(camera["distortion"]), np.array(camera["rotation"]),
+            np.array(camera["translation"]),
+        ),
+        tuple(
+            DrawnFloorMarker(each["id"], tuple(np.mean(each["corners"], axis=0)[:2]), each["side"])
+            for each in told["floor_markers"]
+        ),
+    )  # fmt: skip
 
 
 def write_photographs(folder: Path) -> None:
     """Photograph the bundled walk again, under harsh conditions, at the same moments."""
     folder.mkdir()
     rng = np.random.default_rng(41)
-    background = render_background(SCENE)
+    scene = bundled_scene()
+    background = render_background(scene)
     walk = pd.read_csv(WALK / "truth.csv")
     for name, t, x, y, z, roll, pitch, yaw in TRUTH.itertuples(index=False):
         before, after = (
@@ -54,7 +63,7 @@ def write_photographs(folder: Path) -> None:
         state = RobotState(
             DrawnPose(x, y, yaw, z, roll, pitch), velocity_xy=(vx, vy), yaw_rate=turn
         )
-        photo = take_photo(SCENE, state, conditions=MOVING, rng=rng, background=background)
+        photo = take_photo(scene, state, conditions=MOVING, rng=rng, background=background)
         assert photo.jpeg is not None
         (folder / name).write_bytes(photo.jpeg)
     times = pd.DataFrame({"photo": TRUTH["photo"], "t_s": TRUTH["t"]})

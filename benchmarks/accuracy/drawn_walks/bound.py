@@ -119,6 +119,7 @@ def _derivative(
     """
 
     def change(unknowns: NDArray[np.intp]) -> Array:
+        """Compute by how much the values change with a step of some unknowns, shape (n,)."""
         u = np.zeros(len(steps))
         u[unknowns] = steps[unknowns]
         return (function(u) - function(-u)) / 2
@@ -187,12 +188,14 @@ def _seen(
     at = unknowns.at
 
     def in_picture(u: Array, points: Array) -> Array:
+        """Project points of the floor frame, shape (n, 3) [m], to pixels, shape (n, 2)."""
         R, eye = walk.camera
         turned = np.eye(3) + _cross(u[at["camera"]][:3])
         return project(walk.lens.values + u[at["lens"]], turned @ R, eye + u[at["camera"]][3:],
                        points)  # fmt: skip
 
     def parts(u: Array) -> Iterator[_Seen]:
+        """Yield the floor's marks, then what is seen of the robot."""
         common, bodies = float(u[at["edges"]][0]), _bodies(walk, unknowns, u)
         for number, mark in walk.told.marks.items():
             own = u[at[f"mark {number}"]]

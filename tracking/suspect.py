@@ -4,10 +4,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-REMARKABLE = 2.5
-"""Log odds above which a stated value is suspected [-]."""
-
-_AS_LIKELY = 3.0  # log odds
+_AS_LIKELY = 4.0  # log odds
 
 
 @dataclass(frozen=True)
@@ -35,17 +32,19 @@ def more_or_less(off: float, unit: str) -> str:
     return f"{abs(off):.1f}{unit} {'more' if off > 0 else 'less'} than stated"
 
 
-def suspicion(suspects: Sequence[Suspect]) -> tuple[str, ...]:
+def suspicion(suspects: Sequence[Suspect], *, remarkable: float) -> tuple[str, ...]:
     """Format a warning that names the likeliest suspect, and those hardly less likely.
 
     Args:
         suspects: All values that were tried.
+        remarkable: Log odds from which a suspect is named. The more values are tried, the higher
+            they rise by chance [-].
 
     Returns:
         One sentence; none where no suspect is remarkable.
     """
     ranked = sorted(suspects, key=lambda each: -each.log_odds)
-    if not ranked or ranked[0].log_odds < REMARKABLE:
+    if not ranked or ranked[0].log_odds < remarkable:
         return ()
     best, *others = ranked
     text = f"{best.what} does not fit the photographs: it seems to be {best.finding}"

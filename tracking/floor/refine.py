@@ -9,7 +9,7 @@ import numpy as np
 from tracking.camera.lens import Array, Camera, CameraPose
 from tracking.errors import FloorError
 from tracking.floor.adjustment import Adjustment, EdgeSpread
-from tracking.floor.doubt import doubts
+from tracking.floor.doubt import REMARKABLE, doubts
 from tracking.floor.locate import FloorView, locate_camera, seen_keys
 from tracking.floor.marks import FloorMap
 from tracking.floor.stands import split_stands
@@ -81,7 +81,12 @@ class FloorFit:
             f"after have different camera poses"
             for a, b in zip(self.stands, self.stands[1:], strict=False)
         ]
-        return (*messages, *suspicion(self.suspects))
+        return (*messages, *self.suspicion)
+
+    @property
+    def suspicion(self) -> tuple[str, ...]:
+        """Name the stated value of floor or lens that does not fit; empty if all do."""
+        return suspicion(self.suspects, remarkable=REMARKABLE)
 
     def pose_of(self, photo: str) -> CameraPose:
         """Return the camera's pose in the stand of a photograph, by the photograph's name.

@@ -8,7 +8,7 @@ import numpy as np
 
 from tracking.body import Alignment, AnnotatedPose, RefinedCorners
 from tracking.corrections import Correction, Move, replay
-from tracking.doubt import doubts, heading_doubts
+from tracking.doubt import REMARKABLE, doubts, heading_doubts
 from tracking.images import PhotoTimes
 from tracking.next_annotation import NextAnnotation
 from tracking.path import PoseObservation, Track, assemble_track
@@ -127,9 +127,9 @@ def _robot_notes(track: Track, seen: FloorSeen) -> tuple[str, ...]:
     None of them but the heading where lens or floor do not fit, as what is wrong there also shows
     in the size and height of the robot.
     """
-    if suspicion(seen.fit.suspects):
+    if seen.fit.suspicion:
         return heading_doubts(track)
-    return (*suspicion(doubts(track)), *heading_doubts(track))
+    return (*suspicion(doubts(track), remarkable=REMARKABLE), *heading_doubts(track))
 
 
 def shared_errors(scene: Scene, seen: FloorSeen) -> SharedErrors:

@@ -10,13 +10,12 @@ import pytest
 from support.drawn_floor import FLOOR, LENS, camera_pose, see
 from tracking.camera import Camera
 from tracking.floor import FloorMap, refine_floor
-from tracking.suspect import suspicion
 
 
 def suspects_of(*, floor: FloorMap = FLOOR, lens: Camera = LENS, seed: int = 1) -> str:
     """Return what is suspected where these are stated."""
     view = see(FLOOR, camera_pose(), np.random.default_rng(seed))
-    return " ".join(suspicion(refine_floor(lens, floor, [view]).suspects))
+    return " ".join(refine_floor(lens, floor, [view]).suspicion)
 
 
 def taped(rng: np.random.Generator) -> FloorMap:

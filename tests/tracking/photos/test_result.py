@@ -22,7 +22,7 @@ from tracking.shared import SharedErrors
 @pytest.fixture
 def seen(scene) -> FloorSeen:
     # Nothing else of it is read.
-    fit = SimpleNamespace(warnings=("the tape slipped",), shared=SharedErrors.none(), suspects=())
+    fit = SimpleNamespace(warnings=("the tape slipped",), shared=SharedErrors.none(), suspicion=())
     return FloorSeen(cast("FloorFit", fit), (), {"p9.png": "cut short"})
 
 

@@ -18,6 +18,7 @@ from tracking.camera.lens import (
     project,
     project_with_derivatives,
 )
+from tracking.camera.omitted_terms import with_omitted_terms
 from tracking.errors import CalibrationError
 
 LENS_MODELS = {
@@ -32,6 +33,7 @@ LENS_MODELS = {
 _FITTED = {"none": list(range(4)), "k1": list(range(5)), "k1-k2": list(range(6)),
            "full": list(range(9))}  # fmt: skip
 _FOLDS, _AS_GOOD = 5, 1.01
+_IMPROBABLE = 0.05  # probability that no term left out matters, below which all are fitted
 _ALIKE, _LEAST_ALIKE = 3.0, 0.3  # smooth error over noise [-], and [px], that is worth a remark
 _BLURRED = 0.5  # noise of a corner that is worth a remark [px]
 _LONGEST_FOCAL = 100.0  # picture widths; the longest telephoto lenses have 30
@@ -43,8 +45,8 @@ class CameraCalibration:
     """A calibrated camera with standard deviations, residuals and coverage.
 
     Attributes:
-        camera: Camera intrinsics and distortion with their covariance, zero for terms that were
-            not fitted.
+        camera: Camera intrinsics and distortion with their covariance, in which terms that were
+            not fitted have a variance too, unless the model was named.
         lens_model: Distortion model that was fitted, a key of `LENS_MODELS`.
         errors: Errors of corners, alone and alike in a photograph.
         rms: Root mean square distance between corners detected and predicted [px].
@@ -87,8 +89,9 @@ def calibrate(
     Args:
         views: Corners of one board in several pictures, tilted differently.
         size: Width and height of the pictures [px].
-        lens_model: A key of `LENS_MODELS`, or "auto": the simplest that predicts left-out pictures
-            as well as the best, within 1 % of the mean squared distance.
+        lens_model: A key of `LENS_MODELS`, whose terms alone are taken to differ from zero, or
+            "auto": the simplest that predicts left-out pictures as well as the best, within 1 % of
+            the mean squared distance, unless all pictures show that other terms matter.
 
     Returns:
         Camera intrinsics and distortion, their standard deviations, residuals and coverage.
@@ -111,7 +114,26 @@ def calibrate(
     chosen = names[0] if len(names) == 1 else _best_of_left_out(views, size, names)
     fit = _fit(views, size, chosen)
     _check_determined(fit)
+    if chosen == names[-1]:
+        return fit
+    fit = _unsure_of_terms(fit, _fit(views, size, names[-1]))
+    _check_determined(fit)
     return fit
+
+
+def _unsure_of_terms(fit: CameraCalibration, general: CameraCalibration) -> CameraCalibration:
+    """Return a fit with the uncertainty of what it leaves out, by the fit of all terms.
+
+    Where it is improbable that nothing left out matters, the latter is returned.
+    """
+    matrix = general.camera.matrix
+    found = np.array([*matrix[[0, 1, 0, 1], [0, 1, 2, 2]], *general.camera.distortion])
+    covariance, none_matters = with_omitted_terms(
+        fit.camera.covariance, _FITTED[fit.lens_model], found, general.camera.covariance
+    )
+    if none_matters < _IMPROBABLE:
+        return general
+    return replace(fit, camera=replace(fit.camera, covariance=covariance))
 
 
 def _best_of_left_out(

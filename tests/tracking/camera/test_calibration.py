@@ -48,6 +48,27 @@ def test_a_straight_lens_is_not_given_a_distortion():
     assert fit.lens_model == "none"
 
 
+def few_views(seed: int) -> list[SeenBoard]:
+    """Draw seven views by a lens that has tangential terms, which seldom show."""
+    rng = np.random.default_rng([5, seed])
+    bent = np.array([-0.1, 0.02, *rng.normal(0, 5e-4, 2), 0.0])
+    return board_views(Camera(LENS.size, LENS.matrix, bent), 0.3, rng)[:7]
+
+
+def test_terms_that_few_views_leave_out_are_uncertain_unless_said_to_be_zero():
+    views = few_views(1)
+    chosen, stated = (calibrate(views, LENS.size, lens_model=name) for name in ("auto", "k1"))
+    assert chosen.lens_model == "k1"
+    assert chosen.camera.matrix == pytest.approx(stated.camera.matrix)
+    assert (chosen.sd[5:] > 0).all()
+    assert (stated.sd[5:] == 0).all()
+    assert chosen.sd[2] > 1.2 * stated.sd[2]
+
+
+def test_terms_are_fitted_that_left_out_views_do_not_miss_but_all_views_show():
+    assert calibrate(few_views(6), LENS.size).lens_model == "full"
+
+
 def test_boards_in_the_middle_only_are_reported():
     views = [
         SeenBoard(view.name, view.points, (view.corners_px - [640, 480]) * 0.4 + [640, 480])

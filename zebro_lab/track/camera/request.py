@@ -27,7 +27,8 @@ class CameraRequest:
     lens: Annotated[
         LensModel,
         Option(
-            help="Lens distortion to fit; auto: the simplest model that the photographs support."
+            help="Lens distortion to fit; auto: the simplest model that the photographs support. "
+            "Terms that a named model leaves out are taken to be zero."
         ),
     ] = "auto"
     workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2

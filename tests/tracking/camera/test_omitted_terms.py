@@ -49,9 +49,11 @@ def test_errors_and_probabilities_hold_over_lenses_with_and_without_the_terms():
         probable.append(probability)
     ratio = np.mean(np.square(errors), axis=0) / np.mean(claimed, axis=0)
     assert ratio == pytest.approx(1.0, abs=0.1)
-    assert np.mean(probable) == pytest.approx(np.mean(none), abs=0.02)
-    sure = np.array(probable) > 0.4
-    assert np.mean(np.array(none)[sure]) == pytest.approx(np.mean(np.array(probable)[sure]), abs=0.1)
+    sure = np.array(probable) > np.median(probable)
+    for some in (sure, ~sure):
+        assert np.mean(np.array(probable)[some]) == pytest.approx(
+            np.mean(np.array(none)[some]), abs=0.03
+        )
 
 
 def test_terms_that_are_known_to_vanish_leave_the_covariance():

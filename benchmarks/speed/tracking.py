@@ -3,12 +3,15 @@
 
 Prints the tables of docs/benchmarks.md's section on tracking. The photographs are simulated: four
 markers on the floor, the robot 0.1 m farther on in each. Both are timed in turn on each photograph,
-decoded, in one process; seconds are the processor's, summed over threads, and wall time. Smoothing
-is timed beside scipy's splines.
+decoded, in one process; seconds are the processor's, summed over threads, and wall time. `track`
+searches photographs in several processes of one thread: the same in two processes at once, wall
+time by photographs of both. Smoothing is timed beside scipy's splines.
 """
 
+import multiprocessing
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from typing import Any
 
@@ -90,6 +93,22 @@ def side_by_side(photos: Sequence[np.ndarray], threads: int) -> tuple[np.ndarray
     return np.array(rows), found
 
 
+def in_processes(photos: Sequence[np.ndarray], count: int) -> np.ndarray:
+    """Time both with one thread in several processes at once, shape as `side_by_side`.
+
+    Wall time is that of a photograph, of all processes together.
+    """
+    context = multiprocessing.get_context("spawn")  # OpenCV's threads do not survive a fork
+    with ProcessPoolExecutor(count, context) as pool:
+        every = [pool.submit(_by_one_thread, photos) for _ in range(count)]
+        spent = np.mean([each.result() for each in every], axis=0)
+    return spent / [1, count]
+
+
+def _by_one_thread(photos: Sequence[np.ndarray]) -> np.ndarray:
+    return side_by_side(photos, 1)[0]
+
+
 def whole(photos: Sequence[np.ndarray], count: int) -> tuple[float, float]:
     """Time everything from decoded photographs to the smoothed path."""
 
@@ -132,14 +151,15 @@ def main() -> None:
     """Print the tables."""
     print(f"Machine: {describe_machine()}.\n")
     photos = photographs()
-    rows = []
-    for threads in (1, cv2.getNumberOfCPUs()):
-        ratio_of, _ = side_by_side(photos, threads)
+    rows, cores = [], cv2.getNumberOfCPUs()
+    spent_by = {f"{threads}": side_by_side(photos, threads)[0] for threads in (1, cores)}
+    spent_by[f"1, in {cores} processes"] = in_processes(photos, cores)
+    for name, ratio_of in spent_by.items():
         (ours, ours_wall), (peer, peer_wall) = np.median(ratio_of, axis=0)
         ratios = ratio_of[:, 0] / ratio_of[:, 1]
         rows.append((
-            f"{threads}", f"{1e3 * ours:.0f}", f"{1e3 * peer:.0f}",
-            f"{np.median(ratios[:, 0]):.2f}", f"{1e3 * ours_wall:.0f}", f"{1e3 * peer_wall:.0f}",
+            name, f"{1e3 * ours:.0f}", f"{1e3 * peer:.0f}", f"{np.median(ratios[:, 0]):.2f}",
+            f"{1e3 * ours_wall:.0f}", f"{1e3 * peer_wall:.0f}",
             f"{np.median(ratios[:, 1]):.2f}",
         ))  # fmt: skip
     print_table(

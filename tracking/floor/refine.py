@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -56,7 +57,8 @@ class FloorFit:
         edge_spread: Standard deviation of the edges of one marker about `edges`, as far as the
             floor's markers tell.
         shared: Joint covariance of the errors of lens, camera poses, marks and edges.
-        suspects: Stated values of floor and lens that may be wrong (`tracking.floor.doubt`).
+        find_suspects: Compares alternatives in which a stated value of floor or lens is far off
+            (`tracking.floor.doubt`); takes longer than the fit.
     """
 
     floor: FloorMap
@@ -71,7 +73,7 @@ class FloorFit:
     edge_derivative: Callable[[Array, Array, CameraPose], Array]
     edge_spread: EdgeSpread
     shared: SharedErrors
-    suspects: tuple[Suspect, ...] = ()
+    find_suspects: Callable[[], tuple[Suspect, ...]]
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -83,10 +85,10 @@ class FloorFit:
         ]
         return (*messages, *self.suspicion)
 
-    @property
+    @cached_property
     def suspicion(self) -> tuple[str, ...]:
         """Name the stated value of floor or lens that does not fit; empty if all do."""
-        return suspicion(self.suspects, remarkable=REMARKABLE)
+        return suspicion(self.find_suspects(), remarkable=REMARKABLE)
 
     def pose_of(self, photo: str) -> CameraPose:
         """Return the camera's pose in the stand of a photograph, by the photograph's name.
@@ -161,7 +163,7 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
     }
     return FloorFit(
         fitted, stands, shifts, problem.misfit(found), *factors, unused, problem.lens(found),
-        found.edges, problem.edge_derivative, edge_spread, shared, doubts(problem, found),
+        found.edges, problem.edge_derivative, edge_spread, shared, partial(doubts, problem, found),
     )  # fmt: skip
 
 

@@ -65,8 +65,9 @@ def merged(pairs, kind):
 
 
 @pytest.mark.parametrize(
-    "kind", ["pasted", "mean", pytest.param("darkest", marks=pytest.mark.long)]
-)
+    "kind", [pytest.param("pasted", marks=pytest.mark.long), "mean",
+             pytest.param("darkest", marks=pytest.mark.long)],
+)  # fmt: skip
 def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
     picture = merged(exposures, kind)
     found = find_exposures(

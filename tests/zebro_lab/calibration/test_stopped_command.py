@@ -2,7 +2,6 @@
 """A fit that is stopped or killed leaves a checkpoint, from which the same command goes on."""
 
 import shlex
-import shutil
 import signal
 import subprocess
 import time
@@ -47,21 +46,16 @@ def start_and_signal(number: signal.Signals, command: list[str], out: Path) -> t
     return process.returncode, stdout, stderr
 
 
-@pytest.fixture(
-    scope="module", params=[signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name
+@pytest.mark.parametrize(
+    "number",
+    [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long)],
+    ids=lambda number: number.name,
 )
-def stopped(
-    request, sweep, tmp_path_factory
-) -> tuple[tuple[object, ...], Path, tuple[int, str, str]]:
-    """Return the arguments of a fit that was asked to stop, its folder and how it ended."""
-    out = tmp_path_factory.mktemp("stopped") / "out"
+def test_stopped_fit_leaves_a_checkpoint_alone_and_resumes_to_convergence(sweep, tmp_path, number):
+    out = tmp_path / "out"
     arguments = (sweep, "--out", out, *SMALLER_FIT)
     command = patched(LOOK_OFTEN + JUDGED_EARLY, *arguments)
-    return arguments, out, start_and_signal(request.param, command, out)
-
-
-def test_stopped_fit_exits_130_with_a_checkpoint_alone_and_says_how_to_go_on(stopped):
-    arguments, out, ending = stopped
+    ending = start_and_signal(number, command, out)
     checkpoint = out / "checkpoint.npz"
     message, command = last_line(ending[2]).split("; go on with: ")
     assert (ending[0], message) == (130, f"stopped; {checkpoint} keeps the fit")
@@ -71,14 +65,7 @@ def test_stopped_fit_exits_130_with_a_checkpoint_alone_and_says_how_to_go_on(sto
     assert names(out) == {"checkpoint.npz"}
     with np.load(checkpoint, allow_pickle=False) as stored:
         assert np.isfinite(stored["z"]).all()
-
-
-@pytest.mark.parametrize("stopped", [signal.SIGINT], indirect=True, ids=["SIGINT"])
-def test_stopped_fit_resumes_to_convergence(stopped, sweep, tmp_path):
-    out = tmp_path / "out"
-    shutil.copytree(stopped[1], out)
-    arguments = (sweep, "--out", out, *SMALLER_FIT, "--resume")
-    resumed = run(patched(EASILY_PLEASED, *arguments))
+    resumed = run(patched(EASILY_PLEASED, *arguments, "--resume"))
     assert resumed.returncode == 0
     assert "error" not in resumed.stderr
     assert names(out) == FILES

@@ -7,9 +7,11 @@ from itertools import combinations
 import numpy as np
 
 from tracking.camera import Camera, CameraPose, to_floor
-from tracking.detect import Detection, pose_of_marker
+from tracking.detect import Detection, observe
 from tracking.errors import PhotoError
 from tracking.floor import FloorFit, FloorView, refine_floor
+from tracking.photos.floor_seen import FloorSeen
+from tracking.photos.result import Tracked, finish
 from tracking.photos.scene import Photo, Scene
 from tracking.photos.search import Wanted, look_at
 
@@ -99,12 +101,13 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
     scene = replace(scene, camera=fit.camera)  # the pose of the camera is for this lens
     pose, marks = fit.stands[0].pose, scene.floor.marks
     seen = [key for key in marks if key in view.pixels]
+    tracked = _tracked(scene, fit, look.seen)
     return Preview(
         look.seen, fit.camera, pose, tuple(map(str, seen)),
         tuple(str(key) for key in marks if key not in view.pixels),
-        fit.misfit_px, _scale(scene, view, pose), _robot_pose(scene, fit, look.seen),
+        fit.misfit_px, _scale(scene, view, pose), None if tracked is None else _planar(tracked),
         None if look.seen.robot is None else _side_px(look.seen.robot.corners_px),
-        _tape_checks(scene, view, pose), fit.warnings,
+        _tape_checks(scene, view, pose), fit.warnings if tracked is None else tracked.notes,
     )  # fmt: skip
 
 
@@ -120,13 +123,19 @@ def _side_px(corners_px: np.ndarray) -> float:
     return float(np.linalg.norm(corners_px - np.roll(corners_px, 1, axis=0), axis=1).mean())
 
 
-def _robot_pose(
-    scene: Scene, fit: FloorFit, detection: Detection
-) -> tuple[float, float, float] | None:
+def _tracked(scene: Scene, fit: FloorFit, detection: Detection) -> Tracked | None:
+    """Track the robot in this photograph alone; None where its marker is not detected."""
     if scene.robot is None or detection.robot is None:
         return None
-    found = pose_of_marker(fit, fit.stands[0].pose, detection.robot, scene.robot)
-    x, y, yaw = found.planar.tolist()
+    scene = replace(scene, corrections=())  # of photographs of a track
+    times = {detection.photo: (0.0, 0.0)}
+    observations = observe(fit, [detection], robot=scene.robot, times=times)
+    seen = FloorSeen(fit, (detection,), {})
+    return finish(scene, seen, observations, unseen={}, times=times, gap=None)
+
+
+def _planar(tracked: Tracked) -> tuple[float, float, float]:
+    x, y, yaw = tracked.track.poses[0].tolist()
     return x, y, yaw
 
 

@@ -29,6 +29,16 @@ def test_a_wrong_tape_is_worst_at_its_marker(scene, photos):
     assert str(first.marker_id) in worst.marks
 
 
+def test_a_marker_of_another_size_is_said_as_by_a_track(scene, photos):
+    assert scene.robot is not None
+    assert preview_photo(scene, photos[0]).warnings == ()
+    own = scene.robot.marker
+    marker = replace(own, side=1.17 * own.side, side_sd=2e-4)
+    seen = preview_photo(replace(scene, robot=replace(scene.robot, marker=marker)), photos[0])
+    (warning,) = seen.warnings
+    assert warning.startswith("the side of the robot's marker")
+
+
 def test_without_a_robot_to_look_for_none_is_found(scene, photos):
     seen = preview_photo(replace(scene, robot=None), photos[0])
     assert (seen.robot, seen.robot_side_px) == (None, None)

@@ -85,7 +85,7 @@ def test_harsh_photographs_end_in_a_judged_prediction(command, tmp_path, monkeyp
     (run,) = Path("data").iterdir()
     asked = ("photos", "--camera", WALK / "camera.toml", "--floor", WALK / "floor.toml",
              "--robot", WALK / "robot.toml", "--times", "times.csv", "--run", run,
-             "--source", "sim:harsh")  # fmt: skip
+             "--mean-height-sd", "4 mm", "--source", "sim:harsh")  # fmt: skip
     assert "every mark of the floor is seen" in command("track", *asked, "--preview", "preview.png")
     command("track", *asked)
 

@@ -63,6 +63,7 @@ ERRORS = {
     "no robot's height": ((PHOTOS, "--robot", "robot.toml"), "marker.height: missing"),
     "two sources of time": ((PHOTOS, "--interval", "2", "--times", "t.csv"), "--times: not toge"),
     "no unit": ((PHOTOS, "--body-height", "6 kg"), "unit 'kg'"),
+    "exact height": ((PHOTOS, "--mean-height-sd", "0"), "--mean-height-sd: is 0 m; expected more"),
     "no such clock": ((PHOTOS, "--clock", "clock.jpg"), "clock.jpg: no such file"),
     "no annotations": ((PHOTOS, "--without-marker"), "annotate PHOTOS"),
 }  # fmt: skip

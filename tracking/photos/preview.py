@@ -127,11 +127,11 @@ def _tracked(scene: Scene, fit: FloorFit, detection: Detection) -> Tracked | Non
     """Track the robot in this photograph alone; None where its marker is not detected."""
     if scene.robot is None or detection.robot is None:
         return None
-    scene = replace(scene, corrections=())  # of photographs of a track
     times = {detection.photo: (0.0, 0.0)}
     observations = observe(fit, [detection], robot=scene.robot, times=times)
     seen = FloorSeen(fit, (detection,), {})
-    return finish(scene, seen, observations, unseen={}, times=times, gap=None)
+    alone = replace(scene, corrections=())  # those are of photographs of a track
+    return finish(alone, seen, observations, unseen={}, times=times, gap=None)
 
 
 def _planar(tracked: Tracked) -> tuple[float, float, float]:

@@ -108,9 +108,11 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=str(__doc__).split("\n")[0])
     parser.add_argument("sets", type=int, nargs="?", default=40)
-    asked = parser.parse_args().sets
+    parser.add_argument("--first", type=int, default=0, help="number of the first set")
+    asked = parser.parse_args()
+    numbers = range(asked.first, asked.first + asked.sets)
     with ProcessPoolExecutor() as pool:
-        every = list(pool.map(calibrated, range(asked)))
+        every = list(pool.map(calibrated, numbers))
     sets = [each for each in every if each is not None]
     found, (low, high) = holding(sets)
     ratio = np.sqrt(np.mean(np.square([each.errors for each in sets]), axis=0))

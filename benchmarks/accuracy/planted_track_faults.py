@@ -106,11 +106,13 @@ def main() -> None:
     """Print the table, and with --list what is said of each walk."""
     parser = argparse.ArgumentParser(description=str(__doc__).split("\n")[0])
     parser.add_argument("tries", type=int, nargs="?", default=20)
+    parser.add_argument("--first", type=int, default=0, help="number of the first walk")
     parser.add_argument("--list", action="store_true")
     asked = parser.parse_args()
     planted = [(fault, by) for fault, about in FAULTS.items() for by in about.parts]
-    jobs = [(*each, seed) for each in planted for seed in range(asked.tries)]
-    jobs += [(SOUND, 0.0, seed) for seed in range(2 * asked.tries)]
+    first, tries = asked.first, asked.tries
+    jobs = [(*each, seed) for each in planted for seed in range(first, first + tries)]
+    jobs += [(SOUND, 0.0, seed) for seed in range(first, first + 2 * tries)]
     with ProcessPoolExecutor() as pool:
         found = list(pool.map(notes_of, jobs, chunksize=4))
     if asked.list:

@@ -17,6 +17,13 @@ def test_a_clear_suspect_is_named_alone():
     assert "tape" not in text
 
 
+def test_a_rival_is_named_up_to_four_less_likely():
+    for less, named in ((3.9, True), (4.1, False)):
+        pair = [Suspect("the lens", "+1 % off", 6.0), Suspect("the tape", "2 mm off", 6.0 - less)]
+        (text,) = suspicion(pair, remarkable=2.0)
+        assert ("tape" in text) == named
+
+
 def test_suspects_that_explain_as_much_cannot_be_told_apart():
     alike = [Suspect("the lens", "+1 % off", 6.0), Suspect("the tape", "2 mm off", 5.0)]
     (text,) = suspicion(alike, remarkable=2.0)

@@ -33,7 +33,7 @@ LENS_MODELS = {
 _FITTED = {"none": list(range(4)), "k1": list(range(5)), "k1-k2": list(range(6)),
            "full": list(range(9))}  # fmt: skip
 _FOLDS, _AS_GOOD = 5, 1.01
-_IMPROBABLE = 0.05  # probability that no term left out matters, below which all are fitted
+_IMPROBABLE = 0.05  # probability that no term left out matters, below which more are fitted
 _ALIKE, _LEAST_ALIKE = 3.0, 0.3  # smooth error over noise [-], and [px], that is worth a remark
 _BLURRED = 0.5  # noise of a corner that is worth a remark [px]
 _LONGEST_FOCAL = 100.0  # picture widths; the longest telephoto lenses have 30
@@ -116,24 +116,34 @@ def calibrate(
     _check_determined(fit)
     if chosen == names[-1]:
         return fit
-    fit = _unsure_of_terms(fit, _fit(views, size, names[-1]))
-    _check_determined(fit)
-    return fit
+    general, richer = _fit(views, size, names[-1]), names[names.index(chosen) + 1 :]
+    unsure = _unsure_of_terms(fit, general)
+    while unsure is None:
+        fit, richer = _fit(views, size, richer[0]), richer[1:]
+        unsure = _unsure_of_terms(fit, general)
+    _check_determined(unsure)
+    return unsure
 
 
-def _unsure_of_terms(fit: CameraCalibration, general: CameraCalibration) -> CameraCalibration:
+def _unsure_of_terms(
+    fit: CameraCalibration, general: CameraCalibration
+) -> CameraCalibration | None:
     """Return a fit with the uncertainty of what it leaves out, by the fit of all terms.
 
-    Where it is improbable that nothing left out matters, the latter is returned.
+    None where it is improbable that nothing left out matters.
     """
-    matrix = general.camera.matrix
-    found = np.array([*matrix[[0, 1, 0, 1], [0, 1, 2, 2]], *general.camera.distortion])
     covariance, none_matters = with_omitted_terms(
-        fit.camera.covariance, _FITTED[fit.lens_model], found, general.camera.covariance
-    )
+        _parameters(fit), fit.camera.covariance, _FITTED[fit.lens_model],
+        _parameters(general), general.camera.covariance,
+    )  # fmt: skip
     if none_matters < _IMPROBABLE:
-        return general
+        return None
     return replace(fit, camera=replace(fit.camera, covariance=covariance))
+
+
+def _parameters(fit: CameraCalibration) -> Array:
+    """Return fx, fy, cx, cy, k1, k2, p1, p2, k3, shape (9,)."""
+    return np.array([*fit.camera.matrix[[0, 1, 0, 1], [0, 1, 2, 2]], *fit.camera.distortion])
 
 
 def _best_of_left_out(

@@ -21,29 +21,31 @@ import numpy as np
 from tracking.camera.lens import Array
 
 PRIOR_SD = {4: 0.2, 5: 0.2, 6: 1e-3, 7: 1e-3, 8: 0.2}
-"""Standard deviations of k1, k2, p1, p2, k3 of lenses without terms that are known to matter [-].
+"""Standard deviations of k1, k2, p1, p2, k3 of lenses that see 40 to 90 degrees [-].
 
-By their indices among fx, fy, cx, cy, k1, k2, p1, p2, k3."""
+By their indices among fx, fy, cx, cy, k1, k2, p1, p2, k3. Longer lenses may have larger terms."""
 
 _RADIAL = ((), (4,), (4, 5), (4, 5, 8))
 _TANGENTIAL = ((), (6, 7))
 
 
 def with_omitted_terms(
-    covariance: Array, fitted: Sequence[int], general: Array, general_covariance: Array
-) -> tuple[Array, float]:
+    lens: Array, covariance: Array, fitted: Sequence[int], general: Array,
+    general_covariance: Array,
+) -> tuple[Array, float]:  # fmt: skip
     """Average the covariance of a lens over models with more terms, equally likely before.
 
     Args:
-        covariance: Covariance of fx, fy, cx, cy, k1, k2, p1, p2, k3 as fitted, zero for terms that
-            were left out, shape (9, 9).
+        lens: fx, fy, cx, cy, k1, k2, p1, p2, k3 as fitted, zero for terms that were left out,
+            shape (9,).
+        covariance: Their covariance, zero for the same, shape (9, 9).
         fitted: Indices of the parameters that were fitted.
         general: Parameters of a fit of all terms, shape (9,).
         general_covariance: Their covariance, shape (9, 9).
 
     Returns:
-        The covariance about the parameters as fitted, shape (9, 9), and the probability that none
-        of the terms left out matters.
+        The covariance about `lens`, shape (9, 9), and the probability that none of the terms left
+        out matters.
     """
     x = [term for term in PRIOR_SD if term not in fitted]
     if not x:
@@ -63,7 +65,7 @@ def with_omitted_terms(
         covariances.append(general_covariance - gain @ C_x.T)
     probable = np.exp(np.array(logs) - max(logs))
     probable /= probable.sum()
-    covariances[0] = covariance
-    away = np.array(estimates) - estimates[0]
+    estimates[0], covariances[0] = lens, covariance
+    away = np.array(estimates) - lens
     mean = np.einsum("m,mij->ij", probable, covariances)
     return mean + np.einsum("m,mi,mj->ij", probable, away, away), float(probable[0])

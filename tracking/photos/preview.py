@@ -52,8 +52,8 @@ class Preview:
         misfit_px: Root mean square distance of the marks' points from their projection after the
             fit of floor and camera [px].
         scale: Size of a pixel on the floor at the middle of the marks [m/px].
-        robot: x, y [m] and yaw [rad] of the robot; None where its marker is not detected, or there
-            is none.
+        robot: x, y [m] and yaw [rad] of the robot, as a track of this photograph alone has them;
+            None where its marker is not detected, or there is none.
         robot_side_px: Mean side of the robot's marker in the photograph [px]; None likewise.
         tape: Distance checks of all pairs of `marks`; empty for a single mark.
         warnings: Warnings, one sentence each, as of a track.

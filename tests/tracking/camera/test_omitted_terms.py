@@ -42,7 +42,7 @@ def test_errors_and_probabilities_hold_over_lenses_with_and_without_the_terms():
         lens[terms] = [PRIOR_SD[term] * rng.normal() for term in terms]
         general = lens + root @ rng.normal(size=9)
         fitted, conditional = without(left_out, general, C)
-        averaged, probability = with_omitted_terms(conditional, K1_ONLY, general, C)
+        averaged, probability = with_omitted_terms(fitted, conditional, K1_ONLY, general, C)
         errors.append((fitted - lens)[:4])
         claimed.append(np.diag(averaged)[:4])
         none.append(not terms)
@@ -59,7 +59,7 @@ def test_errors_and_probabilities_hold_over_lenses_with_and_without_the_terms():
 def test_terms_that_are_known_to_vanish_leave_the_covariance():
     C = covariance(np.random.default_rng(2)) * 1e-6
     fitted, conditional = without([5, 6, 7, 8], np.zeros(9), C)
-    averaged, probability = with_omitted_terms(conditional, K1_ONLY, fitted, C)
+    averaged, probability = with_omitted_terms(fitted, conditional, K1_ONLY, np.zeros(9), C)
     assert probability > 0.999
     assert np.diag(averaged)[:5] == pytest.approx(np.diag(conditional)[:5], rel=1e-2)
 
@@ -69,12 +69,12 @@ def test_terms_that_are_far_from_zero_make_a_lens_without_them_improbable():
     general = np.zeros(9)
     general[7] = 10 * np.sqrt(C[7, 7])
     fitted, conditional = without([5, 6, 7, 8], general, C)
-    averaged, probability = with_omitted_terms(conditional, K1_ONLY, general, C)
+    averaged, probability = with_omitted_terms(fitted, conditional, K1_ONLY, general, C)
     assert probability < 1e-6
     assert averaged[2, 2] > (general - fitted)[2] ** 2 * 0.8
 
 
 def test_a_lens_with_all_terms_keeps_its_covariance():
     C = covariance(np.random.default_rng(4))
-    averaged, probability = with_omitted_terms(C, EVERY, np.ones(9), C)
+    averaged, probability = with_omitted_terms(np.ones(9), C, EVERY, np.ones(9), C)
     assert (averaged, probability) == (pytest.approx(C), 1.0)

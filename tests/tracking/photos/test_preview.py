@@ -32,9 +32,12 @@ def test_a_wrong_tape_is_worst_at_its_marker(scene, photos):
 def test_a_marker_of_another_size_is_said_as_by_a_track(scene, photos):
     assert scene.robot is not None
     assert preview_photo(scene, photos[0]).warnings == ()
-    own = scene.robot.marker
-    marker = replace(own, side=1.17 * own.side, side_sd=2e-4)
-    seen = preview_photo(replace(scene, robot=replace(scene.robot, marker=marker)), photos[0])
+    own, prior = scene.robot.marker, replace(scene.prior, mean_height_sd=2e-3, mean_tilt_sd=0.02)
+    marker = replace(own, side=1.1 * own.side, side_sd=2e-4)
+    robot = replace(scene.robot, marker=marker, prior=prior)
+    sound = replace(robot, marker=replace(own, side_sd=2e-4))
+    assert preview_photo(replace(scene, robot=sound, prior=prior), photos[0]).warnings == ()
+    seen = preview_photo(replace(scene, robot=robot, prior=prior), photos[0])
     (warning,) = seen.warnings
     assert warning.startswith("the side of the robot's marker")
 

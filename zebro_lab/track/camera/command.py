@@ -97,7 +97,7 @@ def calibration_lines(result: "CameraResult") -> list[str]:
     bent = [
         f"{name} {value:.4f} ± {spread:.4f}"
         for name, value, spread in zip(names, fit.camera.distortion, sd[4:], strict=True)
-        if value != 0  # left out
+        if value != 0  # else it was left out
     ]
     return [
         *(f"left out: {name}: {reason}" for name, reason in result.left_out.items()),

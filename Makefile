@@ -8,7 +8,7 @@ LOWEST_PYTHON ?= python3.11
 LOWEST := .venv-lowest
 LOWEST_STAMP := $(LOWEST)/.installed
 
-.PHONY: demo test test-lowest test-long check lint types floors bench clean clean-cache help
+.PHONY: demo test test-reference test-lowest test-long check lint types floors bench clean clean-cache help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 14
@@ -48,6 +48,9 @@ demo: $(STAMP) ## the whole loop on bundled, simulated data: rig and photographs
 
 test: $(STAMP) ## the tests, under ten minutes on two cores
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not long"
+
+test-reference: $(STAMP) ## the tests that need reference data (ZEBRO_LAB_SHARED)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "reference and not long"
 
 $(LOWEST_STAMP): pyproject.toml
 	rm -rf $(LOWEST)

@@ -24,6 +24,8 @@ for _number, _usual in (
 
 REFERENCE = Path(os.environ.get("ZEBRO_LAB_SHARED", Path(__file__).parents[2] / "shared"))
 
+HAS_REFERENCE = REFERENCE.is_dir() and any(REFERENCE.iterdir())
+
 settings.register_profile("lab", deadline=None, derandomize=True)
 settings.load_profile("lab")
 
@@ -37,13 +39,22 @@ def pytest_xdist_setupnodes(config):
         compile_loops()
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark every test that asks for the reference data; skip the marked ones where it is missing."""
+    missing = pytest.mark.skip(
+        f"no reference data in {REFERENCE}; set ZEBRO_LAB_SHARED to the folder that holds it"
+    )
+    for item in items:
+        if "shared" in getattr(item, "fixturenames", ()):
+            item.add_marker("reference")
+        if "reference" in item.keywords and not HAS_REFERENCE:
+            item.add_marker(missing)
+
+
 @pytest.fixture(scope="session")
 def shared() -> Path:
-    """Return the folder of reference data; skip where this machine has none."""
-    if not REFERENCE.is_dir():
-        pytest.skip(
-            f"no reference data at {REFERENCE}; set ZEBRO_LAB_SHARED to the folder that holds it"
-        )
+    """Return the folder of reference data."""
     return REFERENCE
 
 
@@ -53,7 +64,7 @@ def pytest_runtest_makereport(item, call):
     report = yield
     if "browser" in item.keywords:  # a browser is not part of the reference data
         return report
-    if report.skipped and REFERENCE.is_dir() and not hasattr(report, "wasxfail"):
+    if report.skipped and HAS_REFERENCE and not hasattr(report, "wasxfail"):
         report.outcome = "failed"
         report.longrepr = f"skipped although reference data exists: {report.longrepr}"
     return report

@@ -139,7 +139,8 @@ class Rig:
         )
         self.rig.load = 1e-3
         twin = SimulatedBoard(self.rig, profile=profile.board, rng=rng, watchdog=WATCHDOG)
-        self.server = PortServer(twin)
+        # A socket holds bytes back while a busy machine delays their reader; a terminal drops them.
+        self.server = PortServer(twin, as_socket=True)
 
     def start(self, plan, *options):
         command = [

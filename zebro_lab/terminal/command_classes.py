@@ -27,7 +27,7 @@ class _Strict:
         Raises:
             BadParameter: An option that takes one value is given more than once.
         """
-        with near_option(_options(self, ctx)), values_named():
+        with near_option(ctx.command_path, _options(self, ctx)), values_named():
             _require_single(self, ctx, args)
             typer_class: Any = super()  # comes after this class among the bases
             return typer_class.parse_args(ctx, args)
@@ -67,7 +67,7 @@ class Group(_Strict, TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find a command as Typer does, with the name that an unknown one means in the message."""
-        with near_command(args[0], self.list_commands(ctx)):
+        with near_command(ctx.command_path, args[0], self.list_commands(ctx)):
             return super().resolve_command(ctx, args)
 
 

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: MIT
+"""What to use instead of commands and options that earlier versions had."""
+
+from typing import Final
+
+REMOVED: Final[dict[str, str]] = {}
+"""What to use instead, a sentence, by "COMMAND", "COMMAND --option", or "--option" of any command.
+
+A command in a group has the group's name before it ("study sbc"), and `calibrate-slip` is
+"calibrate".
+"""
+
+
+def replacement(command_path: str, name: str) -> str | None:
+    """Return what to use instead of a command or option of an earlier version; None if never one.
+
+    Args:
+        command_path: Command that was typed, as `zebro-lab rig` or `calibrate-slip`.
+        name: Option or subcommand that it does not know.
+    """
+    command = command_path.removeprefix("zebro-lab").replace("calibrate-slip", "calibrate").strip()
+    return REMOVED.get(f"{command} {name}".strip(), REMOVED.get(name))

@@ -41,7 +41,7 @@ def pytest_xdist_setupnodes(config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark every test that asks for the reference data; skip the marked ones where it is missing."""
+    """Mark the tests that ask for the reference data; skip marked ones where it is missing."""
     missing = pytest.mark.skip(
         f"no reference data in {REFERENCE}; set ZEBRO_LAB_SHARED to the folder that holds it"
     )

@@ -6,9 +6,8 @@ from zebro_lab.calibration.read_off import command as read_off
 from zebro_lab.exchange import export_command, import_command, init_command
 from zebro_lab.experiment import command as rig
 from zebro_lab.reach import command as reach
-from zebro_lab.recording import check_command, simulate_command
+from zebro_lab.recording import check_command, doctor_command, simulate_command
 from zebro_lab.recording import command as record
-from zebro_lab.recording.doctor import command as doctor
 from zebro_lab.report import command as report
 from zebro_lab.runs import command as runs
 from zebro_lab.runs import plot_command
@@ -44,7 +43,7 @@ app.command()(runs.exclude)
 app.command()(export_command.export)
 app.command(epilog=track.EPILOG)(track.track)
 app.command(epilog=annotate_command.EPILOG)(annotate_command.annotate)
-app.command(epilog=doctor.EPILOG)(doctor.doctor)
+app.command()(doctor_command.doctor)
 app.add_typer(camera.app, name="camera")
 rig.app.command(epilog=adaptive.EPILOG)(adaptive.run)
 rig.app.command(epilog=suggest.EPILOG)(suggest.suggest)

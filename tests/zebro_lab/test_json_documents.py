@@ -103,7 +103,7 @@ def test_a_run_is_listed_and_its_exclusion_is_told(run_command, tmp_path):
 def test_doctor_lists_its_findings(run_command, tmp_path):
     ended = run_command("doctor", "--data", tmp_path, "--json", "--quiet")
     found = document(ended, "doctor", {"findings"}, code=ended.code)
-    assert "python" in {each["what"].lower() for each in found["findings"]}
+    assert "packages" in {each["what"].lower() for each in found["findings"]}
     states = {each["state"] for each in found["findings"]}
     assert states <= {"ok", "note", "BROKEN"}
     assert ended.code == int("BROKEN" in states)

@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""Diagnose this machine: what zebro-lab needs of it, and what is missing for what."""

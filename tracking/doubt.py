@@ -20,9 +20,9 @@ from tracking.suspect import Suspect, more_or_less
 REMARKABLE = 1.2
 """Log odds from which a stated value of the robot is suspected [-].
 
-Of 160 simulated sound walks two reach it (`benchmarks.accuracy.planted_track_faults 40`, with
-`--first 2000` and with `--first 4000`), of 40 others two. There are fewer alternatives than of the
-floor, so that chance lifts the highest of them less."""
+Of 160 simulated sound walks two reach it, of 40 others two
+(`benchmarks.accuracy.planted_track_faults` at the tag `full-toolkit`). There are fewer alternatives
+than of the floor, so that chance lifts the highest of them less."""
 
 _BACKWARDS = np.radians(120)
 _SIDEWAYS = np.radians(40)

@@ -14,8 +14,8 @@ from tracking.suspect import Suspect, more_or_less
 REMARKABLE = 2.5
 """Log odds from which a stated value of floor or lens is suspected [-].
 
-Of 160 simulated sound walks two reach it (`benchmarks.accuracy.planted_track_faults 40`, with
-`--first 2000` and with `--first 4000`)."""
+Of 160 simulated sound walks two reach it (`benchmarks.accuracy.planted_track_faults` at the tag
+`full-toolkit`)."""
 
 _FAR = 6.0  # times its standard deviation that a suspected mark may be off
 _LENS = 0.02  # standard deviation of the focal length of a suspected lens, of itself

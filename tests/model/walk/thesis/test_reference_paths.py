@@ -5,7 +5,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks.accuracy.chatter import sign_changes_per_second
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
 from model.robot import Robot
@@ -14,6 +13,7 @@ from model.walk.thesis import (
     ThesisOptions,
     walk_thesis,
 )
+from support.chatter import sign_changes_per_second
 
 pytestmark = pytest.mark.reference
 

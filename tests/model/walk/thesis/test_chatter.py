@@ -4,7 +4,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.accuracy.chatter import largest_stable_step, sign_changes_per_second
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.walk.thesis import (
@@ -13,6 +12,7 @@ from model.walk.thesis import (
     paired_sum,
     walk_thesis,
 )
+from support.chatter import largest_stable_step, sign_changes_per_second
 
 STIFFNESS = 34.34 * 1.564 * 0.3798 * GRAVITY
 LEGS = SwitchedLegs.of(tripod_reference(tripod_angles(np.radians(50.0), 1.1), 2.0))

@@ -8,7 +8,7 @@ angles' shape in front.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from model.slip.law import Array
+from model.arrays import Array
 
 
 def rotation_x(angle: ArrayLike) -> Array:

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
 from model.errors import InsufficientData
 from model.joint_covariance import JointCovariance
@@ -15,7 +16,6 @@ from model.metrics.scores import EnsembleScores, ensemble_scores
 from model.metrics.tilt import TiltErrors, tilt_errors
 from model.path_draws import anchored, states_at
 from model.poses import Poses, overlap
-from model.slip.law import Array
 from model.walk.path import WalkPath
 
 PREDICTION, STAND_STILL = "prediction", "stand still"

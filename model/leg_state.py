@@ -5,9 +5,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.lateral_spread import log_spread
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.bend import Bend
 from model.walk.traction import TractionTable
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.poses import Poses, moved_onto
-from model.slip.law import Array
 from model.told_apart import told_apart
 from model.walk.bend import Bend, bent_states
 from model.walk.path import WalkPath

@@ -7,9 +7,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from model.errors import DomainError, InsufficientData
 from model.joint_covariance import JointCovariance
-from model.slip.law import Array
 from model.told_apart import told_apart
 
 

@@ -13,6 +13,7 @@ from functools import partial
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
@@ -21,7 +22,6 @@ from model.mapping import HERE, Mapper
 from model.path_draws import bent
 from model.poses import Poses
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.areas import Area
 from model.walk.bend import Bend
 from model.walk.dynamics import DynamicsOptions, Start

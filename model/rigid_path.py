@@ -7,9 +7,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.poses import Poses
-from model.slip.law import Array
 
 AXES = "xyz"
 

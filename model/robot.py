@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 
 N_LEGS = 6
 LEFT = (0, 2, 4)  # indices of legs 1, 3, 5

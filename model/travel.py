@@ -26,8 +26,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.poses import Poses, wrap
-from model.slip.law import Array
 
 STANDING = 1e-6  # m: between poses closer than this there is no direction of travel
 _NOISES = 30.0  # chord in standard deviations of the noise

@@ -2,14 +2,13 @@
 """Offset and drift between the clocks of a device and of the host."""
 
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from model.arrays import Array
 from rig.errors import ProtocolError
 
-Array: TypeAlias = NDArray[np.float64]
 FEWEST: Final = 10
 """Least number of samples to fit."""
 MOST_BINS: Final = 60

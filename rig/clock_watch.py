@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.clock_fit import FEWEST, fit_clock
 from rig.device import Sample
 from rig.errors import ProtocolError

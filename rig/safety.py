@@ -12,8 +12,8 @@ from enum import IntEnum
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from model.arrays import Array
 from rig.errors import LimitExceeded, RigError, RigTimeout
 
 REST_SPEED: Final = 0.1
@@ -67,7 +67,7 @@ class SampleGuard:
         if beyond and sum(self._latest) >= self._in_a_row:
             raise LimitExceeded(self._quantity, value=value, limit=self._limit, unit=self._unit)
 
-    def check_all(self, values: NDArray[np.float64]) -> None:
+    def check_all(self, values: Array) -> None:
         """Check the next values, shape (n,), like `check`; faster where all are within the limit.
 
         Raises:

@@ -9,6 +9,7 @@ from typing import Any, Self, overload
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from model.arrays import Array
 from rig.device import Sample
 
 
@@ -25,8 +26,8 @@ class SampleColumns(Sequence[Sample]):
         counts: Raw values of each sample, shape (n, counts of a sample).
     """
 
-    host_time: NDArray[np.float64]
-    device_time: NDArray[np.float64]
+    host_time: Array
+    device_time: Array
     sequence: NDArray[np.int64]
     status: NDArray[np.uint32]
     channel: NDArray[np.uint32]

@@ -7,10 +7,11 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from rig.device import Counters
 from rig.errors import FrozenReading, StaleReading, UnreliableRecords
 
-Values: TypeAlias = NDArray[np.float64]
+Values: TypeAlias = Array
 
 TURNING: Final = 1.0
 """Set-point above which a disc's sensors are checked, and change of the set-point above which the
@@ -47,7 +48,7 @@ class AgeGuard:
         self._name = name
         self._limit = limit
 
-    def check(self, taken: NDArray[np.float64], *, now: float) -> None:
+    def check(self, taken: Array, *, now: float) -> None:
         """Check the age of the oldest reading of one batch; an empty batch passes.
 
         Args:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 
 class Factors(NamedTuple):

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 SWAY_SD = np.array([0.8e-3, 0.3e-3, 2e-3])
 """Usual standard deviation of a gait's sway ahead, to the left [m] and of the heading [rad].

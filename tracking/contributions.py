@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.path import Track
 from tracking.shared import (
     ANNOTATION,

@@ -12,7 +12,7 @@ standard deviations of one value, along W: u then has the covariance
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.path import Track
 from tracking.shared import HEIGHT, SIDE, TILT
 from tracking.suspect import Suspect, more_or_less

@@ -14,8 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from tracking.body import TopPlate, expected_covariance
-from tracking.camera.lens import Array, Camera, CameraPose, project
+from tracking.camera.lens import Camera, CameraPose, project
 from tracking.path import Track
 from tracking.pose import PLANAR, BodyPrior, body_to_floor, fit_pose
 from tracking.shared import HEIGHT, TILT

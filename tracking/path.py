@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.joint_covariance import JointCovariance
-from tracking.camera.lens import Array
 from tracking.constant_twist import Process
 from tracking.errors import PathError
 from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior

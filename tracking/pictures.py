@@ -4,8 +4,9 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from tracking.body.template import sample
-from tracking.camera.lens import Array, Camera, CameraPose, project
+from tracking.camera.lens import Camera, CameraPose, project
 
 
 def rectify_floor(

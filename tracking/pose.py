@@ -23,14 +23,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from tracking.camera.lens import (
-    Array,
-    Camera,
-    CameraPose,
-    project,
-    project_with_derivatives,
-    to_floor,
-)
+from model.arrays import Array
+from tracking.camera.lens import Camera, CameraPose, project, project_with_derivatives, to_floor
 from tracking.errors import BodyError, MarkerError
 from tracking.markers import marker_corners
 from tracking.shared import CAMERA, HEIGHT, LENS, PLACE, SIDE, TILT, TURN

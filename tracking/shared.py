@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 CAMERA = "camera"
 """Key of derivatives by the camera's rotation vector [rad] and translation [m] in a photograph."""

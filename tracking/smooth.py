@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
 
+from model.arrays import Array
 from tracking.block_tridiagonal import Factors, factorised, inverse_blocks, solve_blocks
-from tracking.camera.lens import Array
 from tracking.constant_twist import (
     Process,
     link_derivatives,

@@ -30,9 +30,9 @@ from benchmarks.accuracy.rigid_engine.references import refined
 from benchmarks.accuracy.rigid_engine.stepping import Friction
 from benchmarks.accuracy.rigid_engine.walking import SETTINGS, Settings, walk
 from benchmarks.tables import print_table
+from model.arrays import Array
 from model.gait.reference import SampledReference
 from model.robot import GRAVITY, Robot
-from model.slip.law import Array
 from model.walk.areas import with_areas
 from model.walk.dynamics import DEFAULT_OPTIONS, DynamicsOptions
 from model.walk.dynamics import walk as dynamics_walk

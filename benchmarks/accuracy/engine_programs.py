@@ -39,10 +39,10 @@ from benchmarks.accuracy.rigid_engine.references import refined
 from benchmarks.accuracy.rigid_engine.stepping import Friction
 from benchmarks.accuracy.rigid_engine.walking import SETTINGS, Settings, walk
 from benchmarks.tables import print_table
+from model.arrays import Array
 from model.gait.program import CycleGait, ProgramLegs
 from model.gait.reference import LegReference, SampledReference
 from model.robot import GRAVITY, N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
 from model.walk.dynamics import walk as dynamics_walk
 from model.walk.program import lay_out

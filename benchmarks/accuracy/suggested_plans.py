@@ -24,6 +24,7 @@ import numpy as np
 from scipy.stats import binom
 
 from benchmarks.tables import print_table
+from model.arrays import Array
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import SlipPosterior
 from model.bayes.rig_errors import (
@@ -36,7 +37,6 @@ from model.bayes.samples import SlipSamples
 from model.bayes.weighted import weighted_draws
 from model.design.choose import spaced
 from model.design.targets import Target, force_target, parameter_target
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.plan import Plan
 from rig.slip_rig.imperfections import RigImperfections, draw_imperfections

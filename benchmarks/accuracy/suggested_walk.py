@@ -6,13 +6,13 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.posterior import SlipPosterior
 from model.design.targets import Target
 from model.gait import tripod_angles, tripod_reference
 from model.leg_state import LegState
 from model.predict import ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY, Robot
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from model.walk.traction import law_table
 from zebro_lab.suggest.end_pose import LoggedWalk, end_pose_target

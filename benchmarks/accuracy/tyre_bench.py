@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import chdtrc
 
+from model.arrays import Array
 from model.bayes.checks.groups import groups
 from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
@@ -36,7 +37,7 @@ from model.bayes.residuals import load_levels, nearest_level
 from model.bayes.rig_errors import RigErrors
 from model.bayes.weighted import weighted_draws
 from model.slip.covariate import CovariateLaw
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula, magic_formula
 from model.slip.sided import SidedLaw
 from zebro_lab.calibration.candidates import candidates

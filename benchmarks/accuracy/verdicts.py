@@ -23,6 +23,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from benchmarks.tables import print_table
+from model.arrays import Array
 from model.bayes.advice import CorrectData, ExcludeRuns
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
@@ -33,7 +34,6 @@ from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, Verdict, judge
 from model.bayes.weighted import weighted_draws
 from model.errors import ModelError
-from model.slip.law import Array
 from model.slip.magic_formula import MagicFormula
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import draw_imperfections

@@ -29,12 +29,12 @@ from benchmarks.speed.calibration_emcee import (
 from benchmarks.speed.calibration_nuts import COMPARED, NUTS_CHAINS, nuts
 from benchmarks.speed.sampled import Sampled
 from benchmarks.tables import print_table
+from model.arrays import Array
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.likelihood import log_likelihood
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.bayes.weighted import importance_draws
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, draw_imperfections, simulate_sweep
 from zebro_lab.calibration.rig_data import read_rig_data

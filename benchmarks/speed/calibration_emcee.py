@@ -17,6 +17,7 @@ from emcee.moves import StretchMove
 from scipy.stats import multivariate_normal
 
 from benchmarks.speed.sampled import Sampled
+from model.arrays import Array
 from model.bayes import sampler
 from model.bayes.calibrate import EFFECTIVE_DRAWS, THIN
 from model.bayes.convergence import assess
@@ -26,7 +27,6 @@ from model.bayes.likelihood import predict_blocks, slip_errors
 from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Jumps, walker_count
 from model.bayes.weighted import weighted_draws
-from model.slip.law import Array
 
 ENSEMBLES, THREADS = 4, 2
 IMPORTANCE_DRAWS = 10_000

@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.speed.sampled import Sampled
+from model.arrays import Array
 from model.bayes.fit import PreparedFit
 from model.bayes.load_rule import load_rule
 from model.bayes.posterior import SlipPosterior
@@ -23,7 +24,6 @@ from model.bayes.priors import HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.bayes.shear import FAR, Shear
 from model.bayes.slip_rule import slip_rule
 from model.slip.definition import slip_per_radius_error
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW
 
 NUTS_CHAINS, NUTS_WARM_UP, NUTS_DRAWS = 2, 200, 400

@@ -18,9 +18,9 @@ import numpy as np
 
 from benchmarks.machine import describe_machine
 from benchmarks.tables import print_table
+from model.arrays import Array
 from model.gait import LegReference, SampledReference, tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
-from model.slip.law import Array
 from model.slip.magic_formula import MagicFormula
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.ensemble import WalkDraw, walk_ensemble

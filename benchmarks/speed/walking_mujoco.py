@@ -22,9 +22,9 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from model.arrays import Array
 from model.gait import LegReference
 from model.robot import GRAVITY, N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.path import turning_radius
 from model.walk.quaternion import roll_pitch_yaw

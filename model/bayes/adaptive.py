@@ -23,7 +23,7 @@ from scipy.linalg import solve_triangular
 from scipy.spatial.distance import cdist
 from scipy.special import gammaln
 
-from model.slip.law import Array
+from model.arrays import Array
 
 TAIL = 5  # degrees of freedom of the proposals
 ENOUGH = 60.0  # effective draws from which a round's Gaussians are estimated

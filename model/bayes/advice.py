@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.slip.definition import SlipDefinition, convert_slip
-from model.slip.law import Array
 
 _MEASURABLE = {
     SlipDefinition.MATERIAL: (-np.inf, 1.0),

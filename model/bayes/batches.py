@@ -5,8 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.laplace import LogDensity
-from model.slip.law import Array
 
 SMALL, LARGE = 16, 64  # points in a batch: of a search, and of many draws
 MANY = 512  # points, from which batches are large

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.block_edges import block_starts
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_calibration import calibrate_covariance, calibrate_slip, wander_within
 from model.bayes.slip_noise import noise_and_freedom, slip_noise_variance
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 
 
 @dataclass(frozen=True)

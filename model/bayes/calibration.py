@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.convergence import Convergence
@@ -29,7 +30,6 @@ from model.bayes.run_out import RunOut
 from model.bayes.samples import SlipSamples
 from model.bayes.verdict import Verdict, judge
 from model.bayes.weighted import WeightedDraws
-from model.slip.law import Array
 
 _CHECKED = 400  # about this many draws are used for residuals and verdict
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.arviz_import import import_arviz
 from model.bayes.sampler import Chains, autocorrelation_times
-from model.slip.law import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset

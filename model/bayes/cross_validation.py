@@ -9,13 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.laplace import Laplace, climb
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.mapping import HERE, Mapper
 from model.slip.covariate import law_at
 from model.slip.definition import SlipDefinition, slip_per_radius_error
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 MAX_SINGLE_FOLDS = 20  # runs up to which each is left out alone
 N_GROUPED_FOLDS = 10  # groups in which more runs are left out

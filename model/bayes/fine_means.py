@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.checks.raw import Levels, clipped_at, outliers, top_levels
 from model.bayes.faulty_samples import Clipped, Outliers
 from model.bayes.samples import FineMoments, SlipSamples
-from model.slip.law import Array
 
 _OF_MEANS = ("count", "slip_variance", "load_variance", "load_third", "slip_load_covariance")
 LEVELS = 3  # the largest of a force, with how often each occurs, that tell a limit

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.likelihood import PredictedForces, predict_blocks
 from model.bayes.posterior import SlipPosterior
 from model.bayes.residuals import covariance_factors
 from model.bayes.student import normal_scores
-from model.slip.law import Array
 
 
 def gaussian_equivalent(posterior: SlipPosterior, values: Array) -> SlipPosterior:

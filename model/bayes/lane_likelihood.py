@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.load_rule import load_rule
 from model.bayes.slip_rule import POINTS, WEIGHTS, slip_rule
@@ -18,7 +19,6 @@ from model.elementary import log_of
 from model.lanes import LANES, put, row, select, size
 from model.slip.definition import slip_per_radius_error
 from model.slip.lane_force import ROWS, LaneLaw, law_at_load, side_at_slip
-from model.slip.law import Array
 
 (
     GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, SCALE, SCATTER, FLOOR, GROWTH, RHO, TAU,

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import minimize
 
+from model.arrays import Array
 from model.bayes.student_mixture import StudentMixture
 from model.errors import FitError
-from model.slip.law import Array
 
 LogDensity = Callable[[Array], Array]
 SAME_TOP = 0.05  # maxima closer than this in coordinates are the same mode

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.fit import CLEAR_WIN, PreparedFit
 from model.bayes.left_out import (
@@ -25,7 +26,7 @@ from model.bayes.residuals import load_levels, nearest_level
 from model.bayes.weighted import weighted_draws
 from model.errors import InsufficientData
 from model.mapping import HERE, Mapper
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 SMALL = 4.0
 """Difference of log density below which its standard error is no guide (Sivula et al. 2020)."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from model.arrays import Array
 from model.bayes.convergence import MAX_PARETO_K
 from model.bayes.cross_validation import MAX_SINGLE_FOLDS, N_GROUPED_FOLDS
 from model.bayes.laplace import LaplaceMixture
@@ -15,7 +16,6 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.tails import approximate
 from model.bayes.weighted import WeightedDraws, pareto_smoothed, weighted_draws
 from model.mapping import HERE, Mapper
-from model.slip.law import Array
 
 DRAWS = 2_000  # of a posterior, at first
 ENOUGH = 200.0  # effective draws of the posterior without a group

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.lane_likelihood import lane_log_likelihood
 from model.bayes.load_rule import load_rule
@@ -32,7 +33,7 @@ from model.compiled import compiled
 from model.slip.covariate import CovariateLaw, law_at
 from model.slip.definition import slip_per_radius_error
 from model.slip.lane_force import lane_law
-from model.slip.law import Array, Parameter, SlipLaw
+from model.slip.law import Parameter, SlipLaw
 
 NUISANCE = (
     Parameter("gain_traction", "g_t", "dimensionless", -1.0, np.inf,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
-from model.slip.law import Array
 
 LEAST_SPREAD = 0.001  # of the mean load, so that a slope in load is always defined [-]
 LEAST_FOLLOWED = 0.005  # of the mean load: below it crosstalk and noise vary the load, not the rig

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import NUISANCE, predict_blocks, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
@@ -17,7 +18,7 @@ from model.bayes.shear import Shear
 from model.bayes.stated_priors import PriorCorrelation
 from model.bayes.student import student_log_likelihood
 from model.slip.covariate import CovariateLaw, covariate_parameters
-from model.slip.law import Array, Parameter, SlipLaw
+from model.slip.law import Parameter, SlipLaw
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks, block_means
 from model.bayes.fast_wander import FastWander, fast_wander
 from model.bayes.priors import Prior
@@ -13,7 +14,7 @@ from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.errors import FitError
 from model.slip.covariate import law_at
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 N_TRIALS = 400  # prior draws that are tried as starts
 N_CLIMBS = 5  # best of them that are optimised

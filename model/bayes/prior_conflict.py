@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 from scipy.special import chdtrc, chdtri
 
+from model.arrays import Array
 from model.bayes.posterior import SlipPosterior
 from model.bayes.stated_priors import StatedPriors
-from model.slip.law import Array
 
 CONFLICT_P: Final = 0.01
 """p-value below which prior and data conflict."""

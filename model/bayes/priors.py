@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import erf, erfinv, log_ndtr, ndtr, ndtri, ndtri_exp
 
-from model.slip.law import Array
+from model.arrays import Array
 
 
 class Prior(Protocol):

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular, toeplitz
 from scipy.special import fdtrc, fdtri, ndtri
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 SLIP_BINS = 8
 LOAD_GAP = 1.1  # ratio of successive loads above which they are two levels

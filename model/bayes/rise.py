@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.residuals import load_levels, nearest_level
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 SLIPS = 12  # slip ratios that are added at each load
 _FIRST, _LAST = 0.15, 1.25  # of the peak's slip: where added slips begin and end

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.approximation import starting_points
 from model.bayes.blocks import block_means
 from model.bayes.checks.raw import raw_residuals
@@ -29,7 +30,7 @@ from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.rig_errors import RigErrors
 from model.bayes.samples import DiscAngles, SlipSamples
 from model.slip.definition import slip_per_radius_error
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 HARMONICS = (1, 2)
 TURN = 0.3  # rad that a disc turns within a mean: 20 means a turn, 10 a period of the second

@@ -15,10 +15,10 @@ from emcee import EnsembleSampler, State
 from emcee.autocorr import integrated_time
 from emcee.moves import DEMove, MHMove
 
+from model.arrays import Array
 from model.bayes.laplace import LaplaceMixture
 from model.bayes.student_mixture import StudentMixture
 from model.errors import DomainError, FitError
-from model.slip.law import Array
 
 MOVES = ((DEMove, 1.0),)
 """Moves of emcee with their shares, without jumps: differential evolution alone.

@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.faulty_samples import Clipped, Outliers
 from model.slip.covariate import Covariate
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 
 
 @dataclass(frozen=True)

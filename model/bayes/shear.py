@@ -22,8 +22,8 @@ from itertools import combinations_with_replacement
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.laplace import Laplace, LogDensity
-from model.slip.law import Array
 
 WIDE = 0.1  # standard deviation of a direction that shifts others; 1 before the data
 MOST_WIDE = 8  # directions that shift others

@@ -5,9 +5,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtri, fdtri, polygamma
 
+from model.arrays import Array
 from model.bayes.block_edges import BY_CHANCE
 from model.bayes.slip_noise import median_variance, shrink, shrunk_freedom
-from model.slip.law import Array
 
 MOST_ERROR = 0.1  # relative error of the weight of a block's own slip; else the run's mean is used
 NOISE_ALONE = 0.01  # probability

@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 
 FAR: Final = 8.0  # standard deviations of slip from zero, beyond which one pair is enough
 NEAR_PAIRS: Final = 5

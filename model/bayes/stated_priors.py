@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.bayes.priors import Prior
 from model.errors import DomainError
-from model.slip.law import Array
 
 FEWEST_DRAWS: Final = 200
 """Draws of an earlier posterior that its mean and covariance need."""

@@ -22,10 +22,10 @@ import math
 import numpy as np
 from scipy.special import ndtri, stdtr
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import PredictedForces
 from model.compiled import compiled
-from model.slip.law import Array
 
 TAILS = (3.0, 5.0, 10.0, 30.0)
 """Degrees of freedom that a fit chooses from [-]."""

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.special import logsumexp
 
-from model.slip.law import Array
+from model.arrays import Array
 
 ROUNDS = 30  # of expectation and maximisation
 BEFORE = 2.0  # draws a dimension that the covariance of all draws counts as in each part's own

@@ -10,6 +10,7 @@ and jumps of a sampler to such draws rare. A further Gaussian in each tail mends
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.laplace import (
     Laplace,
     LaplaceMixture,
@@ -18,7 +19,6 @@ from model.bayes.laplace import (
     find_modes,
     gradients,
 )
-from model.slip.law import Array
 
 STRIDE = 1.25  # of a walk outward, in standard deviations of the Gaussian
 FIRST = 2  # strides after which a tail is told from a Gaussian's

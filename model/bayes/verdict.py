@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from model.arrays import Array
 from model.bayes.advice import Advice
 from model.bayes.blocks import SlipBlocks
 from model.bayes.checks.check import Check, Outcome
@@ -15,7 +16,7 @@ from model.bayes.checks.sampling import convergence_checks, engines
 from model.bayes.convergence import Convergence
 from model.bayes.estimate import Agreement
 from model.bayes.residuals import Residuals
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 MOST_CAUSES = 3  # that a headline names
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.adaptive import tempered
 from model.bayes.arviz_import import import_arviz
 from model.bayes.batches import in_batches
 from model.bayes.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.laplace import LaplaceMixture, LogDensity
 from model.bayes.student_mixture import StudentMixture, fit_mixture
-from model.slip.law import Array
 
 ENOUGH_PAIRS = 1000  # draws from and to which the acceptance of jumps is averaged
 FURTHER_DRAWS = 2000  # of each further round, at least

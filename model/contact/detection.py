@@ -12,13 +12,13 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.contact.events import Contact, next_stance
 from model.contact.polygon import depth_in_triangle
 from model.contact.stance import ON_GROUND, Stance, on_three_legs, resting_stance, stand
 from model.errors import DomainError
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 
 Detection = Literal["events", "balanced"]
 DETECTIONS: tuple[Detection, ...] = ("events", "balanced")

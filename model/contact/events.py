@@ -8,10 +8,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.contact.stance import TRIPLES, Stance, stand
 from model.errors import DomainError
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 
 Contact = tuple[int, ...]
 StandOn = Callable[[NDArray[np.intp]], Stance]

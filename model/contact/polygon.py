@@ -4,7 +4,7 @@
 import numpy as np
 from numba.extending import register_jitable
 
-from model.slip.law import Array
+from model.arrays import Array
 
 
 def side_products(point: Array, triangle: Array) -> Array:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 Legs = frozenset[int]
 """A contact state: indices of the legs on the ground."""

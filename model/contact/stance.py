@@ -7,12 +7,12 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.contact.polygon import depth_in_triangle
 from model.errors import DomainError
 from model.leg import contact_angle, contact_in_body, lowest_angle
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 
 TRIPLES = np.array(list(combinations(range(N_LEGS), 3)))
 ON_GROUND = 1e-9  # tolerance: clearance of a leg that stands, depth of a mass on an edge [m]

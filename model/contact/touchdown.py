@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 Asked = Sequence[tuple[Array, Array]]
 """Touchdowns that a gait asks for, of each leg: times [s] and unwrapped leg angles [rad]."""

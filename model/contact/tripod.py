@@ -7,8 +7,8 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 Automaton = Literal["listing", "table"]
 AUTOMATA: tuple[Automaton, ...] = ("listing", "table")

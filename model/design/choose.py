@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.design.targets import Target
-from model.slip.law import Array
 
 PASSES = 4  # of exchanges; more change nothing
 SKELETON = 7  # slips that are always measured

@@ -18,13 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.checks.linear import STEP, whiten
 from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
 from model.bayes.posterior import SlipPosterior
 from model.bayes.residuals import covariance_factors
 from model.errors import InsufficientData
-from model.slip.law import Array
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.checks.linear import STEP
 from model.bayes.posterior import SlipPosterior
 from model.errors import InsufficientData
-from model.slip.law import Array
 
 FLAT = 1e-3  # a force smaller than this share of the load has no size to be relative to
 

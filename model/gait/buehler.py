@@ -4,10 +4,10 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.cyclic import CyclicReference
 from model.gait.notation import TRIPOD
-from model.slip.law import Array
 
 
 def centred_time(t: ArrayLike, cycle_time: float) -> Array:

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.stance import Intervals, event_intervals, require_stance_angles
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 _KINK = 1e-11  # of a period: how near to a change of speed a time is taken to be at it
 _BY_LEG = ("touchdown", "liftoff", "ground_time", "flight_time", "phase", "pause", "offset")

@@ -7,13 +7,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.cyclic import CyclicReference
 from model.gait.maxplus import coupling_time, eigenvalue, eigenvector, otimes, solve_implicit
 from model.gait.notation import Gait
 from model.gait.reference import SampledReference
 from model.gait.stance import Intervals, event_intervals, require_stance_angles
-from model.slip.law import Array
 
 _SAME_TIME = 1e-9  # s: events nearer than this are one knot of a leg reference
 

@@ -23,6 +23,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.lines import (
     FASTEST,
@@ -40,7 +41,6 @@ from model.gait.lines import (
 )
 from model.gait.reference import SampledReference
 from model.gait.smoothed import SmoothedLeg
-from model.slip.law import Array
 
 SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
 # What a leg may be off a straight line in a draw, the larger of a share of a count and of what a

@@ -12,9 +12,9 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.gait.leg_motion import CLEAR, LegMotion
 from model.gait.leg_order import SIDE, OrderFault, order_fault
-from model.slip.law import Array
 
 _DOWN: Final = np.pi / 2
 _FARTHEST: Final = np.radians(35)  # middle of a stance from straight down

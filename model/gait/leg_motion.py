@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 PACE: Final = np.pi / 30
 """Mean rotation of the legs from one row to the next [rad]."""

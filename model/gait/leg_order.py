@@ -14,9 +14,9 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait.leg_motion import CLEAR, LegMotion
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 ORDERS: Final[dict[tuple[int, ...], str]] = {
     (1, 3, 5, 2, 4, 6): "the left side from front to rear, then the right side",

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import compiled
-from model.slip.law import Array
 
 FASTEST = 60.0  # largest speed of a line, beyond any leg's [rad/s]
 HALVINGS = 60  # bisections of a line's speed

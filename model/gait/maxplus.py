@@ -14,8 +14,8 @@ from math import gcd, lcm
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 
 EPSILON = -np.inf
 ONE = 0.0

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.direction import Direction, is_inner
 from model.gait.events import EventSystem
@@ -26,7 +27,6 @@ from model.gait.steering import ideal_liftoff, touchdown_of_stance
 from model.gait.swing import TURN, landing_angles, swing
 from model.gait.turning import turning_system
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 _SAME = 1e-9  # s or rad: times or angles nearer than this are equal
 

@@ -7,9 +7,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.errors import DomainError
-from model.slip.law import Array
 
 
 class LegReference(Protocol):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 
 LARGEST_STEP = np.radians(10.0)  # of one count
 SMALLEST_STEP = 1.5e-4  # rad, 42,000 counts a turn: finer ones move a radius by 0.1 %

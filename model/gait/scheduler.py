@@ -3,11 +3,11 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.events import EventSystem
 from model.gait.maxplus import EPSILON, identity, oplus, otimes, zeros
 from model.gait.notation import Gait
-from model.slip.law import Array
 
 
 def precedence(gait: Gait, double_stance: float) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
-from model.slip.law import Array
+from model.arrays import Array
 
 STIFFNESS = np.logspace(-2, 9, 45)  # that are tried, with the mean interval as the unit of time
 SHORTEST = 0.01  # mean intervals: samples that are closer would leave the matrix singular

@@ -4,8 +4,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 
 Intervals = tuple[Array, ...]  # by leg; rows of start and end, shape (k, 2) [s]
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction, inner_legs, is_inner
 from model.gait.notation import TRIPOD
-from model.slip.law import Array
 
 _HALVINGS = 60  # of a bracket of pi: to the last bit of a leg angle
 

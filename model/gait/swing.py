@@ -4,10 +4,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.gait.steering import highest_hip, ideal_liftoff
 from model.leg import hip_height, wrap_angle
 from model.robot import LEFT, N_LEGS, RIGHT
-from model.slip.law import Array
 
 TURN = 2 * np.pi
 LEAST_SWING = np.pi / 2  # a leg that swings less far may not leave the ground

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.poses import Poses
-from model.slip.law import Array
 
 
 class RigidMotion(NamedTuple):

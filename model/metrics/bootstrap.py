@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import InsufficientData
-from model.slip.law import Array
 
 LEVEL = 0.9  # probability of the central interval
 

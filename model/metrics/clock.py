@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.errors import InsufficientData
 from model.poses import Poses
-from model.slip.law import Array
 from model.travel import travelled
 
 STEP = 0.05  # s between offsets that are tried; refined by a parabola

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import InsufficientData
 from model.metrics.scores import centred
 from model.poses import Poses
-from model.slip.law import Array
 from model.travel import travel_direction
 
 STATISTICS = ("nees", "along", "cross", "yaw")

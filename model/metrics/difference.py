@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import InsufficientData
-from model.slip.law import Array
 
 DRAWS = 4000  # number of pairs from which quantiles of the difference are computed
 

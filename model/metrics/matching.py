@@ -4,7 +4,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 
 Indices = NDArray[np.intp]
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.metrics.alignment import align
 from model.metrics.rigid_errors import motion_errors, pairs_by_distance
 from model.metrics.turning import fitted_radius, mean_yaw_rate
 from model.poses import Poses, overlap, wrap
 from model.rigid_path import RigidPath
-from model.slip.law import Array
 from model.travel import path_length, travel_chord, travel_direction, travelled
 
 DISTANCES = (0.25, 0.5, 1.0)  # distances travelled over which relative errors are computed [m]

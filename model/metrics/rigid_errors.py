@@ -8,11 +8,11 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.counted import counted
 from model.errors import InsufficientData
 from model.metrics.alignment import Similarity, umeyama
 from model.rigid_path import RigidPath
-from model.slip.law import Array
 
 Indices: TypeAlias = NDArray[np.intp]
 CLOSE = 0.1  # share of a distance by which a pair of poses may miss it

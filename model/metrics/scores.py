@@ -8,9 +8,9 @@ import numpy as np
 from scipy.spatial.distance import pdist
 from scipy.stats import binom
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.poses import wrap
-from model.slip.law import Array
 
 LEVELS = (0.5, 0.9, 0.95)  # probabilities of the central intervals
 

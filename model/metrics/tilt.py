@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.errors import InsufficientData
-from model.slip.law import Array
 
 FEWEST = 10  # least number of measurements within the walk
 

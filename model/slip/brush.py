@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from model.slip.law import Array, Parameter, Values
+from model.arrays import Array
+from model.slip.law import Parameter, Values
 from model.slip.proportional import ProportionalLaw
 
 

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from model.slip.law import Array, Parameter, SlipLaw, Values
+from model.arrays import Array
+from model.slip.law import Parameter, SlipLaw, Values
 
 DEGREES: Final = (1, 2)
 """Degrees of the polynomial that may be fitted."""

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.slip.definition import SlipDefinition, require_definition
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import InsufficientData
-from model.slip.law import Array
 
 _FEWEST_DRAWS = 20
 

@@ -11,8 +11,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from model.errors import DefinitionMismatch, DomainError
-from model.slip.law import Array
 
 
 class SlipDefinition(StrEnum):

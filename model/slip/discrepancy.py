@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import chdtrc
 
-from model.slip.law import Array, Parameter, SlipLaw, Values
+from model.arrays import Array
+from model.slip.law import Parameter, SlipLaw, Values
 
 LENGTH: Final = 1.5  # correlation length of the departure, in arsinh of slip [-]
 SPACING: Final = 1.2  # of the knots, which zero slip is one of [-]

@@ -4,7 +4,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from model.slip.law import Array
+from model.arrays import Array
 
 
 def slip_angle(velocity_x: ArrayLike, velocity_y: ArrayLike) -> Array:

@@ -8,7 +8,8 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array: TypeAlias = NDArray[np.float64]
+from model.arrays import Array
+
 Values: TypeAlias = Sequence[ArrayLike] | Array
 
 

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 
 LOAD_GAP: Final = 1.1
 """Ratio of successive loads above which they are two loads that were set."""

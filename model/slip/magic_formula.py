@@ -8,7 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from model.slip.law import Array, Parameter, Values
+from model.arrays import Array
+from model.slip.law import Parameter, Values
 
 
 def magic_formula(

@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from model.slip.law import Array, Values
+from model.arrays import Array
+from model.slip.law import Values
 
 
 class ProportionalLaw(ABC):

@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 from model.slip.magic_formula import curvature_from_peak, magic_formula
 from model.slip.sampled_curve import fitted_coefficients
 

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import expit
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 from model.slip.magic_formula import curvature_from_peak, magic_formula
 
 FEWEST_SAMPLES: Final = 6

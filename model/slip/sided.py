@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from model.slip.covariate import reference_law
-from model.slip.law import Array, Parameter, SlipLaw, Values
+from model.slip.law import Parameter, SlipLaw, Values
 
 N_SIDES = 2
 """Number of parameters that a law has in addition where its sides are apart."""

@@ -6,13 +6,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.fit import not_identified
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.priors import Prior
 from model.bayes.rig_errors import RigErrors
 from model.errors import FitError
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 MOST_TRIES = 10_000  # prior draws, of which one has to be a curve of the law
 

@@ -12,10 +12,11 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import gammaincinv, ndtri
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.slip.covariate import law_at
 from model.slip.definition import SlipDefinition, slip_ratio
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 POINTS = 9  # in load, and in slip at one load
 ROUNDS = 5  # of the fixed point of traction and load; each gains over two digits

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import bdtr, bdtrc, chdtrc, gammaln
 
-from model.slip.law import Array
+from model.arrays import Array
 
 DRAWS = 99
 """Draws that a true value is ranked among, so that ranks are 0 to 99."""

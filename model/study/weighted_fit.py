@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.approximation import starting_points, straightened
 from model.bayes.blocks import SlipBlocks
 from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import SlipPosterior
 from model.bayes.tails import approximate
 from model.bayes.weighted import WeightedDraws, weighted_draws
-from model.slip.law import Array
 from model.study.design import StudyDesign
 
 DRAWS = 4000  # of the Laplace approximations

@@ -9,9 +9,9 @@ import numpy as np
 from numba.extending import overload
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import inlined
 from model.errors import DomainError
-from model.slip.law import Array
 from model.walk.traction import TractionTable
 
 

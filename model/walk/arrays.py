@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import compiled, inlined
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 
 N_CONTACTS = N_LEGS + 8  # legs, then the corners of the body
 

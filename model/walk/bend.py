@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from model.walk.arrays import State
 from model.walk.ground import Ground
 

@@ -9,9 +9,9 @@ of a millimetre, over which the ground hardly changes.
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait.reference import LegReference
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import State
 from model.walk.bend import Bend, bent_poses, move_state, turned_vectors

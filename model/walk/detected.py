@@ -9,13 +9,13 @@ as in `model.walk.no_slip`, which differs in how it finds the contacts only.
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.contact.detection import Detection, RigidContacts, detect_contacts
 from model.contact.stance import on_three_legs
 from model.errors import WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.dynamics import step_times
 from model.walk.no_slip import integrate_twists, leg_velocities, stand_still
 from model.walk.path import WalkPath

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
 from model.walk.flat.batch import FlatWalk, is_flat_walk, run_side_by_side

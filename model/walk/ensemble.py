@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.mapping import HERE, Mapper
 from model.poses import Poses
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.areas import Area, with_areas
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.bent_walk import integrate_bent

@@ -18,6 +18,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.contact.detection import Footing
 from model.contact.events import best_stance
@@ -25,7 +26,6 @@ from model.contact.polygon import depth_in_triangle
 from model.contact.stance import ON_GROUND, TRIPLES, Stance
 from model.errors import DomainError
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.arrays import Body, Work, body_arrays, new_work
 from model.walk.contact_points import find_contacts
 from model.walk.ground import Ground, heights_on, is_even

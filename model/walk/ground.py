@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import compiled, inlined
 from model.errors import DomainError
-from model.slip.law import Array
 
 FACE = 0.002  # m; length of a step's face along x: nearly upright, and still with a slope
 _NO_EDGES = np.zeros(0)

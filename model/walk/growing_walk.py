@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait.program import ProgramLegs
 from model.gait.reference import SampledReference
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import State
 from model.walk.bend import STRAIGHT, Bend

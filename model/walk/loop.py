@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import borrowing, compiled, inlined
 from model.leg import ROLLING
 from model.robot import N_LEGS
-from model.slip.law import Array
 from model.walk.anisotropy import sideways
 from model.walk.areas import AreaTractions
 from model.walk.arrays import (

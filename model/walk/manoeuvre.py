@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.direction import Direction
 from model.gait.notation import TRIPOD, Gait
 from model.gait.program import CycleGait, ProgramLegs, cycle_gait, scaled_stance
 from model.gait.steering import ideal_liftoff
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.dynamics import DynamicsOptions

@@ -20,13 +20,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.contact.stance import ON_GROUND, holds, on_three_legs, rest
 from model.errors import WalkError
 from model.gait.reference import LegReference
 from model.leg import wrap_angle
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.dynamics import step_times
 from model.walk.path import WalkPath
 

@@ -7,9 +7,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.poses import Poses
 from model.robot import N_LEGS
-from model.slip.law import Array
 from model.walk.quaternion import roll_pitch_yaw
 
 
@@ -118,7 +118,7 @@ def path_of(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
     energy = np.concatenate([np.zeros((1, 4)), np.cumsum(legs[:, N_LEGS, 1:5], axis=0)])
     legs = np.concatenate([legs[:1], legs])
     body, legs = legs[:, N_LEGS, 0], legs[:, :N_LEGS]
-    load: NDArray[np.float64] = legs[..., 0]
+    load: Array = legs[..., 0]
     return WalkPath(
         t=t,
         position=pose[:, :3],

@@ -3,8 +3,8 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import inlined
-from model.slip.law import Array
 
 
 @inlined

@@ -12,8 +12,8 @@ that repeats itself, a hundred correlation lengths wide, so that a walk comes to
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
-from model.slip.law import Array
 from model.walk.ground import Ground
 
 CELLS = 1024  # along a side of the square

@@ -4,10 +4,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from model.arrays import Array
 from model.errors import WalkError
 from model.lanes import LANES
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.arrays import Contacts, State
 from model.walk.dynamics import (
     SETTLE_STEP,

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import WalkError
 from model.gait.reference import LegReference
 from model.poses import Poses, compose, relative
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
     DynamicsOptions,

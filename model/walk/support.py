@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.gait.stance import Intervals
 from model.robot import N_LEGS
-from model.slip.law import Array
 from model.walk.path import WalkPath
 
 SLIDES = 0.01  # m/s: slip velocity above which a leg is said to slide

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-from model.slip.law import Array
+from model.arrays import Array
 from model.walk.areas import Area, require_polygon
 from model.walk.ground import FLAT, Ground, is_level
 from model.walk.slip import Slip

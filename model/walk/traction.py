@@ -7,10 +7,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy.linalg import solve_banded
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition, convert_slip
-from model.slip.law import Array, SlipLaw, Values
+from model.slip.law import SlipLaw, Values
 from model.slip.sided import middle_curve
 
 ToeLaw = Literal["saturated", "peak", "bristle"]

@@ -12,7 +12,7 @@ from typing import Final, Self
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.backends import RigDevices
 from rig.device import Drive, Stream
 from rig.errors import ProfileError

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.device import Sample
 from rig.sample_columns import as_columns
 from rig.slip_rig.decode import Zero

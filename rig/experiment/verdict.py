@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.experiment.plan import Acceptance, SettleCriterion
 from rig.experiment.readings import Readings
 from rig.experiment.steps import Point

@@ -11,10 +11,10 @@ import numpy as np
 import tomlkit
 from scipy.spatial.transform import Rotation
 
+from model.arrays import Array
 from rig.device import Sample
 from rig.profile import SCHEMA, open_profile
 from rig.sample_columns import as_columns
-from rig.zebro.profile import Array
 
 NORM_TOLERANCE: Final = 0.05
 """Largest difference of a quaternion's length from 1 [-]."""

@@ -10,10 +10,10 @@ from typing import Final, TypeAlias
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from model.arrays import Array
 from rig.imu.profile import ImuProfile, encode_orientation
 from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
 from rig.links.packet import TICK, Kind, Packet, encode_packet
-from rig.zebro.profile import Array
 
 GRAVITY: Final = 9.81
 """Acceleration of gravity [m/s²]."""

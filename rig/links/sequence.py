@@ -6,6 +6,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
+
 LATE_WINDOW: Final = 64
 """Default distance behind the newest number below which a sample is late, not a restart."""
 SLACK: Final = 64
@@ -142,7 +144,7 @@ class TimeUnwrapper:
         self._last += (ticks - self._last) % self._modulus
         return self._last * self._tick
 
-    def unwrap_all(self, ticks: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
+    def unwrap_all(self, ticks: NDArray[np.integer[Any]]) -> Array:
         """Compute the device times [s] of readings from their ticks, in order, both of shape (n,).
 
         >>> TimeUnwrapper(modulus=1000, tick=0.001).unwrap_all(np.array([990, 999, 4]))

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.slip.definition import SlipDefinition, slip_ratio
-from model.slip.law import Array
 from rig.device import Sample
 from rig.errors import LimitExceeded, ProtocolError
 from rig.sample_columns import SampleColumns, as_columns

@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.rig_errors import RigErrors
 from model.errors import DomainError
-from model.slip.law import Array
 
 GAIN_SD: Final = 0.005
 """Standard deviation of each force channel's relative gain error [-]."""

@@ -13,10 +13,11 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition, slip_ratio
-from model.slip.law import Array, SlipLaw, Values
+from model.slip.law import SlipLaw, Values
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import ProtocolError
 from rig.slip_rig.imperfections import (

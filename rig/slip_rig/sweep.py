@@ -13,10 +13,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.samples import DiscAngles, SlipSamples
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, slip_ratio
-from model.slip.law import Array, SlipLaw, Values
+from model.slip.law import SlipLaw, Values
 from rig.slip_rig.imperfections import (
     RigImperfections,
     bump_rise,

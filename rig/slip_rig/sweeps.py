@@ -16,8 +16,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.slip.definition import SlipDefinition, slip_ratio
-from model.slip.law import Array
 
 BIN: Final = 0.01
 """Bin over which slip is averaged first: drives report their speeds no more often [s]."""

@@ -9,15 +9,14 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import tomlkit
-from numpy.typing import NDArray
 
+from model.arrays import Array
 from rig.device import Sample
 from rig.errors import ProtocolError
 from rig.profile import SCHEMA, open_profile
 from rig.sample_columns import as_columns
 from rig.toml_table import TomlTable
 
-Array: TypeAlias = NDArray[np.float64]
 Layout: TypeAlias = Literal["packet", "can", "dump", "poll", "table"]
 Order: TypeAlias = Literal["little", "big"]
 LINK_OF: dict[str, str] = {

@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.robot import N_LEGS, Robot
 from model.walk.no_slip import Motion, Skeleton, move
-from rig.zebro.profile import Array
 from rig.zebro.simulated_legs import SimulatedLegs
 
 STEP: Final = 0.002

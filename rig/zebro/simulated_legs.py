@@ -9,9 +9,10 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait.reference import LegReference
 from rig.errors import ProtocolError
-from rig.zebro.profile import Array, LegProfile, encode_counts
+from rig.zebro.profile import LegProfile, encode_counts
 
 FASTER: Final = 1.2
 """A leg that speeds up by this factor from one frame to the next begins its swing."""

@@ -27,6 +27,7 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 
+from model.arrays import Array
 from model.bayes.approximation import straightened
 from model.bayes.blocks import block_means
 from model.bayes.fit import prepare_fit
@@ -36,7 +37,6 @@ from model.bayes.rig_errors import USUAL
 from model.bayes.samples import SlipSamples
 from model.bayes.tails import approximate
 from model.bayes.weighted import weighted_draws
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
 

@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from model.arrays import Array
 from model.bayes.convergence import Convergence, assess
 from model.bayes.estimate import Agreement, Estimate, agreement, estimate, thin_draws
 from model.bayes.fit import PreparedFit, prepare_fit
@@ -28,7 +29,6 @@ from model.bayes.posterior import LoadCell
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.weighted import WeightedDraws, weighted_draws
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
 

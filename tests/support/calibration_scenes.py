@@ -8,8 +8,8 @@ from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.slip import MagicFormula, SlipDefinition
-from model.slip.law import Array
 from zebro_lab.plots import (
     corner,
     parameter_labels,

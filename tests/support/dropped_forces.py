@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import block_means
 from model.bayes.laplace import find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.rig_errors import RigErrors
 from model.bayes.samples import SlipSamples
 from model.slip import Brush
-from model.slip.law import Array
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 

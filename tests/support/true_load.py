@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The true load from measured forces, which inverts the simulated normal channel."""
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.slip_rig.imperfections import RigImperfections
 
 

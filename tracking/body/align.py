@@ -16,14 +16,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.template import BodyTemplate, sample
-from tracking.camera.lens import (
-    Array,
-    Camera,
-    CameraPose,
-    project,
-    project_with_derivatives,
-)
+from tracking.camera.lens import Camera, CameraPose, project, project_with_derivatives
 from tracking.pose import BodyPose, BodyPrior, rotation_with_derivatives
 from tracking.shared import CAMERA, LENS
 

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.camera.lens import Array, Camera, CameraPose, project, project_with_derivatives
+from model.arrays import Array
+from tracking.camera.lens import Camera, CameraPose, project, project_with_derivatives
 from tracking.pose import HELD, BodyPose, BodyPrior, body_to_floor, rotation_with_derivatives
 from tracking.shared import ANNOTATION, HEIGHT, TILT
 

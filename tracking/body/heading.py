@@ -12,9 +12,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from model.arrays import Array
 from tracking.body.align import Alignment
 from tracking.body.search import BodyCandidates
-from tracking.camera.lens import Array
 from tracking.errors import AmbiguousHeading
 
 LEAST_LOG_ODDS = 7.0

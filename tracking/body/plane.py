@@ -7,8 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.template import sample
-from tracking.camera.lens import Array, Camera, CameraPose, project
+from tracking.camera.lens import Camera, CameraPose, project
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,10 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.stats import chi2
 
+from model.arrays import Array
 from tracking.body.annotated import AnnotatedPose
 from tracking.body.template import sample
-from tracking.camera.lens import Array, project
+from tracking.camera.lens import project
 from tracking.pose import body_to_floor
 
 OFFSET_SD = (0.2, 0.004)

@@ -13,10 +13,11 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from tracking.body.align import Alignment, align
 from tracking.body.plane import Plane
 from tracking.body.template import BodyTemplate
-from tracking.camera.lens import Array, Camera, CameraPose, to_floor
+from tracking.camera.lens import Camera, CameraPose, to_floor
 from tracking.errors import FloorError
 from tracking.pose import BodyPrior
 

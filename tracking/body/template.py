@@ -8,8 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.annotated import AnnotatedPose
-from tracking.camera.lens import Array, Camera, CameraPose, project
+from tracking.camera.lens import Camera, CameraPose, project
 from tracking.errors import BodyError
 from tracking.markers import marker_picture
 from tracking.pose import BodyPose, BodyPrior, RobotMarker, body_to_floor

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.dictionaries import dictionary_named
 
 

@@ -9,15 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from tracking.camera.boards import SeenBoard
 from tracking.camera.corner_errors import CornerErrors, FittedBoard, corner_errors
-from tracking.camera.lens import (
-    Array,
-    Camera,
-    CameraPose,
-    project,
-    project_with_derivatives,
-)
+from tracking.camera.lens import Camera, CameraPose, project, project_with_derivatives
 from tracking.camera.omitted_terms import with_omitted_terms
 from tracking.errors import CalibrationError
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 RATIOS = np.concatenate(([0.0], np.geomspace(0.1, 10.0, 17)))
 """Ratios of smooth error to noise that are tried [-]."""

@@ -7,13 +7,13 @@ half a pixel, which is 2 mm on the floor of a usual set-up; see `tracking.marker
 """
 
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array: TypeAlias = NDArray[np.floating[Any]]
+from model.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from itertools import product
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 PRIOR_SD = {4: 0.2, 5: 0.2, 6: 1e-3, 7: 1e-3, 8: 0.2}
 """Standard deviations of k1, k2, p1, p2, k3 of lenses that see 40 to 90 degrees [-].

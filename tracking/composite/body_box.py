@@ -7,8 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.plane import Plane
-from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
+from tracking.camera.lens import Camera, CameraPose, project, to_floor
 from tracking.pose import body_to_floor
 
 

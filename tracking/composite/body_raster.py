@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.plane import Plane
 from tracking.body.template import BodyTemplate, TopPlate, sample
-from tracking.camera.lens import Array
 
 Window = tuple[slice, slice]
 

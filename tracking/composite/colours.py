@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 from scipy.stats import chi2
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 _TRUSTED = 0.7  # share of the points from which the floor's covariance is estimated
 _OUTLIER = 12.0  # squared distance beyond which a colour is an outlier for the floor's light

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.composite.darkest_model import Cover, DarkestModel, TopColours
 from tracking.composite.exposure import Exposure
 from tracking.composite.known import LEAST_SCORE, LEVER

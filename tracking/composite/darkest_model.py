@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.template import sample
-from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
 from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
 from tracking.composite.reading import Reading

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from tracking.body import Alignment
-from tracking.camera.lens import Array
 
 
 @dataclass(frozen=True)

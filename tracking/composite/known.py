@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body import (
     Alignment,
     BodyTemplate,
@@ -17,7 +18,7 @@ from tracking.body import (
 )
 from tracking.body.plane import Plane
 from tracking.body.template import MOST_POINTS, sample
-from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
+from tracking.camera.lens import Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
 from tracking.composite.exposure import disturbance, widened
 from tracking.errors import BodyError, CompositeError

@@ -13,10 +13,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.plane import Plane
 from tracking.body.search import correlations, pose_of_match
 from tracking.body.template import BodyTemplate
-from tracking.camera.lens import Array
 
 TURNS = 48
 """Number of headings that are tried, 7.5 degrees apart."""

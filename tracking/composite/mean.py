@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.composite.colours import SCALE, FloorColours, smooth
 from tracking.composite.exposure import Exposure
 from tracking.composite.match import Match, match_whole

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body import Alignment, BodyTemplate
 from tracking.body.template import MOST_POINTS, sample
-from tracking.camera.lens import Array, project
+from tracking.camera.lens import project
 from tracking.composite.colours import SCALE, FloorColours
 from tracking.composite.exposure import Exposure
 from tracking.composite.floor_pattern import FloorPattern

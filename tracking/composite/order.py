@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 
 def order_exposures(poses: ArrayLike) -> tuple[int, ...]:

@@ -14,9 +14,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body import Alignment, BodyTemplate
 from tracking.body.template import sample
-from tracking.camera.lens import Array, project_with_derivatives
+from tracking.camera.lens import project_with_derivatives
 from tracking.composite.floor_pattern import REACH_PX, FloorPattern
 from tracking.composite.known import KnownExposure
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives

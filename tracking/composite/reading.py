@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.plane import Plane
-from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
 from tracking.composite.exposure import Exposure
 from tracking.composite.known import KnownExposure

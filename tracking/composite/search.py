@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from tracking.body import Alignment, BodyTemplate, TopPlate, align, floor_in_view
 from tracking.body.plane import Plane
-from tracking.camera.lens import Array, Camera, CameraPose
+from tracking.camera.lens import Camera, CameraPose
 from tracking.composite.exposure import Exposure, disturbance, widened
 from tracking.composite.known import KnownExposure
 from tracking.composite.match import CELLS, match_whole

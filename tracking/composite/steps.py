@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.composite.order import order_exposures
 
 REACH = 1.25

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, cg
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.composite.body_raster import BodyRaster
 
 _DAMPING = 0.02

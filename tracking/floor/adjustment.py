@@ -29,7 +29,8 @@ from functools import cached_property
 import numpy as np
 from scipy.stats import chi2
 
-from tracking.camera.lens import Array, Camera, CameraPose, project_with_derivatives
+from model.arrays import Array
+from tracking.camera.lens import Camera, CameraPose, project_with_derivatives
 from tracking.floor.locate import FloorView, seen_keys
 from tracking.floor.marks import FloorMap
 from tracking.markers import edge_growth

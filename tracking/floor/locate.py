@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from scipy.optimize import least_squares
 
-from tracking.camera.lens import Array, Camera, CameraPose, project, project_with_derivatives
+from model.arrays import Array
+from tracking.camera.lens import Camera, CameraPose, project, project_with_derivatives
 from tracking.errors import FloorError
 from tracking.floor.marks import FloorMap
 from tracking.markers import Sighting

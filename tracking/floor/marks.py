@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.errors import FloorError
 from tracking.markers import marker_corners
 

@@ -7,7 +7,8 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from tracking.camera.lens import Array, Camera, CameraPose
+from model.arrays import Array
+from tracking.camera.lens import Camera, CameraPose
 from tracking.errors import FloorError
 from tracking.floor.adjustment import Adjustment, EdgeSpread
 from tracking.floor.doubt import REMARKABLE, doubts

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.floor.locate import FloorView
 
 JUMP_PX = 0.2

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog
 from scipy.spatial import HalfspaceIntersection
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 _JITTERS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2)
 

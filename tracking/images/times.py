@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
-from tracking.camera.lens import Array
 from tracking.errors import PhotoError, TimesError
 from tracking.images.read import open_picture
 from tracking.images.stamps import fit_interval

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.dictionaries import key_of
 from tracking.tag_families import FAMILIES, MOST_WRONG_BITS, STANDARD, tag_family
 

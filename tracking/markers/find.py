@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.dictionaries import dictionary_named, marker_family
 from tracking.markers.apriltags import apriltag_quads
 from tracking.markers.refine import Sighting, refine_corners

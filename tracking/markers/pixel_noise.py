@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 
 _Field: TypeAlias = NDArray[np.float32]
 _Waves: TypeAlias = NDArray[np.complex64]

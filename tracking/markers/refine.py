@@ -19,7 +19,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.markers.pixel_noise import unknowns_covariance
 from tracking.markers.square import (
     apply_homography,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from model.arrays import Array
 from tracking.body import (
     AnnotatedPose,
     BodyCandidates,
@@ -20,7 +21,6 @@ from tracking.body import (
     resolve_headings,
 )
 from tracking.camera import Camera, CameraPose
-from tracking.camera.lens import Array
 from tracking.errors import BodyError, NoUsablePhoto, PhotoError
 from tracking.images import read_pixels
 from tracking.next_annotation import next_annotation

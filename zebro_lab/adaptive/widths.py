@@ -8,8 +8,9 @@ from typing import Final
 import numpy as np
 from typer import BadParameter
 
+from model.arrays import Array
 from model.similar_name import similar_name
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 from zebro_lab.adaptive.wanted import HINT, Wanted
 from zebro_lab.suggest.target_text import EXPECTED, ForceText, ParameterText, TargetText, WalkText
 

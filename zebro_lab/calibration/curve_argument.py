@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, is_possible
-from model.slip.law import Array
 from model.slip.load_curves import curves_by_load
 from model.slip.magic_formula import magic_formula
 from model.slip.read_off import initial_slope

@@ -10,8 +10,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.runs.data_paths import DataSource
 from zebro_lab.tables.columns import Columns

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
 
@@ -20,7 +20,7 @@ MOST_DRAWS: Final = 4_000_000
 
 def read_draws_of(
     path: Path, group: str, names: Iterable[str], *, advice: str
-) -> tuple[Mapping[str, NDArray[np.float64]], tuple[str, ...]]:
+) -> tuple[Mapping[str, Array], tuple[str, ...]]:
     """Read posterior draws of parameters from one group of a netCDF (HDF5) file.
 
     External links and external storage of HDF5, which refer to other files, are rejected.
@@ -75,7 +75,7 @@ def _own(group: "h5py.Group", name: str, path: Path) -> object:
     return group[name]
 
 
-def _draws(group: "h5py.Group", name: str, path: Path) -> NDArray[np.float64]:
+def _draws(group: "h5py.Group", name: str, path: Path) -> Array:
     import h5py
 
     found = _own(group, name, path)

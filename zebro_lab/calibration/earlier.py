@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from model.arrays import Array
 from model.bayes.likelihood import NUISANCE
 from model.slip.curve import SlipCurve
-from model.slip.law import Array
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import POSTERIOR, read_slip_file
 from zebro_lab.files.documents import read_toml_document

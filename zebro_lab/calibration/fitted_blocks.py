@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import BLOCK_MOMENTS, POSTERIOR
 from zebro_lab.files.errors import DataError

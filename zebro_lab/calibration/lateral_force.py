@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.tables.raw_table import is_measured
 from zebro_lab.tables.rig_table import RigTable
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.calibration import Calibration
 from model.bayes.law_scores import LawScores
@@ -12,7 +13,7 @@ from model.bayes.likelihood import predict_blocks
 from model.bayes.verdict import State
 from model.slip.covariate import Covariate, CovariateLaw
 from model.slip.discrepancy import LawWithDiscrepancy
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
 

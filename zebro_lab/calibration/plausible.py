@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.slip_source import SlipColumn

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.fine_means import fine_moments, moments_of_runs, reduce_samples
 from model.bayes.rig_errors import RigErrors
 from model.bayes.samples import DiscAngles, FineMoments, SlipSamples
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 from zebro_lab.calibration.lateral_force import lateral_sums
 from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.runs.counted_once import run_keys

@@ -4,10 +4,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.slip.covariate import Covariate
-from model.slip.law import Array
 from zebro_lab.calibration.rig_part import RigPart
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.tables.covariate import StatedCovariate
@@ -55,7 +54,7 @@ def covariate_note(parts: Sequence[RigPart]) -> list[str]:
             f"{stated.unit}".rstrip()]  # fmt: skip
 
 
-def levels(values: Array) -> NDArray[np.float64]:
+def levels(values: Array) -> Array:
     """Return the levels of a covariate: means of values that are no further apart than 3 %.
 
     Args:

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from model.arrays import Array
 from model.bayes.calibration import Calibration
 from model.bayes.checks.check import Outcome
 from model.bayes.convergence import MAX_PARETO_K
@@ -21,7 +22,6 @@ from model.bayes.verdict import State
 from model.counted import counted
 from model.slip.covariate import CovariateLaw
 from model.slip.discrepancy import LawWithDiscrepancy, chance_of_law
-from model.slip.law import Array
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.law_table import sentence, signed
 from zebro_lab.calibration.rig_data import RigData

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.slip.curve import SlipCurve
-from model.slip.law import Array
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import POSTERIOR

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.fine_means import Reduced, fine_moments, reduce_samples
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 from zebro_lab.calibration.lateral_force import lateral_sums
 from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.calibration.rig_part import ANGLES_PASSED, RigPart

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.exchange.column_names import NAMES, WEAK, leg_of, plain_name, split_header
 from zebro_lab.exchange.unit_guesses import UnitGuess, guess_unit
 from zebro_lab.files.errors import DataError, SettingsError

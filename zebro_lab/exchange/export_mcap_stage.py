@@ -20,10 +20,10 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from model.arrays import Array
 from model.path_draws import anchored, mean_path, states_at
 from model.poses import Poses
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import AlreadyExists, NotFound

@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.progress import Watcher
-from model.slip.law import Array
 from model.told_apart import told_apart
 from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest

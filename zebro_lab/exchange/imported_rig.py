@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
-from model.slip.law import Array
 from rig.slip_rig.profile import FURTHER
 from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.files.atomic import atomic_write_text

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 from rig.device import Counters
 from rig.imu.profile import render_table_profile
 from rig.sample_columns import SampleColumns

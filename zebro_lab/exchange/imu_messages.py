@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.exchange.topic_table import TopicTable
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.mcap.log_topics import TopicRows
 from zebro_lab.tables.raw_table import RawTable
 

@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
 from model.errors import DomainError
-from model.slip.law import Array
 from model.walk.areas import require_polygon
 from model.walk.ground import FLAT, Ground, heights_on, with_slope, with_steps
 from model.walk.roughness import CELLS, rough_ground

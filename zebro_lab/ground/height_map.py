@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import MOST_TEXT, open_file, parsing, read_bytes
 from zebro_lab.tables.text_encoding import decoded, possible_encodings

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.mcap.cdr import CdrWriter
 from zebro_lab.mcap.ros_messages import HEADER, QUATERNION, RULE, VECTOR, Schema
 

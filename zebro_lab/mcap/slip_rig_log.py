@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.cdr import CdrReader
 from zebro_lab.mcap.log_records import read_records
@@ -49,24 +50,24 @@ class SlipRigTable:
         angle_ground: Angle of the ground disc [rad]; None where none was recorded.
     """
 
-    t: NDArray[np.float64]
-    omega_leg: NDArray[np.float64]
-    omega_ground: NDArray[np.float64]
-    normal_force: NDArray[np.float64]
-    traction_force: NDArray[np.float64]
-    lateral_force: NDArray[np.float64] | None = None
-    angle_leg: NDArray[np.float64] | None = None
-    angle_ground: NDArray[np.float64] | None = None
+    t: Array
+    omega_leg: Array
+    omega_ground: Array
+    normal_force: Array
+    traction_force: Array
+    lateral_force: Array | None = None
+    angle_leg: Array | None = None
+    angle_ground: Array | None = None
 
     def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.t)
 
-    def rows(self) -> NDArray[np.float64]:
+    def rows(self) -> Array:
         """Return the samples by rows with the columns `COLUMNS`, shape (n, 5)."""
         return np.column_stack([getattr(self, name) for name in COLUMNS])
 
-    def measured(self) -> dict[str, NDArray[np.float64]]:
+    def measured(self) -> dict[str, Array]:
         """Return all that was measured, by its name."""
         every = {each.name: getattr(self, each.name) for each in fields(self)}
         return {name: values for name, values in every.items() if values is not None}
@@ -93,7 +94,7 @@ class SalvagedLog:
     damage: str | None
 
 
-def decode_block(data: bytes) -> NDArray[np.float64]:
+def decode_block(data: bytes) -> Array:
     """Decode a CDR message of the schema `SCHEMA_NAME` to rows of samples.
 
     Args:
@@ -122,7 +123,7 @@ def read_log(path: Path) -> SalvagedLog:
     """
     from mcap.records import Channel, Message, Schema
 
-    blocks: list[NDArray[np.float64]] = []
+    blocks: list[Array] = []
     ours: set[int] = set()
     schemas: dict[int, str] = {}
 

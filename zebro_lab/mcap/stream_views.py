@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.device import Sample
 from rig.imu.profile import ImuProfile
 from rig.sample_columns import as_columns

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from mpl_toolkits.mplot3d import Axes3D
 
+from model.arrays import Array
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.sheet import new_figure, styled

@@ -4,7 +4,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from model.slip.law import Array
+from model.arrays import Array
 
 _APART = 0.01  # of the time shown; excursions closer than this share a mark
 _MARK = "0.25"

@@ -4,9 +4,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.slip.discrepancy import LawWithDiscrepancy
-from model.slip.law import Array
 from zebro_lab.plots.sheet import (
     BLUE,
     legend_below,

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Polygon
 
-from model.slip.law import Array
+from model.arrays import Array
 from model.walk.ground import Ground, heights_on, is_level
 from model.walk.terrain import SlipArea, Terrain
 

@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 from zebro_lab.plots.sheet import (
     CYCLE,
     TRACTION_LABEL,

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.residuals import lag_correlation
-from model.slip.law import Array
 from zebro_lab.plots.sheet import BLUE, RED, new_figure, slip_label, styled, with_minus
 
 _MAX_LAG = 20

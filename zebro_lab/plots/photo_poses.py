@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.poses import Poses
 from model.robot import Robot
-from model.slip.law import Array
 from zebro_lab.plots.sheet import (
     BLUE,
     RED,

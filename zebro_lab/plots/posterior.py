@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.plots.sheet import BLUE, CYCLE, legend_below, new_figure, styled, with_minus
 
 _REGIONS = ("#CCE3F0", "#66AAD1")  # blue, mixed with white: 90 % and 50 % of the draws

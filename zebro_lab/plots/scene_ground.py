@@ -4,7 +4,7 @@
 import numpy as np
 from matplotlib.path import Path
 
-from model.slip.law import Array
+from model.arrays import Array
 from model.walk.ground import Ground, height_and_slopes, is_level
 from model.walk.terrain import Terrain
 

@@ -19,8 +19,9 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from model.arrays import Array
 from model.poses import Poses
-from model.slip.law import Array, Parameter
+from model.slip.law import Parameter
 from zebro_lab.files.own_file import picture_metadata
 from zebro_lab.files.picture_format import PictureFormat, format_of
 from zebro_lab.files.units import unit_symbol

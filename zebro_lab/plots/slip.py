@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from numpy.typing import ArrayLike, NDArray
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 from model.slip.sided import braking_peak_slip
 from zebro_lab.plots.sheet import (
     BLUE,

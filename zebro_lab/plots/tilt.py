@@ -4,7 +4,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.plots.sheet import BLUE, legend_below, new_figure, styled
 
 _SHOWN = 6.0  # s: longer, and the strides run into each other

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from zebro_lab.plots.sheet import BLUE, CYCLE, RED, few_ticks, legend_below, new_figure, styled
 
 _WIDTH = 9.0  # inches

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.contact.sequence import ContactState, named_legs
 from model.robot import LEFT, N_LEGS
-from model.slip.law import Array
 from zebro_lab.plots.sheet import BLUE, new_figure, styled, time_axis
 from zebro_lab.plots.walk_legs import stances
 

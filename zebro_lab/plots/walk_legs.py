@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.robot import LEFT, N_LEGS
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.thesis.traction import paired_sum
 from zebro_lab.plots.beyond import limits_without_tips, mark_beyond

@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 
+from model.arrays import Array
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.beyond import limits_without_tips

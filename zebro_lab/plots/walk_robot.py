@@ -3,9 +3,9 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.frames import attitude
 from model.robot import Robot
-from model.slip.law import Array
 
 _ARC_POINTS = 25
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2

@@ -9,8 +9,8 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3D, Line3DCollection, Poly3DCollection
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.scene_ground import AREA, area_lines, ground_lines, heights_along

@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from model.arrays import Array
 from model.gait.cyclic import CyclicReference
 from model.leg import hip_height, wrap_angle
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
 from zebro_lab.plots.walk_robot import leg_arcs
 

@@ -5,8 +5,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from model.arrays import Array
 from model.robot import LEFT, RIGHT
-from model.slip.law import Array
 from model.walk.thesis.path import ThesisPath
 from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
 from zebro_lab.plots.sheet import (

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from model.arrays import Array
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.ground import draw_ground

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.errors import RigError
 from rig.sample_columns import SampleColumns, as_columns
 from zebro_lab.recording.status import StreamStatus

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from model.told_apart import told_apart
 from zebro_lab.tables.raw_table import RawTable
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
-from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.robot.leg_gaps import bridged_gaps
 from zebro_lab.tables.columns import COLUMNS_FILE

@@ -7,12 +7,12 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait.leg_faults import DirectionFault, LegFault, SignFault, ZeroFault, leg_faults
 from model.gait.leg_motion import LegMotion, leg_motion
 from model.gait.leg_order import ORDERS, OrderFault
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 WARNING: Final = "WARNING: leg log: "
 """Beginning of each warning, which commands print among their notes."""

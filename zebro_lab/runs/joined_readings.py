@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.robot.leg_gaps import WIDEST
 from zebro_lab.tables.raw_table import RawTable

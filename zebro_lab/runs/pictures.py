@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from model.arrays import Array
 from model.counted import counted
-from model.slip.law import Array
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots.sheet import CYCLE, RED, new_figure, styled
 from zebro_lab.runs.signals import Event, Panel, RunSignals

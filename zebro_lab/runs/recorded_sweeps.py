@@ -4,6 +4,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from rig.slip_rig.sweeps import STANDING, sweeps
 from zebro_lab.files.errors import DataError
 from zebro_lab.runs.folder import LOG_FILE, SlipRigRun
@@ -37,7 +38,7 @@ def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]
     return number, (note,)
 
 
-def _why_none(speed_leg: NDArray[np.float64]) -> str:
+def _why_none(speed_leg: Array) -> str:
     if np.abs(speed_leg).max() <= STANDING:
         return "the leg disc never turned, so that slip is undefined; record while the rig runs"
     return "slip jumped all the time, so that there is no sweep; change the slip ratio more slowly"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.clock_watch import sample_times
 from rig.errors import RigError
 from rig.imu.profile import decode_orientation, load_imu_profile

@@ -10,7 +10,7 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.clock_watch import sample_times
 from rig.errors import RigError
 from rig.imu.profile import ImuProfile, decode_orientation, load_imu_profile

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.clock_watch import sample_times
 from rig.errors import RigError
 from rig.sample_columns import SampleColumns

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.sample_columns import SampleColumns
 from rig.slip_rig.profile import FURTHER, render_table_profile
 from zebro_lab.files.atomic import atomic_folder, atomic_write_text

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.posterior import SlipPosterior
 from model.design.targets import Target, regressed_target
 from model.errors import DomainError, InsufficientData
@@ -16,7 +17,6 @@ from model.leg_state import LegState
 from model.mapping import HERE, Mapper
 from model.predict import ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY, Robot
-from model.slip.law import Array
 from model.walk.traction import TractionTable, law_table
 from zebro_lab.files.replacement import settle
 from zebro_lab.runs.legs import read_leg_log

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from matplotlib.axes import Axes
 
+from model.arrays import Array
 from model.design.targets import force_rows
-from model.slip.law import Array
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots.sheet import (
     BLUE,

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.posterior import SlipPosterior
 from model.design.choose import SKELETON, Design, choose_slips, planned, spaced
 from model.design.information import (
@@ -20,7 +21,6 @@ from model.design.information import (
 )
 from model.design.targets import Target
 from model.errors import InsufficientData
-from model.slip.law import Array
 from rig.experiment.plan import Plan, PointGrid
 from rig.experiment.steps import estimate, spell_out
 

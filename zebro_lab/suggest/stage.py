@@ -7,12 +7,12 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.posterior import SlipPosterior
 from model.design.targets import Target, force_target, parameter_target
 from model.progress import Watcher
 from model.similar_name import similar_name
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW
 from rig.experiment.plan import Plan
 from rig.slip_rig.profile import RigProfile

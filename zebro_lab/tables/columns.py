@@ -7,9 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 
-import numpy as np
-from numpy.typing import NDArray
-
+from model.arrays import Array
 from model.bayes.rig_errors import (
     RADIUS_TOLERANCE,
     ROLLING_RESISTANCE,
@@ -100,7 +98,7 @@ class MappedColumn:
         factor = f" times {self.factor:g}" if self.factor != 1 else ""
         return f"'{self.name}' in {scale}{self.unit}{turns}{factor}"
 
-    def in_si(self, table: RawTable) -> NDArray[np.float64]:
+    def in_si(self, table: RawTable) -> Array:
         """Return the column's numbers in SI with the canonical sign, shape (n,); NaN where empty.
 
         The unit that the file states is taken into account by `in_unit_of`.

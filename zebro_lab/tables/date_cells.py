@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from zebro_lab.tables.raw_table import RawTable
 
 CLOCK: Final = "h:m:s"
@@ -31,7 +32,7 @@ def is_date_unit(unit: str) -> bool:
     return unit == CLOCK or _DATE.fullmatch(unit) is not None
 
 
-def seconds_of_dates(table: RawTable, name: str, unit: str) -> NDArray[np.float64]:
+def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
     """Return a column of dates or times of day as seconds, NaN for empty cells, shape (n,).
 
     Dates become seconds since 1970 (UTC). They are as ISO 8601 has them, day.month.year, or
@@ -74,7 +75,7 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> NDArray[np.float6
     return since - _offset(zone)
 
 
-def _past_midnight(seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+def _past_midnight(seconds: Array) -> Array:
     """Return times of day that go on past midnight, shape (n,) [s]; NaN stays."""
     known = np.flatnonzero(np.isfinite(seconds))
     days = np.cumsum(np.diff(seconds[known]) < -_DAY / 2)

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn

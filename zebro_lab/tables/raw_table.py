@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.told_apart import told_apart
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
@@ -114,7 +115,7 @@ class RawTable:
             raise self.fault(f"holds cells of type {kind}; expected numbers or texts", name)
         return self.columns[name]
 
-    def numbers(self, name: str) -> NDArray[np.float64]:
+    def numbers(self, name: str) -> Array:
         """Return a column as numbers in the file's unit, NaN for empty cells, shape (n,).
 
         A decimal comma is understood if the table may have them and no cell has a point. Thousands
@@ -149,7 +150,7 @@ class RawTable:
 
     def finite(
         self, name: str, expected: str = "a finite number", *, may_be_empty: bool = False
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """Return a column as finite numbers in the file's unit, shape (n,).
 
         Args:
@@ -168,7 +169,7 @@ class RawTable:
     def require_finite(
         self,
         name: str,
-        values: NDArray[np.float64],
+        values: Array,
         expected: str = "a finite number",
         *,
         may_be_empty: bool = False,
@@ -190,7 +191,7 @@ class RawTable:
             index = int(np.argmax(bad))
             raise self.fault(f"is {missing_text(values[index])}; expected {expected}", name, index)
 
-    def require_increasing(self, column: str, t: NDArray[np.float64]) -> None:
+    def require_increasing(self, column: str, t: Array) -> None:
         """Check that times are strictly increasing.
 
         Args:
@@ -276,7 +277,7 @@ class RawTable:
         return len(kinds) > 1 and "value" not in kinds and words in (1, len(kinds))
 
 
-def is_measured(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+def is_measured(values: Array) -> NDArray[np.bool_]:
     """Return for each number whether it is finite and no mark of an overload."""
     return np.isfinite(values) & (np.abs(values) < OVERLOAD)
 
@@ -310,7 +311,7 @@ def _cell_text(cell: Any) -> str:
     return cell if isinstance(cell, str) else "" if cell is None or cell != cell else str(cell)
 
 
-def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
+def _as_numbers(cells: "pd.Series") -> Array:
     """Convert cells to numbers, shape (n,); NaN for empty cells and for text that is not a number.
 
     After a block of 65,536 cells with such text the rest is NaN too: converting text takes pandas

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import CANONICAL, Columns, MappedColumn

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.raw_table import RawTable
@@ -47,7 +48,7 @@ class RowCondition:
         """Format the condition as `name operator number`, without backticks, with six digits."""
         return f"{self.column} {self.operator} {self.number:g}"
 
-    def holds(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def holds(self, values: Array) -> NDArray[np.bool_]:
         """Return for each row whether the condition holds; False for NaN.
 
         Args:

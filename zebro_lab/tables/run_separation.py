@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.tables.mapped_columns import require_usual_steps
 from zebro_lab.tables.rig_table import RigTable
 

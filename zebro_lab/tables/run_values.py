@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.covariate import StatedCovariate

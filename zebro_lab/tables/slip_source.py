@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
-from model.slip.law import Array
 from rig.nearest_name import nearest
 from zebro_lab.tables.columns import CANONICAL, MappedColumn, parse_definition
 from zebro_lab.tables.rig_table import RigTable

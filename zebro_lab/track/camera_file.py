@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from tracking.camera import Camera, CameraCalibration
-from tracking.camera.lens import Array
 from zebro_lab.files.settings_table import SettingsTable, read_settings
 from zebro_lab.files.settings_text import fill_in
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
 from model.errors import DomainError
 from model.joint_covariance import JointCovariance
 from model.poses import Poses
-from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.replacement import settle

@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.poses import wrap
-from model.slip.law import Array
 from model.travel import has_travelled, travel_direction
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.ros_log import is_ros_log

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.track.trajectory.table import COVARIANCE
 

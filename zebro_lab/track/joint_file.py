@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.joint_covariance import JointCovariance
-from model.slip.law import Array
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import changed_output, lost_output

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from tracking.camera import Camera, CameraPose
 from tracking.errors import TrackingError
 from tracking.floor import FloorMap, locate_camera

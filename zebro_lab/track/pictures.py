@@ -7,8 +7,8 @@ from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
+from model.arrays import Array
 from tracking.camera import project
-from tracking.camera.lens import Array
 from tracking.detect import Detection
 from tracking.floor import FloorMap
 from tracking.path import Track

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 
 _UNITS: Final = {
     1000.0: "mm and m", 100.0: "cm and m", 10.0: "mm and cm", 25.4: "mm and inches",

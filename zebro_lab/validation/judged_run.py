@@ -7,13 +7,13 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
 from model.errors import InsufficientData
 from model.judgement import Judgement, TiltJudged, judge
 from model.metrics.consistency import FEWEST_DRAWS
 from model.path_draws import states_at
 from model.poses import Poses
-from model.slip.law import Array
 from model.travel import turn_oppositely
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.file import TrackFile

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from tracking.errors import TrackingError
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.errors import InsufficientData
 from model.metrics.clock import ClockOffset, estimate_offset
 from model.poses import Poses, overlap
-from model.slip.law import Array
 from model.travel import travel_turn, turn_oppositely
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile

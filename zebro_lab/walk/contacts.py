@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.contact.detection import DETECTIONS, detect_contacts
 from model.contact.sequence import (
     ContactCycle,
@@ -22,7 +23,6 @@ from model.gait import CyclicReference
 from model.gait.reference import LegReference
 from model.gait.stance import Intervals
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.footing import GroundFooting
 from model.walk.ground import FLAT, Ground, is_level
 from model.walk.path import WalkPath

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.files.errors import NotFound
 from zebro_lab.files.folder_manifest import read_folder_manifest

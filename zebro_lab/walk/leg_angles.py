@@ -3,11 +3,11 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.gait.resolution import SEEN, find_noise, find_step
 from model.robot import N_LEGS
-from model.slip.law import Array
 from zebro_lab.robot.leg_log import LegLog
 
 # Counts to which noise was added before they were counted flicker at their boundaries: lines within

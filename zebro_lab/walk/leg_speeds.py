@@ -3,8 +3,8 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.gait import CyclicReference, SampledReference
-from model.slip.law import Array
 
 
 def largest_speeds(reference: CyclicReference | SampledReference) -> Array:

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from model.walk.path import WalkPath
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.picture_options import Window

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.metrics.turning import fitted_radius
 from model.poses import Poses
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.walk.shown_time import leg_turns
 

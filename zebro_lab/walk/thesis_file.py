@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.leg import wrap_angle
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.thesis.frames import contact_forces, contact_frames, hip_frames
 from model.walk.thesis.path import ThesisPath
 from zebro_lab.walk.folder import write_rows

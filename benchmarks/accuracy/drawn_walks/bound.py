@@ -22,7 +22,6 @@ from scipy.linalg import block_diag
 from benchmarks.accuracy.drawn_walks.world import (
     TOP_HEIGHT,
     WOBBLE,
-    Array,
     DrawnWalk,
     on_body,
     on_floor,
@@ -30,6 +29,7 @@ from benchmarks.accuracy.drawn_walks.world import (
     project,
     rotation,
 )
+from model.arrays import Array
 
 UNKNOWN = 1.0
 """Standard deviation of what is not told at all [m, rad, -]."""

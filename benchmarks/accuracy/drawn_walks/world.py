@@ -10,9 +10,8 @@ that is told with it.
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from model.arrays import Array
 
 SQUARE = np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]])
 """Corners of a print of side 1: top left, top right, bottom right, bottom left; right and up."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.accuracy.rigid_engine.walking import EnginePath
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 CARRIES = 0.02  # N, a thousandth of the robot's weight; a leg with more is in contact
 

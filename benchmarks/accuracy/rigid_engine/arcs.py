@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from model.arrays import Array
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 
 N_CORNERS = 8
 PER_LEG = 2  # places at which a leg may touch at once: toe and arc, or arc and edge

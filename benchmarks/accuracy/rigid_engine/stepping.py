@@ -21,8 +21,8 @@ from benchmarks.accuracy.rigid_engine.arcs import (
     find_places,
     turn_into,
 )
+from model.arrays import Array
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 PARKED = -100.0  # m; height of planes whose bead is not near the ground
 

@@ -28,8 +28,8 @@ from benchmarks.accuracy.rigid_engine.stepping import (
     rotation_of,
     stepper,
 )
+from model.arrays import Array
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 
 DT = 6.25e-5  # s; friction about rest, of 1 mm/s, is explicit and unstable above 0.2 ms
 EVERY = 0.01  # s between the samples of a walk

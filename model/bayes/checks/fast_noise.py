@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.advice import CorrectData
 from model.bayes.blocks import block_means
 from model.bayes.checks.check import Check, decided, not_testable
@@ -13,7 +14,6 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
-from model.slip.law import Array
 
 NAME = "noise of slip is told from fast wander"
 HARMLESS = 0.5  # posterior standard deviations between both extremes

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.advice import Advice, CorrectData, ExcludeRuns, MeasureAlso
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.fast_noise import fast_noise
@@ -23,7 +24,6 @@ from model.bayes.checks.scatter import friction_scatter
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.bayes.samples import SlipSamples
-from model.slip.law import Array
 
 SCATTER_P = 1e-5
 SWING_P = 1e-4

@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.advice import (
     Advice,
     ExcludeRuns,
@@ -16,7 +17,7 @@ from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.repeats import repeated_share
 from model.bayes.likelihood import predict_blocks
 from model.bayes.residuals import MISFIT_P, Residuals, far_runs
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
 FEWEST_IN_RUN = 6  # blocks; with fewer, slow noise is not told from the offset of a run

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.advice import CorrectData
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.faults import faults
@@ -17,7 +18,6 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import load_levels
 from model.bayes.samples import SlipSamples
-from model.slip.law import Array
 
 TERM_P = 5e-4  # of each of a dozen terms: less than one sound set in 200 fails
 SEEN = 3.5  # standard deviations, from which a term is beyond chance

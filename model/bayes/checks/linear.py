@@ -27,11 +27,12 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.special import stdtr
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import PredictedForces, predict_blocks
 from model.bayes.posterior import SlipPosterior
 from model.bayes.residuals import covariance_factors
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 STEP = 1e-3  # of a coordinate, whose prior has unit scale
 SLIP_STEP = 1e-5  # of the slip ratio

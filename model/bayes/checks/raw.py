@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtr
 
+from model.arrays import Array
 from model.bayes.faulty_samples import Clipped, Outliers
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.slip.covariate import law_at
 from model.slip.definition import slip_per_radius_error
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 Levels: TypeAlias = tuple[tuple[float, int], ...]
 

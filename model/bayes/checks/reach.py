@@ -5,13 +5,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.advice import Advice, MeasureAlso, beyond_the_peak, measure_slips
 from model.bayes.blocks import SlipBlocks
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.residuals import largest_slips, load_levels
 from model.bayes.rise import sampled_rise
 from model.slip.discrepancy import NAME as DISCREPANCY
-from model.slip.law import Array, SlipLaw
+from model.slip.law import SlipLaw
 
 RISE = "the rise of the curve is tested"  # name of a check of the data, not of the model
 PEAK = "the peak lies within the tested slips"

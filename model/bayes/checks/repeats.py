@@ -3,9 +3,9 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.residuals import load_levels, nearest_level
-from model.slip.law import Array
 
 MIDDLE = (0.1, 0.9)  # quantiles between which most slips of a run lie
 SAME = 0.005  # of the slip ratio: set-points closer than this are the same

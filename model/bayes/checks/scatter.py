@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc
 
+from model.arrays import Array
 from model.bayes.checks.linear import Linearised
 from model.bayes.likelihood import slip_errors
-from model.slip.law import Array
 
 FEWEST_RUNS = 6
 MEMORY = 2.0  # of block noise: the variance of a run's mean over that of white blocks

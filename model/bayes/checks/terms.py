@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.advice import Advice, CorrectData, TryDefinition, ZeroBeforeEach
 from model.bayes.checks.linear import Linearised, Term
 from model.slip.definition import slip_per_radius_error
-from model.slip.law import Array
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.adaptive import Effort, WeightedCaseDraws, adaptive_draws
 from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, walk_states
 from model.bayes.walks.modes import ModeSearch
@@ -23,7 +24,6 @@ from model.bayes.walks.terms import Terms
 from model.errors import InsufficientData
 from model.mapping import HERE, Mapper
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.traction import TractionTable
 
 Progress = Callable[[float], None]

@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.walks.terms import Terms
 from model.bayes.walks.tilt import MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData, WalkError
@@ -31,7 +32,6 @@ from model.path_draws import bent, states_at
 from model.poses import Poses, moved_onto, wrap
 from model.predict import FINE, ModelSpread, ensemble_step, motions
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import (
     PlanarWalk,

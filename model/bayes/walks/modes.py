@@ -21,12 +21,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.adaptive import Mode
 from model.bayes.walks.misfit import WalkMisfit, walk_states
 from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
 from model.mapping import HERE, Mapper
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 # Steps of differences: offsets 0.1 degree, factors 5 %. Below, contacts are not smooth.
 DIFFERENCE = np.array([

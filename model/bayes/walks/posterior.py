@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.bayes.walks.prior import (
     FLOOR,
     NAMES,
@@ -18,7 +19,6 @@ from model.bayes.walks.prior import (
 )
 from model.leg_state import LegState
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 UNINFORMED = 0.1  # contraction up to which a parameter counts as not constrained by the walks
 FEW = 30  # least effective sample size of a reliable posterior

@@ -7,12 +7,12 @@ from typing import TypeAlias
 
 import numpy as np
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.lateral_spread import ANISOTROPY, log_spread
 from model.leg_state import LegState
 from model.predict import ModelSpread
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
 LATERAL = ("lateral_grip", "lateral_stiffness")  # across the legs over along them

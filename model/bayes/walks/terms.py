@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 
 
 @dataclass(frozen=True)

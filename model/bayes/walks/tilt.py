@@ -15,12 +15,11 @@ The model's error is the same in each of the S strides, so all strides together 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.errors import InsufficientData
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
-from model.slip.law import Array
 from model.told_apart import told_apart
 
 # Standard deviation of an IMU's means [rad]. The model errs by 0.02 degrees where a tripod carries,
@@ -103,7 +102,7 @@ class TiltMisfit:
         return (away / (SD * np.sqrt(self.strides))).reshape(len(tilt), -1)
 
 
-def _means(t: Array, k: int) -> NDArray[np.float64]:
+def _means(t: Array, k: int) -> Array:
     """Return the matrix (k, n) that averages samples at times t (n,) over k intervals of `TIME`.
 
     Intervals start at time zero; the row of an interval without samples is zero.

@@ -7,9 +7,9 @@ from typing import NamedTuple, TypeGuard
 
 import numpy as np
 
+from model.arrays import Array
 from model.lanes import LANES
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.areas import AreaTractions
 from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
 from model.walk.flat import rows

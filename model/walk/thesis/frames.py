@@ -3,10 +3,10 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.frames import attitude, rotation_y, rotation_z
 from model.leg import contact_angle, contact_in_body
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.thesis.path import ThesisPath
 
 

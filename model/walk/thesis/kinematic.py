@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from model.arrays import Array
 from model.frames import attitude
 from model.leg import (
     contact_angle,
@@ -15,7 +16,6 @@ from model.leg import (
     wrap_angle,
 )
 from model.robot import Robot
-from model.slip.law import Array
 from model.walk.path import WalkPath
 from model.walk.thesis.path import ThesisPath
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.leg import (
     contact_angle,
@@ -17,7 +18,6 @@ from model.leg import (
     thesis_tilt,
     thesis_tilt_rate,
 )
-from model.slip.law import Array
 
 
 class Legs(NamedTuple):

@@ -6,12 +6,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.errors import DomainError
 from model.gait.cyclic import CyclicReference
 from model.gait.reference import LegReference
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 Switch = Literal["angle", "contact"]
 SWITCHES: tuple[Switch, ...] = ("angle", "contact")

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import compiled
-from model.slip.law import Array
 from model.walk.thesis.traction import load_derivative, traction_force
 
 _ROUNDS = 60  # of Gauss-Newton, which converges in a handful

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from model.walk.path import WalkPath
 
 

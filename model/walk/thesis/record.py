@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.robot import N_LEGS
-from model.slip.law import Array
 
 
 class Record(NamedTuple):

@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.compiled import compiled
 from model.contact.tripod import switch_by_listing, switch_by_table
 from model.robot import GRAVITY
-from model.slip.law import Array
 from model.walk.thesis.heading import from_heading, to_heading
 from model.walk.thesis.kinematics import Legs, place_legs, reset, roll_rate, side_mean
 from model.walk.thesis.loads import Balance, leg_force, normal_forces, static_loads

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.compiled import compiled
-from model.slip.law import Array, SlipLaw, Values
+from model.slip.law import SlipLaw, Values
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import middle_curve
 from model.walk.traction import TractionTable, VelocityCoulomb, law_table

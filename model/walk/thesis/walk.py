@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from model.contact.tripod import AUTOMATA, Automaton
 from model.errors import DomainError, WalkError
 from model.frames import roll_pitch_yaw, thesis_attitude
@@ -14,7 +15,6 @@ from model.gait.direction import Direction, inner_legs
 from model.gait.reference import LegReference
 from model.leg import hip_height, wrap_angle
 from model.robot import N_LEGS, Robot
-from model.slip.law import Array
 from model.walk.dynamics import step_times
 from model.walk.thesis.legs import SWITCHES, LegMotion, Switch, SwitchedLegs, leg_motion
 from model.walk.thesis.path import ThesisPath

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.rise import SLIPS, sampled_rise
 from model.slip import Brush, MagicFormula
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 
 LOADS = (5.0, 10.0)

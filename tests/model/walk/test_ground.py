@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from model.arrays import Array
 from model.errors import DomainError
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
-from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions, Start, walk
 from model.walk.ground import (
     FACE,

@@ -7,9 +7,9 @@ Written out in full, so that the truth of a synthetic photograph depends on no o
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from model.arrays import Array
 
 _FIXED_POINT_STEPS = 30  # distortions of real lenses shrink the error tenfold a step
 

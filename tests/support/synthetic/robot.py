@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from support.synthetic.lens import Array
+from model.arrays import Array
 
 PLATE_TOP = 0.0385  # of the top plate above the body's centre [m]
 

@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from support.synthetic.lens import Array, SyntheticCamera
+from model.arrays import Array
+from support.synthetic.lens import SyntheticCamera
 from support.synthetic.patterns import Grid, look_up, marker_cells, plate_cells
 from support.synthetic.robot import PLATE_TOP, DrawnPose, RobotLook, RobotState
 from support.synthetic.sampling import (

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from support.synthetic.lens import Array, SyntheticCamera
+from model.arrays import Array
+from support.synthetic.lens import SyntheticCamera
 
 SAMPLES = 55
 # Of the lattices whose rows are closest together.

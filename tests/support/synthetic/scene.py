@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from support.synthetic.lens import Array, SyntheticCamera
+from model.arrays import Array
+from support.synthetic.lens import SyntheticCamera
 from support.synthetic.patterns import (
     FLOOR_TEXTURE_SIDE,
     Grid,

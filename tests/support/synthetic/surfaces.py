@@ -11,7 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Component = float | np.floating | NDArray[np.float32] | NDArray[np.float64]
+from model.arrays import Array
+
+Component = float | np.floating | NDArray[np.float32] | Array
 Components = tuple[Component, Component, Component]
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from tracking.camera.lens import Array
+from model.arrays import Array
 from tracking.markers.pixel_noise import unknowns_covariance
 
 _ROW, _COLUMN = np.indices((32, 36))

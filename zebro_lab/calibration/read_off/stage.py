@@ -8,12 +8,12 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.blocks import block_means
 from model.bayes.residuals import load_levels
 from model.counted import counted
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip
-from model.slip.law import Array
 from model.slip.load_curves import LoadCurve, curves_by_load
 from model.slip.read_off import read_off
 from zebro_lab.calibration.curve_table import CurveTable, is_curve_table, read_curve_table

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
 from model.poses import Poses
 from model.rigid_path import RigidPath, plane_axes, rotations_of_quaternions
-from model.slip.law import Array
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.ros_bags import bag_files
 from zebro_lab.mcap.ros_log import is_ros_log

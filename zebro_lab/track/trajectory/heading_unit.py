@@ -5,8 +5,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.poses import Poses
-from model.slip.law import Array
 from model.travel import has_travelled, travel_direction
 
 _FITS: Final = 0.9

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from model.arrays import Array
 from model.rigid_path import plane_axes, rotations_of_quaternions
-from model.slip.law import Array
 from zebro_lab.files.errors import DataError, UnitError
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.track.trajectory.headers import named_columns

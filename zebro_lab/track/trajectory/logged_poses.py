@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, TopicRows, read_topic

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
-from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import read_text
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.law import Array
+from model.arrays import Array
 from zebro_lab.files.errors import DataError, UnitError
 from zebro_lab.files.units import factor_to_si
 

@@ -8,9 +8,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from model.arrays import Array
 from model.counted import counted
 from model.rigid_path import RigidPath, rotations_of_quaternions
-from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import NAMES, UNITS
 from model.slip.curve import SlipCurve
-from model.slip.law import Array
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.calibration.slip_draws import law_draws
 from zebro_lab.files.errors import DataError

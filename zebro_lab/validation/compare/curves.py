@@ -7,10 +7,10 @@ from typing import Final, TypeVar
 
 import numpy as np
 
+from model.arrays import Array
 from model.slip.curve import SlipCurve
 from model.slip.curve_band import CurveBand, Farthest, farthest, simultaneous_band
 from model.slip.definition import SlipDefinition
-from model.slip.law import Array
 from zebro_lab.calibration.curve_argument import GivenCurve, is_curve, parse_curve
 from zebro_lab.calibration.fitted_blocks import FittedBlocks, read_fitted_blocks
 from zebro_lab.calibration.folder import read_slip_file

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.metrics.turning import mean_yaw_rate
 from model.path_draws import states_at
 from model.poses import Poses
-from model.slip.law import Array
 from model.travel import path_length
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import TRACK

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from model.arrays import Array
 from model.metrics.difference import Difference, difference
 from model.poses import Poses
-from model.slip.law import Array
 
 
 @dataclass(frozen=True)

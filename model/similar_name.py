@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""Find the known name that a misspelt one means, for the advice in error messages."""
+"""Suggest the known name that a misspelt one means, for the advice in error messages."""
 
+import difflib
 import re
 from collections.abc import Collection
 from typing import Final
 
-_LETTERS_AN_EDIT: Final = 4
-"""Letters of a name for each letter that may be wrong: none in names of fewer."""
+_LIKENESS: Final = 0.75  # of difflib: `odrer` is `order` (0.8), `lateral_force` another (0.7)
 _LEAST_START: Final = 3  # letters that may stand for a longer name
 _LONGEST: Final = 64  # letters; longer names are no misspelling, and comparing takes the square
+_LISTED: Final = 15  # names a message lists before it says how many more there are
 
 
 def similar_name(name: str, known: Collection[str]) -> str | None:
     """Return the known name that a misspelt one most likely means; None if there is none.
 
     These are, in this order: a name that differs in upper and lower case, blanks, hyphens and
-    underscores alone; one with a letter in four missing, added, wrong or swapped with the next; one
-    that begins with the three or more letters given. A name with another number is another name.
+    underscores alone; the most similar by `difflib`; one that begins with the three or more letters
+    given. A name with another number is another name.
 
     Args:
         name: The unknown name.
@@ -32,12 +33,29 @@ def similar_name(name: str, known: Collection[str]) -> str | None:
     if len(found) > _LONGEST:
         return None
     alike = [each for each in reversed(folded) if _numbers(each) == _numbers(found)]
-    edits = {each: _edits(found, each) for each in alike if len(each) <= _LONGEST}
-    near = [each for each in edits if edits[each] <= _allowed(found, each)]
-    if near:
-        return folded[min(near, key=lambda each: edits[each])]
+    near = difflib.get_close_matches(found, alike, n=1, cutoff=_LIKENESS)
     starts = [each for each in alike if len(found) >= _LEAST_START and each.startswith(found)]
-    return folded[starts[0]] if starts else None
+    return folded[(near + starts)[0]] if near or starts else None
+
+
+def nearest(name: str, known: Collection[str]) -> str:
+    """Suggest the known name most similar to an unknown one.
+
+    Args:
+        name: The unknown name.
+        known: All known names.
+
+    Returns:
+        Text with the name that was likely meant, if any (`similar_name`), and up to 15 of the known
+        ones in their order, with the number of the others.
+
+    >>> nearest("normal_froce", ["normal_force", "t"])
+    "did you mean 'normal_force'? known: 'normal_force', 't'"
+    """
+    near = similar_name(name, known)
+    listing = ", ".join(f"'{candidate}'" for candidate in list(known)[:_LISTED])
+    listing += f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
+    return (f"did you mean '{near}'? " if near else "") + f"known: {listing}"
 
 
 def _folded(name: str) -> str:
@@ -46,23 +64,3 @@ def _folded(name: str) -> str:
 
 def _numbers(name: str) -> list[str]:
     return re.findall(r"\d+", name)
-
-
-def _allowed(one: str, other: str) -> int:
-    return max(len(one), len(other)) // _LETTERS_AN_EDIT
-
-
-def _edits(one: str, other: str) -> int:
-    """Count the letters to insert, delete, replace or swap with the next between two names."""
-    if abs(len(one) - len(other)) > _allowed(one, other):
-        return abs(len(one) - len(other))
-    rows = [list(range(len(other) + 1))]
-    for i, a in enumerate(one, start=1):
-        row = [i]
-        for j, b in enumerate(other, start=1):
-            best = min(row[-1] + 1, rows[-1][j] + 1, rows[-1][j - 1] + (a != b))
-            if i > 1 and j > 1 and (one[i - 2], a) == (b, other[j - 2]):
-                best = min(best, rows[-2][j - 2] + 1)
-            row.append(best)
-        rows.append(row)
-    return rows[-1][-1]

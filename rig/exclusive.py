@@ -7,7 +7,6 @@ Windows has no such locks: there only the exclusive opening of serial ports prot
 """
 
 import hashlib
-import importlib
 import os
 import shlex
 import sys
@@ -16,11 +15,10 @@ import threading
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
+from model.file_lock import try_lock
 from rig.errors import InUse
-
-fcntl: Any = importlib.import_module("fcntl") if os.name == "posix" else None
 
 LONGEST: Final = 300
 """Longest description of an owner that is stored and shown [characters]."""
@@ -63,7 +61,7 @@ class Exclusive:
                 message describes the process.
             OSError: The file cannot be created or opened.
         """
-        if self._taken or fcntl is None:
+        if self._taken or os.name != "posix":
             return
         with _HELD_GUARD:
             held = _HELD.get(str(self._file))
@@ -107,23 +105,6 @@ class Exclusive:
         os.ftruncate(handle, 0)
         os.pwrite(handle, _owner().encode("utf-8", "backslashreplace"), 0)
         return handle
-
-
-def try_lock(handle: int) -> bool:
-    """Lock an open file, given by its handle, without waiting; return whether it is now locked.
-
-    False where another open handle has the lock. Also True, without a lock, where the system or
-    the file system has none. Closing the file releases the lock.
-    """
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        return True
-    return True
 
 
 def device_lock(name: str) -> Exclusive:

@@ -6,13 +6,18 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Final
 
+from model.similar_name import nearest
+from model.toml_table import MOST_BYTES, TomlTable, parse_toml
 from rig.errors import ProfileError, WrongDevice
-from rig.nearest_name import nearest
-from rig.toml_table import TomlTable
-from rig.toml_text import MOST_BYTES, parse_toml
 
 SCHEMA: Final = 1
 """Version of the layout of profiles; a file with another one is an error."""
+
+
+class ProfileTable(TomlTable):
+    """Table of a device profile; errors are `ProfileError`."""
+
+    error = ProfileError
 
 
 def open_profile(name: str, *, device: str) -> TomlTable:
@@ -35,7 +40,7 @@ def open_profile(name: str, *, device: str) -> TomlTable:
             entries = parse_toml(file.read(MOST_BYTES + 1))
     except (OSError, ValueError) as problem:
         raise ProfileError(f"cannot be read as TOML: {problem}", file=str(source)) from problem
-    table = TomlTable(entries, file=source.name)
+    table = ProfileTable(entries, file=source.name)
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     found = table.text("device")
     if found != device:

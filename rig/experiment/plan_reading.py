@@ -3,6 +3,7 @@
 
 import math
 
+from model.toml_table import TomlTable
 from rig.experiment.plan import (
     LIMIT_UNITS,
     MOST_POINTS,
@@ -19,7 +20,6 @@ from rig.experiment.plan import (
 )
 from rig.safety import REST_SPEED
 from rig.slip_rig.profile import FURTHER_LIMITS
-from rig.toml_table import TomlTable
 
 
 def parse_plan(table: TomlTable) -> Plan:

@@ -9,10 +9,10 @@ from typing import Final, Literal, TypeAlias
 
 import tomlkit
 
+from model.toml_table import TomlTable
 from rig.device import Limits
 from rig.errors import ProfileError
 from rig.profile import SCHEMA, open_profile, require_device
-from rig.toml_table import TomlTable
 
 BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")

@@ -11,11 +11,11 @@ import numpy as np
 import tomlkit
 
 from model.arrays import Array
+from model.toml_table import TomlTable
 from rig.device import Sample
 from rig.errors import ProtocolError
 from rig.profile import SCHEMA, open_profile
 from rig.sample_columns import as_columns
-from rig.toml_table import TomlTable
 
 Layout: TypeAlias = Literal["packet", "can", "dump", "poll", "table"]
 Order: TypeAlias = Literal["little", "big"]

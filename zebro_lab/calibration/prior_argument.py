@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from model.bayes.priors import LogNormal, Normal, Prior, Truncated, Uniform
+from model.similar_name import nearest
 from model.slip.law import Parameter
-from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import factor_to_si
 

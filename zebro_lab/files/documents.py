@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Any, Final
 
-from rig.toml_text import MOST_BYTES, parse_toml, require_bounded
+from model.toml_table import MOST_BYTES, parse_toml
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import Fault, parsing, read_bytes, read_text
 
@@ -27,8 +27,7 @@ def read_toml_document(
     Raises:
         NotFound: There is no such file.
         SettingsError: The file is not regular, cannot be opened, is larger than `MOST_BYTES` of
-            `rig.toml_text`, or is not TOML within the limits of `parse_toml` (`DataError` if
-            `fault` is that type).
+            `model.toml_table`, or is not TOML (`DataError` if `fault` is that type).
     """
     data = read_bytes(path, most=MOST_BYTES, advice=advice, fault=fault)
     with parsing(path, "cannot be read as TOML", advice=remedy, fault=fault):
@@ -48,14 +47,11 @@ def read_json_document(path: Path, *, advice: str = "") -> Any:
     Raises:
         NotFound: There is no such file.
         DataError: The file is not regular, cannot be opened, is larger than `MOST_JSON`, not UTF-8
-            or not JSON; or is nested too deeply, has an integer of more than 64 bits or an unpaired
-            surrogate (`rig.toml_text.require_bounded`).
+            or not JSON, or is nested too deeply.
     """
     text = read_text(path, most=MOST_JSON, advice=advice)
     with parsing(path, "cannot be read as JSON", advice="restore or create the file again"):
-        content = json.loads(text)
-        require_bounded(content)
-        return content
+        return json.loads(text)
 
 
 def require_object(content: object, path: Path) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
-from rig.exclusive import try_lock
+from model.file_lock import try_lock
 from zebro_lab.files.atomic import sync_folder
 from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.files.uninterrupted import uninterrupted

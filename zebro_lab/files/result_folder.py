@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rig.exclusive import try_lock
+from model.file_lock import try_lock
 from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
 from zebro_lab.files.commit import software_commit
 from zebro_lab.files.encodable import encodable

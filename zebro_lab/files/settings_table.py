@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import Final
 
-from rig.toml_table import TomlTable
+from model.toml_table import TomlTable
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import factor_to_si, quantity_to_si
@@ -19,14 +19,7 @@ class SettingsTable(TomlTable):
     Takes the arguments of `TomlTable`.
     """
 
-    def fault(self, problem: str, key: str | None = None) -> SettingsError:
-        """Return, without raising, an error that names the file and the key.
-
-        Args:
-            problem: What is wrong.
-            key: Key in this table; None for the table itself.
-        """
-        return SettingsError(problem, file=self.file, key=self.dotted(key))
+    error = SettingsError
 
     def quantity(self, key: str, unit: str, *, default: float | None = None,
                  above: float = -math.inf, least: float = -math.inf,
@@ -101,7 +94,7 @@ class SettingsTable(TomlTable):
             raise self.fault(f"found {found!r}; expected a number{named}", key)
         try:
             return quantity_to_si(found, unit, usual=usual)
-        except UnitError as error:
+        except (UnitError, OverflowError) as error:  # a whole number may be too large for a float
             raise self.fault(str(error), key) from error
 
 
@@ -121,7 +114,6 @@ def read_settings(file: Path, *, advice: str) -> SettingsTable:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: The file is not regular, cannot be opened, is too large, or is not TOML
-            within the limits of `parse_toml`.
+        SettingsError: The file is not regular, cannot be opened, is too large, or is not TOML.
     """
     return SettingsTable(read_toml_document(file, advice=advice), file=file)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from model.counted import counted
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.mcap.logged_message import LoggedMessage

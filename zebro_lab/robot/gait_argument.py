@@ -27,7 +27,7 @@ from model.gait import (
     turning_system,
 )
 from model.robot import N_LEGS
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest
 

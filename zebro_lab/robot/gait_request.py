@@ -6,7 +6,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from typer import BadParameter, Option
 
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.terminal.limits import Limits
 
 GAIT_NAMES: Final = ("tripod", "suriana", "maxplus", "tetrapod", "buehler")

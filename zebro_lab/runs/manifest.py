@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.commit import software_commit
 from zebro_lab.files.encodable import encodable

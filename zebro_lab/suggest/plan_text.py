@@ -4,9 +4,9 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from model.toml_table import parse_toml
 from rig.experiment.plan import Plan
 from rig.experiment.plan_reading import parse_plan
-from rig.toml_text import parse_toml
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.settings_table import SettingsTable
 

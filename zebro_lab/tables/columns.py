@@ -18,8 +18,8 @@ from model.bayes.rig_errors import (
     radius_ratio_sd,
     run_out_scatter,
 )
+from model.similar_name import nearest
 from model.slip.definition import SlipDefinition
-from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
 from zebro_lab.tables.covariate import StatedCovariate

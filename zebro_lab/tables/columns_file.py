@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.folder_manifest import result_kind

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from model.arrays import Array
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn
 from zebro_lab.tables.columns_file import parse_mapped_column

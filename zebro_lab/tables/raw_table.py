@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from model.similar_name import nearest
 from model.told_apart import told_apart
-from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked

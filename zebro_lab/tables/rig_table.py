@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import CANONICAL, Columns, MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit

@@ -4,7 +4,7 @@
 import numpy as np
 
 from model.arrays import Array
-from rig.nearest_name import nearest
+from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.covariate import StatedCovariate
 from zebro_lab.tables.rig_table import RigTable

@@ -7,8 +7,8 @@ import numpy as np
 
 from model.arrays import Array
 from model.errors import DomainError
+from model.similar_name import nearest
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
-from rig.nearest_name import nearest
 from zebro_lab.tables.columns import CANONICAL, MappedColumn, parse_definition
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.table_kinds import looks_like_other

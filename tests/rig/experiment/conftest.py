@@ -18,13 +18,13 @@ from rig.experiment.plan_reading import parse_plan
 from rig.experiment.run import run_plan
 from rig.experiment.simulated_load import SimulatedOperator
 from rig.links.memory import MemoryLink
+from rig.profile import ProfileTable
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
-from rig.toml_table import TomlTable
 from support.memory_sink import MemorySink
 
 PROFILE = load_rig_profile("rig-board-serial")
@@ -77,7 +77,7 @@ def plan(*, drop=None, **changes) -> Plan:
         del entries[drop[0]][drop[1]]
     for table, values in changes.items():
         entries[table] |= values
-    return parse_plan(TomlTable(entries, file="plan.toml"))
+    return parse_plan(ProfileTable(entries, file="plan.toml"))
 
 
 @dataclass

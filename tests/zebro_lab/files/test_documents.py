@@ -69,12 +69,6 @@ def test_an_integer_that_toml_cannot_hold_is_refused(reader, key, digits, tmp_pa
     refusal(reader, toml(tmp_path, f"{key} = {value}\n{focal}"))
 
 
-def test_an_integer_beyond_64_bits_in_json_is_refused(tmp_path):
-    text = json.dumps(RUN).replace("0.035", "9" * 400)
-    refusal(lambda folder: float(read_manifest(folder).constants["radius_leg"]),
-             run_json(tmp_path, text))  # fmt: skip
-
-
 @pytest.mark.parametrize("name", TOML_READERS)
 def test_a_fifo_named_as_a_settings_file_does_not_hang(name, tmp_path):
     assert isinstance(error_on_fifo(TOML_READERS[name], tmp_path / "x.toml"), Exception)

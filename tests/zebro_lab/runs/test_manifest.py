@@ -57,11 +57,6 @@ def test_a_value_of_another_type_in_run_json_is_refused(change, tmp_path):
     )
 
 
-def test_half_a_pair_of_surrogates_is_refused(tmp_path):
-    folder = run_json(tmp_path, json.dumps(RUN | {"label": "half \ud800"}))
-    assert "unpaired surrogate" in refusal(read_manifest, folder)
-
-
 def test_a_manifest_is_read_back_as_it_was_written(tmp_path):
     written = RunManifest(
         kind="walk", label="caf\udce9", material="x", operator="ü", source="sim:zebro",

@@ -9,7 +9,7 @@ TYPOS = {
     "rig plann": "plan", "camera kitt": "kit", "walk --speedup": None,
     "walk --gaitt tripod": "--gait",
     "predict x --slipp thesis": "--slip", "record --zebor sim": "--zebro",
-    "plot d --form png": "--format", "track x --camra c": "--camera", "export d --ou q": None,
+    "plot d --form png": "--format", "track x --camra c": "--camera", "export d --ou q": "--out",
     "xyzzy": None, "analyse": None, "walk --colour red": None, "rig fly": None,
     "calibrate-slip x --blocklength 3": "--block-length", "calibrate-slip x --chains 4": None,
 }  # fmt: skip

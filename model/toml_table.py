@@ -1,33 +1,61 @@
 # SPDX-License-Identifier: MIT
 """Validated access to a table of a TOML file: each key is read once, unknown keys are an error."""
 
-import math
+import sys
+import tomllib
+from collections.abc import Callable
 from os import PathLike
-from typing import Any, Final, Self, TypeVar
+from typing import Any, ClassVar, Final, Self, TypeVar
 
 import numpy as np
 
-from model.similar_name import similar_name
-from rig.errors import ProfileError
-from rig.nearest_name import nearest
+from model.similar_name import nearest, similar_name
 
+MOST_BYTES: Final = 1 << 20
+"""Largest size of TOML that is parsed; a calibration of 8000 runs has this size [bytes]."""
 LONGEST: Final = 10_000
 """Largest number of values in a series."""
 Choice = TypeVar("Choice", bound=str)
+
+
+def parse_toml(data: bytes) -> dict[str, Any]:
+    """Parse TOML of at most `MOST_BYTES`.
+
+    Args:
+        data: Content of a file, in UTF-8 with or without a byte order mark.
+
+    Raises:
+        ValueError: The content is larger, not UTF-8, not TOML, or nested too deeply; the message
+            does not name the file.
+
+    >>> parse_toml(b"mass = 2.17")
+    {'mass': 2.17}
+    """
+    if len(data) > MOST_BYTES:
+        raise ValueError(f"holds more than {MOST_BYTES >> 20} MiB, the most that is read")
+    try:
+        return tomllib.loads(data.decode("utf-8-sig"))
+    except RecursionError as error:
+        raise ValueError("is nested too deeply") from error
 
 
 class TomlTable:
     """One table of a TOML file, of which each key is read and removed exactly once.
 
     A key that remains after all known keys have been read is an error, which `finish` raises. The
-    methods that read a key raise `ProfileError` (in a subclass: its own error) where the
-    key is missing without a default, or its value has the wrong type or range.
+    methods that read a key raise the `error` of their subclass where the key is missing without a
+    default, or its value has the wrong type or range.
 
     Args:
         entries: Keys and values of the table, as parsed; copied.
         file: File that holds the table, for messages.
         path: Dotted name of the table inside the file; empty for the whole file.
+
+    Attributes:
+        error: Type of the errors; takes the problem, `file` and `key`.
     """
+
+    error: ClassVar[Callable[..., Exception]]
 
     def __init__(
         self, entries: dict[str, Any], *, file: str | PathLike[str], path: str = ""
@@ -53,13 +81,13 @@ class TomlTable:
         return tuple(self._entries)
 
     def fault(self, problem: str, key: str | None = None) -> Exception:
-        """Return a `ProfileError` that names the file and the key; does not raise.
+        """Return, without raising, an error that names the file and the key.
 
         Args:
             problem: What was found and what was expected.
             key: Key in this table; None for the table itself.
         """
-        return ProfileError(problem, file=self.file, key=self.dotted(key))
+        return self.error(problem, file=self.file, key=self.dotted(key))
 
     def dotted(self, key: str | None) -> str | None:
         """Return the dotted name of a key, or for None of this table; None for the whole file."""
@@ -262,7 +290,7 @@ class TomlTable:
         """Check that every key was read, here and in the nested tables that were read.
 
         Raises:
-            ProfileError: A key was not read; the message names the nearest of the keys that were
+            Exception: A key was not read; the message names the nearest of the keys that were
                 looked up.
         """
         for key in self._entries:
@@ -277,10 +305,9 @@ class TomlTable:
         return value
 
     def _finite(self, value: object, key: str) -> float:
-        if isinstance(value, int | float) and not isinstance(value, bool):
-            number = float(value)
-            if math.isfinite(number):
-                return number
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if is_number and abs(value) <= sys.float_info.max:
+            return float(value)
         raise self.fault(f"found {value!r}; expected a finite number", key)
 
     @staticmethod

@@ -5,14 +5,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.errors import ProfileError
-from rig.toml_table import TomlTable
+from model.toml_table import MOST_BYTES, TomlTable, parse_toml
 
 NAMES = st.text("abcdefgh", min_size=1, max_size=5)
 
 
-def table(**entries) -> TomlTable:
-    return TomlTable(entries, file="mine.toml")
+class Fault(Exception):
+    def __init__(self, problem, *, file, key):
+        super().__init__(f"{file}, {key}: {problem}")
+        self.key = key
+
+
+class Table(TomlTable):
+    error = Fault
+
+
+def table(**entries) -> Table:
+    return Table(entries, file="mine.toml")
 
 
 @given(st.dictionaries(NAMES, st.floats(allow_nan=False, allow_infinity=False), min_size=1))
@@ -29,7 +38,7 @@ def test_a_key_that_nobody_takes_is_a_fault_that_names_it(entries):
     found = table(**entries)
     for key in taken:
         found.value(key)
-    with pytest.raises(ProfileError, match=f"^mine.toml, {left}: unknown key; ") as caught:
+    with pytest.raises(Fault, match=f"^mine.toml, {left}: unknown key; ") as caught:
         found.finish()
     assert caught.value.key == left
 
@@ -37,26 +46,26 @@ def test_a_key_that_nobody_takes_is_a_fault_that_names_it(entries):
 def test_a_key_is_taken_once():
     found = table(rate=2.0)
     assert found.positive("rate") == 2.0
-    with pytest.raises(ProfileError, match="rate: is missing"):
+    with pytest.raises(Fault, match="rate: is missing"):
         found.positive("rate")
 
 
 def test_a_key_left_in_an_inner_table_is_a_fault_of_the_whole():
     found = table(legs={"order": [1], "odrer": [2]})
     assert found.table("legs").wholes("order", most=6) == (1,)
-    with pytest.raises(ProfileError, match=r"legs\.odrer: unknown key; did you mean 'order'"):
+    with pytest.raises(Fault, match=r"legs\.odrer: unknown key; did you mean 'order'"):
         found.finish()
 
 
 def test_a_missing_key_names_the_misspelled_one():
-    with pytest.raises(ProfileError, match="rate: is missing; found 'rat': did you mean 'rate'"):
+    with pytest.raises(Fault, match="rate: is missing; found 'rat': did you mean 'rate'"):
         table(rat=1.0).number("rate")
 
 
 def test_asking_whether_a_key_is_there_makes_it_known():
     found = table(gapp=1.0)
     assert "gap" not in found
-    with pytest.raises(ProfileError, match="did you mean 'gap'"):
+    with pytest.raises(Fault, match="did you mean 'gap'"):
         found.finish()
 
 
@@ -88,6 +97,7 @@ FAULTS = {
     "truth": (lambda t: t.whole("k", most=5), True, "expected a whole number, 0 to 5"),
     "beyond": (lambda t: t.whole("k", most=5), 6, "expected a whole number, 0 to 5"),
     "infinite": (lambda t: t.number("k"), float("inf"), "expected a finite number"),
+    "too large": (lambda t: t.number("k"), 10**400, "expected a finite number"),
     "true number": (lambda t: t.number("k"), True, "expected a finite number"),
     "zero": (lambda t: t.positive("k"), 0, "found 0; expected a number above 0"),
     "two of three": (lambda t: t.numbers("k", 3), [1, 2], "expected a list of 3 numbers"),
@@ -105,7 +115,25 @@ FAULTS = {
 
 @pytest.mark.parametrize(("take", "value", "message"), FAULTS.values(), ids=FAULTS)
 def test_a_value_of_the_wrong_kind_is_named_with_its_place(take, value, message):
-    with pytest.raises(ProfileError) as caught:
-        take(TomlTable({"k": value}, file="mine.toml", path="part"))
+    with pytest.raises(Fault) as caught:
+        take(Table({"k": value}, file="mine.toml", path="part"))
     assert str(caught.value).startswith("mine.toml, part.k: ")
     assert message in str(caught.value)
+
+
+def test_a_byte_order_mark_is_no_fault():
+    assert parse_toml("\ufeffa = 1".encode()) == {"a": 1}
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b" " * (MOST_BYTES + 1), "more than 1 MiB"),
+        (b"a = " + b"[" * 20_000 + b"]" * 20_000, "nested too deeply"),
+        (b"\xff", "utf-8"),
+        (b"a =", "Invalid value"),
+    ],
+)
+def test_what_cannot_be_parsed_is_a_value_error(data, said):
+    with pytest.raises(ValueError, match=said):
+        parse_toml(data)

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: MIT
+"""Lock an open file against other programs of the machine (flock)."""
+
+import importlib
+import os
+from typing import Any
+
+fcntl: Any = importlib.import_module("fcntl") if os.name == "posix" else None
+
+
+def try_lock(handle: int) -> bool:
+    """Lock an open file, given by its handle, without waiting; return whether it is now locked.
+
+    False where another open handle has the lock. Also True, without a lock, where the system
+    (Windows) or the file system has none. Closing the file, or the end of the process, releases it.
+    """
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True

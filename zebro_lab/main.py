@@ -11,7 +11,6 @@ from zebro_lab.recording import command as record
 from zebro_lab.report import command as report
 from zebro_lab.runs import command as runs
 from zebro_lab.runs import plot_command
-from zebro_lab.study import command as study
 from zebro_lab.suggest import command as suggest
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.ending import run
@@ -49,7 +48,6 @@ rig.app.command(epilog=adaptive.EPILOG)(adaptive.run)
 rig.app.command(epilog=suggest.EPILOG)(suggest.suggest)
 app.add_typer(rig.app, name="rig")
 app.add_typer(simulate_command.app, name="sim")
-app.add_typer(study.app, name="study")
 app.add_typer(check_command.app, name="zebro")
 
 slip_app = Application()

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A finished fit of few samples and steps, made once."""
+"""A finished fit of few samples and steps, made once, and its folder."""
 
+import json
+from dataclasses import asdict
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +18,7 @@ from model.bayes.weighted import importance_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from zebro_lab.calibration.folder import write_tables
 
 
 @cache
@@ -37,3 +41,15 @@ def short_calibration() -> Calibration:
         fit, None, thin_draws(fit.posterior, chains, convergence, n=1000), convergence, samples,
         weighted=weighted, source="sim:test", seconds=1.5,
     )  # fmt: skip
+
+
+def calibration_folder(folder: Path, **settings) -> Path:
+    """Write a calibration of a short fit with what `rig suggest` reads of it."""
+    folder.mkdir()
+    calibration = short_calibration()
+    write_tables(folder, calibration, inputs={})
+    known = {"load_cell": asdict(calibration.fit.load_cell),
+             "rig_errors": asdict(calibration.fit.rig_errors)}  # fmt: skip
+    content = {"schema": 1, "kind": "calibration", "settings": {**known, **settings}}
+    (folder / "manifest.json").write_text(json.dumps(content))
+    return folder

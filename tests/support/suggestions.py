@@ -10,7 +10,7 @@ import numpy as np
 from model.design.targets import parameter_target
 from rig.experiment.plan import Plan
 from support.experiment_plans import THESIS_PLAN
-from support.study_layouts import design
+from support.small_layouts import posterior as posterior_of
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.suggest.folder import Expected
 from zebro_lab.suggest.proposal import (
@@ -39,8 +39,7 @@ def plan(**points) -> Plan:
 @cache
 def knowledge(*, alone: bool = False) -> Knowledge:
     """Return what blocks of a Coulomb law say; draws are around the prior's median."""
-    made = design()
-    posterior = made.posterior(made.blocks)
+    posterior = posterior_of()
     z = 0.2 * np.random.default_rng(5).standard_normal((30, len(posterior.free)))
     return knowledge_of(posterior, z, rate=100.0, alone=alone)
 

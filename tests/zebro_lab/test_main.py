@@ -10,7 +10,7 @@ from zebro_lab.main import app, slip_app
 COMMANDS = {
     "calibrate", "read-off", "init", "walk", "reach", "predict", "validate", "compare", "report",
     "record", "import", "runs", "plot", "exclude", "export", "track", "annotate", "doctor",
-    "camera", "rig", "sim", "study", "zebro",
+    "camera", "rig", "sim", "zebro",
 }  # fmt: skip
 
 

@@ -25,8 +25,8 @@ from support.command_tree import LEAVES, named
 from support.commands import COMMAND, started
 from support.compared_folders import calibration
 from support.experiment_plans import short_plan
-from support.made_studies import calibration_folder
 from support.other_labs import write_walk_tables
+from support.short_calibration import calibration_folder
 from support.written_runs import make_run
 from zebro_lab.experiment.journal import read_journal
 from zebro_lab.mcap.raw_log import read_raw_log
@@ -145,8 +145,6 @@ WORK = {
     "zebro-lab sim zebro": SERVED,
     "zebro-lab sim rig": SERVED,
     "zebro-lab sim imu": SERVED,
-    "zebro-lab study sbc": Work("--plan plan.toml --law coulomb-stribeck --replicates 3 --out sbc"),
-    "zebro-lab study coverage": Work("--plan plan.toml --replicates 3 --out coverage"),
     "zebro-lab zebro check": Work("sim --save mine.toml", CHECKED, says=f"(.*: )?({AT_ONCE})"),
 }
 

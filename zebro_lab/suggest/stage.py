@@ -12,20 +12,17 @@ from model.bayes.posterior import SlipPosterior
 from model.design.targets import Target, force_target, parameter_target
 from model.progress import Watcher
 from model.similar_name import similar_name
-from model.slip.definition import SlipDefinition
-from model.slip.thesis import THESIS_LAW
 from rig.experiment.plan import Plan
 from rig.slip_rig.profile import RigProfile
 from zebro_lab.calibration.draws import read_draws_of
-from zebro_lab.calibration.folder import POSTERIOR, SlipFile, read_slip_file
+from zebro_lab.calibration.folder import POSTERIOR, SlipFile
 from zebro_lab.experiment.plan_file import require_plan_allowed
 from zebro_lab.experiment.plan_stage import Foreseen, foresee
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import read_text
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable, result_folder
-from zebro_lab.study.layout import Layout, read_layout
-from zebro_lab.study.request import LayoutRequest
+from zebro_lab.suggest.calibrated import read_calibrated
 from zebro_lab.suggest.end_pose import end_pose_target, read_walk
 from zebro_lab.suggest.folder import EXPECTED, PICTURE, PLAN, SUGGESTED, Expected, write_expected
 from zebro_lab.suggest.plan_text import with_points
@@ -67,8 +64,8 @@ def suggest(request: SuggestRequest, watcher: Watcher) -> Suggested:
     watcher.step("reading", None)
     foreseen = foresee(request.plan, request.rig)
     require_points(request.plan, foreseen.plan)
-    slip, layout = _calibration(request.calibration)
-    posterior = layout.design.posterior(layout.design.blocks)
+    fitted = read_calibrated(request.calibration)
+    slip, posterior = fitted.slip, fitted.posterior
     z = _draws(slip.file.parent / POSTERIOR, posterior, seed=request.seed)
     rate = _rate(foreseen.profile) if request.rate is None else request.rate
     watcher.step("weighing the calibration's data", None)
@@ -87,10 +84,10 @@ def suggest(request: SuggestRequest, watcher: Watcher) -> Suggested:
     suggested = Suggested(
         foreseen.plan, foreseen.estimate.seconds, proposal, expected, knowledge,
         slip.file.absolute().parent.name, slip.source,
-        (*_notes(request, slip, foreseen, knowledge, proposal), *layout.notes),
+        (*_notes(request, slip, foreseen, knowledge, proposal), *fitted.notes),
     )  # fmt: skip
     walks = [file for _, files in found for file in files]
-    _write(request, foreseen, suggested, (*layout.files, *walks), watcher)
+    _write(request, foreseen, suggested, (*fitted.files, *walks), watcher)
     return suggested
 
 
@@ -107,18 +104,6 @@ def require_points(file: Path, plan: Plan) -> None:
             "may be suggested, as in slips = [0.0, 1.0]",
             file=file, key="points.slips",
         )  # fmt: skip
-
-
-def _calibration(path: Path) -> tuple[SlipFile, Layout]:
-    """Read a calibration; raise `SettingsError` if it is of other slip than the rig's."""
-    slip = read_slip_file(path)
-    if slip.curve.definition is not SlipDefinition.MATERIAL:
-        raise SettingsError(
-            f"{path} is of '{slip.curve.definition}' slip; plans are in 'material' slip: calibrate "
-            "with --slip-definition material",
-            key="--calibration",
-        )
-    return slip, read_layout(LayoutRequest(calibration=path), THESIS_LAW)
 
 
 def _draws(file: Path, posterior: SlipPosterior, *, seed: int) -> Array:

@@ -3,7 +3,10 @@
 
 from typing import Final
 
-REMOVED: Final[dict[str, str]] = {}
+REMOVED: Final[dict[str, str]] = {
+    "study": "The fit is tested on simulated experiments by `make test-long` of a checkout "
+    "(docs/coverage.md); rig suggest says how narrow further points make an interval.",
+}
 """What to use instead, a sentence, by "COMMAND", "COMMAND --option", or "--option" of any command.
 
 A command in a group has the group's name before it ("study sbc"), and `calibrate-slip` is

@@ -16,13 +16,14 @@ from model.design.information import (
     white_sizes,
 )
 from model.errors import InsufficientData
-from support.study_layouts import design, layout
+from support.small_layouts import layout
+from support.small_layouts import posterior as posterior_of
 
 
 @pytest.fixture(scope="module")
 def posterior():
     blocks = layout(error=0.002, wander=0.003, load_sd=0.05)
-    return design(blocks).posterior(blocks)
+    return posterior_of(blocks)
 
 
 @pytest.fixture(scope="module")

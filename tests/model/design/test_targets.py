@@ -12,13 +12,12 @@ from model.design.targets import (
     regressed_target,
 )
 from model.errors import InsufficientData
-from support.study_layouts import design
+from support.small_layouts import posterior as posterior_of
 
 
 @pytest.fixture(scope="module")
 def posterior():
-    made = design()
-    return made.posterior(made.blocks)
+    return posterior_of()
 
 
 @pytest.fixture(scope="module")

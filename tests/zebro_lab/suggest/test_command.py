@@ -5,10 +5,9 @@ import csv
 import json
 import tomllib
 
-import numpy as np
 import pytest
 
-from support.made_studies import calibration_folder
+from support.short_calibration import calibration_folder
 from support.suggestions import write_plan
 from support.walk_requests import write_log
 from zebro_lab.experiment.plan_file import read_plan
@@ -195,12 +194,3 @@ def test_the_plan_may_not_be_replaced_by_the_result(suggest, tmp_path):
 def test_help_has_examples(run_command):
     ended = run_command("rig", "suggest", "--help")
     assert "--target walk:data/RUN" in " ".join(ended.out.split())
-
-
-@pytest.mark.long
-def test_what_is_expected_is_what_a_fit_finds(tmp_path):
-    from benchmarks.accuracy.suggested_plans import EVEN, STIFFNESS, follow
-
-    found = [follow(seed, 300.0, walk=False) for seed in range(3)]
-    ratios = [each[STIFFNESS][STIFFNESS][0] / each[EVEN][STIFFNESS][0] for each in found]
-    assert np.median(ratios) < 0.7

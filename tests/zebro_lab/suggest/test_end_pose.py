@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from support.study_layouts import design
+from support.small_layouts import posterior as posterior_of
 from support.walk_requests import write_log
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.suggest.end_pose import end_pose_target, end_poses, read_walk
@@ -12,8 +12,7 @@ from zebro_lab.suggest.end_pose import end_pose_target, end_poses, read_walk
 
 @pytest.fixture(scope="module")
 def posterior():
-    made = design()
-    return made.posterior(made.blocks)
+    return posterior_of()
 
 
 def test_a_walk_ends_where_its_linear_prediction_says(posterior, tmp_path):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rig.slip_rig.profile import load_rig_profile
-from support.made_studies import calibration_folder
+from support.short_calibration import calibration_folder
 from support.suggestions import write_plan
 from support.watchers import Nobody
 from zebro_lab.files.errors import AlreadyExists

@@ -9,8 +9,8 @@ import pytest
 from model.bayes.likelihood import log_likelihood, predict_blocks
 from model.slip.definition import SlipDefinition, slip_per_radius_error
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from model.study.simulated_blocks import simulate_blocks, slip_of_true_radii
-from support.study_layouts import LAW, layout
+from support.simulated_blocks import simulate_blocks, slip_of_true_radii
+from support.small_layouts import LAW, layout
 
 RIG = (0.01, -0.02, 0.1, 0.02, 0.01, 0.03)
 QUIET = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Small layouts of studies."""
+"""Blocks of small experiments, and their posterior density."""
 
 import numpy as np
 
 from model.bayes.blocks import SlipBlocks
-from model.bayes.posterior import LoadCell
+from model.bayes.fit import not_identified
+from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.rig_errors import RigErrors
 from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition
-from model.study.design import StudyDesign, study_design
 
 LAW = CoulombStribeck(stribeck=False)
 
@@ -35,11 +35,8 @@ def layout(n_runs=12, blocks_a_run=3, *, wander=0.0, error=0.0, load_sd=0.0, ske
     )
 
 
-def design(blocks=None, law=LAW) -> StudyDesign:
-    """Return the design of a small study."""
-    return study_design(
-        layout() if blocks is None else blocks,
-        law,
-        load_cell=LoadCell(zero_stability=0.1),
-        rig_errors=RigErrors(0.003, 0.02),
-    )
+def posterior(blocks=None, law=LAW) -> SlipPosterior:
+    """Return the posterior density of a small experiment, with default priors."""
+    blocks = layout() if blocks is None else blocks
+    priors = default_priors(law, blocks, LoadCell(zero_stability=0.1), RigErrors(0.003, 0.02))
+    return SlipPosterior(blocks, law, priors, not_identified(blocks))

@@ -14,7 +14,6 @@ from scipy.special import gammaincinv, ndtri
 
 from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
-from model.slip.covariate import law_at
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import SlipLaw
 
@@ -67,7 +66,7 @@ def _mean_traction(layout: SlipBlocks, law: SlipLaw, values: Array, slip: Array)
         values: Values of all parameters, shape (k + 12,).
         slip: True mean slip of each block by the stated radii, shape (n,) [-].
     """
-    k, law = len(law.parameters), law_at(law, layout.coordinate)
+    k = len(law.parameters)
     g_t, g_n, b_n, c, epsilon, c_r = values[k : k + 6]
     slips, loads = _within(layout, slip)
     true_slip = slip_of_true_radii(slips, epsilon, layout.definition)

@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""Studies of the slip fit on simulated data: simulation-based calibration and coverage."""

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Typer applications of `zebro-lab COMMAND`, with all commands, and of `calibrate-slip`."""
 
-from zebro_lab.adaptive import command as adaptive
 from zebro_lab.calibration.read_off import command as read_off
 from zebro_lab.exchange import export_command, import_command, init_command
 from zebro_lab.experiment import command as rig
@@ -44,7 +43,6 @@ app.command(epilog=track.EPILOG)(track.track)
 app.command(epilog=annotate_command.EPILOG)(annotate_command.annotate)
 app.command()(doctor_command.doctor)
 app.add_typer(camera.app, name="camera")
-rig.app.command(epilog=adaptive.EPILOG)(adaptive.run)
 rig.app.command(epilog=suggest.EPILOG)(suggest.suggest)
 app.add_typer(rig.app, name="rig")
 app.add_typer(simulate_command.app, name="sim")

@@ -26,14 +26,19 @@ app = Application(
     no_args_is_help=True,
 )
 
-STOPS = """
+RUN_EPILOG = """
+Examples:
+
+zebro-lab rig run plan.toml --rig sim --fast
+
+zebro-lab rig run plan.toml --rig rig-odrive-netft@socketcan:can0 --data data --resume
+
 Ctrl-C once: soft stop (ramp to standstill, stay energised; r and Enter resume). Twice: safe stop
 (ramp to standstill, de-energise, end). Three times: emergency stop (de-energise at once, latched).
 SIGTERM, Ctrl-\\, Ctrl-Z and a lost connection or closed terminal (SIGHUP, unless started with
 nohup): safe stop.
 
-Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused
-or an interval is wider than asked, 130 stopped.
+Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 130 stopped.
 """
 
 
@@ -58,8 +63,10 @@ def plan(
     output.document("rig plan", {**content, **numbers})
 
 
-def carry_out(request: RigRunRequest, output: Output) -> tuple["Outcome", bool]:
-    """Run a plan with keys and display; return its outcome and whether a stop is latched."""
+@app.command(epilog=RUN_EPILOG)
+@request_command(first=("plan", "rig", "data", "resume"))
+def run(request: RigRunRequest, output: Output = TEXT) -> None:
+    """Run a plan; record each point to a run folder, as calibrate-slip reads them."""
     from rich.console import Console
 
     from rig.experiment.control import Control
@@ -75,7 +82,7 @@ def carry_out(request: RigRunRequest, output: Output) -> tuple["Outcome", bool]:
     finally:
         if control.stop.latched:
             _say_latched(request.data)
-    return outcome, control.stop.latched
+    _end(outcome, request.data, output, latched=control.stop.latched)
 
 
 def _say_latched(data: Path) -> None:
@@ -88,7 +95,7 @@ def _say_latched(data: Path) -> None:
     )
 
 
-def end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
+def _end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
     """Print how an experiment ended, and exit with 0, `REFUSED` or `STOPPED`."""
     from model.counted import counted
     from zebro_lab.experiment.documents import experiment_in_numbers

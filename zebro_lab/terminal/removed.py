@@ -4,6 +4,10 @@
 from typing import Final
 
 REMOVED: Final[dict[str, str]] = {
+    "rig run --adaptive": "Measure in rounds by rig run, calibrate-slip and rig suggest in turn, "
+    "as the shell loop in docs/experiments.md does.",
+    "rig run --budget": "State the time of each round by --time of rig suggest "
+    "(docs/experiments.md).",
     "study": "The fit is tested on simulated experiments by `make test-long` of a checkout "
     "(docs/coverage.md); rig suggest says how narrow further points make an interval.",
 }

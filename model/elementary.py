@@ -1,29 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Elementary functions of floats or `Lanes`, without branches: sin, cos, arctan, log, exp, arsinh.
+"""Elementary functions of floats or `Lanes`, without branches: sin, arctan, log and exp.
 
-The polynomials are those of FreeBSD's msun (k_sin.c, k_cos.c, k_log.h, s_atan.c, e_exp.c: Copyright
+The polynomials are those of FreeBSD's msun (k_log.h, s_atan.c, e_exp.c: Copyright
 (C) 1993 by Sun Microsystems, permission to use, copy, modify and distribute freely granted).
 Results are within some units in the last place of the exact ones.
 """
 
 import math
 
-import numpy as np
-
 from model.compiled import inlined
-from model.lanes import exponent_and_mantissa, floor, nearest, power_of_two, root, select, size
+from model.lanes import exponent_and_mantissa, nearest, power_of_two, select, size
 
-# pi/2 in three parts; products of the first two by whole numbers below 2^20 are exact
-HALF_PI = (1.57079632673412561417e00, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
-HALF_PI_FLOAT = 1.5707963267948966
-SIN = (
-    -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
-    2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10,
-)  # fmt: skip
-COS = (
-    4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
-    -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11,
-)  # fmt: skip
+HALF_PI = 1.5707963267948966
 LN2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)  # high and low part
 LOG = (
     6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01,
@@ -46,39 +34,13 @@ MOST_EXPONENT = 708.0  # the argument whose exponential is just below the larges
 
 
 @inlined
-def sin_cos(x):
-    """Compute sine and cosine of an angle below 10^6 rad in size.
-
-    Args:
-        x: Angle, a float or `Lanes` [rad].
-
-    Returns:
-        Sine and cosine.
-    """
-    quarter = nearest(x * (2 / np.pi))
-    r = x - quarter * HALF_PI[0]
-    r = r - quarter * HALF_PI[1]
-    r = r - quarter * HALF_PI[2]
-    z = r * r
-    s = z * (SIN[2] + z * (SIN[3] + z * (SIN[4] + z * SIN[5])))
-    s = r + r * z * (SIN[0] + z * SIN[1] + z * s)
-    c = z * (COS[2] + z * (COS[3] + z * (COS[4] + z * COS[5])))
-    c = 1.0 - (0.5 * z - z * z * (COS[0] + z * COS[1] + z * c))
-    quadrant = quarter - 4.0 * floor(quarter * 0.25)
-    odd = (quadrant == 1.0) | (quadrant == 3.0)
-    sine, cosine = select(odd, c, s), select(odd, s, c)
-    sine = select(quadrant >= 2.0, -sine, sine)
-    return sine, select((quadrant == 1.0) | (quadrant == 2.0), -cosine, cosine)
-
-
-@inlined
 def sin_half_turn(x):
     """Compute the sine of an angle from -pi to pi, a float or `Lanes` [rad].
 
     It is that of the angle mirrored into -pi/2 to pi/2, by the series up to x^21.
     """
-    x = select(x > HALF_PI_FLOAT, 2.0 * HALF_PI_FLOAT - x, x)
-    x = select(x < -HALF_PI_FLOAT, -2.0 * HALF_PI_FLOAT - x, x)
+    x = select(x > HALF_PI, 2.0 * HALF_PI - x, x)
+    x = select(x < -HALF_PI, -2.0 * HALF_PI - x, x)
     z = x * x
     w = z * z
     even = SERIES[1] + w * (SERIES[3] + w * (SERIES[5] + w * (SERIES[7] + w * SERIES[9])))
@@ -122,7 +84,7 @@ def _reduced_arctan(t):
     even = w * (ARCTAN[1] + w * (ARCTAN[3] + w * (ARCTAN[5] + w * (ARCTAN[7] + w * ARCTAN[9]))))
     odd = ARCTAN[4] + w * (ARCTAN[6] + w * (ARCTAN[8] + w * ARCTAN[10]))
     odd = z * (ARCTAN[0] + w * (ARCTAN[2] + w * odd))
-    turned = select(far, HALF_PI_FLOAT, select(middle, 0.5 * HALF_PI_FLOAT, 0.0))
+    turned = select(far, HALF_PI, select(middle, 0.5 * HALF_PI, 0.0))
     return turned, r, r * (even + odd)
 
 
@@ -141,26 +103,12 @@ def exp_of(x):
 
 @inlined
 def log_of(x):
-    """Compute the natural logarithm of a positive normal float or of `Lanes` of them."""
-    exponent, mantissa = exponent_and_mantissa(x)
-    return _log(exponent, mantissa - 1.0)
+    """Compute the natural logarithm of a positive normal float or of `Lanes` of them.
 
-
-@inlined
-def arsinh(x):
-    """Compute the inverse hyperbolic sine of a float or `Lanes`, not negative and below 10^150.
-
-    It is log(1 + y) with y = x + x^2 / (1 + sqrt(1 + x^2)). Near zero y itself is used, not what is
-    left of it in 1 + y, which keeps the relative accuracy.
+    x is split as 2^exponent (1 + f), with 1 + f from sqrt(1/2) to sqrt(2).
     """
-    y = x + x * x / (1.0 + root(1.0 + x * x))
-    exponent, mantissa = exponent_and_mantissa(1.0 + y)
-    return _log(exponent, select(exponent == 0.0, y, mantissa - 1.0))
-
-
-@inlined
-def _log(exponent, f):
-    """Compute the logarithm of 2^exponent (1 + f), with 1 + f from sqrt(1/2) to sqrt(2)."""
+    exponent, mantissa = exponent_and_mantissa(x)
+    f = mantissa - 1.0
     s = f / (2.0 + f)
     z = s * s
     w = z * z

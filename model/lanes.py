@@ -19,7 +19,6 @@ where the processor has that instruction; nothing else is relaxed.
 
 import operator
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from llvmlite import ir
@@ -33,13 +32,7 @@ LANES = 4
 """Number of lanes: as many float64 as a vector register of AVX2 holds."""
 
 
-def _inline(function: Callable[..., object], **options: bool) -> Callable[..., Any]:
-    """Return the intrinsic of a function that types a call and emits its instructions.
-
-    Calls leave out the function's first argument, numba's typing context.
-    """
-    return intrinsic(**options)(function) if options else intrinsic(function)
-
+_inline: Callable[..., Any] = intrinsic  # calls leave out its first argument, numba's context
 
 _DOUBLE, _LONG = ir.DoubleType(), ir.IntType(64)
 _CONTRACT = ("contract",)
@@ -111,10 +104,7 @@ _operator(operator.add, lambda b, x, y: b.fadd(x, y, flags=_CONTRACT), lanes)
 _operator(operator.sub, lambda b, x, y: b.fsub(x, y, flags=_CONTRACT), lanes)
 _operator(operator.mul, lambda b, x, y: b.fmul(x, y, flags=_CONTRACT), lanes)
 _operator(operator.truediv, lambda b, x, y: b.fdiv(x, y), lanes)
-for _op, _sign in (
-    (operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="),
-    (operator.eq, "=="),
-):  # fmt: skip
+for _op, _sign in ((operator.lt, "<"), (operator.gt, ">")):
     _operator(_op, _compared(_sign), mask)
 
 
@@ -126,19 +116,6 @@ class _Negated(ConcreteTemplate):
 @lower_builtin(operator.neg, lanes)
 def _negate(context, builder, sig, args):
     return builder.fneg(args[0])
-
-
-def _mask_operator(op: Callable, emit: Callable) -> None:
-    @infer_global(op)  # pyright: ignore[reportOptionalCall] its stub lacks it
-    class _Typed(ConcreteTemplate):
-        cases = [signature(mask, mask, mask)]  # noqa: RUF012 numba's own way
-
-    lower_builtin(op, mask, mask)(lambda context, builder, sig, args: emit(builder, *args))
-
-
-_mask_operator(operator.and_, lambda b, x, y: b.and_(x, y))
-_mask_operator(operator.or_, lambda b, x, y: b.or_(x, y))
-_mask_operator(operator.xor, lambda b, x, y: b.xor(x, y))
 
 
 def _place(context, builder, array_type, array, index):
@@ -202,29 +179,6 @@ def select(typing, where, yes, no):
     return kind(where, yes, no), emit
 
 
-@_inline
-def any_of(typing, where):
-    """Return whether a bool, or any of the lanes of a `Mask`, is true."""
-
-    def emit(context, builder, sig, args):
-        if not isinstance(where, MaskType):
-            return args[0]
-        bits = builder.bitcast(args[0], ir.IntType(LANES))
-        return builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
-
-    return types.boolean(where), emit
-
-
-@_inline
-def negated(typing, where):
-    """Return the negation of a bool or of each lane of a `Mask`."""
-
-    def emit(context, builder, sig, args):
-        return builder.not_(args[0])
-
-    return where(where), emit
-
-
 def _rounded(name: str, doc: str) -> Callable[..., Any]:
     """Return a function of a float or `Lanes` that is an LLVM intrinsic of one argument."""
 
@@ -243,8 +197,6 @@ def _rounded(name: str, doc: str) -> Callable[..., Any]:
     return _inline(typed)
 
 
-root = _rounded("sqrt", "Return the square root of a float or of each of the `Lanes`.")
-floor = _rounded("floor", "Return the largest whole number not above a float or each of `Lanes`.")
 nearest = _rounded("rint", "Return the whole number nearest to a float or each of `Lanes`.")
 size = _rounded("fabs", "Return the absolute value of a float or of each of the `Lanes`.")
 
@@ -292,38 +244,3 @@ def power_of_two(typing, k):
         return builder.bitcast(builder.shl(bits, _long_like(kind, 52)), kind)
 
     return (lanes if isinstance(k, LanesType) else one)(k), emit
-
-
-@partial(_inline, prefer_literal=True)
-def gathered(typing, table, index, count):
-    """Return `count` successive values of each lane's own row of a table, from a column on.
-
-    The table has one row a lane, shape (LANES, n), or (1, n) for a float. The first column `index`
-    is a whole number as a float, or `Lanes` of them; `count` is a literal. The result is a tuple of
-    `count` floats or `Lanes`.
-    """
-    many = count.literal_value
-    kind = lanes if isinstance(index, LanesType) else one
-
-    def emit(context, builder, sig, args):
-        shape = context.make_array(sig.args[0])(context, builder, args[0])
-        (_, columns) = cgutils.unpack_tuple(builder, shape.shape)
-        if kind == one:
-            first = builder.fptosi(args[1], _LONG)
-            found = [
-                builder.load(builder.gep(shape.data, [builder.add(first, ir.Constant(_LONG, i))]))
-                for i in range(many)
-            ]
-            return context.make_tuple(builder, sig.return_type, found)
-        where = builder.fptosi(args[1], ir.VectorType(ir.IntType(32), LANES))
-        found = [ir.Constant(ir.VectorType(_DOUBLE, LANES), ir.Undefined) for _ in range(many)]
-        for lane in range(LANES):
-            number = ir.Constant(ir.IntType(32), lane)
-            own = builder.sext(builder.extract_element(where, number), _LONG)
-            first = builder.add(own, builder.mul(columns, ir.Constant(_LONG, lane)))
-            for i in range(many):
-                at = builder.gep(shape.data, [builder.add(first, ir.Constant(_LONG, i))])
-                found[i] = builder.insert_element(found[i], builder.load(at), number)
-        return context.make_tuple(builder, sig.return_type, found)
-
-    return types.UniTuple(kind, many)(table, index, count), emit

@@ -17,7 +17,6 @@ from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.walk.areas import AreaTractions
 from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
-from model.walk.flat.batch import FlatWalk, is_flat_walk, run_side_by_side
 from model.walk.ground import FLAT, Ground, ground_at, highest_near, is_even, is_level
 from model.walk.loop import run_steps
 from model.walk.path import WalkPath, path_of
@@ -174,12 +173,6 @@ def integrate(
         WalkError: A step diverged; the message says when and where.
     """
     contacts, dt = Contacts(options.stiffness, options.damping), options.dt
-    if is_flat_walk(table, ground):
-        walk = FlatWalk(robot, table, contacts, state, theta)
-        height = float(ground.height[0, 0])
-        poses, every, counts = run_side_by_side([walk], dt, height=height, keep_legs=keep_legs)
-        require_finished(poses[0], counts[0], dt, began=began)
-        return poses[0], every[0]
     n = len(theta) - 1
     pose, legs = np.empty((n + 1, 7)), np.empty((n if keep_legs else 0, N_LEGS + 1, 6))
     pose[0] = np.concatenate([state.p, state.q])

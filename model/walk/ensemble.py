@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Ensembles of walks, each with its own law and robot, for the spread of a path."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.errors import DomainError, WalkError
@@ -26,14 +25,10 @@ from model.walk.dynamics import (
     start_state,
     step_times,
 )
-from model.walk.flat.batch import is_flat_walk
 from model.walk.ground import FLAT, Ground, is_level
 from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
-from model.walk.side_by_side import MOST, LevelWalk, OneOfSeveralError, walk_side_by_side
 from model.walk.stride import walk_by_strides
 from model.walk.traction import TractionTable
-
-UNWRAPPED = 0.02  # s
 
 
 @dataclass(frozen=True)
@@ -68,12 +63,6 @@ class WalkDraw:
         """Whether the walk depends on no place or heading: level ground of one law, from zero."""
         from_zero = self.start == ORIGIN and self.bend == STRAIGHT
         return is_level(self.ground) and not self.areas and from_zero
-
-    @property
-    def walks_beside_others(self) -> bool:
-        """Whether the draw is walked beside others: every step, on level ground, no bristles."""
-        steady = self.reference.period is None and self.is_alike_everywhere
-        return steady and is_flat_walk(self.table, self.ground)
 
     def options(self, common: DynamicsOptions) -> DynamicsOptions:
         """Return the common options, contact stiffness and damping times this draw's factors."""
@@ -133,9 +122,9 @@ def walk_ensemble(
         draws: The draws to walk.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
         options: Step length and contacts, the same for all draws but for the draws' factors.
-        mapper: Where draws are walked; a task is as many as are walked side by side.
+        mapper: Where draws are walked; a task is one draw.
         tilt: Return roll and pitch too; not available where strides are repeated.
-        progress: Called after each task with the fraction of draws done, from 0 to 1.
+        progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
     Returns:
         The paths of all draws, from their starts, interpolated linearly at `t`, constant after
@@ -148,24 +137,17 @@ def walk_ensemble(
     """
     _require_draws(draws, t)
     times = WalkedTimes(t, options, tilt)
-    states, done = np.empty((len(draws), len(t), 5 if tilt else 3)), 0
-    batches = _batches(draws)
-    tasks = [[draws[i] for i in batch] for batch in batches]
-    with closing(mapper.map(walk_batch, times, tasks)) as results:
-        for batch in batches:
-            states[batch] = _next_paths(results, batch, len(draws))
-            done += len(batch)
+    n = len(draws)
+    states = np.empty((n, len(t), 5 if tilt else 3))
+    with closing(mapper.map(walk_draw, times, draws)) as results:
+        for i in range(n):
+            try:
+                states[i] = next(results)
+            except WalkError as error:
+                raise WalkError(f"draw {i + 1} of {n}: {error}") from error
             if progress is not None:
-                progress(done / len(draws))
+                progress((i + 1) / n)
     return planar(t, states)
-
-
-def _next_paths(results: Iterator[Array], batch: Sequence[int], n: int) -> Array:
-    """Return the next result; raise `WalkError` that names a draw, of n, by its own number."""
-    try:
-        return next(results)
-    except OneOfSeveralError as error:
-        raise WalkError(f"draw {batch[error.walk] + 1} of {n}: {error}") from error
 
 
 def planar(t: Array, states: Array) -> PlanarWalk:
@@ -180,83 +162,22 @@ def planar(t: Array, states: Array) -> PlanarWalk:
     )
 
 
-def walk_batch(times: WalkedTimes, draws: Sequence[WalkDraw]) -> Array:
-    """Walk a few draws, side by side where they can be: an independent task.
+def walk_draw(times: WalkedTimes, draw: WalkDraw) -> Array:
+    """Walk one draw: an independent task.
 
     Args:
-        times: How they are walked.
-        draws: The draws, up to `MOST`.
+        times: How it is walked.
+        draw: The draw.
 
     Returns:
-        x, y, yaw, and roll and pitch if wanted, shape (draws, n, 3 or 5) [m, rad].
+        x, y, yaw, and roll and pitch if wanted, shape (n, 3 or 5) [m, rad].
 
     Raises:
-        OneOfSeveralError: A walk failed.
+        WalkError: The walk failed.
     """
-    if len(draws) > 1 and all(draw.walks_beside_others for draw in draws):
-        return _walked_together(draws, times)
-    return np.stack([_walked_alone(i, draw, times) for i, draw in enumerate(draws)])
-
-
-def _walked_alone(number: int, draw: WalkDraw, times: WalkedTimes) -> Array:
-    """Walk one of several draws; return its states at the times, shape (n, 3 or 5) [m, rad]."""
-    try:
-        path = planar_walk(draw, duration=times.duration, options=times.options, tilt=times.tilt)
-        columns = [*path.poses.states.T, *(_tilt_of(path) if times.tilt else ())]
-    except WalkError as error:
-        raise OneOfSeveralError(number, str(error)) from error
+    path = planar_walk(draw, duration=times.duration, options=times.options, tilt=times.tilt)
+    columns = [*path.poses.states.T, *(_tilt_of(path) if times.tilt else ())]
     return np.stack([np.interp(times.t, path.poses.t, a) for a in columns], axis=-1)
-
-
-def _batches(draws: Sequence[WalkDraw]) -> list[list[int]]:
-    """Group the indices of draws: those walked side by side, up to `MOST`, and others alone.
-
-    Laws that are the same in all directions have a loop of their own, and so groups of their own:
-    a walk depends on no neighbour.
-    """
-    beside = [i for i, draw in enumerate(draws) if draw.walks_beside_others]
-    alone = [[i] for i, draw in enumerate(draws) if not draw.walks_beside_others]
-    groups = []
-    for directed in (False, True):
-        together = [i for i in beside if draws[i].table.is_directed == directed]
-        groups += [together[i : i + MOST] for i in range(0, len(together), MOST)]
-    return groups + alone
-
-
-def _walked_together(draws: Sequence[WalkDraw], wanted: WalkedTimes) -> Array:
-    """Compute x, y, yaw, and roll and pitch if wanted, of draws that are walked side by side.
-
-    Returns:
-        Interpolated linearly at the wanted times, shape (draws, n, 3 or 5) [m, rad].
-    """
-    t, options = wanted.t, wanted.options
-    times = step_times(wanted.duration, options.dt)
-    walks = [
-        LevelWalk(
-            draw.robot, draw.table, draw.options(options),
-            draw.reference.angles(times) + draw.robot.leg_offset,
-        )
-        for draw in draws
-    ]  # fmt: skip
-    needed = _needed(times, t)
-    pose = walk_side_by_side(walks)[:, needed]
-    found = []
-    for each in pose:
-        q = each[:, 3:]
-        columns = [each[:, 0], each[:, 1], unwrapped_yaw(q)]
-        columns += [*roll_pitch_yaw(q)[:, :2].T] if wanted.tilt else []
-        found.append(np.stack([np.interp(t, times[needed], a) for a in columns], axis=-1))
-    return np.stack(found)
-
-
-def _needed(times: Array, t: Array) -> NDArray[np.intp]:
-    """Return the indices of steps to interpolate between at `t`, with one every 20 ms at least.
-
-    No robot turns by half a turn in so short a time, so yaw can be unwrapped along them.
-    """
-    after = np.clip(np.searchsorted(times, t, side="right"), 1, len(times) - 1)
-    every = max(int(UNWRAPPED / (times[1] - times[0])), 1)
-    return np.unique(np.concatenate([after - 1, after, np.arange(0, len(times), every)]))
 
 
 def _tilt_of(path: PlanarWalk) -> Array:

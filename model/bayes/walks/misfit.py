@@ -38,10 +38,9 @@ from model.walk.ensemble import (
     WalkDraw,
     WalkedTimes,
     planar,
-    walk_batch,
+    walk_draw,
     walk_ensemble,
 )
-from model.walk.side_by_side import MOST, OneOfSeveralError
 from model.walk.traction import TractionTable
 
 RECONSTRUCTIONS = 16  # motions drawn from counted angles; or walks that show the step's error
@@ -202,24 +201,24 @@ class WalkMisfit:
             return residuals
         return np.concatenate([residuals, self.tilt.residuals(walked.tilt)], axis=1)
 
-    def tasks(self, state: LegState) -> "list[StatesToWalk]":
-        """Return the tasks that walk m states of the legs, without steering and stride.
+    def tasks(self, state: LegState) -> "list[StateToWalk]":
+        """Return the tasks that walk each of m states of the legs, without steering and stride.
 
         Args:
             state: The m states.
         """
         times = WalkedTimes(self._times(), self.options, self.tilt is not None)
         legs = middle(self.walk.legs)
-        parts = [state.part(slice(i, i + MOST)) for i in range(0, len(state), MOST)]
-        return [StatesToWalk(self.robot, legs, self.table, times, part) for part in parts]
+        parts = [state.part(slice(i, i + 1)) for i in range(len(state))]
+        return [StateToWalk(self.robot, legs, self.table, times, part) for part in parts]
 
     def joined(self, walked: Sequence[Array]) -> PlanarWalk:
         """Join what the tasks of m states have walked, in their order.
 
         Args:
-            walked: Results of `tasks`, by `walk_few_states`.
+            walked: Results of `tasks`, by `walk_state`.
         """
-        return planar(self._times(), np.concatenate(walked))
+        return planar(self._times(), np.stack(walked))
 
     def _walked(self, draws: Sequence[WalkDraw], mapper: Mapper) -> PlanarWalk:
         """Compute every draw's walk at `_times`, with roll and pitch if there is an IMU."""
@@ -314,15 +313,15 @@ class WalkMisfit:
 
 
 @dataclass(frozen=True)
-class StatesToWalk:
-    """A few states of the legs in one walk, to be walked: an independent task.
+class StateToWalk:
+    """A state of the legs in one walk, to be walked: an independent task.
 
     Attributes:
         robot: The robot as described.
         legs: Leg angles.
         table: The slip law as calibrated.
         times: How they are walked.
-        state: The states, up to `MOST`.
+        state: The state, of one draw.
     """
 
     robot: Robot
@@ -332,24 +331,21 @@ class StatesToWalk:
     state: LegState
 
     @property
-    def draws(self) -> list[WalkDraw]:
-        """The states as draws of a walk, without steering and stride."""
-        return [
-            WalkDraw(
-                robot_in(self.robot, self.state, i), self.legs, law_in(self.table, self.state, i)
-            )
-            for i in range(len(self.state))
-        ]
+    def draw(self) -> WalkDraw:
+        """The state as a draw of a walk, without steering and stride."""
+        return WalkDraw(
+            robot_in(self.robot, self.state, 0), self.legs, law_in(self.table, self.state, 0)
+        )
 
 
-def walk_few_states(_: None, task: StatesToWalk) -> Array:
-    """Walk a few states of the legs; see `model.walk.ensemble.walk_batch`.
+def walk_state(_: None, task: StateToWalk) -> Array:
+    """Walk a state of the legs; see `model.walk.ensemble.walk_draw`.
 
     Args:
         _: Nothing that tasks share.
-        task: The states.
+        task: The state.
     """
-    return walk_batch(task.times, task.draws)
+    return walk_draw(task.times, task.draw)
 
 
 def walk_states(
@@ -368,7 +364,7 @@ def walk_states(
     pairs = zip(misfits, states, strict=True)
     tasks = [misfit.tasks(state) for misfit, state in pairs]
     each = [task for of_walk in tasks for task in of_walk]
-    with closing(mapper.map(walk_few_states, None, each)) as results:
+    with closing(mapper.map(walk_state, None, each)) as results:
         return [
             misfit.joined([_next_states(results, misfit.walk.name) for _ in of_walk])
             for misfit, of_walk in zip(misfits, tasks, strict=True)
@@ -379,7 +375,7 @@ def _next_states(results: Iterator[Array], name: str) -> Array:
     """Return the next result; raise `WalkError` that names the walk."""
     try:
         return next(results)
-    except OneOfSeveralError as error:
+    except WalkError as error:
         raise WalkError(f"walk '{name}': {error}") from error
 
 

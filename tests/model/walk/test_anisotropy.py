@@ -12,10 +12,9 @@ from model.leg import ROLLING
 from model.robot import GRAVITY, N_LEGS, Robot
 from model.slip import MagicFormula
 from model.walk.anisotropy import effective_size, find_across, sideways
-from model.walk.arrays import Contacts, new_work
-from model.walk.dynamics import DynamicsOptions, Start, start_state, walk
+from model.walk.arrays import new_work
+from model.walk.dynamics import DynamicsOptions, Start, walk
 from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
-from model.walk.flat.batch import FlatWalk, run_side_by_side
 from model.walk.traction import law_table
 from model.walk.traction_lookup import traction_secant
 
@@ -87,18 +86,14 @@ def gait(side="left", steering=1.3):
     return tripod_reference(tripod_angles(np.radians(50.0), steering), 1.0, direction=side)
 
 
-def flat_walk(table, side="left", seconds=2.0, dt=0.005):
-    t = dt * np.arange(round(seconds / dt) + 1)
-    theta = gait(side).angles(t)
-    state = start_state(ROBOT, theta[0], DynamicsOptions())
-    return FlatWalk(ROBOT, table, Contacts(2e5, 300.0), state, theta)
-
-
 def test_factors_of_one_leave_a_walk_as_it_is_bit_for_bit():
-    pose, legs, _ = run_side_by_side([flat_walk(CURVE)] * 2, 0.005, keep_legs=True)
-    again, same, _ = run_side_by_side([flat_walk(directed(1.0, 1.0))] * 2, 0.005, keep_legs=True)
-    np.testing.assert_array_equal(pose, again)
-    np.testing.assert_array_equal(legs, same)
+    options = DynamicsOptions(dt=0.005)
+    one, other = (
+        walk(ROBOT, gait(), law, duration=2.0, options=options)
+        for law in (CURVE, directed(1.0, 1.0))
+    )
+    np.testing.assert_array_equal(one.position, other.position)
+    np.testing.assert_array_equal(one.traction_force, other.traction_force)
 
 
 @pytest.mark.parametrize("bristle", [False, True])
@@ -145,17 +140,3 @@ def test_a_turn_depends_on_lateral_grip_and_a_straight_walk_hardly():
         moved[name] = np.abs(np.ptp(ends, axis=0))
     assert moved["turn"][2] > 5 * moved["straight"][2]
     assert moved["turn"][:2].max() > 5 * moved["straight"][:2].max()
-
-
-def test_groups_of_draws_leave_a_walk_without_directions_as_it_is():
-    t = np.arange(0.0, 3.0, 0.01)
-    log = SampledReference(t, gait().angles(t))
-    offsets = np.radians(0.5) * np.random.default_rng(2).standard_normal((3, N_LEGS))
-    plain = [WalkDraw(replace(ROBOT, leg_offset=each), log, CURVE) for each in offsets]
-    mixed = [plain[0], replace(plain[1], table=directed(1.2, 0.9)), *plain[1:]]
-    options = DynamicsOptions(dt=0.005)
-    times = np.array([0.0, 1.0, 2.5])
-    alone = walk_ensemble(plain, times, options=options).poses.states
-    found = walk_ensemble(mixed, times, options=options).poses.states
-    np.testing.assert_array_equal(found[[0, 2, 3]], alone)
-    assert np.abs(found[1] - alone[1]).max() > 1e-5

@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""Walks on flat ground, several side by side in vector registers."""

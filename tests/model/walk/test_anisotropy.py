@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Laws of traction that differs along and across a leg's rolling direction."""
 
-
 import numpy as np
 import pytest
 

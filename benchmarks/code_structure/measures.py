@@ -55,6 +55,37 @@ def code_lines(checkout: Checkout) -> Measured:
     return Measured(f"{counts.total():,}", tuple(f"{name}: {counts[name]:,}" for name in PACKAGES))
 
 
+def other_code_lines(folder: str) -> Callable[[Checkout], Measured]:
+    """Return a measure that counts lines of code of the Python files below a folder."""
+
+    def count(checkout: Checkout) -> Measured:
+        counts = Counter[str]()
+        for file in sorted((checkout.root / folder).rglob("*.py")):
+            path = file.relative_to(checkout.root)
+            module = Module(path, file.read_text(encoding="utf-8"))
+            counts["/".join(path.parts[: min(2, len(path.parts) - 1)])] += len(module.code_lines)
+        places = tuple(f"{name}: {n:,}" for name, n in counts.items())
+        return Measured(f"{counts.total():,}", places)
+
+    return count
+
+
+def document_lines(checkout: Checkout) -> Measured:
+    """Count lines of the documents, decision records and changelog; the places are the files."""
+    files = [*sorted((checkout.root / "docs").rglob("*.md")), checkout.root / "CHANGELOG.md"]
+    sizes = {
+        str(file.relative_to(checkout.root)): len(file.read_text(encoding="utf-8").splitlines())
+        for file in files
+        if file.is_file()
+    }
+    return Measured(f"{sum(sizes.values()):,}", tuple(f"{n} {name}" for name, n in sizes.items()))
+
+
+def decision_records(checkout: Checkout) -> Measured:
+    """Count the decision records."""
+    return _places([file.name for file in sorted(checkout.root.glob("docs/decisions/*.md"))])
+
+
 def function_lines(checkout: Checkout) -> Measured:
     """Measure functions by their lines, docstring included: median and 90th percentile."""
     return _spread(checkout, lambda module, node: (node.end_lineno or 0) - node.lineno + 1)
@@ -221,6 +252,10 @@ def inner_imports(checkout: Checkout) -> Measured:
 
 MEASURES: dict[str, Callable[[Checkout], Measured]] = {
     "lines of code": code_lines,
+    "lines of code of tests": other_code_lines("tests"),
+    "lines of code of benchmarks": other_code_lines("benchmarks"),
+    "lines of documents and changelog": document_lines,
+    "decision records": decision_records,
     "lines of a function: median, 90 %": function_lines,
     "the same without docstrings, comments, blanks": function_code_lines,
     f"files over {LONGEST_FILE} lines": long_files,

@@ -59,6 +59,8 @@ def _hidden(a, b):
     "rig/long.py": "x = 1\n" * 351,
     "tracking/seen.py": "y = 1 if True else 2\n",
     "tests/tracking/test_seen.py": "",
+    "docs/decisions/0001-one.md": "# One\n",
+    "CHANGELOG.md": "# Changes\n\n",
 }
 
 
@@ -75,6 +77,10 @@ def test_every_measure_finds_what_was_planted(root):
     found = {what: measure(checkout) for what, measure in MEASURES.items()}
     assert {what: each.figure for what, each in found.items()} == {
         "lines of code": "368",
+        "lines of code of tests": "0",
+        "lines of code of benchmarks": "0",
+        "lines of documents and changelog": "3",
+        "decision records": "1",
         "lines of a function: median, 90 %": "9, 10",
         "the same without docstrings, comments, blanks": "3, 4",
         "files over 350 lines": "1",

@@ -1,37 +1,57 @@
 # SPDX-License-Identifier: MIT
-"""A wrong side of the marker or height of the body is suspected; simulated walks."""
+"""A stated value that is wrong is named, alone or among those that cannot be told apart."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from benchmarks.accuracy.drawn_walks.world import PLAIN, Spreads, draw_walk
-from benchmarks.accuracy.tracked_walks import track_drawn_whole
+from support.drawn_tracks import track_marked
+from support.drawn_walks import PLAIN, WIDE, DrawnWalk, Spreads, Told, draw_walk
 from tracking.doubt import doubts
+from tracking.errors import FloorError
+
+FAULTS = {
+    "side of the robot's marker": lambda told: {"robot": told.robot * [1.02, 1, 1, 1]},
+    "its print is turned": lambda told: {"robot": told.robot + TURN},
+    "height of the body": lambda told: {"height": told.height + 0.03},
+    "place of mark 11": lambda told: {"marks": {**told.marks, 11: told.marks[11] + SHIFT}},
+    "focal length": lambda told: {"lens": told.lens * np.repeat([1.02, 1], [2, 7])},
+    "the map of the floor is mirrored": lambda told: {
+        "marks": {number: mark * [1, -1, -1, 1] for number, mark in told.marks.items()}
+    },
+}
+"""What names a wrong value, and the value that is told instead."""
+TURN = np.array([0, 0, 0, np.pi])
+SHIFT = np.array([0.0048, 0.0064, 0, 0])  # 8 mm
 
 
-def said(*, side=1.0, height=0.0, seed=3) -> str:
-    """Return the notes on a walk whose marker's side and body's height are stated wrong."""
-    walk = draw_walk(np.random.default_rng(seed), lens=PLAIN, distance=2.6, spreads=Spreads())
-    told = replace(
-        walk.told, robot=walk.told.robot * [side, 1, 1, 1], height=walk.told.height + height
-    )
-    return " ".join(track_drawn_whole(replace(walk, told=told)).notes)
+def drawn(seed: int = 5001) -> DrawnWalk:
+    """Draw a walk of which all is told as it is, but for the errors that are told with it."""
+    rng, lens = np.random.default_rng(seed), (PLAIN, WIDE)[seed % 2]
+    return draw_walk(rng, lens=lens, distance=2.6, spreads=Spreads())
+
+
+def said(told: Told, walk: DrawnWalk) -> str:
+    """Return the notes on a walk, or why its floor is refused, where something else is told."""
+    try:
+        return " ".join(track_marked(replace(walk, told=told)).notes)
+    except FloorError as error:
+        return str(error)
 
 
 def test_a_sound_walk_raises_no_suspicion():
-    assert said() == ""
+    walk = drawn()
+    assert said(walk.told, walk) == ""
 
 
-@pytest.mark.parametrize("wrong", [{"side": 1.03}, {"height": 0.05}])
-def test_what_is_wrong_is_among_those_named(wrong):
-    name = "side of the robot's marker" if "side" in wrong else "height of the body"
-    assert name in said(**wrong)
+@pytest.mark.parametrize("words", FAULTS)
+def test_what_is_wrong_is_among_those_named(words):
+    walk = drawn()
+    assert words in said(replace(walk.told, **FAULTS[words](walk.told)), walk)
 
 
 def test_what_is_taken_as_exact_is_not_suspected():
-    walk = draw_walk(np.random.default_rng(3), lens=PLAIN, distance=2.6, spreads=Spreads())
-    track = track_drawn_whole(walk).track
+    track = track_marked(drawn()).track
     sure = replace(track, stated=replace(track.stated, slots={}))
     assert doubts(sure) == ()

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.accuracy.drawn_walks.world import PLAIN, Spreads, draw_walk
-from benchmarks.accuracy.tracked_walks import photographed
+from support.drawn_tracks import photographed
+from support.drawn_walks import PLAIN, Spreads, draw_walk
 from tracking.corrections import Delete, Move, Order
 from tracking.errors import PathError
 from tracking.photos.edges import edge_spread

@@ -152,11 +152,8 @@ class DrawnWalk:
         poses: True x, y [m] and yaw [rad] of the body, shape (n, 3).
         robot: The robot's marker in each photograph.
         floor: By photograph and number, the floor's markers.
-        distance: Distance of the camera from the middle of the floor [m].
         bodies: x, y, z [m], roll, pitch and yaw [rad] of the body, shape (n, 6).
         camera: Rotation of the camera, world to camera, shape (3, 3), and its place, (3,) [m].
-        course: What it walked, at `scale`, but for `WOBBLE`.
-        scale: By which the floor is larger than one seen from 3.4 m by a lens of 1394 px [-].
     """
 
     lens: Lens
@@ -166,11 +163,8 @@ class DrawnWalk:
     poses: Array
     robot: list[Sight]
     floor: list[dict[int, Sight]]
-    distance: float
     bodies: Array
     camera: tuple[Array, Array]
-    course: Course
-    scale: float
     size: tuple[int, int] = field(default=(1280, 960))
 
 
@@ -213,8 +207,8 @@ def draw_walk(
         lens, s, Told(told_lens, told_marks, told_robot, height), t, poses,
         [_drawn(rng, lens, R, eye, on_body(robot, state), s, edges + rng.normal(0, s.edges))
          for state in body],
-        [{number: _again(rng, sight) for number, sight in seen.items()} for _ in t], distance, body,
-        (R, eye), course, scale,
+        [{number: _again(rng, sight) for number, sight in seen.items()} for _ in t], body,
+        (R, eye),
     )  # fmt: skip
 
 

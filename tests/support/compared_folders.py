@@ -4,7 +4,6 @@
 import numpy as np
 import pandas as pd
 
-from zebro_lab.validation.compare.request import CompareRequest
 from zebro_lab.validation.compare.stage import compare
 
 SLIP_TOML = """
@@ -57,7 +56,7 @@ def run_folder(folder, *, radius=2.0, speed=0.08, sd=0.002, seed=1, yaw=True):
 
 def compared(first, second, out):
     """Compare two folders; return the comparison, and differences by name."""
-    done = compare(CompareRequest(first, second, out))
+    done = compare(first, second, out=out)
     return done, dict(
         zip([q.name for q in done.comparison.quantities], done.differences, strict=True)
     )

@@ -4,6 +4,7 @@
 from typing import Final
 
 REMOVED: Final[dict[str, str]] = {
+    "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "rig run --adaptive": "Measure in rounds by rig run, calibrate-slip and rig suggest in turn, "
     "as the shell loop in docs/experiments.md does.",
     "rig run --budget": "State the time of each round by --time of rig suggest "

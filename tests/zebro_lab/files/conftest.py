@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from support.compared_folders import calibration
-from zebro_lab.validation.compare.request import CompareRequest
 from zebro_lab.validation.compare.stage import compare
 
 
@@ -16,4 +15,4 @@ def compared(tmp_path) -> Callable[[Path], object]:
     """Return what writes a comparison into a folder."""
     one = calibration(tmp_path / "one", friction=0.3)
     other = calibration(tmp_path / "other", friction=0.4)
-    return lambda out: compare(CompareRequest(one, other, out))
+    return lambda out: compare(one, other, out=out)

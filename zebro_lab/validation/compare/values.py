@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Values of a comparison: quantities with draws, and curves and paths to draw."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from model.arrays import Array
-from model.metrics.difference import Difference, difference
 from model.poses import Poses
 
 
@@ -30,14 +29,6 @@ class Quantity:
         low, median, high = np.quantile(self.draws[which], [0.05, 0.5, 0.95])
         return float(median), float(low), float(high)
 
-    def difference(self, rng: np.random.Generator) -> Difference:
-        """Compute median, 90 % interval and sign probability of the second minus the first.
-
-        Raises:
-            InsufficientData: A draw is not finite.
-        """
-        return difference(*self.draws, rng=rng)
-
 
 @dataclass(frozen=True)
 class Curve:
@@ -46,7 +37,7 @@ class Curve:
     Attributes:
         slip: Slip ratios, shape (n,) [-].
         load: Normal force of both curves [N].
-        bands: Traction [N], shape (2, 3, n): first and second; lower edge, middle and upper edge of
+        bands: Traction [N], shape (2, 3, n): first and second; lower edge, mean and upper edge of
             the band, all the same for a curve without uncertainty.
         points: Slip ratios [-] and traction forces [N] of block means at this load, shape (2, k).
     """
@@ -54,7 +45,7 @@ class Curve:
     slip: Array
     load: float
     bands: Array
-    points: Array = field(default_factory=lambda: np.empty((2, 0)))
+    points: Array
 
 
 @dataclass(frozen=True)
@@ -66,8 +57,8 @@ class Place:
         share_outside: Share of the tested slips and loads at which it lies outside [-].
         slip: Slip ratio at which it is farthest, in half widths of the band [-].
         load_n: Load there [N].
-        half_widths: Its distance from the middle there, in half widths of the band [-].
-        difference_n: Curve minus middle of the band there [N].
+        half_widths: Its distance from the mean there, in half widths of the band [-].
+        difference_n: Curve minus mean there [N].
     """
 
     inside: bool
@@ -79,19 +70,6 @@ class Place:
 
 
 @dataclass(frozen=True)
-class RunPaths:
-    """Track and prediction of one run for the picture.
-
-    Attributes:
-        track: Tracked poses, moved to start at the origin along x; None without a track.
-        band: Predicted paths in the inertial frame, where a walk starts so; None without draws.
-    """
-
-    track: Poses | None
-    band: Poses | None
-
-
-@dataclass(frozen=True)
 class Comparison:
     """Comparison of two calibrations, of a calibration and a curve, or of two runs.
 
@@ -99,14 +77,13 @@ class Comparison:
         kind: "calibrations", "calibration and curve" or "runs".
         names: Names to show for the first and the second.
         quantities: Quantities that both have, with draws.
-        curves: Bands of both slip curves, one item per load; empty for runs.
-        paths: Paths of the first and of the second run; empty for calibrations.
-        definition: Slip definition of the curves; empty for runs.
-        doubted: Whether each is a calibration that is not trustworthy.
         source: Sources of both, joined by commas.
         files: Files that were read, without `posterior.nc` and manifests.
         notes: Notes, one line each.
-        band: What the bands of the curves hold.
+        curves: Bands of both slip curves, one item per load; empty for runs.
+        paths: Tracked poses of both runs, moved to start at the origin along x; empty for
+            calibrations.
+        definition: Slip definition of the curves; empty for runs.
         place: Where a curve lies in the band of a calibration; None without a curve.
     """
 
@@ -117,8 +94,6 @@ class Comparison:
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
     curves: tuple[Curve, ...] = ()
-    paths: tuple[RunPaths, ...] = ()
+    paths: tuple[Poses, ...] = ()
     definition: str = ""
-    doubted: tuple[bool, bool] = (False, False)
-    band: str = "90 % of curves"
     place: Place | None = None

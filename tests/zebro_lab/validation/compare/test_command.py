@@ -26,7 +26,7 @@ def test_a_curve_is_judged_in_words_and_in_the_document(tmp_path, run_command):
     ended = run_command("compare", fitted, "coulomb:0.6", "--out", tmp_path / "out", "--json")
     place = json.loads(ended.out)["place"]
     assert (place["inside"], place["half_widths"] > 1) == (False, True)
-    assert "lies outside the band that holds 90 % of whole curves" in " ".join(ended.err.split())
+    assert "outside" in ended.err
 
 
 def test_a_name_that_looks_like_markup_is_shown_as_it_is(tmp_path, run_command):

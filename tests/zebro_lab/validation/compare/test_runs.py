@@ -18,7 +18,7 @@ def test_a_tighter_turn_is_told_from_a_wide_one_wherever_it_was_walked(tmp_path)
     assert curvature.median == pytest.approx(1 / 1.9 - 1 / 2.0, rel=0.2)
     assert curvature.clear
     assert not by_name["speed, tracked"].clear
-    start = done.comparison.paths[0].track
+    start = done.comparison.paths[0]
     np.testing.assert_allclose([*start.position[0], start.yaw[0]], 0, atol=1e-12)
 
 

@@ -21,7 +21,6 @@ from zebro_lab.calibration.rig_part import RigPart, averaged_part, read_part
 from zebro_lab.calibration.run_covariate import covariate_note, joined_covariate
 from zebro_lab.calibration.streamed_part import read_streamed_part
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
-from zebro_lab.files.unpacking import MOST_CELLS
 from zebro_lab.runs.counted_once import (
     content_hash,
     duplicates_note,
@@ -34,7 +33,7 @@ from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
 from zebro_lab.tables.columns import Columns, parse_definition
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.disc_angles import joined_angles
-from zebro_lab.tables.parquet_files import parquet_rows
+from zebro_lab.tables.parquet_files import MOST_CELLS, parquet_rows
 from zebro_lab.tables.table_files import table_stem
 
 MOST_ROWS = 15_000_000

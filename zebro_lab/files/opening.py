@@ -2,12 +2,13 @@
 """Open user files safely: regular files only, limited in size, with one-line error messages.
 
 Every reader of a user's file opens it with these functions and calls third-party parsers inside
-`parsing`. Limits for documents (TOML, JSON), array archives and compressed tables are in the other
-modules of this folder.
+`parsing`. A file is bounded by its size alone, unpacked if it is packed.
 """
 
+import gzip
 import os
 import stat
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,6 +20,8 @@ Fault = type[DataError] | type[SettingsError]
 
 MOST_TEXT: Final = 64 << 20
 """Largest text file that is read at once: a trajectory of half a million poses [bytes]."""
+MOST_TABLE: Final = 1 << 30
+"""Largest size of a table, unpacked: some ten million rows of eight columns of text [bytes]."""
 _KINDS: Final = (
     (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a FIFO"), (stat.S_ISSOCK, "a socket"),
     (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
@@ -105,6 +108,31 @@ def read_text(
             "it as UTF-8",
             file=path,
         ) from error
+
+
+def read_unpacked(path: Path, *, most: int = MOST_TABLE) -> bytes:
+    """Read a whole binary file, decompressing it if its name ends in .gz.
+
+    Args:
+        path: The file.
+        most: Largest size, unpacked, that is accepted [bytes].
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: The file is not regular, not opened, not complete gzip, or larger than `most`.
+    """
+    if not path.name.lower().endswith(".gz"):
+        return read_bytes(path, most=most)
+    with open_file(path, most=most) as file:
+        try:
+            data = gzip.GzipFile(fileobj=file).read(most + 1)
+        except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+            raise DataError(
+                f"is not a complete gzip file ({error}); copy or export it again", file=path
+            ) from error
+    if len(data) > most:
+        raise DataError(f"unpacks to more than {most >> 20} MiB; split it", file=path)
+    return data
 
 
 @contextmanager

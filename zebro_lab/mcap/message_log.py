@@ -4,6 +4,9 @@
 from collections.abc import Mapping
 from typing import IO
 
+from mcap.well_known import MessageEncoding, SchemaEncoding
+from mcap.writer import CompressionType, Writer
+
 from zebro_lab.mcap.ros_messages import Schema
 
 
@@ -19,8 +22,6 @@ class MessageLog:
     """
 
     def __init__(self, file: IO[bytes], *, chunk_size: int = 1 << 20) -> None:
-        from mcap.writer import CompressionType, Writer
-
         self._writer = Writer(file, chunk_size=chunk_size, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="zebro-lab")
         self._schemas: dict[str, int] = {}
@@ -37,8 +38,6 @@ class MessageLog:
             schema: Message type; registered once for all topics with its name.
             metadata: Names and values stored with the topic's channel.
         """
-        from mcap.well_known import MessageEncoding, SchemaEncoding
-
         if schema.name not in self._schemas:
             self._schemas[schema.name] = self._writer.register_schema(
                 schema.name, SchemaEncoding.ROS2, schema.text.encode()

@@ -7,16 +7,15 @@ which can be corrected later.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from mcap.records import Schema
 
 from rig.device import Sample
 from rig.sample_columns import SampleColumns, as_columns
 from zebro_lab.mcap.cdr import CdrReader, CdrWriter
-from zebro_lab.mcap.log_records import read_records
-
-if TYPE_CHECKING:
-    from mcap.records import McapRecord
+from zebro_lab.mcap.log_records import Decode, read_log_messages
 
 _TEXT = """\
 # Consecutive samples of one device. The metadata of the channel name the counts and their units.
@@ -121,27 +120,18 @@ def read_raw_log(path: Path) -> SalvagedStreams:
         NotFound: The file does not exist.
         DataError: The file is not regular, cannot be opened, or is not MCAP.
     """
-    from mcap.records import Channel, Message, Schema
-
     parts: dict[str, list[SampleColumns]] = {}
-    ours: dict[int, tuple[str, str]] = {}
-    schemas: dict[int, str] = {}
 
-    def take(record: "McapRecord") -> None:
-        if isinstance(record, Schema):
-            schemas[record.id] = record.name
-        elif isinstance(record, Channel):
-            name = schemas.get(record.schema_id, "")
-            if name in RAW_SCHEMAS:
-                ours[record.id] = (record.topic, RAW_SCHEMAS[name][0])
-        elif isinstance(record, Message) and record.channel_id in ours:
-            topic, dtype = ours[record.channel_id]
-            samples = decode_raw(record.data, dtype=dtype)
-            earlier = parts.setdefault(topic, [])
-            if earlier and earlier[0].counts.shape[1] != samples.counts.shape[1]:
-                raise ValueError(f"the number of values per sample of {topic} changes")
-            earlier.append(samples)
+    def decoder(schema: Schema, _: str) -> Decode | None:
+        known = RAW_SCHEMAS.get(schema.name)
+        return None if known is None else partial(decode_raw, dtype=known[0])
 
-    damage = read_records(path, take)
+    def take(topic: str, _time: int, _type: str, samples: SampleColumns) -> None:
+        earlier = parts.setdefault(topic, [])
+        if earlier and earlier[0].counts.shape[1] != samples.counts.shape[1]:
+            raise ValueError(f"the number of values per sample of {topic} changes")
+        earlier.append(samples)
+
+    damage = read_log_messages(path, decoder, take)
     streams = {topic: SampleColumns.joined(found) for topic, found in parts.items()}
     return SalvagedStreams(streams, damage)

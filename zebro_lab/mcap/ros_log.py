@@ -7,7 +7,11 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from zebro_lab.mcap.log_records import read_records
+from mcap.records import Schema
+from mcap.well_known import MessageEncoding
+from mcap_ros2.decoder import DecoderFactory
+
+from zebro_lab.mcap.log_records import Decode, read_log_messages
 from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_bags import is_bag, read_bag
 
@@ -49,31 +53,25 @@ def read_typed_messages(
 
 
 def _read_mcap(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
-    from mcap.records import Channel, McapRecord, Message, Schema
-    from mcap_ros2.decoder import DecoderFactory
-
     factory = DecoderFactory()
-    schemas: dict[int, Schema] = {}
-    decoders: dict[int, tuple[str, str, Any]] = {}
     messages: list[LoggedMessage] = []
 
-    def take(record: McapRecord) -> None:
-        if isinstance(record, Schema):
-            schemas[record.id] = record
-        elif isinstance(record, Channel):
-            found = schemas.get(record.schema_id)
-            if found is not None and found.name in types:
-                with _damage_of(f"the log's description of {found.name}"):
-                    decode = factory.decoder_for(record.message_encoding, found)
-                if decode is not None:
-                    decoders[record.id] = (record.topic, found.name, decode)
-        elif isinstance(record, Message) and record.channel_id in decoders:
-            topic, type_name, decode = decoders[record.channel_id]
-            with _damage_of(f"a message of {topic}"):
-                content = decode(record.data)
-            messages.append(LoggedMessage(topic, record.log_time, content, type_name))
+    def decoder(schema: Schema, topic: str) -> Decode | None:
+        if schema.name not in types:
+            return None
+        with _damage_of(f"the log's description of {schema.name}"):
+            decode = factory.decoder_for(MessageEncoding.CDR, schema)
 
-    damage = read_records(path, take)
+        def decode_message(data: bytes) -> Any:
+            with _damage_of(f"a message of {topic}"):
+                return None if decode is None else decode(data)
+
+        return None if decode is None else decode_message
+
+    def take(topic: str, log_time: int, name: str, content: Any) -> None:
+        messages.append(LoggedMessage(topic, log_time, content, name))
+
+    damage = read_log_messages(path, decoder, take)
     return messages, damage
 
 

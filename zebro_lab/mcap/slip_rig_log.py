@@ -6,18 +6,16 @@ New runs contain only raw samples (`raw_log`); logs with this message can still 
 
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from mcap.records import Schema
 from numpy.typing import NDArray
 
 from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.cdr import CdrReader
-from zebro_lab.mcap.log_records import read_records
-
-if TYPE_CHECKING:
-    from mcap.records import McapRecord
+from zebro_lab.mcap.log_records import Decode, read_log_messages
 
 TOPIC = "/slip_rig/samples"
 SCHEMA_NAME = "zebro_lab/msg/SlipRigBlock"
@@ -121,23 +119,14 @@ def read_log(path: Path) -> SalvagedLog:
         DataError: The file is not regular, cannot be opened, is not MCAP, or no sample on `TOPIC`
             can be read.
     """
-    from mcap.records import Channel, Message, Schema
+    blocks: list[NDArray[np.float64]] = []
 
-    blocks: list[Array] = []
-    ours: set[int] = set()
-    schemas: dict[int, str] = {}
+    def decoder(schema: Schema, topic: str) -> Decode | None:
+        if topic == TOPIC and schema.name != SCHEMA_NAME:
+            raise ValueError(f"{TOPIC} is not of type {SCHEMA_NAME}")
+        return decode_block if topic == TOPIC else None
 
-    def take(record: "McapRecord") -> None:
-        if isinstance(record, Schema):
-            schemas[record.id] = record.name
-        elif isinstance(record, Channel) and record.topic == TOPIC:
-            if schemas.get(record.schema_id) != SCHEMA_NAME:
-                raise ValueError(f"{TOPIC} is not of type {SCHEMA_NAME}")
-            ours.add(record.id)
-        elif isinstance(record, Message) and record.channel_id in ours:
-            blocks.append(decode_block(record.data))
-
-    damage = read_records(path, take)
+    damage = read_log_messages(path, decoder, lambda *message: blocks.append(message[-1]))
     if not blocks:
         raise DataError(
             f"holds no readable samples of topic {TOPIC}" + (f" ({damage})" if damage else ""),

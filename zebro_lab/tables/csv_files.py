@@ -4,15 +4,15 @@
 import io
 import re
 import warnings
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
+
+import pandas as pd
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import parsing
-from zebro_lab.files.unpacking import open_unpacked
+from zebro_lab.files.opening import parsing, read_unpacked
 from zebro_lab.tables.cells import NO_VALUE
 from zebro_lab.tables.raw_table import RawTable, differing_headers
 from zebro_lab.tables.row_checks import require_full_rows, words_between_numbers
@@ -25,9 +25,6 @@ from zebro_lab.tables.text_layout import (
     Line,
     find_layout,
 )
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _HEAD_BYTES: Final = 1 << 16  # enough to see the layout, little enough to decode twice
 _HEAD_LINES: Final = 400
@@ -56,33 +53,35 @@ def read_csv_file(path: Path) -> RawTable:
         DataError: The file is no text or no whole gzip file, has no header, a row has more cells
             than the header, the layout is ambiguous, or a size limit is exceeded.
     """
-    encodings, lines = _head(path)
-    layout = _layout(path, lines)
-    try:
-        frame = _frame(path, layout, encodings[0])
-        encoding = encodings[0]
-    except UnicodeDecodeError as error:
-        if len(encodings) < 2:
-            raise DataError(f"is not UTF-8 text ({error}); save it as UTF-8", file=path) from error
-        encoding = encodings[1]
-        frame = _frame(path, layout, encoding)
-    table = _table(path, layout, frame, encoding)
+    data = read_unpacked(path)
+    encoding = _encoding(path, data)
+    layout = _layout(path, _head(path, data[:_HEAD_BYTES], encoding))
+    table = _table(path, layout, _frame(path, layout, data, encoding), encoding)
     if layout.separator == BLANKS:
         require_full_rows(table)
     return replace(table, notes=(*table.notes, *words_between_numbers(table)))
 
 
-def _head(path: Path) -> tuple[tuple[str, ...], list[Line]]:
-    """Return the encodings that are possible, and the first lines that are not blank."""
-    with parsing(path, "cannot be read", advice="export it again"), open_unpacked(path) as file:
-        head = file.read(_HEAD_BYTES)
+def _encoding(path: Path, data: bytes) -> str:
+    head = data[:_HEAD_BYTES]
     for magic, what in _MAGIC.items():
         if head.startswith(magic):
             raise DataError(f"is not CSV but {what}", file=path)
     encodings = possible_encodings(head)
     if not encodings:
         raise DataError("is not text but a binary file; export it as CSV or Parquet", file=path)
-    lines = re.split(r"\r\n|\n|\r", decoded(head, encodings[0]))
+    for encoding in encodings:
+        try:
+            data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        return encoding
+    raise DataError("is not UTF-8 text; save it as UTF-8", file=path)
+
+
+def _head(path: Path, head: bytes, encoding: str) -> list[Line]:
+    """Return the first lines that are not blank."""
+    lines = re.split(r"\r\n|\n|\r", decoded(head, encoding))
     if len(head) == _HEAD_BYTES and len(lines) == 1:
         raise DataError(
             f"the first line is longer than {_HEAD_BYTES >> 10} kB; expected a header of at most "
@@ -94,7 +93,7 @@ def _head(path: Path) -> tuple[tuple[str, ...], list[Line]]:
     numbered = [(i, line) for i, line in enumerate(lines, start=1) if line.strip()]
     if numbered and numbered[0][1].lstrip().startswith(("{", "[{", "<")):
         raise DataError("is not a table but JSON, HTML or XML; export it as CSV", file=path)
-    return encodings, _unbroken(numbered[:_HEAD_LINES])
+    return _unbroken(numbered[:_HEAD_LINES])
 
 
 def _unbroken(lines: list[Line]) -> list[Line]:
@@ -131,51 +130,33 @@ def _layout(path: Path, lines: list[Line]) -> Layout:
     return layout
 
 
-def _frame(path: Path, layout: Layout, encoding: str) -> "pd.DataFrame":
-    import pandas as pd
-
+def _frame(path: Path, layout: Layout, data: bytes, encoding: str) -> pd.DataFrame:
     names = [*layout.header.names, *[_SURPLUS] * (layout.width > len(layout.header.names))]
-    with _csv_errors(path), open_unpacked(path, width=len(names)) as file:
-        text = io.TextIOWrapper(file, encoding=encoding, newline="")
-        for _ in range(layout.last_line):  # here, since pandas looks for quotes in skipped lines
-            text.readline()
-        return pd.read_csv(
-            text,
-            sep=layout.separator,
-            header=None,
-            names=names,
-            index_col=False,  # otherwise an extra cell shifts all columns silently
-            skipinitialspace=True,
-            low_memory=False,
-            decimal=layout.decimal or ".",
-            na_values=list(NO_VALUE),
-        )
-
-
-@contextmanager
-def _csv_errors(path: Path) -> Iterator[None]:
-    import pandas as pd
-
-    with warnings.catch_warnings():
+    text = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")
+    for _ in range(layout.last_line):  # here, since pandas looks for quotes in skipped lines
+        text.readline()
+    with (
+        parsing(path, "is not a regular table", advice="correct it, or export it again"),
+        warnings.catch_warnings(),
+    ):
         warnings.simplefilter("error", pd.errors.ParserWarning)
         try:
-            with parsing(path, "cannot be read as CSV", advice="export it again"):
-                try:
-                    yield
-                except (UnicodeDecodeError, DataError):
-                    raise
-                except pd.errors.EmptyDataError as error:
-                    raise DataError("has a header but no rows", file=path) from error
-                except (pd.errors.ParserError, pd.errors.ParserWarning) as error:
-                    problem = f"is not a regular table: {error}; correct it"
-                    raise DataError(problem, file=path) from error
-        except DataError as error:
-            if isinstance(error.__cause__, UnicodeDecodeError):
-                raise error.__cause__ from error
-            raise
+            return pd.read_csv(
+                text,
+                sep=layout.separator,
+                header=None,
+                names=names,
+                index_col=False,  # otherwise an extra cell shifts all columns silently
+                skipinitialspace=True,
+                low_memory=False,
+                decimal=layout.decimal or ".",
+                na_values=list(NO_VALUE),
+            )
+        except pd.errors.EmptyDataError as error:
+            raise DataError("has a header but no rows", file=path) from error
 
 
-def _table(path: Path, layout: Layout, frame: "pd.DataFrame", encoding: str) -> RawTable:
+def _table(path: Path, layout: Layout, frame: pd.DataFrame, encoding: str) -> RawTable:
     columns = _without_empty_ends(path, frame, layout)
     odd = layout.separator != ","
     said = [f"cells are separated by {SEPARATORS[layout.separator]}"] * odd
@@ -193,9 +174,7 @@ def _table(path: Path, layout: Layout, frame: "pd.DataFrame", encoding: str) -> 
     )
 
 
-def _without_empty_ends(
-    path: Path, frame: "pd.DataFrame", layout: Layout
-) -> "Mapping[str, pd.Series]":
+def _without_empty_ends(path: Path, frame: pd.DataFrame, layout: Layout) -> Mapping[str, pd.Series]:
     """Return the columns without empty rows at the end, and without an empty one at the right."""
     last = str(frame.columns[-1]) if len(frame.columns) else ""
     unnamed = last == f"column {len(frame.columns)}" and len(frame.columns) > 1

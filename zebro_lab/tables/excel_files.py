@@ -6,17 +6,15 @@ import zipfile
 from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
+
+import pandas as pd
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import parsing
-from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO, read_unpacked
+from zebro_lab.files.opening import MOST_TABLE, parsing, read_unpacked
 from zebro_lab.tables.cells import decimal_sign, kind_of
 from zebro_lab.tables.header_rows import Header, NoHeader, data_rows, find_header
 from zebro_lab.tables.raw_table import RawTable, differing_headers
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _HEAD_ROWS: Final = 150
 Cells = Sequence[Sequence[Any]]
@@ -37,8 +35,8 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
             cells, a formula has no stored value, there is no header, or a limit is exceeded.
     """
     content = read_unpacked(path)
-    _require_bounded(path, content)
     with parsing(path, "cannot be read as an Excel workbook", advice="save it again, or as CSV"):
+        _require_bounded(path, content)
         name, cells, first_row = _sheet(path, content, sheet)
         header = _header(path, name, cells)
         _require_values(path, content, name, cells, first_row)
@@ -67,7 +65,7 @@ def _sheet(path: Path, content: bytes, wanted: str | None) -> tuple[str, Cells, 
         if wanted is not None and wanted not in names:
             raise DataError(f"has no sheet '{wanted}'; it has {_listed(names)}", file=path)
         filled = {name: rows for name in ([wanted] if wanted else names)
-                  if (rows := _cells(path, book[name]))}  # fmt: skip
+                  if (rows := _cells(book[name]))}  # fmt: skip
     finally:
         book.close()
     if len(filled) > 1:
@@ -95,18 +93,11 @@ def _open(path: Path, content: bytes, *, values: bool) -> Any:
     return openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=values)
 
 
-def _cells(path: Path, sheet: Any) -> list[list[Any]]:
+def _cells(sheet: Any) -> list[list[Any]]:
     """Return the cells of a sheet, without empty rows at the end; empty for a sheet of charts."""
     if not hasattr(sheet, "iter_rows"):
         return []
-    rows, count = [], 0
-    for row in sheet.iter_rows(values_only=True):
-        count += len(row)
-        if count > MOST_CELLS // 4:
-            raise DataError(
-                f"has more than {MOST_CELLS / 4e6:.0f} million cells; save it as CSV", file=path
-            )
-        rows.append(list(row))
+    rows = [list(row) for row in sheet.iter_rows(values_only=True)]
     while rows and all(cell is None for cell in rows[-1]):
         rows.pop()
     return rows
@@ -134,7 +125,7 @@ def _require_values(path: Path, content: bytes, name: str, cells: Cells, first: 
         return
     book = _open(path, content, values=False)
     try:
-        formulas = _cells(path, book[name])[first - 1 :]
+        formulas = _cells(book[name])[first - 1 :]
     finally:
         book.close()
     for i, (row, found) in enumerate(zip(formulas, cells, strict=False)):
@@ -157,9 +148,7 @@ def _in_percent(path: Path, content: bytes, name: str, row: int) -> list[int]:
         book.close()
 
 
-def _columns(cells: Cells, header: Header) -> "dict[str, pd.Series]":
-    import pandas as pd
-
+def _columns(cells: Cells, header: Header) -> dict[str, pd.Series]:
     rows = cells[header.first :]
     columns = {}
     for i, name in enumerate(header.names):
@@ -167,11 +156,11 @@ def _columns(cells: Cells, header: Header) -> "dict[str, pd.Series]":
         plain = [None if isinstance(c, str) and kind_of(c) == "empty" else c for c in found]
         if name == f"column {i + 1}" and all(cell is None for cell in plain):
             continue
-        columns[name] = _series(plain, pd)
+        columns[name] = _series(plain)
     return columns
 
 
-def _series(cells: Sequence[Any], pd: Any) -> "pd.Series":
+def _series(cells: Sequence[Any]) -> pd.Series:
     known = [cell for cell in cells if cell is not None]
     if all(isinstance(cell, (int, float)) and not isinstance(cell, bool) for cell in known):
         return pd.Series(cells, dtype=float)
@@ -193,15 +182,12 @@ def _require_bounded(path: Path, content: bytes) -> None:
     if not content.startswith(b"PK"):
         raise DataError("is not an Excel workbook; if it is text, rename it to end in .csv",
                         file=path)  # fmt: skip
-    with (
-        parsing(path, "cannot be read as an Excel workbook", advice="save it again, or as CSV"),
-        zipfile.ZipFile(io.BytesIO(content)) as archive,
-    ):
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
         unpacked = sum(info.file_size for info in archive.infolist())
-    if unpacked > FREELY + MOST_RATIO * len(content):
+    if unpacked > MOST_TABLE:
         raise DataError(
-            f"would unpack to {unpacked / 1e6:.0f} MB, more than {MOST_RATIO} times its size; "
-            "check that this is the right file",
+            f"would unpack to {unpacked / 1e6:.0f} MB; expected at most {MOST_TABLE / 1e6:.0f} MB; "
+            "save it as CSV",
             file=path,
         )
 

@@ -1,20 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Read Parquet files as raw tables, with limits on memory."""
+"""Read Parquet files as raw tables."""
 
 import io
-import os
 from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import open_file, parsing
-from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO, read_unpacked
+from zebro_lab.files.opening import open_file, parsing, read_unpacked
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 
@@ -23,10 +20,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 _ADVICE = "export the file again"
-_MOST_THRIFT = 1 << 26  # memory that a footer may ask for [bytes or entries]
-_LIMITS: Any = {
-    "thrift_string_size_limit": _MOST_THRIFT, "thrift_container_size_limit": _MOST_THRIFT
-}  # fmt: skip
+MOST_CELLS: Final = 32_000_000
+"""Largest number of cells that are read at once; each takes some 25 bytes meanwhile."""
 
 
 def read_parquet_file(path: Path) -> RawTable:
@@ -38,10 +33,10 @@ def read_parquet_file(path: Path) -> RawTable:
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not complete Parquet, or exceeds the limits of size or cells.
+        DataError: The file is not complete Parquet, or too large.
     """
     with _opened(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
-        table = _read(file, path)
+        table = _read(file)
         return _raw(path, table, table.schema.metadata)
 
 
@@ -60,7 +55,7 @@ def parquet_rows(path: Path) -> tuple[int, int]:
     with (
         _opened(path) as file,
         parsing(path, "is not a complete Parquet file", advice=_ADVICE),
-        pq.ParquetFile(file, **_LIMITS) as opened,
+        pq.ParquetFile(file) as opened,
     ):
         return opened.metadata.num_rows, opened.metadata.num_columns
 
@@ -75,19 +70,18 @@ def parquet_parts(path: Path, *, rows: int, wanted: Collection[str]) -> Iterator
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not complete Parquet, or would unpack to far more than its size.
+        DataError: The file is not complete Parquet.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     with _opened(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
-        with pq.ParquetFile(file, **_LIMITS) as opened:
-            _require_packed(opened.metadata, path, file.seek(0, os.SEEK_END))
+        with pq.ParquetFile(file) as opened:
             schema = opened.schema_arrow
             names = [name for name in dict.fromkeys(schema.names) if name in wanted]
             texts = [name for name in names if _is_text(schema.field(name).type)]
         # Without reading ahead, which keeps all bytes that were read until the end.
-        with pq.ParquetFile(file, read_dictionary=texts, pre_buffer=False, **_LIMITS) as opened:
+        with pq.ParquetFile(file, read_dictionary=texts, pre_buffer=False) as opened:
             before, row = None, 0
             for batch in opened.iter_batches(rows, columns=names, use_threads=False):
                 table = pa.Table.from_batches([batch])
@@ -123,43 +117,12 @@ def _opened(path: Path) -> AbstractContextManager[IO[bytes]]:
     return open_file(path)
 
 
-def _read(file: IO[bytes], path: Path) -> "pa.Table":
+def _read(file: IO[bytes]) -> "pa.Table":
     import pyarrow.parquet as pq
 
-    with pq.ParquetFile(file, **_LIMITS) as opened:
-        metadata, schema = opened.metadata, opened.schema_arrow
-        _require_bounded(metadata, path, file.seek(0, os.SEEK_END))
-    # A long string that repeats in many rows is stored once, but unpacked it is copied to each row.
-    texts = [field.name for field in schema if _is_text(field.type)]
-    with pq.ParquetFile(file, read_dictionary=texts, **_LIMITS) as opened:
-        # In one thread: of several, a damaged column could abort the process at exit (pyarrow 17).
+    # In one thread: of several, a damaged column could abort the process at exit (pyarrow 17).
+    with pq.ParquetFile(file) as opened:
         return opened.read(use_threads=False)
-
-
-def _require_bounded(metadata: Any, path: Path, size: int) -> None:
-    groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
-    rows = max(metadata.num_rows, sum(group.num_rows for group in groups))
-    cells = rows * max(metadata.num_columns, 1)
-    if cells > MOST_CELLS:
-        raise DataError(
-            f"has {cells / 1e6:.0f} million cells; expected at most {MOST_CELLS / 1e6:.0f} million:"
-            " split the file, or drop columns that are not needed",
-            file=path,
-        )
-    _require_packed(metadata, path, size)
-
-
-def _require_packed(metadata: Any, path: Path, size: int) -> None:
-    """Raise `DataError` if a file would unpack to far more than its size."""
-    groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
-    # Not `group.column(i)`: pyarrow 26 aborts the process there if a column's statistics are wrong.
-    unpacked = sum(group.total_byte_size for group in groups)
-    if unpacked > FREELY + MOST_RATIO * size:
-        raise DataError(
-            f"would unpack to {unpacked / 1e6:.0f} MB, more than {MOST_RATIO} times its size; "
-            "check that this is the right file",
-            file=path,
-        )
 
 
 def _cells(column: "pa.ChunkedArray") -> "pd.Series":

@@ -6,17 +6,17 @@ import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.similar_name import nearest
 from model.told_apart import told_apart
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import parsing
-from zebro_lab.files.unpacking import open_unpacked
+from zebro_lab.files.opening import parsing, read_unpacked
 from zebro_lab.tables.cells import kind_of, may_be_thousands
 from zebro_lab.tables.header_units import suffix_unit
 
@@ -24,9 +24,6 @@ _MINUS = "\u2212"  # as typesetters write it
 _BLOCK = 1 << 16  # cells converted to numbers at a time
 OVERLOAD: Final = 1e30
 """Least size of a number that stands for an overload, such as 9.9e37 of instruments with SCPI."""
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,7 @@ class RawTable:
     """
 
     path: Path
-    columns: "Mapping[str, pd.Series]"
+    columns: Mapping[str, pd.Series]
     repeated: frozenset[str] = frozenset()
     source: str | None = None
     decimal_comma: bool = False
@@ -100,7 +97,7 @@ class RawTable:
         """
         return self.units[name] if name in self.units else suffix_unit(name, si_unit)
 
-    def column(self, name: str) -> "pd.Series":
+    def column(self, name: str) -> pd.Series:
         """Return the column of a header as read: numbers, strings or dates.
 
         Raises:
@@ -124,8 +121,6 @@ class RawTable:
         Raises:
             DataError: The column is missing, ambiguous or of dates, or a cell is not a number.
         """
-        import pandas as pd
-
         cells = self.column(name)
         if pd.api.types.is_datetime64_any_dtype(cells) or pd.api.types.is_timedelta64_dtype(cells):
             raise self.fault(
@@ -228,12 +223,12 @@ class RawTable:
             return self.rows_from + row - 1
         if self.header_line is None:
             return None
-        with open_unpacked(self.path) as file:
-            text = io.TextIOWrapper(file, encoding=self.encoding, errors="replace")
-            for number, line in enumerate(text, start=1):
-                row -= number > self.header_line and bool(line.strip())
-                if row == 0:
-                    return number
+        file = io.BytesIO(read_unpacked(self.path))
+        text = io.TextIOWrapper(file, encoding=self.encoding, errors="replace")
+        for number, line in enumerate(text, start=1):
+            row -= number > self.header_line and bool(line.strip())
+            if row == 0:
+                return number
         return None
 
     def _not_a_number(self, name: str, index: int) -> DataError:
@@ -290,7 +285,7 @@ def missing_text(value: float) -> str:
 
 
 def differing_headers(
-    repeated: Collection[str], columns: "Mapping[str, pd.Series]"
+    repeated: Collection[str], columns: Mapping[str, pd.Series]
 ) -> frozenset[str]:
     """Return those of repeated headers whose columns differ: equal copies leave nothing open.
 
@@ -311,14 +306,12 @@ def _cell_text(cell: Any) -> str:
     return cell if isinstance(cell, str) else "" if cell is None or cell != cell else str(cell)
 
 
-def _as_numbers(cells: "pd.Series") -> Array:
+def _as_numbers(cells: pd.Series) -> Array:
     """Convert cells to numbers, shape (n,); NaN for empty cells and for text that is not a number.
 
     After a block of 65,536 cells with such text the rest is NaN too: converting text takes pandas
     some microseconds per cell, so that a column of names would take minutes.
     """
-    import pandas as pd
-
     if pd.api.types.is_numeric_dtype(cells):
         return np.asarray(cells, dtype=float)
     values = np.full(len(cells), np.nan)
@@ -333,12 +326,12 @@ def _as_numbers(cells: "pd.Series") -> Array:
     return values
 
 
-def _has_points(cells: "pd.Series") -> bool:
+def _has_points(cells: pd.Series) -> bool:
     # 1,234.5 and 1.234,5 are both possible: if points occur, the comma is not the decimal sign.
     return bool(cells.astype(str).str.contains(".", regex=False, na=False).any())
 
 
-def _all_grouped(cells: "pd.Series", sign: str) -> NDArray[np.bool_]:
+def _all_grouped(cells: pd.Series, sign: str) -> NDArray[np.bool_]:
     """Return which cells may have a thousands separator, if all cells with this sign may."""
     texts = [str(cell) if isinstance(cell, str) else "" for cell in cells]
     signed = np.array([sign in text for text in texts], dtype=bool)

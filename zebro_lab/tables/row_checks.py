@@ -4,16 +4,15 @@
 import io
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
+
+import pandas as pd
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.unpacking import open_unpacked
+from zebro_lab.files.opening import read_unpacked
 from zebro_lab.tables.cells import kind_of
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.text_layout import BLANKS, split_line
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _FOOTER = re.compile(
     r"(?:mean|average|avg|std|sd|stdev|sum|total|minimum|min|maximum|max|median|count|end|eof|"
@@ -35,19 +34,19 @@ def require_full_rows(table: RawTable) -> None:
     if not last.any() or table.header_line is None:
         return
     width, row = len(table.columns), 0
-    with open_unpacked(table.path) as file:
-        text = io.TextIOWrapper(file, encoding=table.encoding, errors="replace")
-        for number, line in enumerate(text, start=1):
-            row += number > table.header_line and bool(line.strip())
-            if row > len(last):
-                return
-            found = len(split_line(line, BLANKS)) if row and last[row - 1] else width
-            if found not in (0, width):
-                raise DataError(
-                    f"the row has {found} cells, the header has {width}; write nan where a value "
-                    "is missing, or separate cells by tabs or commas",
-                    file=table.path, row=row, line=number,
-                )  # fmt: skip
+    file = io.BytesIO(read_unpacked(table.path))
+    text = io.TextIOWrapper(file, encoding=table.encoding, errors="replace")
+    for number, line in enumerate(text, start=1):
+        row += number > table.header_line and bool(line.strip())
+        if row > len(last):
+            return
+        found = len(split_line(line, BLANKS)) if row and last[row - 1] else width
+        if found not in (0, width):
+            raise DataError(
+                f"the row has {found} cells, the header has {width}; write nan where a value "
+                "is missing, or separate cells by tabs or commas",
+                file=table.path, row=row, line=number,
+            )  # fmt: skip
 
 
 def require_no_footer(table: RawTable) -> None:
@@ -87,11 +86,11 @@ def words_between_numbers(table: RawTable) -> tuple[str, ...]:
     return ()
 
 
-def _are_values(cells: "pd.Series") -> bool:
+def _are_values(cells: pd.Series) -> bool:
     return len(cells) > 0 and kind_of(str(cells.iloc[0])) == "value"
 
 
-def _are_statistics(last: Sequence[str], above: "pd.Series") -> bool:
+def _are_statistics(last: Sequence[str], above: pd.Series) -> bool:
     """Return whether the last texts of a column are statistics, each once, and none above is."""
     return (
         len(set(last)) == len(last)

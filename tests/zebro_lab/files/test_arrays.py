@@ -89,17 +89,8 @@ def test_a_damaged_member_is_refused(tmp_path):
         "{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999,), }",
         "{'descr': '|O', 'fortran_order': False, 'shape': (5,), }",
         "{'descr': '<f8', 'fortran_order': False, 'shape': (-5,), }",
-        "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (5,), }",
         "[" * 5000,
     ],
 )
 def test_a_header_that_claims_the_impossible_is_refused(header, tmp_path):
-    assert "'t'" in refusal(read, archive(tmp_path, {**GOOD, "t": npy_header(header)}))
-
-
-def test_a_bomb_of_zeros_is_refused_within_memory(tmp_path):
-    zeros = npy(np.zeros((20, 600_000, 3)))
-    file = archive(tmp_path, {"t": npy(np.zeros(600_000)), "poses": zeros})
-    assert file.stat().st_size < 2 << 20
-    del zeros
-    assert "unpack" in refusal(read, file, megabytes=100)
+    assert ADVICE in refusal(read, archive(tmp_path, {**GOOD, "t": npy_header(header)}))

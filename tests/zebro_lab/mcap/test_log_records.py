@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Damaged logs are read up to their damage."""
 
-from contextlib import suppress
-from pathlib import Path
-
 import numpy as np
 import pytest
-from mcap.writer import CompressionType, Writer
 
 from rig.device import Sample
-from support.bounded_reading import peak_memory, reset_peak_memory
 from support.logs import COUNTS, VIEWS, log_of
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.log_writer import LogWriter
-from zebro_lab.mcap.raw_log import COUNTS_NAME, read_raw_log
-from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, TOPIC, read_log
+from zebro_lab.mcap.raw_log import read_raw_log
 
 
 def test_a_log_is_read_up_to_where_it_is_cut(tmp_path):
@@ -62,30 +56,3 @@ def test_a_log_with_flipped_bytes_is_read_in_part_or_refused(tmp_path):
             continue
         for stream in found.streams.values():
             assert len(stream) <= 40
-
-
-def log_of_chunk(file: Path, *, unpacked: int, schema: str, topic: str) -> Path:
-    """Write a log whose one message unpacks to so many bytes of zeros."""
-    with file.open("wb") as out:
-        writer = Writer(out, chunk_size=unpacked * 2, compression=CompressionType.ZSTD)
-        writer.start()
-        number = writer.register_schema(schema, "ros2msg", b"uint8 x")
-        channel = writer.register_channel(topic, "cdr", number)
-        writer.add_message(channel, 0, bytes(unpacked), 0)
-        writer.finish()
-    return file
-
-
-@pytest.mark.parametrize(
-    ("reader", "schema", "topic"),
-    [(read_raw_log, COUNTS_NAME, "/a/raw"), (read_log, SCHEMA_NAME, TOPIC)],
-    ids=["raw", "rig"],
-)
-def test_a_bomb_of_zeros_in_a_log_is_cut_off_within_memory(reader, schema, topic, tmp_path):
-    file = tmp_path / "log.mcap"
-    log_of_chunk(file, unpacked=400 << 20, schema=schema, topic=topic)
-    assert file.stat().st_size < 1 << 20
-    before = reset_peak_memory()
-    with suppress(DataError):
-        reader(file)
-    assert peak_memory() - before < 200 * 1024

@@ -11,6 +11,7 @@ import pytest
 
 from support.bounded_reading import refusal
 from zebro_lab.files.errors import DataError
+from zebro_lab.tables import excel_files
 from zebro_lab.tables.table_files import read_table_file
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -71,12 +72,13 @@ def test_what_is_no_workbook_is_refused(tmp_path, content, problem):
     assert problem in refusal(read_table_file, tmp_path / "a.xlsx")
 
 
-def test_a_workbook_that_unpacks_to_very_much_is_refused(tmp_path):
+def test_a_workbook_that_unpacks_to_very_much_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(excel_files, "MOST_TABLE", 1 << 20)
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("xl/worksheets/sheet1.xml", bytes(90 << 20))
+        archive.writestr("xl/worksheets/sheet1.xml", bytes(2 << 20))
     (tmp_path / "a.xlsx").write_bytes(made.getvalue())
-    assert "would unpack to 94 MB" in refusal(read_table_file, tmp_path / "a.xlsx")
+    assert "would unpack to 2 MB" in refusal(read_table_file, tmp_path / "a.xlsx")
 
 
 def test_without_openpyxl_the_line_says_how_to_get_it(tmp_path, monkeypatch):

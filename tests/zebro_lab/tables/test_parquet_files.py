@@ -3,7 +3,6 @@
 
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +14,6 @@ from support.bounded_reading import refusal
 from support.rig_tables import given_slip
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.tables.table_files import read_table_file
-
-
-def numbers(name: str) -> Callable[[Path], object]:
-    return lambda file: read_table_file(file).numbers(name)
 
 
 def parquet(folder: Path, table: pa.Table, **options: object) -> Path:
@@ -39,25 +34,6 @@ def test_parquet_cells_of_other_kinds_are_named(kind, column, tmp_path):
     }  # fmt: skip
     file = parquet(tmp_path, pa.table({**columns, column: cells}))
     assert f"column '{column}'" in refusal(lambda path: read_rig_data([path]), file)
-
-
-def test_a_parquet_bomb_of_equal_values_is_refused_within_memory(tmp_path):
-    column = pa.DictionaryArray.from_arrays(
-        pa.array(np.zeros(60_000_000, np.int8)), pa.array([1.5])
-    )
-    file = parquet(tmp_path, pa.table({"t": column.dictionary_decode()}), compression="zstd")
-    assert file.stat().st_size < 1 << 20
-    del column
-    assert "cells" in refusal(read_table_file, file)
-
-
-def test_a_parquet_bomb_of_one_long_text_is_refused_within_memory(tmp_path):
-    column = pa.DictionaryArray.from_arrays(
-        pa.array(np.zeros(400, np.int32)), pa.array(["x" * (1 << 20)])
-    )
-    file = parquet(tmp_path, pa.table({"t": column}), store_schema=False, compression="zstd")
-    assert file.stat().st_size < 1 << 20
-    refusal(numbers("t"), file, megabytes=200)
 
 
 def test_wrong_statistics_of_a_parquet_column_are_an_error_and_no_end_of_the_process(tmp_path):

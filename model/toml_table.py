@@ -7,8 +7,6 @@ from collections.abc import Callable
 from os import PathLike
 from typing import Any, ClassVar, Final, Self, TypeVar
 
-import numpy as np
-
 from model.similar_name import nearest, similar_name
 
 MOST_BYTES: Final = 1 << 20
@@ -313,4 +311,6 @@ class TomlTable:
     @staticmethod
     def _even(table: "TomlTable") -> tuple[float, ...]:
         count = table.whole("count", least=2, most=LONGEST)
-        return tuple(np.linspace(table.number("first"), table.number("last"), count).tolist())
+        first, last = table.number("first"), table.number("last")
+        step = (last - first) / (count - 1)
+        return (*(first + i * step for i in range(count - 1)), last)

@@ -19,8 +19,7 @@ from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
 from zebro_lab.exchange.imu_messages import read_imu_messages
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
-from zebro_lab.mcap.ros_bags import bag_files
-from zebro_lab.mcap.ros_log import is_ros_log
+from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
 from zebro_lab.robot.imu_log import ImuLog, imu_of_table
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.leg_warnings import leg_warnings

@@ -12,7 +12,8 @@ from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.files.opening import read_text
-from zebro_lab.mcap.ros_log import is_ros_log, read_messages
+from zebro_lab.mcap.ros_bags import is_ros_log
+from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.tables.table_kinds import RIG, is_sectioned

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Read TOML and JSON files with limits on size, nesting depth and numbers."""
+"""Read TOML and JSON files with limits on size; format JSON."""
 
 import json
+import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -67,3 +69,32 @@ def require_object(content: object, path: Path) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise DataError("is not a JSON object: expected named values in braces", file=path)
     return content
+
+
+def json_text(document: object) -> str:
+    r"""Format a document as JSON of several lines.
+
+    Args:
+        document: Mappings, lists, tuples and values, also arrays and numbers of NumPy and paths.
+            NaN and infinity become null; bytes of file names that are not UTF-8, which Python holds
+            as lone surrogates, become escapes such as `\udce9`.
+
+    >>> print(json_text({"label": "a", "sd": float("nan")}))
+    {
+      "label": "a",
+      "sd": null
+    }
+    """
+    return json.dumps(_plain(document), indent=2, allow_nan=False)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, str | Path):
+        return str(value).encode("utf-8", "backslashreplace").decode("utf-8")
+    if isinstance(value, Mapping):
+        return {_plain(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -2,7 +2,7 @@
 """Overwrite a single output file only if the same command wrote it."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -58,8 +58,8 @@ def picture(command: str) -> OwnFile:
             return f"/Subject ({mark})".encode() in tail
         if head.lstrip().startswith(_XML):
             return f"<dc:description>{mark}</dc:description>".encode() in head
-        texts = dict(_png_texts(head))
-        return texts.get("Software") == SOFTWARE and texts.get(COMMENT, command) == command
+        named = _png_text(COMMENT, command) in head or f"tEXt{COMMENT}".encode() not in head
+        return head.startswith(_PNG) and _png_text("Software", SOFTWARE) in head and named
 
     return OwnFile(command, is_ours)
 
@@ -145,14 +145,7 @@ def _listed_beside(file: Path) -> Sequence[str]:
     return tuple(outputs) if isinstance(outputs, dict | list) else ()
 
 
-def _png_texts(head: bytes) -> Iterator[tuple[str, str]]:
-    """Yield keyword and text of each tEXt chunk in a PNG's first bytes; nothing for other files."""
-    if not head.startswith(_PNG):
-        return
-    at = len(_PNG)
-    while at + 8 <= len(head):
-        length, kind = int.from_bytes(head[at : at + 4], "big"), head[at + 4 : at + 8]
-        if kind == b"tEXt":
-            keyword, _, text = head[at + 8 : at + 8 + length].partition(b"\0")
-            yield keyword.decode("latin-1"), text.decode("latin-1")
-        at += 12 + length
+def _png_text(keyword: str, text: str) -> bytes:
+    """Return a tEXt chunk of a PNG, with its length and without its checksum."""
+    content = f"{keyword}\0{text}".encode("latin-1")
+    return len(content).to_bytes(4, "big") + b"tEXt" + content

@@ -7,7 +7,6 @@ result that would overwrite one raises an error.
 """
 
 import glob
-import json
 import os
 import shutil
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -16,12 +15,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from model.file_lock import try_lock
 from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
 from zebro_lab.files.commit import software_commit
-from zebro_lab.files.encodable import encodable
+from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import MANIFEST, read_json_object
 from zebro_lab.files.provenance import file_hash, software
@@ -127,7 +124,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
             "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
             "software": software(),
         }
-        (draft / MANIFEST).write_text(json.dumps(encodable(plain_json(document)), indent=2) + "\n")
+        (draft / MANIFEST).write_text(json_text(document) + "\n")
         sync_files(draft)
         written = [path.name for path in draft.iterdir()]
 
@@ -160,15 +157,6 @@ def writing(out: Path) -> Iterator[None]:
         raise NotWritten(
             f"{out} cannot be written ({error.strerror or error}); choose another folder with --out"
         ) from error
-
-
-def plain_json(value: object) -> object:
-    """Replace NaN and infinity by None in nested mappings, lists and tuples (as lists)."""
-    if isinstance(value, Mapping):
-        return {key: plain_json(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain_json(each) for each in value]
-    return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
 def _require_ground(out: Path) -> None:

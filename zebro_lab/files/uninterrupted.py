@@ -12,16 +12,17 @@ _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Put off SIGINT and SIGTERM until the end of the body, which takes milliseconds.
+    """Put off SIGINT and SIGTERM until the end of the body.
 
-    Python runs handlers of signals in the main thread alone; in other threads nothing is done.
+    Also around imports of C extensions: an exception within their initialisation can abort Python.
+    Python runs handlers of signals in the main thread alone; in other threads, and of signals
+    without a handler, nothing is done.
     """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
+    is_main = threading.current_thread() is threading.main_thread()
+    heard = [number for number in _SIGNALS if is_main and callable(signal.getsignal(number))]
     came: list[int] = []
     earlier = {
-        number: signal.signal(number, lambda number, _: came.append(number)) for number in _SIGNALS
+        number: signal.signal(number, lambda number, _: came.append(number)) for number in heard
     }
     try:
         yield

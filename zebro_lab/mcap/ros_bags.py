@@ -28,6 +28,11 @@ def is_bag(path: Path) -> bool:
     return path.is_dir() and any(path.glob("*.db3"))
 
 
+def is_ros_log(path: Path) -> bool:
+    """Return whether a path is a ROS log by its name: .mcap, .db3, .bag, or the folder of a bag."""
+    return path.suffix.lower() == ".mcap" or is_bag(path)
+
+
 def bag_files(path: Path) -> tuple[Path, ...]:
     """Return the files of a bag: itself, or those in its folder by name.
 

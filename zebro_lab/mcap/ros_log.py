@@ -16,11 +16,6 @@ from zebro_lab.mcap.logged_message import LoggedMessage
 from zebro_lab.mcap.ros_bags import is_bag, read_bag
 
 
-def is_ros_log(path: Path) -> bool:
-    """Return whether a path is a ROS log by its name: .mcap, .db3, .bag, or the folder of a bag."""
-    return path.suffix.lower() == ".mcap" or is_bag(path)
-
-
 def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:
     """Read all messages of one type from a ROS log; see `read_typed_messages`."""
     return read_typed_messages(path, (schema,))

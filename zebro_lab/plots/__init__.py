@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Figures of calibrations, walks, tracks and validations from arrays, without pyplot."""
 
-from zebro_lab.terminal.stopping import stops_deferred
+from zebro_lab.files.uninterrupted import uninterrupted
 
-with stops_deferred():  # matplotlib has C extensions
+with uninterrupted():  # matplotlib has C extensions
     from zebro_lab.plots.discrepancy import discrepancy
     from zebro_lab.plots.laws import slip_laws
     from zebro_lab.plots.noise import residuals

@@ -22,7 +22,6 @@ from zebro_lab.runs.manifest import (
     RECORDING,
     RIG_KIND,
     RunManifest,
-    in_json,
     read_manifest,
 )
 
@@ -176,12 +175,7 @@ def _slip_rig_table(
 
 def _require_radii(manifest: RunManifest, file: Path) -> None:
     for name in ("radius_leg", "radius_ground"):
-        radius = manifest.constants.get(name)
-        if isinstance(radius, bool) or not isinstance(radius, (int, float)):
-            raise DataError(
-                f"constants.{name} is {in_json(manifest.constants, name)}, expected a radius in m",
-                file=file, column=name,
-            )  # fmt: skip
+        radius = manifest.constants.get(name, np.nan)
         if not (np.isfinite(radius) and radius > 0):
             raise DataError(
                 f"is {radius:g} m, expected more than 0 and finite (constants.{name})", file=file,

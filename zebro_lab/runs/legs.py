@@ -10,8 +10,7 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.folder_manifest import such_folder_in
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
-from zebro_lab.mcap.ros_bags import bag_files
-from zebro_lab.mcap.ros_log import is_ros_log
+from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE

@@ -4,15 +4,17 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from datetime import UTC, datetime
+from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar, Final, TypeAlias
+
+from pydantic import AfterValidator, ConfigDict, TypeAdapter, ValidationError
 
 from model.similar_name import nearest
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.commit import software_commit
-from zebro_lab.files.encodable import encodable
+from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import read_json_object
 
@@ -52,6 +54,16 @@ def software_version() -> dict[str, str]:
     except PackageNotFoundError:
         installed = "unknown"
     return {"version": installed, "commit": software_commit()}
+
+
+def _moment(text: str) -> str:
+    """Return a date and time in ISO 8601; ValueError without a time zone."""
+    if datetime.fromisoformat(text).tzinfo is None:
+        raise ValueError("expected a time zone, such as 2026-01-01T12:00:00+00:00")
+    return text
+
+
+Moment: TypeAlias = Annotated[str, AfterValidator(_moment)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,8 +116,8 @@ class RunManifest:
     material: str = "unknown"
     operator: str = "unknown"
     source: str
-    start: str = ""
-    stop: str | None = None
+    start: Moment = ""
+    stop: Moment | None = None
     exit_status: str = RECORDING
     software: Mapping[str, str] = field(default_factory=software_version)
     constants: Mapping[str, float] = field(default_factory=dict)
@@ -124,6 +136,7 @@ class RunManifest:
     point: Mapping[str, Any] = field(default_factory=dict)
     seed: int | None = None
     schema_version: int = SCHEMA_VERSION
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(strict=True)
 
     @property
     def began(self) -> datetime:
@@ -184,56 +197,48 @@ def manifest_text(manifest: RunManifest) -> str:
         key: value for key, value in asdict(manifest).items()
         if value is not None and (value or value == 0 or key not in _OPTIONAL)
     }  # fmt: skip
-    return json.dumps(encodable(document), indent=2, ensure_ascii=False) + "\n"
+    return json_text(document) + "\n"
 
 
-_FIELD_TYPES: Mapping[str, type] = {
-    "kind": str, "label": str, "material": str, "operator": str, "source": str, "start": str,
-    "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
-    "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
-    "clocks": dict, "duration": dict, "robot": str, "truth": dict, "inputs": dict, "point": dict,
-    "exclusions": list, "seed": int,
+_OPTIONAL = {
+    "stop", "log_sha256", "excluded", "exclusions", "profiles", "sources", "counters", "clocks",
+    "duration", "robot", "truth", "inputs", "point", "seed",
 }  # fmt: skip
-_ENTRY_TYPES: Mapping[str, tuple[type, ...]] = {
-    "software": (str,), "constants": (int, float), "streams": (int,), "excluded": (str,),
-    "profiles": (str,), "sources": (str,), "counters": (dict,), "clocks": (dict,),
-    "duration": (int, float), "inputs": (str,),
-}  # fmt: skip
-_NUMBERS = ("counters", "clocks")  # tables of tables of numbers
-_ADDED = (
-    "exclusions", "profiles", "sources", "counters", "clocks", "duration", "robot", "truth",
-    "inputs", "point", "seed",
-)  # fmt: skip
-_OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
+_CHECK: Final = TypeAdapter(RunManifest)
 
 
 def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
-    found = document.get("schema_version")
-    if found != SCHEMA_VERSION:
+    if document.get("schema_version") != SCHEMA_VERSION:
         raise DataError(
             f"'schema_version' is {in_json(document, 'schema_version')}, expected "
             f"{SCHEMA_VERSION}; use the version of zebro-lab that wrote this file",
             file=file,
         )
-    for name, expected in _FIELD_TYPES.items():
-        if name in _OPTIONAL and document.get(name) is None:
-            continue
-        if not isinstance(document.get(name), expected):
-            raise DataError(
-                f"'{name}' is {in_json(document, name)}, expected {_KINDS[expected]}", file=file
-            )
-    for each in document.get("exclusions") or ():
-        if not (isinstance(each, dict) and {"did", "why"} <= each.keys()):
+    try:
+        manifest = _CHECK.validate_json(json.dumps(_without_unknown(document)))
+    except ValidationError as error:
+        found = error.errors()[0]
+        named = "".join(
+            f"'{name}' is {in_json(document, str(name))}: " for name in found["loc"][:1]
+        )
+        raise DataError(f"{named}{found['msg']}", file=file) from error
+    if manifest.kind not in KINDS:
+        raise DataError(f"'kind' is '{manifest.kind}'; {nearest(manifest.kind, KINDS)}", file=file)
+    for each in manifest.exclusions:
+        if not {"did", "why"} <= each.keys():
             raise DataError(f"an entry of 'exclusions' lacks 'did' or 'why': {each!r}", file=file)
-    if document["kind"] not in KINDS:
-        raise DataError(f"'kind' is '{document['kind']}'; {nearest(document['kind'], KINDS)}",
-                        file=file)  # fmt: skip
-    _require_entries(document, file)
-    for name in ("start", "stop"):
-        if document.get(name) is not None:
-            _require_moment(name, document[name], file)
-    known = {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
-    return RunManifest(**known)
+    return manifest
+
+
+def _without_unknown(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entries without nulls in tables and in what is optional: of unknown numbers."""
+    return {
+        name: {key: each for key, each in value.items() if each is not None}
+        if isinstance(value, dict)
+        else value
+        for name, value in document.items()
+        if value is not None or name not in _OPTIONAL
+    }
 
 
 def in_json(document: Mapping[str, Any], name: str) -> str:
@@ -244,43 +249,3 @@ def in_json(document: Mapping[str, Any], name: str) -> str:
         name: Key of the value.
     """
     return json.dumps(document[name], ensure_ascii=False) if name in document else "missing"
-
-
-_KINDS: Mapping[type, str] = {
-    str: "a text",
-    int: "a whole number",
-    float: "a number",
-    dict: "an object",
-    list: "a list",
-}
-
-
-def _require_entries(document: Mapping[str, Any], file: Path) -> None:
-    for name, kinds in _ENTRY_TYPES.items():
-        for key, value in (document.get(name) or {}).items():
-            _require_entry(name, key, value, kinds, file)
-            if name in _NUMBERS:
-                for inner, number in value.items():
-                    _require_entry(name, f"{key}.{inner}", number, (int, float), file)
-
-
-def _require_entry(name: str, key: str, value: object, kinds: tuple[type, ...], file: Path) -> None:
-    # An unknown angle or count is null in JSON.
-    if value is None and kinds != (str,) and kinds != (dict,):
-        return
-    if not isinstance(value, kinds) or isinstance(value, bool):
-        raise DataError(f"'{name}' has {key!r}: {value!r}, expected {_KINDS[kinds[-1]]}", file=file)
-
-
-def _require_moment(name: str, text: str, file: Path) -> None:
-    try:
-        moment = datetime.fromisoformat(text)
-        known = moment.tzinfo is not None and moment.astimezone(UTC)
-    except (ValueError, OverflowError):
-        known = None
-    if not known:
-        raise DataError(
-            f"'{name}' is {text!r}, expected a date and time with a time zone, such as "
-            "2026-01-01T12:00:00+00:00",
-            file=file,
-        )

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """What a command prints: text, one JSON document, or nothing."""
 
-import json
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
+from zebro_lab.files.documents import json_text
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.terminal.last_words import say_in_time
+from zebro_lab.terminal.messages import say, wide_console
 from zebro_lab.terminal.stopping import STOPPED, StoppedBySignal
 
 if TYPE_CHECKING:
@@ -43,7 +45,6 @@ class Output:
         Raises:
             Exit: The body ended with one of them, with exit code `STOPPED`; its message is said.
         """
-        from zebro_lab.terminal.messages import say
         from zebro_lab.terminal.progress import progress_bar
 
         try:
@@ -57,16 +58,12 @@ class Output:
         """Create the console for results as text: on stdout, or stderr beside a JSON document."""
         from rich.console import Console
 
-        from zebro_lab.terminal.messages import wide_console
-
         if not (self.quiet or self.as_json):
             return wide_console()
         return Console(stderr=True, quiet=self.quiet, highlight=False, width=120)
 
     def say(self, line: str) -> None:
         """Write one line of results where `console` writes."""
-        from zebro_lab.terminal.messages import say
-
         if not self.quiet:
             say(line, err=self.as_json)
 
@@ -77,8 +74,6 @@ class Output:
             Whether they were written, as of `zebro_lab.terminal.last_words.say_in_time`; True if
             quiet.
         """
-        from zebro_lab.terminal.last_words import say_in_time
-
         return self.quiet or say_in_time(text, err=self.as_json)
 
     @contextmanager
@@ -88,8 +83,6 @@ class Output:
         Raises:
             SettingsError: Standard input has ended before a question was answered.
         """
-        from zebro_lab.files.errors import SettingsError
-
         try:
             with redirect_stdout(sys.stderr):
                 yield
@@ -113,18 +106,8 @@ class Output:
         """
         if not self.as_json:
             return
-        from zebro_lab.files.encodable import encodable
-        from zebro_lab.files.result_folder import plain_json
-
-        whole = {"command": command, "exit_code": exit_code, **content}
-        whole = json.loads(json.dumps(whole, default=_plain))
-        typer.echo(json.dumps(encodable(plain_json(whole)), indent=2, allow_nan=False))
+        typer.echo(json_text({"command": command, "exit_code": exit_code, **content}))
 
 
 TEXT: Final = Output()
 """Results as text, which is the default."""
-
-
-def _plain(value: Any) -> Any:
-    """Convert what JSON does not know: paths, and arrays and numbers of NumPy."""
-    return str(value) if isinstance(value, Path) else value.tolist()

@@ -83,29 +83,6 @@ def stoppable() -> Iterator[None]:
         _restore(heard)
 
 
-@contextmanager
-def stops_deferred() -> Iterator[None]:
-    """Hold signals back while the body runs, and send the first one again after it.
-
-    For imports of C extensions: an exception within their initialisation can abort Python. Where
-    the signals have no handler of `stoppable` or of a progress bar, and in threads other than the
-    main one, which hear no signal, nothing changes.
-    """
-    mine = threading.current_thread() is threading.main_thread()
-    heard = [number for number in SIGNALS if callable(signal.getsignal(number))] if mine else []
-    before = {number: signal.getsignal(number) for number in heard}
-    came: list[int] = []
-    for number in heard:
-        signal.signal(number, lambda got, _frame: came.append(got))
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        if came:
-            signal.raise_signal(came[0])
-
-
 def _restore(numbers: list[signal.Signals]) -> None:
     for number in numbers:
         signal.signal(number, signal.SIG_DFL)

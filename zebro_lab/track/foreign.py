@@ -12,7 +12,7 @@ from model.arrays import Array
 from model.poses import wrap
 from model.travel import has_travelled, travel_direction
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.mcap.ros_log import is_ros_log
+from zebro_lab.mcap.ros_bags import is_ros_log
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from typer import Argument, Option
 
-from zebro_lab.mcap.ros_log import is_ros_log
+from zebro_lab.mcap.ros_bags import is_ros_log
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.track.trajectory.request import TrajectoryRequest

@@ -2,17 +2,21 @@
 """Whatever stands in a TOML or JSON file of a user, a reader ends with one line, and soon."""
 
 import json
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rig.zebro.profile import load_leg_profile
 from support.bounded_reading import error_on_fifo, refusal
 from zebro_lab.calibration.folder import read_slip
 from zebro_lab.experiment.plan_file import read_plan
-from zebro_lab.files.documents import read_json_document, read_toml_document
+from zebro_lab.files.documents import json_text, read_json_document, read_toml_document
 from zebro_lab.files.errors import NotFound
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.runs.manifest import read_manifest
@@ -97,3 +101,20 @@ def test_what_is_no_document_is_named_and_what_is_missing_comes_with_advice(read
         read(tmp_path / "x", advice="make one")
     (tmp_path / "x").write_text("{")
     assert f"cannot be read as {kind}" in refusal(read, tmp_path / "x")
+
+
+@given(st.binary(max_size=20))
+def test_a_file_name_of_any_bytes_can_be_written(name):
+    text = name.decode("utf-8", "surrogateescape")
+    written = json_text({text: [text, (text,)]})
+    assert isinstance(json.loads(written.encode()), dict)
+
+
+def test_what_json_does_not_know_is_written_plainly():
+    content = {
+        "nan": math.nan, "array": np.array([1.0, np.inf]), "count": np.int64(3),
+        "path": Path("a/b"), "caf\udce9": True,
+    }  # fmt: skip
+    assert json.loads(json_text(content)) == {
+        "nan": None, "array": [1.0, None], "count": 3, "path": "a/b", r"caf\udce9": True,
+    }  # fmt: skip

@@ -8,8 +8,8 @@ import pytest
 
 from support.written_bags import BEGAN, imu, joints, write_bag, write_ros1_bag
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.mcap.ros_bags import bag_files, is_bag, read_bag
-from zebro_lab.mcap.ros_log import is_ros_log, read_messages
+from zebro_lab.mcap.ros_bags import bag_files, is_bag, is_ros_log, read_bag
+from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import JOINT_STATE
 
 T = np.arange(0.0, 1.0, 0.1)

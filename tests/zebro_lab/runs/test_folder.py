@@ -128,7 +128,7 @@ def test_log_of_another_run_is_refused(tmp_path):
     ("change", "message"),
     [
         ({"kind": "walk"}, "is a run of kind 'walk', expected 'slip-rig'"),
-        ({"constants": {}}, "constants.radius_leg is missing, expected a radius in m"),
+        ({"constants": {}}, "column 'radius_leg': is nan m, expected more than 0"),
         ({"constants": {"radius_leg": 0.0}}, "column 'radius_leg': is 0 m, expected more than 0"),
     ],
 )

@@ -116,25 +116,6 @@ def test_a_stopped_command_can_be_ended_by_a_second_signal(tmp_path):
         assert time.monotonic() - began < 15
 
 
-def test_a_deferred_signal_stops_after_the_body_and_not_within_it():
-    process = ended(f"""
-    with stopping.stops_deferred():
-        {RAISE["SIGTERM"]}
-        print("whole")
-    print("went on")""")
-    assert (process.returncode, process.stdout) == (130, "whole\n")
-    assert process.stderr == "stopped by SIGTERM; nothing was left half-written\n"
-
-
-def test_without_a_signal_handlers_are_as_before():
-    process = ended(f"""
-    with stopping.stops_deferred():
-        pass
-    {RAISE["SIGINT"]}
-    print("went on")""")
-    assert (process.returncode, process.stdout) == (130, "")
-
-
 def test_matplotlib_is_imported_whole_when_a_signal_comes():
     body = """
     import builtins, sys

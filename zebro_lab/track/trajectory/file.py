@@ -12,8 +12,7 @@ from model.counted import counted
 from model.poses import Poses
 from model.rigid_path import RigidPath, plane_axes, rotations_of_quaternions
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.mcap.ros_bags import bag_files
-from zebro_lab.mcap.ros_log import is_ros_log
+from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.table_files import has_table_name
 from zebro_lab.track.trajectory.layouts import OrderedNumbers, ordered

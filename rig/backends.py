@@ -2,29 +2,21 @@
 """Table of the driver of each device profile; an address gives the profile and the port."""
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Stream
-from rig.imu.profile import load_imu_profile
-from rig.imu.stream import ImuStream
+from rig.driver_table import IMUS, LEGS, load_class
+from rig.imu.profile import ImuProfile, load_imu_profile
 from rig.links.can import CanLink
 from rig.links.serial import SerialLink
 from rig.links.udp import UdpLink
-from rig.profile import require_device, split_address
+from rig.profile import split_address
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import BoardProfile, RigProfile, device_profiles, load_rig_profile
-from rig.zebro.can import CanLegs
 from rig.zebro.profile import LegProfile, load_leg_profile
-from rig.zebro.registers import DumpLegs, PolledLegs
-from rig.zebro.serial import PacketLegs
-
-LEG_DRIVERS: Final[dict[str, Any]] = {
-    "packet": PacketLegs, "can": CanLegs, "dump": DumpLegs, "poll": PolledLegs,
-}  # fmt: skip
-"""Class of the driver for each layout of a leg stream; the layout `table` has none."""
 
 
 def open_legs(address: str) -> Any:
@@ -45,18 +37,14 @@ def open_legs(address: str) -> Any:
 
 
 def leg_link(profile: LegProfile, port: str, *, source: str = "real") -> SerialLink | CanLink:
-    """Return the link for a leg profile: CAN for the layout `can`, else serial; not yet open.
+    """Return the link for a leg profile, CAN or serial; not yet open.
 
     Args:
         profile: The profile.
         port: Serial port or URL; for CAN `INTERFACE:CHANNEL`.
         source: `real`, or `sim:WHAT` where a twin serves the port.
-
-    Raises:
-        ProfileError: The profile describes a table, not a device.
     """
-    require_device(profile.layout, profile.name)
-    if profile.layout == "can":
+    if LEGS[profile.layout].link == "can":
         return CanLink(port, bitrate=profile.baudrate, source=source)
     return SerialLink(port, baudrate=profile.baudrate, source=source)
 
@@ -75,11 +63,11 @@ def leg_driver(profile: LegProfile, link: Any, *, clock: Clock = SYSTEM_CLOCK) -
     Raises:
         ProfileError: The profile describes a table, not a device.
     """
-    require_device(profile.layout, profile.name)
-    return LEG_DRIVERS[profile.layout](link, profile=profile, clock=clock)
+    driver = load_class(LEGS[profile.layout].driver, profile=profile.name)
+    return driver(link, profile=profile, clock=clock)
 
 
-def open_imu(address: str, *, name: str = "imu") -> ImuStream:
+def open_imu(address: str, *, name: str = "imu") -> Any:
     """Return the driver of an inertial measurement unit; entering the driver opens the port.
 
     Args:
@@ -87,15 +75,30 @@ def open_imu(address: str, *, name: str = "imu") -> ImuStream:
         name: Name of the stream.
 
     Returns:
-        The driver.
+        A `Stream` with the unit's `profile`.
 
     Raises:
         ProfileError: The address or the profile is invalid, or the profile describes a table.
     """
     profile_name, port = split_address(address)
-    profile = load_imu_profile(profile_name)
-    require_device(profile.link, profile.name)
-    return ImuStream(SerialLink(port, baudrate=profile.baudrate), profile=profile, name=name)
+    return imu_driver(load_imu_profile(profile_name), port, name=name)
+
+
+def imu_driver(profile: ImuProfile, port: str, *, name: str, source: str = "real") -> Any:
+    """Return the driver of an inertial measurement unit at a serial port, not yet open.
+
+    Args:
+        profile: The profile.
+        port: Serial port or URL.
+        name: Name of the stream.
+        source: `real`, or `sim:WHAT` where a twin serves the port.
+
+    Raises:
+        ProfileError: The profile describes a table, not a device.
+    """
+    driver = load_class(IMUS[profile.layout].driver, profile=profile.name)
+    link = SerialLink(port, baudrate=profile.baudrate, source=source)
+    return driver(link, profile=profile, name=name)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ from rig.backends import open_imu, open_legs
 from rig.errors import ProfileError
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import Attitude, at_rest
-from rig.imu.stream import ImuStream
 from rig.profile import split_address
 from rig.twins import simulated_imu, simulated_legs
 from rig.zebro.profile import load_leg_profile
@@ -81,7 +80,7 @@ def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> It
 @contextmanager
 def imu_at(
     address: str, *, name: str, attitude: Attitude = at_rest, rng: np.random.Generator
-) -> Iterator[ImuStream]:
+) -> Iterator[Any]:
     """Provide the driver of an inertial measurement unit; the port `sim` serves a twin meanwhile.
 
     Args:

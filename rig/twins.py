@@ -9,17 +9,17 @@ it is simulated. To let other programs reach a twin, serve a byte twin such as `
 import itertools
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, Final
+from typing import Any
 
 import can
 import numpy as np
 
 from model.gait.reference import LegReference
-from rig.backends import RigDevices, leg_driver, leg_link
+from rig.backends import RigDevices, imu_driver, leg_driver, leg_link
+from rig.driver_table import IMUS, LEGS, load_class
 from rig.errors import ProfileError
 from rig.imu.profile import ImuProfile
-from rig.imu.simulated import Attitude, SimulatedImu, at_rest
-from rig.imu.stream import ImuStream
+from rig.imu.simulated import Attitude, at_rest
 from rig.links.byte_link import ByteTwin
 from rig.links.can import CanLink
 from rig.links.faults import PERFECT_LINE, Faults
@@ -41,11 +41,8 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.zebro.profile import LegProfile
-from rig.zebro.simulated import CanRobot, DumpRobot, PacketRobot, PolledRobot
 from rig.zebro.simulated_legs import EXACT_ROBOT, RobotImperfections, SimulatedLegs
 
-BYTE_ROBOTS: Final = {"packet": PacketRobot, "dump": DumpRobot, "poll": PolledRobot}
-"""Simulated robot of each layout that a serial line carries."""
 _channels = itertools.count()
 
 
@@ -62,13 +59,10 @@ def byte_robot(
     Raises:
         ProfileError: The profile's layout is `can` or `table`, which no serial line carries.
     """
-    layout = legs.profile.layout
-    if layout not in BYTE_ROBOTS:
-        raise ProfileError(
-            f"no serial port carries layout '{layout}'; use {' or '.join(BYTE_ROBOTS)}",
-            file=legs.profile.name,
-        )
-    return BYTE_ROBOTS[layout](legs, faults=faults, rng=rng)
+    layout, name = legs.profile.layout, legs.profile.name
+    if LEGS[layout].link == "can":
+        raise ProfileError(f"no serial port carries layout '{layout}'", file=name)
+    return load_class(LEGS[layout].twin, profile=name)(legs, faults=faults, rng=rng)
 
 
 def robot_twin(
@@ -110,10 +104,10 @@ def simulated_legs(legs: SimulatedLegs, *, rng: np.random.Generator) -> Iterator
         A `Stream` that also takes `LegCommands`, not yet entered.
     """
     profile = legs.profile
-    if profile.layout == "can":
+    if LEGS[profile.layout].link == "can":
         channel = _new_channel()
         with can.Bus(interface="virtual", channel=channel) as bus:
-            robot = CanRobot(legs, bus, rng=rng)
+            robot = load_class(LEGS[profile.layout].twin, profile=profile.name)(legs, bus, rng=rng)
             with Ticker(robot.poll):
                 link = leg_link(profile, f"virtual:{channel}", source=robot.source)
                 yield leg_driver(profile, link)
@@ -130,7 +124,7 @@ def simulated_imu(
     attitude: Attitude = at_rest,
     rng: np.random.Generator,
     name: str = "imu",
-) -> Iterator[ImuStream]:
+) -> Iterator[Any]:
     """Serve a simulated inertial measurement unit at a port, and yield its driver.
 
     Args:
@@ -145,10 +139,10 @@ def simulated_imu(
     Raises:
         LinkError: The system provides no port.
     """
-    twin = SimulatedImu(profile=profile, attitude=attitude, rng=rng)
+    unit = load_class(IMUS[profile.layout].twin, profile=profile.name)
+    twin = unit(profile=profile, attitude=attitude, rng=rng)
     with PortServer(twin) as server:
-        link = SerialLink(server.port, baudrate=profile.baudrate, source=twin.source)
-        yield ImuStream(link, profile=profile, name=name)
+        yield imu_driver(profile, server.port, name=name, source=twin.source)
 
 
 @contextmanager

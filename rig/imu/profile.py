@@ -1,43 +1,58 @@
 # SPDX-License-Identifier: MIT
-"""Profile of an inertial measurement unit: conversion between counts and orientation."""
+"""Profile of an inertial measurement unit: layout of its records, counts to orientation."""
 
+import math
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal, TypeAlias
+from typing import Final, Literal
 
 import numpy as np
 import tomlkit
 from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
+from model.toml_table import TomlTable
 from rig.device import Sample
+from rig.driver_table import IMUS
+from rig.links.packet import LONGEST_BODY
 from rig.profile import SCHEMA, open_profile
 from rig.sample_columns import as_columns
 
 NORM_TOLERANCE: Final = 0.05
 """Largest difference of a quaternion's length from 1 [-]."""
-FIELDS: Final = 10
-"""Number of counts of a sample: quaternion 4, angular rate 3, specific force 3."""
-Link: TypeAlias = Literal["serial", "table"]
+QUATERNION: Final = tuple(f"quaternion_{axis}" for axis in "wxyz")
+ANGLES: Final = ("roll", "pitch", "yaw")
+RATE: Final = tuple(f"angular_rate_{axis}" for axis in "xyz")
+FORCE: Final = tuple(f"specific_force_{axis}" for axis in "xyz")
+UNUSED: Final = "unused"
+"""Name of a count of a record that means nothing here, such as a temperature."""
+TYPES: Final = {"int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "float32": "f"}
+"""Types of counts in a record, as `struct` spells them."""
+Record = tuple[tuple[str, str], ...]
+DEFAULT_RECORD: Final[Record] = tuple((name, "int16") for name in QUATERNION + RATE + FORCE)
+"""Record of a profile that states none: ten counts of 16 bits."""
 
 
 @dataclass(frozen=True)
 class ImuProfile:
-    """Profile of an inertial measurement unit: frame layout, scales and mounting.
+    """Profile of an inertial measurement unit: layout of its records, scales and mounting.
 
     Attributes:
         name: Name of the profile: that of its file without suffix.
         baudrate: Line rate; 0 for a table [baud].
-        byte_order: Byte order of the counts, of two bytes each.
+        byte_order: Byte order of the counts.
         quaternion_scale: Counts per 1 of a quaternion component.
         rate_scale: Counts per angular rate [s/rad].
         force_scale: Counts per specific force [s²/m].
         mounting: Quaternion w, x, y, z of the rotation from the sensor's axes to the body's.
         rate: Sample rate [Hz].
-        link: `serial`, or `table` for an imported file.
+        layout: Layout of the frames, a key of `rig.driver_table.IMUS`, which has its driver.
         has_yaw: Whether yaw is measured; if not, that of the quaternion means nothing.
+        record: Name and type of each count of a record, in order. Orientation is a quaternion, or
+            roll and pitch, with or without yaw; angular rate and specific force may be missing.
+        angle_scale: Counts per roll, pitch or yaw [1/rad].
     """
 
     name: str
@@ -48,17 +63,33 @@ class ImuProfile:
     force_scale: float
     mounting: tuple[float, ...]
     rate: float
-    link: Link = "serial"
+    layout: str = "packet"
     has_yaw: bool = True
+    record: Record = DEFAULT_RECORD
+    angle_scale: float = 1.0
 
     @property
     def body(self) -> struct.Struct:
-        """Layout of a packet's body: quaternion, angular rate and specific force as counts."""
-        return struct.Struct(("<" if self.byte_order == "little" else ">") + f"{FIELDS}h")
+        """Layout of a packet's body: the counts of a record."""
+        order = "<" if self.byte_order == "little" else ">"
+        return struct.Struct(order + "".join(TYPES[kind] for _, kind in self.record))
+
+    @property
+    def has_fractions(self) -> bool:
+        """Whether counts may have fractions: of a table, or of a record with floats."""
+        return self.layout == "table" or "float32" in dict(self.record).values()
+
+    def columns(self, names: Sequence[str]) -> list[int]:
+        """Return the places of counts in a record; empty if the record lacks one of them."""
+        known = [name for name, _ in self.record]
+        return [known.index(name) for name in names] if set(names) <= set(known) else []
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Return whether the quaternion (first four counts) has length 1 +/- `NORM_TOLERANCE`."""
-        norm = sum(count * count for count in counts[:4]) ** 0.5 / self.quaternion_scale
+        """Return whether counts are finite and a quaternion has length 1 +/- `NORM_TOLERANCE`."""
+        places = self.columns(QUATERNION)
+        if not places:
+            return all(map(math.isfinite, counts))
+        norm = sum(counts[place] ** 2 for place in places) ** 0.5 / self.quaternion_scale
         return abs(norm - 1) <= NORM_TOLERANCE
 
 
@@ -104,24 +135,57 @@ def load_imu_profile(name: str) -> ImuProfile:
     link, frame, scale, mounting, stream = (
         table.table(key) for key in ("link", "frame", "scale", "mounting", "stream")
     )
-    kind: Link = link.choice("kind", ("serial", "table"))
+    layout = "table" if link.choice("kind", ("serial", "table")) == "table" else frame.choice(
+        "layout", tuple(name for name in IMUS if name != "table"), "packet"
+    )  # fmt: skip
+    record = _record(frame)
+    named = {name for name, _ in record}
     quaternion = mounting.numbers("quaternion", 4)
     if abs(sum(part * part for part in quaternion) - 1) > NORM_TOLERANCE:
         raise mounting.fault(f"found {list(quaternion)}; expected length 1", "quaternion")
     profile = ImuProfile(
         name=Path(name).stem,
-        baudrate=0 if kind == "table" else link.whole("baudrate", least=1, most=20_000_000),
-        byte_order="little" if kind == "table" else frame.choice("byte_order", ("little", "big")),
-        quaternion_scale=scale.positive("quaternion"),
-        rate_scale=scale.positive("angular_rate"),
-        force_scale=scale.positive("specific_force"),
+        baudrate=0 if layout == "table" else link.whole("baudrate", least=1, most=20_000_000),
+        byte_order="little" if layout == "table" else frame.choice("byte_order", ("little", "big")),
+        quaternion_scale=scale.positive("quaternion") if named.issuperset(QUATERNION) else 1.0,
+        rate_scale=scale.positive("angular_rate") if named.issuperset(RATE) else 1.0,
+        force_scale=scale.positive("specific_force") if named.issuperset(FORCE) else 1.0,
         mounting=quaternion,
         rate=stream.positive("rate"),
-        link=kind,
-        has_yaw=link.flag("yaw", default=True) if kind == "table" else True,
+        layout=layout,
+        has_yaw=(
+            link.flag("yaw", default=True)
+            if layout == "table"
+            else bool(named & {"yaw", "quaternion_w"})
+        ),
+        record=record,
+        angle_scale=1.0 if named.issuperset(QUATERNION) else scale.positive("angle"),
     )
     table.finish()
     return profile
+
+
+def _record(frame: TomlTable) -> Record:
+    """Read the counts of a record, `NAME` or `NAME:TYPE` each, and check that they suffice."""
+    if "record" not in frame:
+        return DEFAULT_RECORD
+    pairs = tuple(text.partition(":") for text in frame.texts("record"))
+    record = tuple((name, kind or "int16") for name, _, kind in pairs)
+    names = [name for name, _ in record if name != UNUSED]
+    known = (*QUATERNION, *ANGLES, *RATE, *FORCE)
+    wrong = [name for name in names if name not in known or names.count(name) > 1]
+    wrong += [kind for _, kind in record if kind not in TYPES]
+    if wrong:
+        raise frame.fault(
+            f"found '{wrong[0]}'; expected each of {', '.join(known)} once at most, and "
+            f"'{UNUSED}', with one of the types {', '.join(TYPES)}, as in 'roll:float32'",
+            "record",
+        )
+    if not set(names).issuperset(QUATERNION) and not {"roll", "pitch"} <= set(names):
+        raise frame.fault("has no orientation; add quaternion_w to _z, or roll and pitch", "record")
+    if struct.calcsize("<" + "".join(TYPES[kind] for _, kind in record)) > LONGEST_BODY:
+        raise frame.fault(f"is longer than {LONGEST_BODY} bytes, the longest packet", "record")
+    return record
 
 
 def render_table_profile(rate: float, *, has_yaw: bool = True) -> str:
@@ -153,25 +217,53 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
         Orientation, angular rate and specific force of the body, corrected for the mounting.
     """
     columns = as_columns(samples)
-    counts = columns.counts.reshape(-1, FIELDS)
-    mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
-    measured = Rotation.from_quat(_unit(counts[:, :4]), scalar_first=True)
-    yaw, pitch, roll = (measured * mounting.inv()).as_euler("ZYX").T
+    body, rate, force = decode_motion(profile, columns.counts.reshape(-1, len(profile.record)))
+    yaw, pitch, roll = body.as_euler("ZYX").T
     return Orientation(
         host_time=columns.host_time,
         device_time=columns.device_time,
         roll=roll,
         pitch=pitch,
         yaw=np.unwrap(yaw) if profile.has_yaw else np.full(len(yaw), np.nan),
-        angular_rate=_turned(mounting, counts[:, 4:7] / profile.rate_scale),
-        specific_force=_turned(mounting, counts[:, 7:] / profile.force_scale),
+        angular_rate=rate,
+        specific_force=force,
     )
+
+
+def decode_motion(profile: ImuProfile, counts: Array) -> tuple[Rotation, Array, Array]:
+    """Compute rotations from the body's axes to the inertial frame, and motion in these axes.
+
+    Args:
+        profile: Profile of the unit.
+        counts: Counts of the records, shape (n, counts of a record).
+
+    Returns:
+        The rotations; angular rate [rad/s] and specific force [m/s²], shape (n, 3) each, NaN where
+        the unit does not measure them.
+    """
+    mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
+    places = profile.columns(QUATERNION)
+    if places:
+        quaternions = counts[:, places] / np.linalg.norm(counts[:, places], axis=1, keepdims=True)
+        measured = Rotation.from_quat(quaternions, scalar_first=True)
+    else:
+        angles = np.zeros((len(counts), 3))  # yaw, pitch, roll
+        for column, name in enumerate(("yaw", "pitch", "roll")):
+            for place in profile.columns([name]):
+                angles[:, column] = counts[:, place] / profile.angle_scale
+        measured = Rotation.from_euler("ZYX", angles)
+    vectors = []
+    for names, scale in ((RATE, profile.rate_scale), (FORCE, profile.force_scale)):
+        places = profile.columns(names)
+        vector = counts[:, places] / scale if places else np.full((len(counts), 3), np.nan)
+        vectors.append(_turned(mounting, vector))
+    return measured * mounting.inv(), vectors[0], vectors[1]
 
 
 def encode_orientation(
     profile: ImuProfile, rotation: Rotation, angular_rate: Array, specific_force: Array
-) -> tuple[int, ...]:
-    """Compute the counts of one reading; the inverse of `decode_orientation` but for rounding.
+) -> tuple[float, ...]:
+    """Compute the counts of one record; the inverse of `decode_orientation` but for rounding.
 
     Args:
         profile: Profile of the unit.
@@ -180,15 +272,21 @@ def encode_orientation(
         specific_force: Acceleration less gravity in the body's axes, shape (3,) [m/s²].
 
     Returns:
-        Ten counts, rounded and clipped to 16 bits: quaternion w, x, y, z, rate, force.
+        The counts of the profile's record, whole ones rounded and clipped to their type; 0 for an
+        unused one.
     """
     mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
-    values = np.concatenate([
-        profile.quaternion_scale * (rotation * mounting).as_quat(scalar_first=True),
-        profile.rate_scale * mounting.inv().apply(angular_rate),
-        profile.force_scale * mounting.inv().apply(specific_force),
-    ])  # fmt: skip
-    return tuple(int(count) for count in np.clip(np.rint(values), -32_768, 32_767))
+    sensor = rotation * mounting
+    parts = (
+        (QUATERNION, profile.quaternion_scale * sensor.as_quat(scalar_first=True)),
+        (ANGLES[::-1], profile.angle_scale * sensor.as_euler("ZYX")),
+        (RATE, profile.rate_scale * mounting.inv().apply(angular_rate)),
+        (FORCE, profile.force_scale * mounting.inv().apply(specific_force)),
+    )
+    values: Mapping[str, float] = {
+        name: value for names, part in parts for name, value in zip(names, part, strict=True)
+    }
+    return tuple(_as_count(float(values.get(name, 0.0)), kind) for name, kind in profile.record)
 
 
 def _turned(mounting: Rotation, vectors: Array) -> Array:
@@ -198,5 +296,8 @@ def _turned(mounting: Rotation, vectors: Array) -> Array:
     return mounting.apply(vectors)
 
 
-def _unit(quaternions: Array) -> Array:
-    return quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
+def _as_count(value: float, kind: str) -> float:
+    if kind == "float32":
+        return value
+    limits = np.iinfo(kind)
+    return int(np.clip(round(value), limits.min, limits.max))

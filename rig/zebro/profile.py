@@ -5,7 +5,7 @@ import struct
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 import tomlkit
@@ -13,17 +13,13 @@ import tomlkit
 from model.arrays import Array
 from model.toml_table import TomlTable
 from rig.device import Sample
+from rig.driver_table import LEGS
 from rig.errors import ProtocolError
 from rig.profile import SCHEMA, open_profile
 from rig.sample_columns import as_columns
 
-Layout: TypeAlias = Literal["packet", "can", "dump", "poll", "table"]
 Order: TypeAlias = Literal["little", "big"]
-LINK_OF: dict[str, str] = {
-    "packet": "serial", "dump": "serial", "poll": "serial", "can": "can", "table": "table",
-}  # fmt: skip
-"""Link that each layout needs; `table` is not a device but an imported file."""
-DUMP_REGISTERS = 256
+DUMP_REGISTERS: Final = 256
 """Number of one-byte registers of a robot."""
 
 
@@ -77,7 +73,7 @@ class LegProfile:
 
     Attributes:
         name: Name of the profile: that of its file without suffix.
-        layout: Layout of the frames, which decides on the driver; `table` for an imported file.
+        layout: Layout of the frames, a key of `rig.driver_table.LEGS`, which has its driver.
         baudrate: Line rate of the serial port, or bit rate of the bus; 0 for a table [1/s].
         byte_order: Byte order of values of two bytes.
         legs: Leg number of each channel, in the order of the wire.
@@ -90,7 +86,7 @@ class LegProfile:
     """
 
     name: str
-    layout: Layout
+    layout: str
     baudrate: int
     byte_order: Order
     legs: tuple[int, ...]
@@ -157,10 +153,10 @@ def load_leg_profile(name: str) -> LegProfile:
     """
     table = open_profile(name, device="legs")
     link, frame, legs, stream = (table.table(key) for key in ("link", "frame", "legs", "stream"))
-    layout: Layout = frame.choice("layout", ("packet", "can", "dump", "poll", "table"))
-    kind = link.choice("kind", ("serial", "can", "table"))
-    if kind != LINK_OF[layout]:
-        raise link.fault(f"found '{kind}'; layout '{layout}' needs '{LINK_OF[layout]}'", "kind")
+    layout = frame.choice("layout", tuple(LEGS))
+    kind, needed = link.text("kind"), LEGS[layout].link
+    if kind != needed:
+        raise link.fault(f"found '{kind}'; layout '{layout}' needs '{needed}'", "kind")
     order = _order(legs)
     registers = Registers()
     if layout in ("dump", "poll"):
@@ -270,7 +266,7 @@ def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, .
     return tuple(by_leg[ascending.index(leg)] for leg in order)
 
 
-def _registers(frame: TomlTable, layout: Layout, channels: int) -> Registers:
+def _registers(frame: TomlTable, layout: str, channels: int) -> Registers:
     last = DUMP_REGISTERS - 2  # a value takes two
     positions = frame.wholes("registers", most=last)
     if len(positions) != channels:
@@ -311,7 +307,7 @@ def _can_ids(frame: TomlTable) -> CanIds:
 def _as_document(profile: LegProfile) -> dict[str, Any]:
     ascending = sorted(profile.legs)
     channel_of = [profile.legs.index(leg) for leg in ascending]
-    link: dict[str, Any] = {"kind": LINK_OF[profile.layout]}
+    link: dict[str, Any] = {"kind": LEGS[profile.layout].link}
     if profile.layout != "table":
         link["baudrate"] = profile.baudrate
     frame: dict[str, Any] = {"layout": profile.layout}

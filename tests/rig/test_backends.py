@@ -5,8 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from rig.backends import LEG_DRIVERS, leg_driver, leg_link, open_imu, open_legs, open_rig
+from rig.backends import leg_driver, leg_link, open_imu, open_legs, open_rig
 from rig.clock import ManualClock
+from rig.driver_table import LEGS
 from rig.errors import ProfileError
 from rig.imu.profile import render_table_profile
 from rig.links.can import CanLink
@@ -21,14 +22,14 @@ OF_LAYOUT = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("layout", LEG_DRIVERS)
+@pytest.mark.parametrize("layout", OF_LAYOUT)
 def test_the_layout_chooses_the_driver(layout):
     profile = load_leg_profile(OF_LAYOUT[layout])
     clock = ManualClock()
     driver = leg_driver(
         profile, MemoryLink(SimpleNamespace(source="sim:none"), clock=clock), clock=clock
     )
-    assert type(driver) is LEG_DRIVERS[layout]
+    assert LEGS[layout].driver.endswith(f":{type(driver).__name__}")
     assert (driver.name, driver.profile) == ("legs", profile)
 
 

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
 from rig.device import Sample
-from rig.imu.profile import ImuProfile
+from rig.imu.profile import ImuProfile, decode_motion
 from rig.sample_columns import as_columns
 from rig.slip_rig.decode import Forces, decode_board, decode_forces
 from rig.slip_rig.drives import disc_speed
@@ -117,26 +116,20 @@ def imu_view(name: str, *, profile: ImuProfile) -> StreamView:
         profile: Profile of the inertial unit, with its mounting on the body.
     """
     topic, stride = f"/{name}/data", _stride(profile.rate)
-    mount = Rotation.from_quat(profile.mounting, scalar_first=True)
-    unmount = mount.inv()
     metadata = {
-        "counts": "quaternion w, x, y, z, angular rate x, y, z, specific force x, y, z",
-        "unit": f"1/{profile.quaternion_scale:g}, 1/{profile.rate_scale:g} rad/s, "
-        f"1/{profile.force_scale:g} m/s2",
+        "counts": ", ".join(name for name, _ in profile.record),
+        "unit": f"quaternion 1/{profile.quaternion_scale:g}, angle 1/{profile.angle_scale:g} rad, "
+        f"rate 1/{profile.rate_scale:g} rad/s, force 1/{profile.force_scale:g} m/s2",
     }
 
     def messages(samples: Sequence[Sample], stamps: Sequence[int]) -> Messages:
         counts = as_columns(samples).counts[::stride]
-        # Not from roll, pitch and yaw, as in decode_orientation: that would take several times as
-        # long, ten times a second.
-        measured = Rotation.from_quat(counts[:, :4], scalar_first=True)
-        orientation = (measured * unmount).as_quat().tolist()
-        rate = mount.apply(counts[:, 4:7] / profile.rate_scale).tolist()
-        force = mount.apply(counts[:, 7:] / profile.force_scale).tolist()
-        for stamp, q, w, f in zip(stamps[::stride], orientation, rate, force, strict=True):
+        body, rates, forces = decode_motion(profile, counts)
+        motion = (body.as_quat().tolist(), rates.tolist(), forces.tolist())
+        for stamp, q, w, f in zip(stamps[::stride], *motion, strict=True):
             yield topic, stamp, imu(stamp, orientation=q, angular_rate=w, specific_force=f)
 
-    raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
+    raw_schema = VALUES_NAME if profile.has_fractions else COUNTS_NAME
     return StreamView(raw_schema, metadata, {topic: IMU}, messages)
 
 

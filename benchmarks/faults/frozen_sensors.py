@@ -22,9 +22,9 @@ from rig.errors import FrozenReading, RigError
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
+from rig.experiment.load import SimulatedOperator
 from rig.experiment.plan import Plan
 from rig.experiment.run import run_plan
-from rig.experiment.simulated_load import SimulatedOperator
 from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import draw_imperfections

@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""How the normal force is set: by a person on a threaded shaft, or by a driven axis."""
+"""How the normal force is set: by a person on a threaded shaft, or at once on a simulated rig."""
 
 import math
 from typing import Final, Protocol
 
-from rig.clock import SYSTEM_CLOCK, Clock
-from rig.errors import RigTimeout
 from rig.experiment.control import Control
+from rig.slip_rig.simulated import SimulatedRig
 
-AXIS_PERIOD: Final = 0.3
-"""Time for which a driven axis must keep the force within tolerance [s]."""
-GAIN: Final = 2e-4
-"""Velocity of a driven axis per newton of force error [m/(s N)]."""
-FASTEST: Final = 2e-3
-"""Largest velocity of a driven axis [m/s]."""
+LEAST: Final = 1e-3
+"""Load of an unloaded twin: slip laws are not defined at zero load [N]."""
 
 
 class LoadSetter(Protocol):
@@ -96,94 +91,38 @@ class HandShaft:
         """Do nothing: the operator stops without a command."""
 
 
-class LoadAxis(Protocol):
-    """A linear drive that presses the discs together."""
+class SimulatedOperator:
+    """Sets the load of a simulated rig exactly and at once; implements the protocol `LoadSetter`.
 
-    def move(self, velocity: float) -> None:
-        """Command a velocity, positive pressing; 0 holds [m/s]."""
-        ...
-
-
-class DrivenShaft:
-    """Proportional control of a linear axis to a normal force; velocity is `GAIN` times error.
-
-    The error is target minus force; the velocity is at most `FASTEST`. To target 0 the axis
-    retracts at `FASTEST`.
+    Not modelled: the operator's time and mistakes.
 
     Args:
-        axis: Linear drive that presses the discs together.
-        tolerance: Largest difference of the normal force from the target [N].
-        patience: Timeout of setting a force, from `request` on [s].
-        clock: Host time.
+        rig: Simulated rig whose load is set.
     """
 
-    def __init__(
-        self, axis: LoadAxis, *, tolerance: float, patience: float, clock: Clock = SYSTEM_CLOCK
-    ) -> None:
-        self._axis = axis
-        self._tolerance = tolerance
-        self._patience = patience
-        self._clock = clock
-        self._target = 0.0
-        self._asked = self._since = 0.0
-        self._lowest = 0.0
+    def __init__(self, rig: SimulatedRig) -> None:
+        self._rig = rig
 
     def request(self, target: float) -> str:
-        """Store the target and start its timeout; `follow` moves the axis to it.
+        """Set the rig's load at once, to at least `LEAST`; see `LoadSetter.request`.
 
         Args:
-            target: Normal force; 0 unloads [N].
+            target: Normal force [N].
 
         Returns:
             An empty text: the operator has nothing to do.
         """
-        self._target = target
-        self._asked = self._since = self._clock.now()
-        self._lowest = float("inf")
+        self._rig.load = max(target, LEAST)
         return ""
 
     def follow(self, normal: float) -> bool:
-        """Command a velocity proportional to the force error; halt when the force is set.
+        """Return True: the load is set at once.
 
         Args:
-            normal: Normal force, zero subtracted [N].
-
-        Returns:
-            Whether the force has been within its tolerance for `AXIS_PERIOD`; at target 0, whether
-            it has not fallen further for that time.
-
-        Raises:
-            RigTimeout: `patience` has passed since `request`; the axis has been halted.
+            normal: Normal force, not used [N].
         """
-        now, missing = self._clock.now(), self._target - normal
-        if self._target == 0:
-            missing = self._withdraw(normal, now)
-        elif abs(missing) > self._tolerance:
-            self._since = now
-        if now - self._asked > self._patience:
-            self.halt()
-            raise RigTimeout(
-                f"the load axis did not reach {self._target:g} N (it is at {normal:.3g} N)",
-                waited=now - self._asked,
-                advice="check the axis, or raise load.patience in the plan",
-            )
-        if now - self._since >= AXIS_PERIOD:
-            self.halt()
-            return True
-        self._axis.move(min(max(GAIN * missing, -FASTEST), FASTEST))
-        return False
-
-    def _withdraw(self, normal: float, now: float) -> float:
-        """Return a force error [N] that retracts the axis with its largest velocity.
-
-        At host time `now` [s] `AXIS_PERIOD` starts anew if the force has fallen by a quarter of the
-        tolerance since it last did: the zero of the load cell is not known yet, so that only the
-        end of the fall shows no load.
-        """
-        if normal < self._lowest - self._tolerance / 4:
-            self._lowest, self._since = normal, now
-        return -FASTEST / GAIN
+        del normal
+        return True
 
     def halt(self) -> None:
-        """Command velocity 0, which holds the axis."""
-        self._axis.move(0.0)
+        """Do nothing: no motion has to be stopped."""

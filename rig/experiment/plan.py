@@ -60,12 +60,12 @@ class LoadSetting:
     """How the normal force is set.
 
     Attributes:
-        set_by: `hand` on the threaded shaft, or a driven `axis`.
+        set_by: `hand`, on the threaded shaft.
         tolerance: Largest difference of the normal force from its target [N].
-        patience: Estimated time to set a load, and timeout of an axis, not of a person [s].
+        patience: Estimated time to set a load [s].
     """
 
-    set_by: Literal["hand", "axis"]
+    set_by: Literal["hand"]
     tolerance: float
     patience: float
 

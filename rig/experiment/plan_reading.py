@@ -83,7 +83,7 @@ def _points(table: TomlTable) -> PointGrid:
 
 def _load(table: TomlTable) -> LoadSetting:
     return LoadSetting(
-        set_by=table.choice("set_by", ("hand", "axis")),
+        set_by=table.choice("set_by", ("hand",)),
         tolerance=table.positive("tolerance"),
         patience=table.positive("patience", 30.0),
     )

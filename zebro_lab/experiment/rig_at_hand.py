@@ -16,9 +16,8 @@ from rig.clock import SYSTEM_CLOCK, Clock, ManualClock
 from rig.experiment.acquire import PERIOD
 from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
-from rig.experiment.load import DrivenShaft, HandShaft, LoadSetter
+from rig.experiment.load import HandShaft, LoadSetter, SimulatedOperator
 from rig.experiment.plan import LoadSetting
-from rig.experiment.simulated_load import SimulatedAxis, SimulatedOperator
 from rig.links.memory import MemoryLink
 from rig.openers import SIMULATED, resolve
 from rig.slip_rig.board import RigBoard
@@ -66,28 +65,15 @@ class RigAtHand:
         return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
 
     def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
-        """Return the setter of the normal force: the operator or a driven axis, real or simulated.
+        """Return the setter of the normal force: the operator, real or simulated.
 
         Args:
-            setting: How the force is set: by hand or axis, tolerance, patience.
+            setting: How the force is set: tolerance.
             control: Mailbox that receives the operator's confirmation.
-
-        Raises:
-            SettingsError: The setting names an axis, and the rig is real: no real axis exists.
         """
-        if setting.set_by == "hand":
-            if self.twin is not None:
-                return SimulatedOperator(self.twin)
-            return HandShaft(control, tolerance=setting.tolerance)
-        if self.twin is None:
-            raise SettingsError(
-                "found 'axis' in the plan, which only a simulated rig has; expected 'hand'",
-                key="load.set_by",
-            )
-        axis = SimulatedAxis(self.twin, clock=self.clock)
-        return DrivenShaft(
-            axis, tolerance=setting.tolerance, patience=setting.patience, clock=self.clock
-        )
+        if self.twin is not None:
+            return SimulatedOperator(self.twin)
+        return HandShaft(control, tolerance=setting.tolerance)
 
 
 @contextmanager

@@ -13,10 +13,10 @@ from rig.clock import ManualClock
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
+from rig.experiment.load import SimulatedOperator
 from rig.experiment.plan import Plan
 from rig.experiment.plan_reading import parse_plan
 from rig.experiment.run import run_plan
-from rig.experiment.simulated_load import SimulatedOperator
 from rig.links.memory import MemoryLink
 from rig.profile import ProfileTable
 from rig.slip_rig.board import RigBoard

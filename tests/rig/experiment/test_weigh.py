@@ -54,7 +54,7 @@ def test_no_weight_at_all_is_refused():
 
 
 def test_a_gain_error_of_the_twin_is_weighed(lab):
-    from rig.experiment.simulated_load import SimulatedOperator
+    from rig.experiment.load import SimulatedOperator
 
     twin = lab["twin"]()
     twin.rig.command("leg", 0.0)

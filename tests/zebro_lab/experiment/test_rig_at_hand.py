@@ -6,14 +6,12 @@ import pytest
 from model.slip.brush import Brush
 from rig.errors import ProfileError
 from rig.experiment.control import Control
-from rig.experiment.load import DrivenShaft, HandShaft
+from rig.experiment.load import HandShaft, SimulatedOperator
 from rig.experiment.plan import LoadSetting
-from rig.experiment.simulated_load import SimulatedOperator
 from zebro_lab.experiment.rig_at_hand import TWIN_PROFILE, rig_at_hand
 from zebro_lab.files.errors import SettingsError
 
 HAND = LoadSetting("hand", tolerance=0.3, patience=30.0)
-AXIS = LoadSetting("axis", tolerance=0.3, patience=30.0)
 
 
 def test_a_fast_twin_passes_its_own_time_and_knows_its_truth():
@@ -51,18 +49,15 @@ def test_drives_and_load_cell_have_views_of_their_own():
         assert rig.twin is not None
 
 
-def test_a_real_rig_has_a_person_at_its_shaft_and_no_axis():
+def test_a_real_rig_has_a_person_at_its_shaft():
     with rig_at_hand("rig-board-serial@/dev/null") as rig:
         assert (rig.twin, rig.fast, rig.truth) == (None, False, {})
         assert isinstance(rig.load_setter(HAND, Control()), HandShaft)
-        with pytest.raises(SettingsError, match="'axis' in the plan, which only a simulated"):
-            rig.load_setter(AXIS, Control())
 
 
-def test_a_twin_has_an_operator_and_an_axis():
+def test_a_twin_has_an_operator():
     with rig_at_hand("sim", fast=True) as rig:
         assert isinstance(rig.load_setter(HAND, Control()), SimulatedOperator)
-        assert isinstance(rig.load_setter(AXIS, Control()), DrivenShaft)
 
 
 @pytest.mark.parametrize(("address", "error", "said"), [

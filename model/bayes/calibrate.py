@@ -13,7 +13,6 @@ from model.bayes.estimate import thin_draws
 from model.bayes.fit import (
     SHORT_CALLS,
     LawComparison,
-    Noise,
     PreparedFit,
     compare,
     explain_numerical_errors,
@@ -96,7 +95,6 @@ def calibrate(
     keep: Callable[[Chains], object] = lambda _: None,
     stated: StatedPriors = UNSTATED,
     scored: bool = False,
-    noise: Noise = "gauss",
     first: Callable[[Preview], object] = lambda _: None,
     mapper: Mapper = HERE,
 ) -> tuple[Calibration, Chains | None]:
@@ -119,7 +117,6 @@ def calibrate(
         stated: Priors that replace default ones.
         scored: Whether to choose the law by `choose_law`, from predictions of left-out runs and
             loads by the whole posterior, instead of by `compare`.
-        noise: Distribution of the noise, as `prepare_fit` has it.
         first: Called with the parameters by weighted draws, before sampling.
         mapper: Where fits without left-out runs and loads are computed.
 
@@ -142,7 +139,7 @@ def calibrate(
     )
     known = load_cell, rig_errors, stated
     prepare = partial(_prepare, samples, laws, known, settings, rng, watcher, mapper)
-    fits = prepare(validate=not scored, noise=noise)
+    fits = prepare(validate=not scored)
     fit, comparison = (
         _by_scores(samples, fits, rng, watcher, mapper) if scored else _by_comparison(fits)
     )
@@ -215,7 +212,6 @@ def _prepare(
     mapper: Mapper,
     *,
     validate: bool,
-    noise: Noise,
 ) -> dict[str, PreparedFit]:
     """Prepare the fit of each law, by name, all on the blocks of the first.
 
@@ -229,7 +225,7 @@ def _prepare(
             raise FitStopped(None)
         fit = prepare_fit(
             samples, law, load_cell=known[0], rig_errors=known[1], stated=known[2], rng=rng,
-            block_choice=choice, mapper=mapper, validate=validate, noise=noise,
+            block_choice=choice, mapper=mapper, validate=validate,
             threads=settings.threads,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks

@@ -2,11 +2,10 @@
 """Result of the fit of a slip law: estimates, curve, checks and verdict."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from model.arrays import Array
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.convergence import Convergence
@@ -21,7 +20,6 @@ from model.bayes.estimate import (
     estimate,
 )
 from model.bayes.fit import LawComparison, PreparedFit
-from model.bayes.gaussian_equivalent import gaussian_equivalent
 from model.bayes.law_scores import LawScores
 from model.bayes.posterior import SlipPosterior
 from model.bayes.prior_conflict import PriorShift, prior_shifts
@@ -98,8 +96,7 @@ def conclude(
 ) -> Calibration:
     """Compute estimates, residuals, checks and verdict from the draws of a fit.
 
-    Residuals and verdict use about `_CHECKED` of the draws, and with Student-t noise the blocks of
-    `gaussian_equivalent`.
+    Residuals and verdict use about `_CHECKED` of the draws.
 
     Args:
         fit: The fit.
@@ -117,13 +114,12 @@ def conclude(
     """
     posterior = fit.posterior
     some = draws.flat[:: max(1, len(draws.flat) // _CHECKED)]
-    checked = gaussian_equivalent(posterior, some)
-    residuals = _analysed(posterior, checked, some)
+    residuals = analyse_residuals(posterior.blocks, posterior.law, some)
     narrowed = contraction(posterior, draws)
     levels = middle_loads(posterior.blocks)
     validation = fit.cross_validation
     compared = None if weighted is None else agreement(draws, weighted, convergence)
-    centred = linearise(checked, draws.z.reshape(-1, draws.z.shape[-1]))
+    centred = linearise(posterior, draws.z.reshape(-1, draws.z.shape[-1]))
     return Calibration(
         fit=fit,
         comparison=comparison,
@@ -145,7 +141,7 @@ def conclude(
             convergence=convergence,
             residuals=residuals,
             agreement=compared,
-            inspection=inspect(checked, centred, samples, fit.block_choice),
+            inspection=inspect(posterior, centred, samples, fit.block_choice),
             offset_scale=fit.load_cell.zero_stability,
         ),
         contraction=narrowed,
@@ -155,20 +151,6 @@ def conclude(
         source=source,
         seconds=seconds,
         prior_shifts=prior_shifts(posterior, fit.stated, draws.z.reshape(-1, draws.z.shape[-1])),
-    )
-
-
-def _analysed(posterior: SlipPosterior, checked: SlipPosterior, values: Array) -> Residuals:
-    """Analyse the residuals of the blocks as Gaussian noise has them; R² and RMSE of all as is."""
-    found = analyse_residuals(checked.blocks, posterior.law, values)
-    if checked is posterior:
-        return found
-    plain = analyse_residuals(posterior.blocks, posterior.law, values)
-    return replace(
-        found,
-        r_squared=plain.r_squared,
-        rmse=plain.rmse,
-        rmse_over_load=plain.rmse_over_load,
     )
 
 

@@ -3,8 +3,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
-from typing import Literal, TypeAlias
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,13 +19,10 @@ from model.bayes.priors import Prior
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
-from model.bayes.tail_choice import choose_tail
 from model.bayes.tails import approximate
 from model.errors import DomainError, FitError, InsufficientData
 from model.mapping import HERE, Mapper
 from model.slip.law import SlipLaw
-
-Noise: TypeAlias = Literal["gauss", "student"]
 
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 UNSTATED_GAIN_SD = 0.01  # of a load cell that nobody has weighed: cells, mounts and wiring differ
@@ -48,8 +44,6 @@ class PreparedFit:
         rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
         defaults: Default prior of each parameter by name, beside those of the posterior.
         stated: Priors that were stated.
-        tails: Log evidence of each number of degrees of freedom of Student-t noise minus that of
-            Gaussian noise; empty for Gaussian noise [-].
     """
 
     posterior: SlipPosterior
@@ -60,7 +54,6 @@ class PreparedFit:
     rig_errors: RigErrors
     defaults: Mapping[str, Prior]
     stated: StatedPriors = UNSTATED
-    tails: Mapping[float, float] = field(default_factory=dict)
 
     @property
     def laplace(self) -> Laplace:
@@ -99,7 +92,6 @@ def prepare_fit(
     validate: bool = True,
     mapper: Mapper = HERE,
     stated: StatedPriors = UNSTATED,
-    noise: Noise = "gauss",
     threads: int = 1,
 ) -> PreparedFit:
     """Average the samples, build the posterior, find its modes and cross-validate it.
@@ -115,7 +107,6 @@ def prepare_fit(
         validate: Whether to cross-validate, which a single run never is.
         mapper: Where the folds of the cross-validation are fitted.
         stated: Priors that replace default ones; the block length is chosen without them.
-        noise: Distribution of the noise: "student" has the tails that explain the data best.
         threads: Number of batches of points whose density is computed at once in the searches for
             modes, from `SHORT_CALLS` blocks on.
 
@@ -130,7 +121,7 @@ def prepare_fit(
     require_forces(samples, load_cell)
     with explain_numerical_errors(samples, law):
         return _prepared(
-            samples, law, load_cell, rig_errors, rng, block_choice, validate, mapper, stated, noise,
+            samples, law, load_cell, rig_errors, rng, block_choice, validate, mapper, stated,
             threads,
         )  # fmt: skip
 
@@ -173,7 +164,6 @@ def _prepared(
     validate: bool,
     mapper: Mapper,
     stated: StatedPriors,
-    noise: Noise,
     threads: int,
 ) -> PreparedFit:
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
@@ -191,13 +181,9 @@ def _prepared(
     if len(blocks) >= SHORT_CALLS:
         density = in_batches(density, threads)
     approximation = approximate(density, starts)
-    tails: Mapping[float, float] = {}
-    if noise == "student":
-        chosen = choose_tail(posterior, approximation)
-        posterior, approximation, tails = chosen.posterior, chosen.approximation, chosen.gain
     posterior, approximation = straightened(posterior, approximation, rng)
     fit = PreparedFit(
-        posterior, approximation, None, choice, load_cell, rig_errors, defaults, stated, tails
+        posterior, approximation, None, choice, load_cell, rig_errors, defaults, stated
     )
     return validated(fit, mapper=mapper) if validate else fit
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Posterior density of a slip law's and the measurement's parameters, given block means."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -11,12 +10,11 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
-from model.bayes.likelihood import NUISANCE, predict_blocks, run_log_likelihood
+from model.bayes.likelihood import NUISANCE, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.shear import Shear
 from model.bayes.stated_priors import PriorCorrelation
-from model.bayes.student import student_log_likelihood
 from model.slip.covariate import CovariateLaw, covariate_parameters
 from model.slip.law import Parameter, SlipLaw
 
@@ -125,7 +123,6 @@ class SlipPosterior:
         priors: Prior of each parameter by name.
         fixed: Value of each parameter that is not sampled, by name.
         correlation: Correlation of the parameters' own coordinates a priori; None without one.
-        tail: Degrees of freedom of the noise's Student-t; infinite for Gaussian noise [-].
         shear: Shear of the coordinates, of the same d; None without one.
     """
 
@@ -134,7 +131,6 @@ class SlipPosterior:
     priors: Mapping[str, Prior]
     fixed: Mapping[str, float] = field(default_factory=dict)
     correlation: PriorCorrelation | None = None
-    tail: float = math.inf
     shear: Shear | None = None
 
     @cached_property
@@ -245,10 +241,7 @@ class SlipPosterior:
 
     def run_log_likelihood_of(self, values: Array) -> Array:
         """Compute the log likelihood of each run's blocks given values (w, k + 12), (w, n_runs)."""
-        if math.isinf(self.tail):
-            return run_log_likelihood(self.blocks, self.law, values)
-        predicted = predict_blocks(self.blocks, self.law, values)
-        return student_log_likelihood(self.blocks, predicted, values, self.tail)
+        return run_log_likelihood(self.blocks, self.law, values)
 
     def without_runs(self, left_out: NDArray[np.bool_]) -> "SlipPosterior":
         """Return the posterior with the same priors and fixed values, without data of some runs.

@@ -34,7 +34,6 @@ class EarlierCalibration:
         files: Files that were read.
         notes: Warnings about it, one line each.
         data: SHA-256 of the files that it was fitted to.
-        student: Whether its noise has a Student-t distribution.
     """
 
     title: str
@@ -45,7 +44,6 @@ class EarlierCalibration:
     files: tuple[Path, ...]
     notes: tuple[str, ...]
     data: frozenset[str] = frozenset()
-    student: bool = False
 
 
 def read_earlier(path: Path) -> EarlierCalibration:
@@ -87,5 +85,4 @@ def read_earlier(path: Path) -> EarlierCalibration:
         files=(found.file, posterior),
         notes=tuple(notes),
         data=frozenset(map(str, content.get("data", {}).values())),
-        student="noise" in content,
     )

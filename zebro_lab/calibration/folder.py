@@ -201,7 +201,6 @@ def _slip_toml(
         **_law_content(calibration),
         "tested": _tested_content(calibration),
         **_comparison_content(calibration),
-        **_noise_content(calibration),
         **({"lateral_force": dict(lateral)} if lateral else {}),
         **_run_out_content(calibration),
         **({"priors": dict(priors)} if priors else {}),
@@ -256,21 +255,6 @@ def _comparison_content(calibration: "Calibration") -> dict[str, Any]:
 
     scores = calibration.comparison
     return {"comparison": laws_content(scores)} if isinstance(scores, LawScores) else {}
-
-
-def _noise_content(calibration: "Calibration") -> dict[str, Any]:
-    """Return what `--noise student` chose; nothing for Gaussian noise."""
-    if not calibration.fit.tails:
-        return {}
-    tails = calibration.fit.tails
-    return {
-        "noise": {
-            "distribution": "student",
-            "degrees_of_freedom": calibration.posterior.tail,
-            "tried": list(tails),
-            "log_evidence_over_gauss": [round(gain, 3) for gain in tails.values()],
-        }
-    }
 
 
 def _run_out_content(calibration: "Calibration") -> dict[str, Any]:

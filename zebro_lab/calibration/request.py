@@ -21,7 +21,6 @@ LawName: TypeAlias = Literal[
     "magic-formula", "brush", "brush-kinetic", "coulomb-stribeck", "compare"
 ]
 SidesName: TypeAlias = Literal["together", "apart", "auto"]
-NoiseName: TypeAlias = Literal["gauss", "student"]
 EngineName: TypeAlias = Literal["auto", "emcee", "laplace"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]
 
@@ -79,13 +78,6 @@ class CalibrationRequest:
         ),
         Limits(above=0.0, most=0.5, advice="2 % of the load is 0.02"),
     ] = None
-    noise: Annotated[
-        NoiseName,
-        Option(
-            help="Noise of block means: gauss, or student (t, with tails as heavy as the data "
-            "ask), which a few far blocks hardly move."
-        ),
-    ] = "gauss"
     block_length: Annotated[
         int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
     ] = None
@@ -249,7 +241,6 @@ class CalibrationRequest:
             "curvature": self.curvature,
             "load_sensitivity": self.load_sensitivity,
             "sides": self.sides,
-            "noise": self.noise,
             "discrepancy": self.discrepancy,
             "block_length": self.block_length,
             "load_cell": self.load_cell,

@@ -166,15 +166,14 @@ def _departure_lines(calibration: Calibration) -> list[str]:
 
 
 def _noise_lines(calibration: Calibration) -> list[str]:
-    """Say which share of slip's noise is wander, and which Student-t noise was chosen, if any."""
-    lines = []
+    """Say which share of slip's noise is taken for wander, if any."""
     wander = calibration.fit.block_choice.wander
-    if wander is not None and wander.used > 0:
-        lines.append(
-            f"fast part of slip: traction follows {wander.share:.0%} ± {wander.sd:.0%} of it, "
-            "which is taken for wander of the slip; the rest for noise of the speeds"
-        )
-    return lines + _tail_lines(calibration)
+    if wander is None or wander.used == 0:
+        return []
+    return [
+        f"fast part of slip: traction follows {wander.share:.0%} ± {wander.sd:.0%} of it, "
+        "which is taken for wander of the slip; the rest for noise of the speeds"
+    ]
 
 
 def run_out_lines(found: RunOut | None) -> list[str]:
@@ -198,19 +197,6 @@ def run_out_lines(found: RunOut | None) -> list[str]:
         else f"slip is not corrected, which would not predict left-out runs clearly better ({gain})"
     )
     return [f"run-out: {'; '.join(told(disc) for disc in found.discs)}; {done}"]
-
-
-def _tail_lines(calibration: Calibration) -> list[str]:
-    """Say which Student-t noise was chosen, and how much better than Gaussian noise it is."""
-    if not calibration.fit.tails:
-        return []
-    tail = calibration.posterior.tail
-    gain = calibration.fit.tails[tail]
-    if gain <= 0:
-        better = f"Gaussian noise explains them better, by {-gain:.0f}: --noise gauss is enough"
-    else:
-        better = f"better than Gaussian noise by {gain:.0f} in log evidence"
-    return [f"noise: Student-t with {tail:.0f} degrees of freedom; {better}"]
 
 
 def _comparison_lines(calibration: Calibration) -> list[str]:

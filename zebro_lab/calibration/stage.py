@@ -110,7 +110,6 @@ def calibrate(
             keep=checkpoint.keep,
             stated=stated.priors,
             scored=request.law == COMPARE,
-            noise=request.noise,
             first=first,
             mapper=mapper,
         )

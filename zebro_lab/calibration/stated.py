@@ -160,11 +160,10 @@ def _carried(
     """Return the parameters whose posterior is carried over.
 
     With `--carry law` those of the law alone, for another load cell; else also the measurement's,
-    the noise of block means only for blocks of the same length, and never that of a Student-t.
+    the noise of block means only for blocks of the same length.
     """
     law = {p.name for p in earlier.curve.law.parameters}
-    alike = request.noise == "gauss" and not earlier.student
-    same_blocks = alike and length is not None and length == earlier.block_length
+    same_blocks = length is not None and length == earlier.block_length
     return tuple(
         name
         for name in earlier.draws

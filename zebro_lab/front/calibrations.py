@@ -18,7 +18,6 @@ from zebro_lab.calibration.request import (
     DefinitionName,
     EngineName,
     LawName,
-    NoiseName,
     SidesName,
 )
 from zebro_lab.calibration.rig_data import RigData
@@ -98,7 +97,6 @@ def calibrate(
     slip_definition: DefinitionName | None = None,
     law: LawName = "magic-formula",
     sides: SidesName = "together",
-    noise: NoiseName = "gauss",
     discrepancy: float | None = None,
     prior: Sequence[str] = (),
     prior_from: PathLike | None = None,
@@ -119,7 +117,6 @@ def calibrate(
         law: "magic-formula", "brush", "brush-kinetic" or "coulomb-stribeck"; "compare" fits the
             simplest that predicts left-out runs and loads no worse than the others.
         sides: Whether driving and braking follow one curve; "auto" lets left-out runs decide.
-        noise: "gauss", or "student" for data with outliers.
         discrepancy: Standard deviation of a smooth departure from the law, over the load [-]; None
             for none.
         prior: What is known of parameters beforehand, such as "friction = 0.40 ± 0.05".
@@ -145,7 +142,6 @@ def calibrate(
             slip_definition=slip_definition,
             law=law,
             sides=sides,
-            noise=noise,
             discrepancy=discrepancy,
             prior=tuple(prior),
             prior_from=optional(prior_from),

@@ -4,6 +4,8 @@
 from typing import Final
 
 REMOVED: Final[dict[str, str]] = {
+    "calibrate --noise": "noise is Gaussian: leave out rows with faults by [rows] keep in "
+    "columns.toml, or runs by `zebro-lab exclude`",
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "rig run --adaptive": "Measure in rounds by rig run, calibrate-slip and rig suggest in turn, "
     "as the shell loop in docs/experiments.md does.",

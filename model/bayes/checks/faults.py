@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Checks of faults that no term in the model would mend: of samples, of runs, of priors."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -93,8 +92,8 @@ def _counted(names: tuple[str, ...]) -> str:
 def _outliers(
     samples: SlipSamples, posterior: SlipPosterior, values: Array, residual: Array
 ) -> Check:
-    """Check that no samples leap so far that the fit suffers; Student-t noise allows for them."""
-    fine, allowed = samples.fine, not math.isinf(posterior.tail)
+    """Check that no samples leap so far that the fit suffers."""
+    fine = samples.fine
     if fine is None:
         found = outliers(samples, residual, reach_of_slip_noise(samples, posterior.law, values))
     else:
@@ -104,16 +103,14 @@ def _outliers(
     advice: Advice = CorrectData(
         cause,
         "look at the raw log about them (cable, plug, noise), skip such rows with [rows] keep in "
-        "columns.toml, or leave the runs out, and fit again; where they cannot be told from the "
-        "others, give the same command with --noise student",
+        "columns.toml, or leave the runs out, and fit again",
     )
     check = decided(
         "no samples leap from their neighbours",
-        allowed or not found.matter,
+        not found.matter,
         "samples that leap by more than 8 robust standard deviations and by more than noise of "
         f"slip explains: {found.count} of {total}"
-        + (f", most in run '{samples.run_names[found.run]}'" if found.count else "")
-        + ("; Student-t noise allows for them" if found.count and allowed else ""),
+        + (f", most in run '{samples.run_names[found.run]}'" if found.count else ""),
         advice,
     )
     return _failed(check, cause)

@@ -1,21 +1,16 @@
 # SPDX-License-Identifier: MIT
 """`slip.toml` read back, and every way in which it may not be one."""
 
-import io
 import tomllib
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 from model.slip import Brush, MagicFormula, SidedLaw
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import read_slip, write_tables
 from zebro_lab.calibration.lateral_force import LateralForce
-from zebro_lab.calibration.screen import print_calibration
-from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError
 
 GOOD = """
@@ -145,17 +140,3 @@ side_friction.mean = -0.1
     (tmp_path / "slip.toml").write_text(text.replace('"apart"', '"aprt"'))
     with pytest.raises(DataError, match="did you mean 'apart'"):
         read_slip(tmp_path)
-
-
-def test_student_noise_is_written_and_printed_with_what_was_tried(tmp_path):
-    calibration = short_calibration()
-    posterior = replace(calibration.posterior, tail=5.0)
-    fit = replace(calibration.fit, posterior=posterior, tails={5.0: 12.3, 30.0: 4.0})
-    student = replace(calibration, fit=fit)
-    write_tables(tmp_path, student, inputs={})
-    noise = read_toml_document(tmp_path / "slip.toml")["noise"]
-    assert (noise["degrees_of_freedom"], noise["tried"]) == (5.0, [5.0, 30.0])
-    console = Console(file=io.StringIO(), width=160)
-    print_calibration(console, student, tmp_path)
-    said = console.file.getvalue()
-    assert "Student-t with 5 degrees of freedom; better than Gaussian noise by 12" in said

@@ -11,7 +11,6 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Chains
 from model.bayes.weighted import WeightedDraws
 from model.slip.covariate import reference_law
-from model.slip.discrepancy import LawWithDiscrepancy
 from model.slip.law import Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import N_SIDES, SidedLaw, side_factors
@@ -139,10 +138,8 @@ def curve_estimates(
     law, reference = reference_law(law, values.T)
     columns = np.asarray(reference)
     quantities: list[tuple[Parameter, Array]] = []
-    base = law.law if isinstance(law, LawWithDiscrepancy) else law
-    if isinstance(base, MagicFormula):
-        coefficients = base.coefficients(load, columns[: len(base.parameters)])
-        quantities += zip(_PLAIN, coefficients, strict=True)
+    if isinstance(law, MagicFormula):
+        quantities += zip(_PLAIN, law.coefficients(load, columns), strict=True)
     elif isinstance(law, SidedLaw) and isinstance(law.law, MagicFormula):
         quantities += zip(_PLAIN, _driving_coefficients(law.law, load, columns), strict=True)
     peak = law.peak_slip(load, columns)

@@ -11,7 +11,6 @@ from model.bayes.samples import SlipSamples
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.covariate import DEGREES, CovariateLaw
-from model.slip.discrepancy import with_discrepancy
 from model.slip.law import SlipLaw
 from model.slip.laws import APART, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula
@@ -36,8 +35,7 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
 
     They are the Magic Formula's, with `--law compare` the others' too, else the one that is named;
     with `--sides apart` all with their sides apart, with `--sides auto` those behind the others;
-    with `--discrepancy` all with a departure over the tested slips; where runs have a covariate,
-    all without and with it.
+    where runs have a covariate, all without and with it.
 
     Args:
         request: Options: law, curvature, dependence on load, and sides.
@@ -47,20 +45,6 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
         SettingsError: Sides are to be fitted apart, and slip has one sign.
     """
     laws = _together(request, samples)
-    if request.discrepancy is not None:
-        low, high = float(samples.slip.min()), float(samples.slip.max())
-        sd = request.discrepancy
-        departing: dict[str, SlipLaw] = {
-            name: with_discrepancy(law, sd, smallest=low, largest=high)
-            for name, law in laws.items()
-        }
-        if samples.covariate is not None:
-            raise SettingsError(
-                "a departure from the law and a covariate of runs cannot be fitted together; leave "
-                "out --discrepancy, or the [covariates] of columns.toml",
-                key="--discrepancy",
-            )
-        return departing
     return _with_covariate(_sided(laws, request, samples), request, samples)
 
 

@@ -37,7 +37,7 @@ SLIP_TOML = "slip.toml"
 AS_TESTED = "trustworthy as far as tested"
 """`State.AS_TESTED` of `model.bayes.verdict`, which takes long to import."""
 POSTERIOR = "posterior.nc"
-PICTURES = ("curves", "surface", "corner", "traces", "residuals", "laws", "discrepancy")
+PICTURES = ("curves", "surface", "corner", "traces", "residuals", "laws")
 CALIBRATION = ResultKind(
     "calibration",
     "calibrate-slip",

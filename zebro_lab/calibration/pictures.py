@@ -12,7 +12,6 @@ from model.bayes.law_scores import LawScores
 from model.bayes.likelihood import predict_blocks
 from model.bayes.verdict import State
 from model.slip.covariate import Covariate, CovariateLaw
-from model.slip.discrepancy import LawWithDiscrepancy
 from model.slip.law import SlipLaw
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
@@ -28,9 +27,8 @@ _MARKS: Final = {
 def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat = "png") -> None:
     """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit.
 
-    Where laws were compared by their scores, `laws` draws all of them, and `discrepancy` a
-    departure from the law. The titles of a fit that did not converge, is not trustworthy or not
-    fully tested say so.
+    Where laws were compared by their scores, `laws` draws all of them. The titles of a fit that did
+    not converge, is not trustworthy or not fully tested say so.
 
     Args:
         folder: Existing folder to write the pictures into.
@@ -44,24 +42,21 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
     blocks = _at_reference(calibration.posterior.blocks, law, centre)
     residuals, simulated = calibration.residuals, is_simulated(calibration.source)
     k = len(law.parameters)
-    own = law.law.parameters if isinstance(law, LawWithDiscrepancy) else law.parameters
     draws = calibration.draws.flat[:, :k]
-    labels = plots.parameter_labels(own)
+    labels = plots.parameter_labels(law.parameters)
     figures = {
         "curves": plots.slip_curves(
             blocks, law, draws=draws, load_levels=calibration.levels, simulated=simulated
         ),
         "surface": plots.slip_surface(blocks, law, values=draws.mean(axis=0), simulated=simulated),
-        "corner": plots.corner(draws[:, : len(own)], labels=labels, simulated=simulated),
+        "corner": plots.corner(draws, labels=labels, simulated=simulated),
         "traces": plots.traces(
-            calibration.draws.values[..., : len(own)], labels=labels, simulated=simulated
+            calibration.draws.values[..., :k], labels=labels, simulated=simulated
         ),
         "residuals": plots.residuals(
             blocks, whitened=residuals.whitened, run_score=residuals.run_score, simulated=simulated
         ),
     }
-    if isinstance(law, LawWithDiscrepancy):
-        figures["discrepancy"] = plots.discrepancy(blocks, law, draws=draws, simulated=simulated)
     scores = calibration.comparison
     if isinstance(scores, LawScores):
         own = calibration.posterior.blocks

@@ -69,15 +69,6 @@ class CalibrationRequest:
             "(apart); or apart if that predicts left-out runs clearly better (auto)."
         ),
     ] = "together"
-    discrepancy: Annotated[
-        float | None,
-        Option(
-            metavar="SHARE",
-            help="Add a smooth departure from the law over slip, of this standard deviation over "
-            "the load [-], as 0.02; drawn in discrepancy.png.",
-        ),
-        Limits(above=0.0, most=0.5, advice="2 % of the load is 0.02"),
-    ] = None
     block_length: Annotated[
         int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
     ] = None
@@ -148,7 +139,6 @@ class CalibrationRequest:
         """Raise `SettingsError` for options that have no meaning or none beside the others."""
         require_curvature(self.curvature)
         self._require_priors()
-        self._require_lone_discrepancy()
         if self.resume and self.engine == "laplace":
             raise SettingsError(
                 "--resume goes on with a stopped fit by emcee; leave out --engine laplace, which "
@@ -163,22 +153,6 @@ class CalibrationRequest:
                 f"'{self.law}'; leave them out",
                 key="--law",
             )
-
-    def _require_lone_discrepancy(self) -> None:
-        if self.discrepancy is None:
-            return
-        beside = {
-            "--law compare": self.law == COMPARE,
-            "--sides": self.sides != "together",
-            "--prior-from": self.prior_from is not None,
-        }
-        for option, given in beside.items():
-            if given:
-                raise SettingsError(
-                    f"--discrepancy departs from one law, on both sides of zero slip as it needs; "
-                    f"leave out {option}",
-                    key="--discrepancy",
-                )
 
     def _require_comparable(self) -> None:
         if self.load_sensitivity:
@@ -241,7 +215,6 @@ class CalibrationRequest:
             "curvature": self.curvature,
             "load_sensitivity": self.load_sensitivity,
             "sides": self.sides,
-            "discrepancy": self.discrepancy,
             "block_length": self.block_length,
             "load_cell": self.load_cell,
             "prior": list(self.prior),

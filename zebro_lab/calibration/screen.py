@@ -21,7 +21,6 @@ from model.bayes.run_out import DiscRunOut, RunOut
 from model.bayes.verdict import State
 from model.counted import counted
 from model.slip.covariate import CovariateLaw
-from model.slip.discrepancy import LawWithDiscrepancy, chance_of_law
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.law_table import sentence, signed
 from zebro_lab.calibration.rig_data import RigData
@@ -32,8 +31,6 @@ from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 
 MOST_LEVELS = 6  # of a covariate that are told one by one
-
-CLEAR_DEPARTURE_P = 0.01
 
 
 def print_data(console: Console, data: RigData) -> None:
@@ -100,8 +97,6 @@ def print_calibration(console: Console, calibration: Calibration, out: Path) -> 
     _print_priors(console, calibration)
     for table in _curve_tables(calibration):
         console.print(table)
-    for line in _departure_lines(calibration):
-        console.print(plain(line))
     _print_quality(console, calibration)
     _print_verdict(console, calibration)
     console.print(Text(f"\nwritten to {out}:"))
@@ -144,24 +139,6 @@ def _covariate_lines(calibration: Calibration) -> list[str]:
     return [
         f"at {covariate.name} {at} friction is {told(friction)} and slip stiffness "
         f"{told(friction * slip)} times that at {covariate.reference:.4g}, which all else is for"
-    ]
-
-
-def _departure_lines(calibration: Calibration) -> list[str]:
-    """Say whether the data depart from the law, and where furthest, if a departure was fitted."""
-    law, blocks = calibration.posterior.law, calibration.posterior.blocks
-    if not isinstance(law, LawWithDiscrepancy):
-        return []
-    draws = calibration.draws.flat[:, : len(law.parameters)]
-    p = chance_of_law(law, draws)
-    slip = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, 101)))
-    departures = 100 * law.departure(slip, draws.T[:, :, None])
-    mean, sd = departures.mean(axis=0), departures.std(axis=0)
-    at = int(np.argmax(np.abs(mean)))
-    said = "the data depart from it" if p < CLEAR_DEPARTURE_P else "the law alone would do"
-    return [
-        f"Departure from the law (prior ± {100 * law.sd:g} % of the load): {said} (p = {p:.2g}); "
-        f"largest at slip {slip[at]:.2g}, {mean[at]:+.2f} ± {sd[at]:.2f} % of the load"
     ]
 
 

@@ -97,7 +97,6 @@ def calibrate(
     slip_definition: DefinitionName | None = None,
     law: LawName = "magic-formula",
     sides: SidesName = "together",
-    discrepancy: float | None = None,
     prior: Sequence[str] = (),
     prior_from: PathLike | None = None,
     widen: float = 1.0,
@@ -117,8 +116,6 @@ def calibrate(
         law: "magic-formula", "brush", "brush-kinetic" or "coulomb-stribeck"; "compare" fits the
             simplest that predicts left-out runs and loads no worse than the others.
         sides: Whether driving and braking follow one curve; "auto" lets left-out runs decide.
-        discrepancy: Standard deviation of a smooth departure from the law, over the load [-]; None
-            for none.
         prior: What is known of parameters beforehand, such as "friction = 0.40 ± 0.05".
         prior_from: Calibration whose posterior is the prior; its law is fitted.
         widen: Factor on the standard deviations of that prior.
@@ -142,7 +139,6 @@ def calibrate(
             slip_definition=slip_definition,
             law=law,
             sides=sides,
-            discrepancy=discrepancy,
             prior=tuple(prior),
             prior_from=optional(prior_from),
             widen=widen,

@@ -4,7 +4,6 @@
 from zebro_lab.files.uninterrupted import uninterrupted
 
 with uninterrupted():  # matplotlib has C extensions
-    from zebro_lab.plots.discrepancy import discrepancy
     from zebro_lab.plots.laws import slip_laws
     from zebro_lab.plots.noise import residuals
     from zebro_lab.plots.posterior import corner, traces
@@ -15,7 +14,6 @@ with uninterrupted():  # matplotlib has C extensions
 __all__ = [
     "add_to_title",
     "corner",
-    "discrepancy",
     "parameter_labels",
     "residuals",
     "save",

@@ -11,7 +11,6 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.residuals import largest_slips, load_levels
 from model.bayes.rise import sampled_rise
-from model.slip.discrepancy import NAME as DISCREPANCY
 from model.slip.law import SlipLaw
 
 RISE = "the rise of the curve is tested"  # name of a check of the data, not of the model
@@ -106,8 +105,7 @@ def weak_parameters(
     """Return the law's weakly identified parameters by name, with reason and advice.
 
     Weak are sampled parameters with a contraction below `MIN_CONTRACTION` and, of a law with a
-    shape factor, shape and friction if `slip_reach` is below `MIN_REACH`. A departure from the law
-    of which data say nothing is none of them.
+    shape factor, shape and friction if `slip_reach` is below `MIN_REACH`.
     """
     names = [parameter.name for parameter in law.parameters]
     weak: dict[str, Advice] = {
@@ -116,7 +114,7 @@ def weak_parameters(
             f"{MIN_CONTRACTION:.0%}; use F_max and BCD, peak force and initial slope, instead"
         )
         for name in names
-        if contraction.get(name, 1.0) < MIN_CONTRACTION and not name.startswith(DISCREPANCY)
+        if contraction.get(name, 1.0) < MIN_CONTRACTION
     }
     reach = slip_reach(blocks, law, values)
     if "shape" in names and reach < MIN_REACH:

@@ -2,14 +2,12 @@
 """The laws that a request leaves to be chosen, the preferred first."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from model.bayes.samples import SlipSamples
 from model.slip import Brush, MagicFormula, SidedLaw, SlipDefinition
-from model.slip.discrepancy import with_discrepancy
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.errors import SettingsError
@@ -78,15 +76,6 @@ def test_one_sign_of_slip_is_told_before_a_fit_of_both_sides(sweep, run_command,
     ended = run_command("calibrate-slip", sweep, "--sides", "apart", "--out", out)
     assert (ended.code, out.exists()) == (2, False)
     assert "--sides: slip has one sign in these data" in ended.err
-
-
-def test_a_departure_belongs_to_one_law_and_spans_the_tested_slips():
-    found = candidates(CalibrationRequest(law="brush", discrepancy=0.02), samples(4.0, 12.0))
-    (law,) = found.values()
-    assert law == with_discrepancy(Brush(), 0.02, smallest=0.1, largest=0.1)
-    for beside in ({"law": "compare"}, {"sides": "auto"}, {"prior_from": Path("earlier")}):
-        with pytest.raises(SettingsError, match="--discrepancy departs from one law"):
-            CalibrationRequest(discrepancy=0.02, **beside)
 
 
 def test_the_brush_model_with_kinetic_friction_is_asked_for_by_name():

@@ -180,34 +180,20 @@ class _Moments:
 
 
 def _moments(samples: SlipSamples, starts: NDArray[np.intp]) -> _Moments:
-    """Compute the moments of blocks from `starts`, which ends with the number of samples.
-
-    Samples that are means of several are weighted by their number, and the moments within them are
-    added.
-    """
-    fine, size = samples.fine, np.diff(starts)
-    weight = None if fine is None else fine.count.astype(float)
-    count = size if fine is None else np.add.reduceat(fine.count, starts[:-1])
+    """Compute the moments of blocks from `starts`, which ends with the number of samples."""
+    count = np.diff(starts)
 
     def mean(values: Array) -> Array:
-        total = np.add.reduceat(values if weight is None else weight * values, starts[:-1])
-        return total / count
+        return np.add.reduceat(values, starts[:-1]) / count
 
     slip, load, force = (
         mean(values) for values in (samples.slip, samples.normal_force, samples.traction_force)
     )
-    of_slip = samples.slip - np.repeat(slip, size)
-    of_load = samples.normal_force - np.repeat(load, size)
-    slip_square, load_square, load_third = of_slip**2, of_load**2, of_load**3
-    product = of_slip * of_load
-    if fine is not None:
-        load_third = load_third + 3 * of_load * fine.load_variance + fine.load_third
-        slip_square = slip_square + fine.slip_variance
-        load_square = load_square + fine.load_variance
-        product = product + fine.slip_load_covariance
+    of_slip = samples.slip - np.repeat(slip, count)
+    of_load = samples.normal_force - np.repeat(load, count)
     return _Moments(
-        slip, load, force, count, mean(slip_square), mean(load_square), mean(load_third),
-        mean(product),
+        slip, load, force, count, mean(of_slip**2), mean(of_load**2), mean(of_load**3),
+        mean(of_slip * of_load),
     )  # fmt: skip
 
 

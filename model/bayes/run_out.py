@@ -118,7 +118,7 @@ def find_run_out(
         The run-out; None where no angle is recorded, or nothing within runs tells it.
     """
     angles = samples.angles
-    if angles is None or samples.fine is not None or rig_errors.run_out <= 0:
+    if angles is None or rig_errors.run_out <= 0:
         return None
     length = _length(samples, angles)
     found, starts = None, None

@@ -8,36 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.faulty_samples import Clipped, Outliers
 from model.slip.covariate import Covariate
 from model.slip.definition import SlipDefinition
-
-
-@dataclass(frozen=True)
-class FineMoments:
-    """What averaging a few samples each has taken from data too many to be held as samples.
-
-    Attributes:
-        count: Number of samples of each mean, shape (n,).
-        slip_variance: Variance of slip within each mean, shape (n,) [-].
-        load_variance: Variance of load within each, shape (n,) [N^2].
-        load_third: Third central moment of load within each, shape (n,) [N^3].
-        slip_load_covariance: Covariance of slip and load within each, shape (n,) [N].
-        noise: Variance of the white noise of one sample's slip, by run, shape (n_runs,) [-].
-        length: Number of samples of each run, shape (n_runs,).
-        outliers: Samples whose traction leaps from both neighbours.
-        clipped: Where traction and normal force stop at a limit; None where they do not.
-    """
-
-    count: NDArray[np.intp]
-    slip_variance: Array
-    load_variance: Array
-    load_third: Array
-    slip_load_covariance: Array
-    noise: Array
-    length: NDArray[np.intp]
-    outliers: Outliers
-    clipped: tuple[Clipped | None, Clipped | None]
 
 
 @dataclass(frozen=True)
@@ -84,8 +56,6 @@ class SlipSamples:
             without times (averages over a trial).
         covariate: The covariate that runs were made at, and its value in each run, shape (n_runs,),
             in its unit; None without one.
-        fine: Where each of these samples is the mean of several, what was within it; None where
-            they are as they were read.
         angles: Angles of the discs; None where none are recorded.
     """
 
@@ -97,7 +67,6 @@ class SlipSamples:
     definition: SlipDefinition
     time: Array | None = None
     covariate: tuple[Covariate, Array] | None = None
-    fine: FineMoments | None = None
     angles: DiscAngles | None = None
 
     def __len__(self) -> int:

@@ -24,33 +24,22 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
         samples: The samples.
 
     Returns:
-        Noise variance of one sample's slip ratio, of a mean where these are means, shape
-        (n_runs,) [-].
+        Noise variance of one sample's slip ratio, shape (n_runs,) [-].
     """
-    noise = noise_and_freedom(samples)[0]
-    if samples.fine is None:
-        return noise
-    per_mean = samples.fine.length / np.bincount(samples.run, minlength=samples.n_runs)
-    return noise / per_mean
+    return noise_and_freedom(samples)[0]
 
 
 def noise_and_freedom(samples: SlipSamples) -> tuple[Array, Array]:
     """Return each run's noise variance as `slip_noise_variance` does, and its degrees of freedom.
 
     The degrees of freedom are those of a chi-square of the same relative variance, (n_runs,) each;
-    as many as those of all runs together for a typical value that replaces a run's own. Where
-    samples are means of several, the noise is that of one of these.
+    as many as those of all runs together for a typical value that replaces a run's own.
     """
-    fine = samples.fine
     lengths = np.array([part.stop - part.start for part in samples.slices()])
-    lengths = lengths if fine is None else fine.length
     enough = lengths >= 8
     if not enough.any():
         return np.zeros(samples.n_runs), np.full(samples.n_runs, ENDLESS)
-    if fine is None:
-        nuggets = np.array([_nugget(samples.slip[part]) for part in samples.slices()])
-    else:
-        nuggets = fine.noise
+    nuggets = np.array([_nugget(samples.slip[part]) for part in samples.slices()])
     # Twice the squared mean over the variance are a chi-square's degrees of freedom: 2n/7.
     freedom = 2 * lengths / 7
     typical = median_variance(nuggets[enough], freedom[enough])

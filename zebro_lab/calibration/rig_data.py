@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.fine_means import joined_moments
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
@@ -17,9 +16,8 @@ from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.lateral_force import LateralForce, lateral_force, no_sums
-from zebro_lab.calibration.rig_part import RigPart, averaged_part, read_part
+from zebro_lab.calibration.rig_part import RigPart, read_part
 from zebro_lab.calibration.run_covariate import covariate_note, joined_covariate
-from zebro_lab.calibration.streamed_part import read_streamed_part
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.runs.counted_once import (
     content_hash,
@@ -33,13 +31,8 @@ from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
 from zebro_lab.tables.columns import Columns, parse_definition
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.disc_angles import joined_angles
-from zebro_lab.tables.parquet_files import MOST_CELLS, parquet_rows
 from zebro_lab.tables.table_files import table_stem
 
-MOST_ROWS = 15_000_000
-"""Rows of Parquet tables that are held in memory all together."""
-MEANS = 2_000_000
-"""Means that more samples than these are averaged to."""
 _LEAST_SAMPLES = 20  # of a recording, to estimate its noise
 _LEAST_TRIALS = 8  # averages over trials: more than any law has parameters
 _CONSTANT_SLIP = 1e-6  # range of slip ratio below which slip is constant
@@ -106,8 +99,7 @@ def read_rig_data(
         wanted = parse_definition(wanted, file=None, key="slip definition")
     labels = dict(zip(named, _labels(named), strict=True))
     maps = _column_maps(named, columns)
-    mean_of = _mean_of(sources, maps)
-    parts, died = _read_parts(sources, maps, labels, wanted, mean_of)
+    parts, died = _read_parts(sources, maps, labels, wanted)
     if parts:  # the same forces under two definitions contradict each other
         _require_one_definition(parts)
     known = _known(excluded, maps, labels) if parts else {}
@@ -128,7 +120,6 @@ def read_rig_data(
         source=_joined_source(parts),
         notes=(
             *_notes(parts),
-            *_averaging_note(parts),
             *(() if lateral is None else (lateral.text,)),
             *covariate_note(parts),
             *joined_angles([part.angles for part in parts])[1],
@@ -182,7 +173,6 @@ def _read_parts(
     maps: Mapping[DataSource, Columns],
     labels: Mapping[DataSource, str],
     wanted: SlipDefinition | None,
-    mean_of: int,
 ) -> tuple[list[RigPart], dict[DataSource, str]]:
     """Read tables and runs; return also why runs are left out that were cut short too early.
 
@@ -192,40 +182,12 @@ def _read_parts(
     parts, died = [], {}
     for source in sources:
         try:
-            parts.append(_read(source, maps[source], labels[source], wanted, mean_of))
+            parts.append(read_part(source, maps[source], labels[source], wanted))
         except DataError as error:
             if not (source.is_run_folder and _is_cut_short(source.path)):
                 raise
             died[source] = f"its recording was cut short, and cannot be used: {error}"
     return parts, died
-
-
-def _mean_of(sources: Sequence[DataSource], maps: Mapping[DataSource, Columns]) -> int:
-    """Return how many samples are averaged as they are read: 1 where all can be held in memory.
-
-    Counted are the rows of Parquet tables; others are limited by what can be read at once.
-    """
-    sizes = [parquet_rows(source.path) for source in sources if _streamable(source, maps[source])]
-    rows = sum(n for n, _ in sizes)
-    if rows <= MOST_ROWS and all(n * columns <= MOST_CELLS for n, columns in sizes):
-        return 1
-    return max(2, -(-rows // MEANS))
-
-
-def _streamable(source: DataSource, columns: Columns) -> bool:
-    is_parquet = not source.is_run_folder and source.path.name.lower().endswith(".parquet")
-    return is_parquet and source.path.is_file() and not columns.runs.each_row
-
-
-def _read(
-    source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None, mean_of: int
-) -> RigPart:
-    """Read a table or run, as means of samples if there are too many in all."""
-    if mean_of == 1:
-        return read_part(source, columns, label, wanted)
-    if _streamable(source, columns):
-        return read_streamed_part(source, columns, label, wanted, mean_of=mean_of)
-    return averaged_part(read_part(source, columns, label, wanted), mean_of)
 
 
 def _is_cut_short(run: Path) -> bool:
@@ -312,7 +274,6 @@ def _without_duplicates(
 def _joined(parts: Sequence[RigPart]) -> SlipSamples:
     first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
     timed = [part.time for part in parts if part.time is not None]
-    fine = [part.fine for part in parts if part.fine is not None]
     return SlipSamples(
         slip=np.concatenate([part.slip.ratio for part in parts]),
         normal_force=np.concatenate([part.normal_force for part in parts]),
@@ -324,7 +285,6 @@ def _joined(parts: Sequence[RigPart]) -> SlipSamples:
         definition=parts[0].slip.definition,
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
         covariate=joined_covariate(parts),
-        fine=joined_moments(fine) if len(fine) == len(parts) else None,
         angles=joined_angles([part.angles for part in parts])[0],
     )
 
@@ -410,8 +370,6 @@ def _joined_lateral(parts: Sequence[RigPart]) -> LateralForce | None:
 
 
 def _samples_of_runs(part: RigPart) -> NDArray[np.intp]:
-    if part.fine is not None:
-        return part.fine.length
     return np.bincount(part.runs.index, minlength=len(part.runs.names))
 
 
@@ -436,18 +394,6 @@ def _notes(parts: Sequence[RigPart]) -> list[str]:
     return [*origins, *runs, *_rows_left_out(parts), *_time_note(parts), *others]
 
 
-def _averaging_note(parts: Sequence[RigPart]) -> list[str]:
-    fine = [part.fine for part in parts if part.fine is not None]
-    if not fine:
-        return []
-    samples = sum(int(each.length.sum()) for each in fine)
-    means = sum(len(each.count) for each in fine)
-    return [
-        f"{samples} samples are too many for memory: averaged as they were read, about "
-        f"{samples / means:.0f} at a time, with the moments within"
-    ]
-
-
 def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
     read: Counter[str] = Counter()
     kept: Counter[str] = Counter()
@@ -455,8 +401,7 @@ def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
         if part.columns.keep:
             conditions = " and ".join(map(str, part.columns.keep))
             read[conditions] += part.rows_read
-            own = len(part.normal_force) if part.fine is None else int(part.fine.length.sum())
-            kept[conditions] += own
+            kept[conditions] += len(part.normal_force)
     return [f"{read[c] - kept[c]} of {read[c]} rows left out; kept where {c}" for c in read]
 
 

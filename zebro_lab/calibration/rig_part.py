@@ -3,15 +3,13 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.fine_means import fine_moments, moments_of_runs, reduce_samples
 from model.bayes.rig_errors import RigErrors
-from model.bayes.samples import DiscAngles, FineMoments, SlipSamples
+from model.bayes.samples import DiscAngles
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.lateral_force import lateral_sums
 from zebro_lab.calibration.plausible import require_plausible
@@ -29,11 +27,6 @@ from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
 from zebro_lab.tables.run_values import run_values
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
-
-ANGLES_PASSED: Final = (
-    "angles of the discs are not used, because samples are averaged as they are read: run-out is "
-    "not corrected"
-)
 
 
 @dataclass(frozen=True)
@@ -56,7 +49,6 @@ class RigPart:
         files: Every file read, the column map last, if there is one.
         covariate: Value of the covariate in each run, shape (n_runs,), in its unit; None where the
             column map states none.
-        fine: Where samples are means of several, what was within them; None where they are not.
         lateral: Sums of the lateral force of each run, see `lateral_sums`; None without one.
         angles: Angles of the discs; None where none are recorded, or they cannot be used.
     """
@@ -74,7 +66,6 @@ class RigPart:
     notes: tuple[str, ...]
     files: tuple[Path, ...]
     covariate: Array | None = None
-    fine: FineMoments | None = None
     lateral: Array | None = None
     angles: DiscAngles | None = None
 
@@ -102,36 +93,9 @@ class RigPart:
             runs=replace(self.runs, index=index, names=names),
             time=None if self.time is None else self.time[rows],
             covariate=None if self.covariate is None else self.covariate[chosen],
-            fine=None if self.fine is None else moments_of_runs(self.fine, rows, chosen),
             lateral=None if self.lateral is None else self.lateral[chosen],
             angles=None if self.angles is None else self.angles.of_rows(rows),
         )
-
-
-def averaged_part(part: RigPart, mean_of: int) -> RigPart:
-    """Return a table or run with means of so many samples in place of the samples.
-
-    Args:
-        part: The table or run.
-        mean_of: Samples in a mean.
-    """
-    samples = SlipSamples(
-        part.slip.ratio, part.normal_force, part.traction_force, part.runs.index, part.runs.names,
-        part.slip.definition, part.time,
-    )  # fmt: skip
-    reduced = reduce_samples(samples, mean_of)
-    slip_ratio, pressed, traction, time = reduced.means
-    return replace(
-        part,
-        slip=replace(part.slip, ratio=slip_ratio),
-        normal_force=pressed,
-        traction_force=traction,
-        runs=replace(part.runs, index=reduced.run),
-        time=None if part.time is None else time,
-        fine=fine_moments([reduced], len(part.runs.names)),
-        angles=None,
-        notes=(*part.notes, *([ANGLES_PASSED] if part.angles is not None else [])),
-    )
 
 
 def read_part(

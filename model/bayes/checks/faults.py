@@ -93,12 +93,7 @@ def _outliers(
     samples: SlipSamples, posterior: SlipPosterior, values: Array, residual: Array
 ) -> Check:
     """Check that no samples leap so far that the fit suffers."""
-    fine = samples.fine
-    if fine is None:
-        found = outliers(samples, residual, reach_of_slip_noise(samples, posterior.law, values))
-    else:
-        found = fine.outliers
-    total = len(samples) if fine is None else int(fine.length.sum())
+    found = outliers(samples, residual, reach_of_slip_noise(samples, posterior.law, values))
     cause = f"outliers: {found.count} samples leap by about {found.size:.3g} N"
     advice: Advice = CorrectData(
         cause,
@@ -109,7 +104,7 @@ def _outliers(
         "no samples leap from their neighbours",
         not found.matter,
         "samples that leap by more than 8 robust standard deviations and by more than noise of "
-        f"slip explains: {found.count} of {total}"
+        f"slip explains: {found.count} of {len(samples)}"
         + (f", most in run '{samples.run_names[found.run]}'" if found.count else ""),
         advice,
     )
@@ -119,7 +114,6 @@ def _outliers(
 def _clipped(samples: SlipSamples) -> Check:
     name = "no force stops at a limit"
     both = (clipped(samples.traction_force), clipped(samples.normal_force))
-    both = both if samples.fine is None else samples.fine.clipped
     for what, found in zip(("traction", "normal force"), both, strict=True):
         if found is not None:
             cause = f"{what} is clipped: {found.count} samples are exactly {found.limit:.4g} N"

@@ -35,8 +35,6 @@ def block_times(fit: Linearised, samples: SlipSamples) -> Array:
     """Return the mean time of each block, shape (n,) [s]; in samples if samples have no times."""
     time = np.arange(len(samples), dtype=float) if samples.time is None else samples.time
     starts = np.append(0, np.cumsum(fit.blocks.count)[:-1])
-    if samples.fine is not None:  # blocks count samples, and these are means of several
-        starts = np.searchsorted(np.cumsum(samples.fine.count) - samples.fine.count, starts)
     return np.add.reduceat(time, starts) / np.diff(np.append(starts, len(time)))
 
 

@@ -2,7 +2,6 @@
 """Faults that show in single samples and not in their means: outliers, clipping, delay, sign."""
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +14,6 @@ from model.bayes.slip_noise import slip_noise_variance
 from model.slip.covariate import law_at
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw
-
-Levels: TypeAlias = tuple[tuple[float, int], ...]
 
 OUTLYING = 8.0  # robust standard deviations of a run, which no Gaussian sample reaches
 FARTHEST = 4.5  # standard deviations of slip noise: one sample in 150,000 lies beyond
@@ -119,52 +116,23 @@ def _is_peak(size: Array) -> NDArray[np.bool_]:
     return (size >= padded[:-2]) & (size >= padded[2:])
 
 
-def top_levels(force: Array, n: int) -> Levels:
-    """Return the n largest values of a force with the number of samples at each, largest first.
-
-    Args:
-        force: Measured force of each sample, shape (m,) [N].
-        n: Number of values, of which there may be fewer.
-    """
-    found, below = [], force
-    for _ in range(n):
-        if not len(below):
-            break
-        level = float(below.max())
-        rest = below[below < level]
-        found.append((level, len(below) - len(rest)))
-        below = rest
-    return tuple(found)
-
-
-def clipped_at(levels: Levels, sign: float) -> Clipped | None:
-    """Return the limit that a force stops at, if its largest value is one.
-
-    Args:
-        levels: The three largest values of `sign` times the force, with their counts.
-        sign: 1 for an upper limit, -1 for a lower one.
-    """
-    if len(levels) < 3:
-        return None
-    (top, at_top), *others = levels
-    if at_top < FEWEST_CLIPPED or top <= 0:
-        return None
-    if at_top > CLIPPED_EXCESS * max(count for _, count in others):
-        return Clipped(sign * top, at_top)
-    return None
-
-
 def clipped(force: Array) -> Clipped | None:
     """Find a force that stops at a limit: many samples exactly at the extreme, few just below.
 
     Of a cell whose readings are counts every level has many samples; at a limit there are
-    `CLIPPED_EXCESS` times as many as at the next level.
+    `CLIPPED_EXCESS` times as many as at the next two levels.
 
     Args:
         force: Measured force of each sample, shape (n,) [N].
     """
-    tried = (clipped_at(top_levels(sign * force, 3), sign) for sign in (1.0, -1.0))
-    return next((found for found in tried if found is not None), None)
+    for sign in (1.0, -1.0):
+        levels, counts = np.unique(sign * force, return_counts=True)
+        if len(levels) < 3 or levels[-1] <= 0:
+            continue
+        beside = CLIPPED_EXCESS * counts[-3:-1].max()
+        if counts[-1] >= FEWEST_CLIPPED and counts[-1] > beside:
+            return Clipped(sign * float(levels[-1]), int(counts[-1]))
+    return None
 
 
 @dataclass(frozen=True)

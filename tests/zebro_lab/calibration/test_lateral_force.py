@@ -6,7 +6,6 @@ import pandas as pd
 import pytest
 
 from support.rig_tables import RADII, columns
-from zebro_lab.calibration import rig_data, streamed_part
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
 
@@ -81,18 +80,6 @@ def test_rows_left_out_and_empty_cells_do_not_count(tmp_path):
     assert (found.lateral.samples, found.lateral.of) == (there.sum(), kept.sum())
     assert found.lateral.mean == pytest.approx(force[there].mean())
     assert f"of {there.sum()} of {kept.sum()} samples" in found.lateral.text
-
-
-def test_a_table_read_part_by_part_gives_the_same(tmp_path, monkeypatch):
-    whole = read(tmp_path, table(noise(0.3)))
-    monkeypatch.setattr(rig_data, "MOST_ROWS", 100)
-    monkeypatch.setattr(rig_data, "MEANS", ROWS // 5)
-    monkeypatch.setattr(streamed_part, "PART", 700)
-    parts = read(tmp_path, table(noise(0.3)))
-    assert parts.samples.fine is not None
-    assert whole.lateral is not None
-    assert parts.lateral is not None
-    assert vars(parts.lateral) == pytest.approx(vars(whole.lateral))
 
 
 def test_a_second_table_without_it_counts_among_all_samples(tmp_path):

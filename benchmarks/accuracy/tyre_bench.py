@@ -1,23 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Fit a real tyre bench: which law and terms are chosen, and do they describe each load and side?
 
-python -m benchmarks.accuracy.tyre_bench TABLE [--all-pressures]
+python -m benchmarks.accuracy.tyre_bench TABLE
 
-TABLE is drivebrake_pure_slip.csv of the reference data: the pure-slip extract of a tyre bench, 14
-runs at four loads and three pressures, which the law may follow; without the option the 6 runs at
-80 to 86 kPa. Prints, for
-the plain Magic Formula, the same with the errors of the rig, and the law that is chosen as by
-`--law compare` and then `--sides auto`: R² of samples of left-out runs, and the chi-square of the
-mean residuals of all loads and sides together. A group's standard deviation is made of the variance
-between runs, over all groups, and that of block means within runs, whatever the model says of
-noise. Beside them stands scipy's least-squares fit of all samples, with and without shifts of slip
-and of force over load. The last column is the verdict's own check of the groups.
+TABLE is drivebrake_pure_slip.csv of the reference data: the pure-slip extract of a tyre bench, of
+whose 14 runs the 6 at 80 to 86 kPa are read. Prints, for the plain Magic Formula, the same with the
+errors of the rig, and the law that is chosen as by `--law compare` and then `--sides auto`: R² of
+samples of left-out runs, and the chi-square of the mean residuals of all loads and sides. A group's
+standard deviation is made of the variance between runs, over all groups, and that of block means
+within runs, whatever the model says of noise. Beside them stands scipy's least-squares fit of all
+samples, with and without shifts of slip and of force over load. The last column is the verdict's
+own check of the groups.
 """
 
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +35,6 @@ from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import load_levels, nearest_level
 from model.bayes.rig_errors import RigErrors
 from model.bayes.weighted import weighted_draws
-from model.slip.covariate import CovariateLaw
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula, magic_formula
 from model.slip.sided import SidedLaw
@@ -56,7 +54,6 @@ columns.slip_ratio = { name = "SL", definition = "travel" }
 runs.gap = "1 s"
 """
 ONE_PRESSURE = 'rows.keep = ["P > 80", "P < 86"]\n'
-PRESSURE = 'covariates.pressure = { name = "P", unit = "kPa", reference = 83 }\n'
 NO_ERRORS = RigErrors(1e-9, 1e-9, 1e-9)
 N_DRAWS = 2000
 RESAMPLED = 300
@@ -144,11 +141,11 @@ def least_squares_fit(slip: Array, load: Array, force: Array, *, shifts: bool) -
     return residual(least_squares(residual, start, x_scale=np.maximum(np.abs(start), 0.1)).x)
 
 
-def read(table: Path, *, all_pressures: bool) -> RigData:
-    """Read the bench's samples of one pressure, or of all three."""
+def read(table: Path) -> RigData:
+    """Read the bench's samples of one pressure."""
     with tempfile.TemporaryDirectory() as folder:
         columns = Path(folder) / "columns.toml"
-        columns.write_text(COLUMNS + (PRESSURE if all_pressures else ONE_PRESSURE))
+        columns.write_text(COLUMNS + ONE_PRESSURE)
         return read_rig_data([table], columns=columns)
 
 
@@ -170,17 +167,10 @@ def chosen(data: RigData, choice: BlockChoice) -> tuple[str, PreparedFit]:
     scores = score_laws(weighed, mapper=cores_of(CoresRequest()))
     found = choose_law(scores, load_groups(next(iter(fits.values())).posterior.blocks)[1])
     best = validated(fits[found.laws[found.chosen].name])
-    apart = validated(_fit(data, _apart(best.posterior.law), data.rig_errors, choice))
+    apart = validated(_fit(data, SidedLaw(best.posterior.law), data.rig_errors, choice))
     sides = compare(["together", "apart"], [best, apart])
     said = f"{sentence(found)} Sides {sides.names[sides.chosen]}."
     return said, (best, apart)[sides.chosen]
-
-
-def _apart(law: SlipLaw) -> SlipLaw:
-    """Return a law with its sides apart; one that follows a covariate still does."""
-    if isinstance(law, CovariateLaw):
-        return replace(law, law=SidedLaw(law.law))
-    return SidedLaw(law)
 
 
 def judged(name: str, data: RigData, fit: PreparedFit) -> str:
@@ -224,8 +214,7 @@ def scipy_line(name: str, data: RigData, fit: PreparedFit, *, shifts: bool) -> s
 
 def main(arguments: Sequence[str]) -> None:
     """Print the table for the arguments of the command line."""
-    paths = [Path(each) for each in arguments if not each.startswith("--")]
-    data = read(paths[0], all_pressures="--all-pressures" in arguments)
+    data = read(Path(arguments[0]))
     print("\n".join(data.notes))
     plain = _fit(data, MagicFormula("constant"), NO_ERRORS, None)
     said, best = chosen(data, plain.block_choice)

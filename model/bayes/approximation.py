@@ -10,7 +10,6 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import least_squares_values
 from model.bayes.shear import find_shear
 from model.bayes.tails import approximate
-from model.slip.covariate import law_at
 
 FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 PRIOR_DRAWS = 400
@@ -33,7 +32,7 @@ def starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.nd
     """
     blocks, law = posterior.blocks, posterior.law
     values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
-    force = law_at(law, blocks.coordinate).force(blocks.slip, blocks.normal_force, values)
+    force = law.force(blocks.slip, blocks.normal_force, values)
     size = float(np.std(blocks.traction_force - force))
     names = [parameter.name for parameter in law.parameters]
     known = dict(zip(names, map(float, values), strict=True))

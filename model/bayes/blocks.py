@@ -41,8 +41,6 @@ class SlipBlocks:
         slip_load_covariance: Covariance of slip and load within the block, shape (n,) [N].
         run_slip_error: Variance of the error of `slip` that all blocks of a run share, shape
             (n_runs,) [-].
-        run_covariate: Coordinate of the covariate that each run was made at, shape (n_runs,); None
-            without one [-].
     """
 
     slip: Array
@@ -58,7 +56,6 @@ class SlipBlocks:
     load_skewness: Array
     slip_load_covariance: Array
     run_slip_error: Array
-    run_covariate: Array | None = None
 
     def __len__(self) -> int:
         """Return the number of blocks."""
@@ -76,11 +73,6 @@ class SlipBlocks:
         averaged over it.
         """
         return self.slip_wander + self.slip_error + self.run_slip_error[self.run]
-
-    @property
-    def coordinate(self) -> Array | None:
-        """Coordinate of the covariate of each block, shape (n,); None without a covariate [-]."""
-        return None if self.run_covariate is None else self.run_covariate[self.run]
 
     def run_starts(self) -> NDArray[np.intp]:
         """Return the index of each run's first block, then the number of blocks, (n_runs + 1,)."""
@@ -105,7 +97,6 @@ class SlipBlocks:
             run=(np.cumsum(keep) - 1)[self.run[rows]],
             run_names=tuple(np.array(self.run_names, dtype=object)[keep]),
             run_slip_error=self.run_slip_error[keep],
-            run_covariate=None if self.run_covariate is None else self.run_covariate[keep],
         )
 
 
@@ -153,16 +144,7 @@ def block_means(samples: SlipSamples, length: int, *, wander_share: float = 0.0)
         load_skewness=_skewness(found.load_third, load_variance),
         slip_load_covariance=covariance,
         run_slip_error=run_slip_error,
-        run_covariate=_coordinate_of_runs(samples),
     )
-
-
-def _coordinate_of_runs(samples: SlipSamples) -> Array | None:
-    """Return the coordinate of each run's covariate, shape (n_runs,); None without one."""
-    if samples.covariate is None:
-        return None
-    covariate, values = samples.covariate
-    return covariate.coordinate(values)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,6 @@ from model.bayes.laplace import Laplace, climb
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.mapping import HERE, Mapper
-from model.slip.covariate import law_at
 from model.slip.definition import SlipDefinition, slip_per_radius_error
 from model.slip.law import SlipLaw
 
@@ -55,12 +54,11 @@ class CrossValidation:
             samples: The samples, n of them, of the same runs in the same order.
             law: The slip law.
         """
-        predicted, at = np.empty(len(samples)), samples.coordinate
+        predicted = np.empty(len(samples))
         for index, part in enumerate(samples.slices()):
             values = self.values[self.fold[index]]
             slip, load = samples.slip[part], samples.normal_force[part]
-            own = law if at is None else law_at(law, at[part])
-            predicted[part] = measured_force(own, values, slip, load, samples.definition)
+            predicted[part] = measured_force(law, values, slip, load, samples.definition)
         return predicted
 
 

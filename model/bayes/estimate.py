@@ -10,7 +10,6 @@ from model.bayes.convergence import MAX_PARETO_K, Convergence
 from model.bayes.posterior import SlipPosterior
 from model.bayes.sampler import Chains
 from model.bayes.weighted import WeightedDraws
-from model.slip.covariate import reference_law
 from model.slip.law import Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import N_SIDES, SidedLaw, side_factors
@@ -126,8 +125,7 @@ def curve_estimates(
 
     In order: B, C, D, E (of a Magic Formula only), peak slip (or infinity), largest traction within
     the tested slip (known even where data end before the peak, unlike D), slope at zero slip [N].
-    Of a law with its sides apart these are of driving, and the last three follow for braking; of
-    one with a covariate they are those at the reference.
+    Of a law with its sides apart these are of driving, and the last three follow for braking.
 
     Args:
         law: The slip law, of k parameters.
@@ -135,8 +133,7 @@ def curve_estimates(
         load: Normal force [N].
         slip_limit: Largest absolute slip ratio that was tested [-].
     """
-    law, reference = reference_law(law, values.T)
-    columns = np.asarray(reference)
+    columns = values.T
     quantities: list[tuple[Parameter, Array]] = []
     if isinstance(law, MagicFormula):
         quantities += zip(_PLAIN, law.coefficients(load, columns), strict=True)

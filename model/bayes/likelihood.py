@@ -30,7 +30,6 @@ from model.bayes.lane_likelihood import lane_log_likelihood
 from model.bayes.load_rule import load_rule
 from model.bayes.slip_rule import slip_rule
 from model.compiled import compiled
-from model.slip.covariate import CovariateLaw, law_at
 from model.slip.definition import slip_per_radius_error
 from model.slip.lane_force import lane_law
 from model.slip.law import Parameter, SlipLaw
@@ -109,7 +108,7 @@ def predict_blocks(
     law_values = values[:, :k].T[:, :, None]
     g_t, g_n, b_n, c, epsilon, c_r = values[:, k : k + 6].T[:, :, None]
     s_0, s_1 = values[:, -4:-2].T[:, :, None]
-    rule, law = load_rule(blocks), law_at(law, blocks.coordinate)
+    rule = load_rule(blocks)
     shift = epsilon * slip_per_radius_error(blocks.slip, blocks.definition)
 
     def force_at(slip: Array, load: Array) -> Array:
@@ -154,8 +153,6 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
         Log density of each run, shape (w, n_runs).
     """
     k = len(law.parameters)
-    if isinstance(law, CovariateLaw) and blocks.run_covariate is not None:
-        return _by_covariate(blocks, law, values)
     known = lane_law(law, values[:, :k])
     if known is not None:
         return lane_log_likelihood(blocks, known, values[:, k:])
@@ -165,17 +162,6 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
         blocks.traction_force - predicted.force, predicted.noise, predicted.slope,
         blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), scale, scatter, rho, tau,
     )  # fmt: skip
-
-
-def _by_covariate(blocks: SlipBlocks, law: CovariateLaw, values: Array) -> Array:
-    """Compute the log density of each run from its copy of the law, shape (w, n_runs)."""
-    at, k = np.asarray(blocks.run_covariate), len(law.parameters)
-    found = np.empty((len(values), blocks.n_runs))
-    for level in np.unique(at):
-        here = at == level
-        own = np.concatenate([law.copied_values(values[:, :k], level), values[:, k:]], axis=1)
-        found[:, here] = run_log_likelihood(blocks.select_runs(here), law.law, own)
-    return found
 
 
 def slip_errors(blocks: SlipBlocks, values: Array) -> tuple[Array, Array]:

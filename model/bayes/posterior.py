@@ -15,7 +15,6 @@ from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Unif
 from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.shear import Shear
 from model.bayes.stated_priors import PriorCorrelation
-from model.slip.covariate import CovariateLaw, covariate_parameters
 from model.slip.law import Parameter, SlipLaw
 
 
@@ -83,10 +82,6 @@ def default_priors(
         "noise_correlation": Uniform(-0.5, 0.99),
         "offset_spread": HalfNormal(load_cell.zero_stability),
     }
-    if isinstance(law, CovariateLaw):
-        own = covariate_parameters(law.covariate.name, law.degree)
-        friction = {p.name for p in own[::2]}
-        known |= {p.name: Normal(0.0, 0.2 if p.name in friction else 0.3) for p in own}
     return {p.name: known.get(p.name) or _vague(p) for p in (*law.parameters, *NUISANCE)}
 
 

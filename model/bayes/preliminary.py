@@ -13,7 +13,6 @@ from model.bayes.priors import Prior
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.errors import FitError
-from model.slip.covariate import law_at
 from model.slip.law import SlipLaw
 
 N_TRIALS = 400  # prior draws that are tried as starts
@@ -43,7 +42,7 @@ def least_squares_values(
     Raises:
         FitError: No prior draw is valid at the measured loads, or a residual overflowed.
     """
-    chosen, law = [priors[p.name] for p in law.parameters], law_at(law, blocks.coordinate)
+    chosen = [priors[p.name] for p in law.parameters]
     scale = float(np.std(blocks.traction_force)) / 20
 
     def values(z: Array) -> Array:
@@ -167,10 +166,9 @@ def choose_block_length(
     longest = max(1, run_length // MIN_BLOCKS_PER_RUN)
     coarse = block_means(samples, max(1, min(longest, len(samples) // 1000)))
     values = least_squares_values(coarse, law, priors=priors, rng=rng)
-    own = law_at(law, samples.coordinate)
-    residual = samples.traction_force - own.force(samples.slip, samples.normal_force, values)
+    residual = samples.traction_force - law.force(samples.slip, samples.normal_force, values)
     slip_noise = slip_noise_variance(samples)
-    slope = own.slip_derivative(samples.slip, samples.normal_force, values)
+    slope = law.slip_derivative(samples.slip, samples.normal_force, values)
     wander = fast_wander(samples, residual, slope)
     if length is not None:
         return BlockChoice(length, None, "as asked for", wander)

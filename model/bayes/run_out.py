@@ -224,7 +224,6 @@ def _system(
     means = SlipSamples(
         np.add.reduceat(samples.slip, starts) / blocks.count, blocks.normal_force,
         blocks.traction_force, blocks.run, blocks.run_names, blocks.definition,
-        covariate=samples.covariate,
     )  # fmt: skip
     values, law = posterior.values(curve.mode[None])[0], posterior.law
     residual, _ = raw_residuals(means, law, values)

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.slip.covariate import Covariate
 from model.slip.definition import SlipDefinition
 
 
@@ -54,8 +53,6 @@ class SlipSamples:
         definition: Definition of the slip ratios: the speed that they are divided by.
         time: Time of each sample, increasing within a run, shape (n,) [s]; None for samples
             without times (averages over a trial).
-        covariate: The covariate that runs were made at, and its value in each run, shape (n_runs,),
-            in its unit; None without one.
         angles: Angles of the discs; None where none are recorded.
     """
 
@@ -66,7 +63,6 @@ class SlipSamples:
     run_names: tuple[str, ...]
     definition: SlipDefinition
     time: Array | None = None
-    covariate: tuple[Covariate, Array] | None = None
     angles: DiscAngles | None = None
 
     def __len__(self) -> int:
@@ -77,14 +73,6 @@ class SlipSamples:
     def n_runs(self) -> int:
         """Number of runs."""
         return len(self.run_names)
-
-    @property
-    def coordinate(self) -> Array | None:
-        """Coordinate of the covariate of each sample, shape (n,); None without a covariate."""
-        if self.covariate is None:
-            return None
-        covariate, values = self.covariate
-        return covariate.coordinate(values)[self.run]
 
     def slices(self) -> list[slice]:
         """Return the range of each run's samples, one slice a run, in the order of `run_names`."""

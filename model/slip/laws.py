@@ -9,14 +9,12 @@ from model.errors import DomainError
 from model.similar_name import similar_name
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
-from model.slip.covariate import Covariate, CovariateLaw
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import SidedLaw
 
 LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
 """Class of every slip law, by the law's name."""
-COVARIATE: Final = "covariate"
 SIDES: Final = "sides"
 TOGETHER: Final = "together"
 APART: Final = "apart"
@@ -31,8 +29,7 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
     Args:
         name: A key of `LAWS`.
         options: Fields of the law's class, such as `curvature` of the Magic Formula; their values
-            are not checked. `sides="apart"` makes it a `SidedLaw`, and `covariate`, the
-            fields of a `Covariate` and the degree, a `CovariateLaw`.
+            are not checked. `sides="apart"` makes it a `SidedLaw`.
 
     Returns:
         The law.
@@ -44,18 +41,15 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
     ['slip_stiffness', 'friction', 'kinetic_ratio']
     """
     _require_known("slip law", name, tuple(LAWS))
-    known = (*(field.name for field in fields(LAWS[name])), SIDES, COVARIATE)
+    known = (*(field.name for field in fields(LAWS[name])), SIDES)
     for option in options:
         _require_known(f"option of the slip law '{name}'", option, known)
-    own = {key: value for key, value in options.items() if key not in (SIDES, COVARIATE)}
+    own = {key: value for key, value in options.items() if key != SIDES}
     law: SlipLaw = LAWS[name](**own)
     sides = options.get(SIDES, TOGETHER)
     _require_known(f"value of the option '{SIDES}'", sides, (TOGETHER, APART))
     if sides == APART:
         law = SidedLaw(law)
-    if COVARIATE in options:
-        stated = dict(options[COVARIATE])
-        law = CovariateLaw(law, degree=stated.pop("degree"), covariate=Covariate(**stated))
     return law
 
 
@@ -63,10 +57,8 @@ def law_options(law: SlipLaw) -> dict[str, Any]:
     """Return the options with which `slip_law` restores a law.
 
     Args:
-        law: A law of a class in `LAWS`, or such a law with its sides apart or a covariate.
+        law: A law of a class in `LAWS`, or such a law with its sides apart.
     """
-    if isinstance(law, CovariateLaw):
-        return {**law_options(law.law), COVARIATE: {**asdict(law.covariate), "degree": law.degree}}
     if isinstance(law, SidedLaw):
         return {**law_options(law.law), SIDES: APART}
     return asdict(law)  # pyright: ignore[reportArgumentType]

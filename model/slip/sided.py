@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from model.arrays import Array
-from model.slip.covariate import reference_law
 from model.slip.law import Parameter, SlipLaw, Values
 
 N_SIDES = 2
@@ -126,7 +125,6 @@ def braking_peak_slip(law: SlipLaw, load: ArrayLike, values: Values) -> Array:
         load: Normal force, positive [N].
         values: Parameter values, one entry a parameter.
     """
-    law, values = reference_law(law, values)
     if isinstance(law, SidedLaw):
         return law.braking_peak_slip(load, values)
     return -law.peak_slip(load, values)
@@ -135,13 +133,10 @@ def braking_peak_slip(law: SlipLaw, load: ArrayLike, values: Values) -> Array:
 def middle_curve(law: SlipLaw, values: Values) -> tuple[SlipLaw, Values]:
     """Return a law's middle curve between driving and braking: its law and parameter values.
 
-    That of a law with a covariate is the one at the reference.
-
     Args:
         law: The slip law; one without sides is its own middle curve.
         values: Parameter values, one entry a parameter.
     """
-    law, values = reference_law(law, values)
     return (law.law, values[:-N_SIDES]) if isinstance(law, SidedLaw) else (law, values)
 
 

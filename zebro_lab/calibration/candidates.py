@@ -10,7 +10,6 @@ from model.bayes.residuals import load_levels
 from model.bayes.samples import SlipSamples
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
-from model.slip.covariate import DEGREES, CovariateLaw
 from model.slip.law import SlipLaw
 from model.slip.laws import APART, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula
@@ -21,7 +20,6 @@ from zebro_lab.calibration.request import (
     CalibrationRequest,
     require_curvature,
 )
-from zebro_lab.calibration.run_covariate import levels
 from zebro_lab.files.errors import SettingsError
 
 ONE_CURVATURE: Final = "one curvature E at every load"
@@ -34,8 +32,7 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
     """Return the laws to choose from, by reported name, the preferred first.
 
     They are the Magic Formula's, with `--law compare` the others' too, else the one that is named;
-    with `--sides apart` all with their sides apart, with `--sides auto` those behind the others;
-    where runs have a covariate, all without and with it.
+    with `--sides apart` all with their sides apart, with `--sides auto` those behind the others.
 
     Args:
         request: Options: law, curvature, dependence on load, and sides.
@@ -45,28 +42,7 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
         SettingsError: Sides are to be fitted apart, and slip has one sign.
     """
     laws = _together(request, samples)
-    return _with_covariate(_sided(laws, request, samples), request, samples)
-
-
-def _with_covariate(
-    laws: dict[str, SlipLaw], request: CalibrationRequest, samples: SlipSamples
-) -> dict[str, SlipLaw]:
-    """Add to each law those that follow the covariate of the runs, if they have one.
-
-    From three levels on they are two, of degree 1 and 2; with `--law compare` that of the higher
-    degree alone.
-    """
-    if samples.covariate is None:
-        return laws
-    covariate, values = samples.covariate
-    degrees = DEGREES[: len(levels(values)) - 1]
-    chosen = degrees[-1:] if request.law == COMPARE else degrees
-    following: dict[str, SlipLaw] = {
-        f"{name}, {covariate.name}{' squared' * (degree > 1)}": CovariateLaw(law, covariate, degree)
-        for name, law in laws.items()
-        for degree in chosen
-    }
-    return {**laws, **following}
+    return _sided(laws, request, samples)
 
 
 def _sided(

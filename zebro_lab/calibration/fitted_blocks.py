@@ -71,7 +71,7 @@ def read_slip_blocks(slip_toml: Path, definition: SlipDefinition) -> SlipBlocks:
     """
     file = slip_toml.parent / POSTERIOR
     names = ("slip_ratio", "normal_force", "run", "samples", *BLOCK_MOMENTS, "run_slip_error")
-    given, _ = read_draws_of(file, "constant_data", (*names, "covariate"), advice=_ADVICE)
+    given, _ = read_draws_of(file, "constant_data", names, advice=_ADVICE)
     forces, _ = read_draws_of(file, "observed_data", ["traction_force"], advice=_ADVICE)
     found = {**given, **forces}
     missing = [name for name in (*names, "traction_force") if name not in found]
@@ -96,5 +96,4 @@ def read_slip_blocks(slip_toml: Path, definition: SlipDefinition) -> SlipBlocks:
         definition=definition,
         **{name: found[name] for name in BLOCK_MOMENTS},
         run_slip_error=found["run_slip_error"][first],
-        run_covariate=found["covariate"][first] if "covariate" in found else None,
     )

@@ -318,8 +318,7 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
 
     Groups: `posterior`, draws of the free parameters; `sample_stats`, log density `lp`;
     `observed_data`, traction by block; `constant_data`, slip ratio, load, run index, number of
-    samples and `BLOCK_MOMENTS` by block, the variance of the slip error that its run shares, and
-    the coordinate of the covariate, if runs have one.
+    samples and `BLOCK_MOMENTS` by block, and the variance of the slip error that its run shares.
     Attributes: source, slip definition, law, headline of the verdict.
     """
     from model.bayes.arviz_import import import_arviz
@@ -336,7 +335,6 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
         "samples": blocks.count,
         **{name: getattr(blocks, name) for name in BLOCK_MOMENTS},
         "run_slip_error": blocks.run_slip_error[blocks.run],
-        **({} if blocks.coordinate is None else {"covariate": blocks.coordinate}),
     }
     return az.from_dict(
         posterior={

@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Draw the pictures of a calibration folder."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
 from model.bayes.calibration import Calibration
 from model.bayes.law_scores import LawScores
 from model.bayes.likelihood import predict_blocks
 from model.bayes.verdict import State
-from model.slip.covariate import Covariate, CovariateLaw
-from model.slip.law import SlipLaw
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
 
@@ -38,8 +33,7 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
     from zebro_lab import plots  # matplotlib takes most of a second to import
 
     law = calibration.posterior.law
-    centre = calibration.draws.flat.mean(axis=0)
-    blocks = _at_reference(calibration.posterior.blocks, law, centre)
+    blocks = calibration.posterior.blocks
     residuals, simulated = calibration.residuals, is_simulated(calibration.source)
     k = len(law.parameters)
     draws = calibration.draws.flat[:, :k]
@@ -59,8 +53,8 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
     }
     scores = calibration.comparison
     if isinstance(scores, LawScores):
-        own = calibration.posterior.blocks
-        residual = own.traction_force - predict_blocks(own, law, centre[None]).force[0]
+        centre = calibration.draws.flat.mean(axis=0)
+        residual = blocks.traction_force - predict_blocks(blocks, law, centre[None]).force[0]
         figures["laws"] = plots.slip_laws(
             blocks,
             {score.name: (score.law, score.values) for score in scores.laws},
@@ -70,29 +64,7 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
             simulated=simulated,
         )
     for name, figure in figures.items():
-        if isinstance(law, CovariateLaw) and name in ("curves", "surface", "laws"):
-            plots.add_to_title(figure, _at_text(law.covariate))
         mark = _MARKS.get(calibration.verdict.state)
         if mark is not None:
             plots.add_to_title(figure, mark)
         plots.save(figure, folder / f"{name}.{form}")
-
-
-def _at_text(covariate: Covariate) -> str:
-    """Return at which value of the covariate curves and points are drawn, for a title."""
-    return f"at {covariate.name} {covariate.reference:.4g} {covariate.unit}".rstrip()
-
-
-def _at_reference(blocks: SlipBlocks, law: SlipLaw, values: Array) -> SlipBlocks:
-    """Move measured forces to the reference of the covariate, if the law follows one.
-
-    Args:
-        blocks: The block means.
-        law: The slip law.
-        values: Values of all parameters, shape (k + 12,).
-    """
-    if not isinstance(law, CovariateLaw) or blocks.run_covariate is None:
-        return blocks
-    there = replace(blocks, run_covariate=None)
-    own, moved = (predict_blocks(each, law, values[None]).force[0] for each in (blocks, there))
-    return replace(there, traction_force=blocks.traction_force - own + moved)

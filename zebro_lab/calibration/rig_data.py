@@ -17,7 +17,6 @@ from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.lateral_force import LateralForce, lateral_force, no_sums
 from zebro_lab.calibration.rig_part import RigPart, read_part
-from zebro_lab.calibration.run_covariate import covariate_note, joined_covariate
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.runs.counted_once import (
     content_hash,
@@ -121,7 +120,6 @@ def read_rig_data(
         notes=(
             *_notes(parts),
             *(() if lateral is None else (lateral.text,)),
-            *covariate_note(parts),
             *joined_angles([part.angles for part in parts])[1],
             *others,
             *skipped,
@@ -284,7 +282,6 @@ def _joined(parts: Sequence[RigPart]) -> SlipSamples:
         run_names=tuple(name for part in parts for name in part.runs.names),
         definition=parts[0].slip.definition,
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
-        covariate=joined_covariate(parts),
         angles=joined_angles([part.angles for part in parts])[0],
     )
 

@@ -24,7 +24,6 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
-from zebro_lab.tables.run_values import run_values
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
 
@@ -47,8 +46,6 @@ class RigPart:
         time: Time, shape (n,) [s]; None if the table has none or every row is a trial.
         notes: Notes on reading and unit conversion, one line each.
         files: Every file read, the column map last, if there is one.
-        covariate: Value of the covariate in each run, shape (n_runs,), in its unit; None where the
-            column map states none.
         lateral: Sums of the lateral force of each run, see `lateral_sums`; None without one.
         angles: Angles of the discs; None where none are recorded, or they cannot be used.
     """
@@ -65,7 +62,6 @@ class RigPart:
     time: Array | None
     notes: tuple[str, ...]
     files: tuple[Path, ...]
-    covariate: Array | None = None
     lateral: Array | None = None
     angles: DiscAngles | None = None
 
@@ -92,7 +88,6 @@ class RigPart:
             traction_force=self.traction_force[rows],
             runs=replace(self.runs, index=index, names=names),
             time=None if self.time is None else self.time[rows],
-            covariate=None if self.covariate is None else self.covariate[chosen],
             lateral=None if self.lateral is None else self.lateral[chosen],
             angles=None if self.angles is None else self.angles.of_rows(rows),
         )
@@ -137,7 +132,6 @@ def read_part(
         time=time,
         notes=(*raw.notes, *table.conversions(), *doubts, *unused),
         files=files if columns.file is None else (*files, columns.file),
-        covariate=None if columns.covariate is None else run_values(table, runs, columns.covariate),
         lateral=lateral_sums(table, pressed, traction, runs.index, len(runs.names)),
         angles=angles,
     )

@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from model.arrays import Array
 from model.bayes.calibration import Calibration
 from model.bayes.checks.check import Outcome
 from model.bayes.convergence import MAX_PARETO_K
@@ -20,17 +19,13 @@ from model.bayes.prior_conflict import PriorShift
 from model.bayes.run_out import DiscRunOut, RunOut
 from model.bayes.verdict import State
 from model.counted import counted
-from model.slip.covariate import CovariateLaw
 from zebro_lab.calibration.advice import advice_text
 from zebro_lab.calibration.law_table import sentence, signed
 from zebro_lab.calibration.rig_data import RigData
-from zebro_lab.calibration.run_covariate import levels
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import unit_symbol
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
-
-MOST_LEVELS = 6  # of a covariate that are told one by one
 
 
 def print_data(console: Console, data: RigData) -> None:
@@ -114,32 +109,10 @@ def _print_blocks(console: Console, calibration: Calibration) -> None:
     lines += _noise_lines(calibration)
     lines += run_out_lines(calibration.run_out)
     lines += _comparison_lines(calibration)
-    lines += _covariate_lines(calibration)
     for line in lines:
         console.print(plain(line))
     if isinstance(calibration.comparison, LawScores):
         console.print(_law_table(calibration.comparison))
-
-
-def _covariate_lines(calibration: Calibration) -> list[str]:
-    """Say what the covariate of the runs does to friction and stiffness, if the law follows it."""
-    law, coordinate = calibration.posterior.law, calibration.posterior.blocks.run_covariate
-    if not isinstance(law, CovariateLaw) or coordinate is None:
-        return []
-    covariate, found = law.covariate, levels(law.covariate.value(coordinate))
-    shown = found if len(found) <= MOST_LEVELS else found[[0, len(found) // 2, -1]]
-    draws = calibration.draws.flat[:, : len(law.parameters)]
-    friction, slip = law.factors(draws.T[:, :, None], covariate.coordinate(shown))
-
-    def told(factors: Array) -> str:
-        return ", ".join(f"{m:.3f} ± {s:.2g}" for m, s in
-                         zip(factors.mean(axis=0), factors.std(axis=0), strict=True))  # fmt: skip
-
-    at = ", ".join(f"{level:.4g}" for level in shown) + f" {covariate.unit}".rstrip()
-    return [
-        f"at {covariate.name} {at} friction is {told(friction)} and slip stiffness "
-        f"{told(friction * slip)} times that at {covariate.reference:.4g}, which all else is for"
-    ]
 
 
 def _noise_lines(calibration: Calibration) -> list[str]:

@@ -11,7 +11,6 @@ from model.bayes.likelihood import NUISANCE
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.priors import Prior
 from model.bayes.stated_priors import EarlierPosterior, StatedPriors
-from model.slip.covariate import CovariateLaw
 from model.slip.law import Parameter, SlipLaw
 from model.slip.laws import TOGETHER
 from model.slip.magic_formula import MagicFormula
@@ -120,12 +119,6 @@ def _laws_of(
 ) -> dict[str, SlipLaw]:
     """Return the law of an earlier calibration; raise where the request or the data differ."""
     law, definition = earlier.curve.law, earlier.curve.definition
-    if isinstance(law, CovariateLaw) or data.samples.covariate is not None:
-        raise SettingsError(
-            "a law that follows a covariate has its own reference in each fit and is carried over "
-            "by none; fit all data together, or leave out [covariates]",
-            key="--prior-from",
-        )
     apart = isinstance(law, SidedLaw)
     asked_default = request.law == MagicFormula.name and request.curvature == "auto"
     curvature = getattr(law.law if isinstance(law, SidedLaw) else law, "curvature", None)

@@ -123,7 +123,6 @@ def rig_runs(
         *table.conversions(),
         *doubts,
         *_left_out(table),
-        *_covariate_lost(columns),
         f"{counted(len(made), 'run')}, {runs.rule}",
     )
 
@@ -218,10 +217,3 @@ def _write_stated(draft: Path, stated: Mapping[str, Mapping[str, object]]) -> No
     if stated:
         template = "".join(f"[{name}]  # SI\n" for name in stated)
         atomic_write_text(draft / COLUMNS_FILE, fill_in(template, stated))
-
-
-def _covariate_lost(columns: Columns) -> tuple[str, ...]:
-    """Say that a run folder does not hold the quantity that a run was made at."""
-    if columns.covariate is None:
-        return ()
-    return (f"{columns.covariate.name} of runs is not kept: for a law that follows it, {_ELSE}",)

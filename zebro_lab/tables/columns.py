@@ -22,7 +22,6 @@ from model.similar_name import nearest
 from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
-from zebro_lab.tables.covariate import StatedCovariate
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
@@ -222,7 +221,6 @@ class Columns:
             `zero_stability`, `gain_sd`, `bias_sd`, `crosstalk_sd`.
         priors: What is known of parameters beforehand, as texts such as "friction = 0.4 ± 0.05".
         rig_errors: Standard deviations of errors of the rig.
-        covariate: Quantity that each run was made at; None without one.
     """
 
     file: Path | None = None
@@ -235,7 +233,6 @@ class Columns:
     load_cell: Mapping[str, float] = field(default_factory=dict)
     priors: tuple[str, ...] = ()
     rig_errors: RigErrorsStated = field(default_factory=lambda: RigErrorsStated())
-    covariate: StatedCovariate | None = None
 
     @property
     def stated_in(self) -> str:

@@ -26,7 +26,6 @@ from zebro_lab.tables.columns import (
     parse_definition,
     scaled,
 )
-from zebro_lab.tables.covariate import parse_covariate
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.row_conditions import read_row_conditions
 from zebro_lab.tables.table_kinds import KINDS, PLAIN, RIG, gives_source, is_for, is_sectioned
@@ -92,7 +91,6 @@ def parse_columns(table: SettingsTable) -> Columns:
         load_cell=_load_cell(table.table("load_cell")),
         priors=_priors(table.table("priors")),
         rig_errors=_rig_errors(table.table("rig_errors")),
-        covariate=parse_covariate(table.table("covariates")),
     )
     table.finish()
     return columns_file

@@ -11,7 +11,6 @@ from model.arrays import Array
 from model.bayes.faulty_samples import Clipped, Outliers
 from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
-from model.slip.covariate import law_at
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw
 
@@ -38,7 +37,7 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
     Returns:
         Residuals and slopes, shape (n,) each [N].
     """
-    k, law = len(law.parameters), law_at(law, samples.coordinate)
+    k = len(law.parameters)
     g_t, c_r = values[k], values[k + 5]
     slip, load = _corrected(samples, values[k : k + 6])
     force = (1 + g_t) * (law.force(slip, load, values[:k]) - c_r * load)
@@ -61,7 +60,7 @@ def reach_of_slip_noise(samples: SlipSamples, law: SlipLaw, values: Array) -> Ar
     Returns:
         Changes of force, shape (n,) [N].
     """
-    k, law = len(law.parameters), law_at(law, samples.coordinate)
+    k = len(law.parameters)
     slip, load = _corrected(samples, values[k : k + 6])
     reach = FARTHEST * np.sqrt(slip_noise_variance(samples))[samples.run]
     force = law.force(slip, load, values[:k])

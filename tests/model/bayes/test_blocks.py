@@ -79,7 +79,7 @@ def test_selected_runs_keep_their_blocks_and_are_numbered_anew(keep):
     keep = np.array(keep)
     rng = np.random.default_rng(2)
     data = samples([white(rng, n, 0.01) + n / 100 for n in (10, 20, 30, 40, 50)])
-    blocks = replace(block_means(data, 7), run_covariate=rng.normal(size=5))
+    blocks = block_means(data, 7)
     chosen = blocks.select_runs(keep)
     rows = keep[blocks.run]
     assert chosen.n_runs == keep.sum()

@@ -11,13 +11,11 @@ from scipy.stats import multivariate_normal, skew
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import (
     NUISANCE,
-    filter_runs,
     log_likelihood,
     predict_blocks,
     run_log_likelihood,
 )
 from model.slip import CoulombStribeck, MagicFormula, SlipDefinition
-from model.slip.covariate import Covariate, CovariateLaw
 from rig.slip_rig.imperfections import bump_rise
 
 LAW = MagicFormula(curvature=0.0)  # proportional to load exactly, as the covariance term assumes
@@ -372,23 +370,3 @@ def test_slip_that_wanders_under_crosstalk_does_not_pass_for_slip_that_follows_l
     )
     predicted = predict_blocks(data, LAW, parameters(crosstalk=crosstalk)).force[0]
     np.testing.assert_allclose(predicted, force.mean(axis=1), rtol=5e-4)
-
-
-def test_each_run_has_the_density_of_its_own_copy_of_a_law_with_a_covariate():
-    law = CovariateLaw(LAW, Covariate("pressure", "kPa", 80.0, 0.2), 2)
-    own = np.array([[-0.2, 0.3, 0.1, -0.1], [0.1, -0.3, 0.2, 0.3]])
-    usual = np.repeat(parameters(crosstalk=0.01, rolling_resistance=0.02), 2, axis=0)
-    values = np.concatenate([usual[:, :3], own, usual[:, 3:]], axis=1)
-    at = np.array([-1.0, 0.5, 0.5, 0.0, 1.0])
-    data = replace(blurred_blocks(), run_covariate=at)
-    predicted = predict_blocks(data, law, values)
-    scale, scatter, rho, tau = values[:, -6], values[:, -5], values[:, -2], values[:, -1]
-    expected = filter_runs(
-        data.traction_force - predicted.force, predicted.noise, predicted.slope,
-        data.slip_error, data.run_slip_error, data.run_starts(), scale, scatter, rho, tau,
-    )  # fmt: skip
-    np.testing.assert_allclose(run_log_likelihood(data, law, values), expected, rtol=1e-9)
-    left_out = data.select_runs(at == 0.5)
-    np.testing.assert_allclose(
-        run_log_likelihood(left_out, law, values), expected[:, at == 0.5], rtol=1e-9
-    )

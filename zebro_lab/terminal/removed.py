@@ -4,10 +4,10 @@
 from typing import Final
 
 REMOVED: Final[dict[str, str]] = {
-    "calibrate --discrepancy": "no departure from the law is fitted: --law compare finds the law "
-    "that predicts best, and mean residuals say where it does not hold",
-    "calibrate --noise": "noise is Gaussian: leave out rows with faults by [rows] keep in "
-    "columns.toml, or runs by `zebro-lab exclude`",
+    "calibrate --discrepancy": "No departure from the law is fitted: --law compare finds the law "
+    "that predicts best, and mean residuals say where it does not hold.",
+    "calibrate --noise": "Noise is Gaussian: leave out rows with faults by [rows] keep in "
+    "columns.toml, or runs by `zebro-lab exclude`.",
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "rig run --adaptive": "Measure in rounds by rig run, calibrate-slip and rig suggest in turn, "
     "as the shell loop in docs/experiments.md does.",

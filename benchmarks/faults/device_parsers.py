@@ -63,12 +63,14 @@ class Parser:
         valid: Valid inputs.
         refusals: What it may raise.
         has_memory: Whether it refuses what it took before; it is made anew for every 20 inputs.
+        special: Inputs that are given to it first.
     """
 
     make: Make
     valid: list[bytes]
     refusals: tuple[type[Exception], ...] = ()
     has_memory: bool = False
+    special: tuple[bytes, ...] = ()
 
 
 def stream(driver: Any, profile: Any, link: type[Feed] = Feed, **more: Any) -> Make:
@@ -316,7 +318,7 @@ def at_twins() -> dict[str, Parser]:
 
 
 def of_messages() -> dict[str, Parser]:
-    """Return the parsers of a log's messages; of whole files see `readers_fuzz`."""
+    """Return the parsers of a log's messages; of whole files see `file_readers`."""
     blocks = [rig_message(np.ones((5, n + 1))) for n in range(20)]
     return {
         "raw messages": Parser(

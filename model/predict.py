@@ -8,6 +8,7 @@ model, stated here as an error of distance and one of curvature.
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -18,7 +19,6 @@ from model.errors import DomainError
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import LegState, law_in, robot_in, with_anisotropy
-from model.mapping import HERE, Mapper
 from model.path_draws import bent
 from model.poses import Poses
 from model.robot import Robot
@@ -144,7 +144,7 @@ def motions(
 
 
 def ensemble_step(
-    draws: Sequence[WalkDraw], *, duration: float, mapper: Mapper = HERE
+    draws: Sequence[WalkDraw], *, duration: float, executor: Executor | None = None
 ) -> DynamicsOptions:
     """Choose the largest step of `STEPS` at which the ensemble's mean end point has converged.
 
@@ -157,7 +157,7 @@ def ensemble_step(
     Args:
         draws: The ensemble; only its first `COMPARED` draws are walked.
         duration: Time walked; 5 ms if shorter [s].
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
 
     Raises:
         DomainError: There is no draw, or the duration is not finite.
@@ -167,7 +167,7 @@ def ensemble_step(
     means: dict[float, Array] = {}
     for dt in STEPS:
         options = DynamicsOptions(dt=dt)
-        paths = walk_ensemble(draws[:COMPARED], t, options=options, mapper=mapper).poses
+        paths = walk_ensemble(draws[:COMPARED], t, options=options, executor=executor).poses
         means[dt] = paths.position[:, -1].mean(axis=0)
         length = np.linalg.norm(np.diff(paths.position, axis=1), axis=2).sum(axis=1).mean()
         larger = 2 * dt
@@ -183,7 +183,7 @@ def predict_paths(
     state: LegState,
     error: ModelSpread,
     rng: np.random.Generator,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
     options: DynamicsOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Poses:
@@ -197,7 +197,7 @@ def predict_paths(
         state: The legs' state of each draw, of which steering and stride are used here.
         error: Standard deviations of the walking model's error.
         rng: Source of randomness.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
         options: How walks are computed; when None the step is chosen by `ensemble_step`.
         progress: Called with the fraction done, 0 to 1.
 
@@ -207,11 +207,11 @@ def predict_paths(
     """
     draws = with_contacts(draws, error, rng=rng)
     if options is None:
-        options = ensemble_step(draws, duration=float(t[-1]), mapper=mapper)
+        options = ensemble_step(draws, duration=float(t[-1]), executor=executor)
     n = len(draws)
     distance = state.stride + error.distance * rng.standard_normal(n)
     curvature = state.steering + error.curvature * rng.standard_normal(n)
-    walk = partial(walk_ensemble, t=t, options=options, mapper=mapper, progress=progress)
+    walk = partial(walk_ensemble, t=t, options=options, executor=executor, progress=progress)
     if all(draw.is_alike_everywhere for draw in draws):
         return bent(walk(draws).poses, distance=distance, curvature=curvature)
     bends = map(Bend, distance.tolist(), curvature.tolist())

@@ -42,8 +42,7 @@ from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.law_table import sentence
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
-from zebro_lab.workers.choice import cores_of
-from zebro_lab.workers.request import CoresRequest
+from zebro_lab.workers import WorkersRequest, open_executor
 
 COLUMNS = """
 source = "real"
@@ -164,7 +163,8 @@ def chosen(data: RigData, choice: BlockChoice) -> tuple[str, PreparedFit]:
     fits = {name: _fit(data, law, data.rig_errors, choice) for name, law in laws.items()}
     rng = np.random.default_rng(2)
     weighed = [weigh_law(name, fit, rng=rng) for name, fit in fits.items()]
-    scores = score_laws(weighed, mapper=cores_of(CoresRequest()))
+    with open_executor(WorkersRequest()) as executor:
+        scores = score_laws(weighed, executor=executor)
     found = choose_law(scores, load_groups(next(iter(fits.values())).posterior.blocks)[1])
     best = validated(fits[found.laws[found.chosen].name])
     apart = validated(_fit(data, SidedLaw(best.posterior.law), data.rig_errors, choice))

@@ -10,7 +10,7 @@ import os
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -26,7 +26,6 @@ from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.path import turning_radius
 from model.walk.traction import TractionTable, VelocityCoulomb, law_table
-from zebro_lab.workers.threads import Threads
 
 SEED = 2020
 ROBOT = Robot()
@@ -238,10 +237,11 @@ def ensemble_row(name: str, n: int, duration: float, reference: LegReference) ->
     draws, tables = make_draws(n, reference)
     t = np.linspace(0.0, duration, 301)
     options = DynamicsOptions(dt=LARGE_STEP)
-    took = timed(
-        lambda: walk_ensemble(draws, t, options=options, mapper=Threads(THREADS)),
-        repeats=ENSEMBLE_REPEATS,
-    )
+    with ThreadPoolExecutor(THREADS) as threads:
+        took = timed(
+            lambda: walk_ensemble(draws, t, options=options, executor=threads),
+            repeats=ENSEMBLE_REPEATS,
+        )
     both = tables.wall + took.wall
     return (
         name, f"{n:,}", f"{duration:g}", f"{tables.wall:.1f}", f"{took.wall:.1f}", f"{both:.1f}",

@@ -2,6 +2,7 @@
 """Calibrate a slip law from rig samples: choose the law, sample its posterior, check the result."""
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -32,7 +33,6 @@ from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
 from model.bayes.weighted import weighted_draws
 from model.errors import FitError
-from model.mapping import HERE, Mapper
 from model.progress import Watcher
 from model.slip.law import SlipLaw
 
@@ -96,7 +96,7 @@ def calibrate(
     stated: StatedPriors = UNSTATED,
     scored: bool = False,
     first: Callable[[Preview], object] = lambda _: None,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
 ) -> tuple[Calibration, Chains | None]:
     """Choose a slip law for rig samples, sample its posterior and check the result.
 
@@ -118,7 +118,7 @@ def calibrate(
         scored: Whether to choose the law by `choose_law`, from predictions of left-out runs and
             loads by the whole posterior, instead of by `compare`.
         first: Called with the parameters by weighted draws, before sampling.
-        mapper: Where fits without left-out runs and loads are computed.
+        executor: Where fits without left-out runs and loads are computed; None for here.
 
     Returns:
         The calibration, converged or not (see its verdict), and the chains it was computed from;
@@ -138,10 +138,10 @@ def calibrate(
         samples, next(iter(laws.values())), load_cell, rig_errors, settings, watcher
     )
     known = load_cell, rig_errors, stated
-    prepare = partial(_prepare, samples, laws, known, settings, rng, watcher, mapper)
+    prepare = partial(_prepare, samples, laws, known, settings, rng, watcher, executor)
     fits = prepare(validate=not scored)
     fit, comparison = (
-        _by_scores(samples, fits, rng, watcher, mapper) if scored else _by_comparison(fits)
+        _by_scores(samples, fits, rng, watcher, executor) if scored else _by_comparison(fits)
     )
     began = clock()
     posterior, judging = fit.posterior, rng.spawn(1)[0]  # the same draws where a fit was resumed
@@ -209,7 +209,7 @@ def _prepare(
     settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
-    mapper: Mapper,
+    executor: Executor | None,
     *,
     validate: bool,
 ) -> dict[str, PreparedFit]:
@@ -225,7 +225,7 @@ def _prepare(
             raise FitStopped(None)
         fit = prepare_fit(
             samples, law, load_cell=known[0], rig_errors=known[1], stated=known[2], rng=rng,
-            block_choice=choice, mapper=mapper, validate=validate,
+            block_choice=choice, executor=executor, validate=validate,
             threads=settings.threads,
         )  # fmt: skip
         choice = fit.block_choice  # laws are compared on the same blocks
@@ -249,7 +249,7 @@ def _by_scores(
     fits: Mapping[str, PreparedFit],
     rng: np.random.Generator,
     watcher: Watcher,
-    mapper: Mapper,
+    executor: Executor | None,
 ) -> tuple[PreparedFit, LawScores]:
     """Return the fit that `choose_law` chooses, cross-validated, and the scores of all.
 
@@ -270,12 +270,12 @@ def _by_scores(
 
     progress(0.0)
     scores = score_laws(
-        weighed, mapper=mapper, progress=progress,
+        weighed, executor=executor, progress=progress,
         explaining=partial(explain_numerical_errors, samples),
     )  # fmt: skip
     found = choose_law(scores, load_groups(next(iter(fits.values())).posterior.blocks)[1])
     chosen = fits[found.laws[found.chosen].name]
-    return validated(chosen, mapper=mapper), found
+    return validated(chosen, executor=executor), found
 
 
 def _sample(

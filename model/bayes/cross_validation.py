@@ -4,7 +4,9 @@
 The run is the unit of replication.
 """
 
+from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +15,12 @@ from model.arrays import Array
 from model.bayes.laplace import Laplace, climb
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
-from model.mapping import HERE, Mapper
 from model.slip.definition import SlipDefinition, slip_per_radius_error
 from model.slip.law import SlipLaw
+from model.tasks import compute_tasks
 
 MAX_SINGLE_FOLDS = 20  # runs up to which each is left out alone
 N_GROUPED_FOLDS = 10  # groups in which more runs are left out
-INTERPRETED = 0.1  # time that a fold's fit takes outside of compiled loops [s]
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,7 @@ class _Folds:
 
 
 def cross_validate(
-    posterior: SlipPosterior, laplace: Laplace, *, mapper: Mapper = HERE
+    posterior: SlipPosterior, laplace: Laplace, *, executor: Executor | None = None
 ) -> CrossValidation:
     """Find the posterior's mode without each fold of runs, and predict the runs left out.
 
@@ -128,7 +129,7 @@ def cross_validate(
     Args:
         posterior: The posterior of all runs, at least two.
         laplace: Approximation at the mode of all runs, where each search starts.
-        mapper: Where the folds are fitted.
+        executor: Where the folds are fitted; None for here.
 
     Raises:
         FitError: Without a fold's runs the mode lies outside the posterior's support.
@@ -137,8 +138,7 @@ def cross_validate(
     n_folds = n_runs if n_runs <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS
     fold = np.arange(n_runs) % n_folds
     shared = _Folds(posterior, laplace, fold)
-    interpreted = n_folds * INTERPRETED
-    found = mapper.map(_fit_without, shared, range(n_folds), interpreted=interpreted)
+    found = compute_tasks(executor, partial(_fit_without, shared), range(n_folds))
     values = np.stack(list(found))
     density = posterior.run_log_likelihood_of(values)
     return CrossValidation(fold, values, density[fold, np.arange(n_runs)])

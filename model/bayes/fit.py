@@ -2,6 +2,7 @@
 """From samples to a posterior ready to sample: block means, priors, modes, cross-validation."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -21,7 +22,6 @@ from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.bayes.tails import approximate
 from model.errors import DomainError, FitError, InsufficientData
-from model.mapping import HERE, Mapper
 from model.slip.law import SlipLaw
 
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
@@ -90,7 +90,7 @@ def prepare_fit(
     rig_errors: RigErrors = USUAL,
     block_choice: BlockChoice | int | None = None,
     validate: bool = True,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
     stated: StatedPriors = UNSTATED,
     threads: int = 1,
 ) -> PreparedFit:
@@ -105,7 +105,7 @@ def prepare_fit(
         block_choice: How samples become blocks; found from the residuals when None, and for a
             length that is given.
         validate: Whether to cross-validate, which a single run never is.
-        mapper: Where the folds of the cross-validation are fitted.
+        executor: Where the folds of the cross-validation are fitted; None for here.
         stated: Priors that replace default ones; the block length is chosen without them.
         threads: Number of batches of points whose density is computed at once in the searches for
             modes, from `SHORT_CALLS` blocks on.
@@ -121,7 +121,7 @@ def prepare_fit(
     require_forces(samples, load_cell)
     with explain_numerical_errors(samples, law):
         return _prepared(
-            samples, law, load_cell, rig_errors, rng, block_choice, validate, mapper, stated,
+            samples, law, load_cell, rig_errors, rng, block_choice, validate, executor, stated,
             threads,
         )  # fmt: skip
 
@@ -162,7 +162,7 @@ def _prepared(
     rng: np.random.Generator,
     block_choice: BlockChoice | int | None,
     validate: bool,
-    mapper: Mapper,
+    executor: Executor | None,
     stated: StatedPriors,
     threads: int,
 ) -> PreparedFit:
@@ -185,19 +185,19 @@ def _prepared(
     fit = PreparedFit(
         posterior, approximation, None, choice, load_cell, rig_errors, defaults, stated
     )
-    return validated(fit, mapper=mapper) if validate else fit
+    return validated(fit, executor=executor) if validate else fit
 
 
-def validated(fit: PreparedFit, *, mapper: Mapper = HERE) -> PreparedFit:
+def validated(fit: PreparedFit, *, executor: Executor | None = None) -> PreparedFit:
     """Return a fit with its cross-validation; a single run is not cross-validated.
 
     Args:
         fit: The fit, with or without cross-validation.
-        mapper: Where the folds are fitted.
+        executor: Where the folds are fitted; None for here.
     """
     if fit.cross_validation is not None or fit.posterior.blocks.n_runs < 2:
         return fit
-    validation = cross_validate(fit.posterior, fit.laplace, mapper=mapper)
+    validation = cross_validate(fit.posterior, fit.laplace, executor=executor)
     return replace(fit, cross_validation=validation)
 
 

@@ -2,7 +2,8 @@
 """Comparison of slip laws by their predictions of left-out runs and of left-out loads."""
 
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, closing, nullcontext
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,6 @@ from model.bayes.fit import CLEAR_WIN, PreparedFit
 from model.bayes.left_out import (
     DRAWS,
     ENOUGH,
-    INTERPRETED,
     ByWeights,
     LeftOut,
     Refit,
@@ -25,8 +25,8 @@ from model.bayes.left_out import (
 from model.bayes.residuals import load_levels, nearest_level
 from model.bayes.weighted import weighted_draws
 from model.errors import InsufficientData
-from model.mapping import HERE, Mapper
 from model.slip.law import SlipLaw
+from model.tasks import compute_tasks
 
 SMALL = 4.0
 """Difference of log density below which its standard error is no guide (Sivula et al. 2020)."""
@@ -201,7 +201,7 @@ def weigh_law(name: str, fit: PreparedFit, *, rng: np.random.Generator) -> Weigh
 def score_laws(
     weighed: Sequence[WeighedLaw],
     *,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
     progress: Callable[[float], object] = lambda _: None,
     explaining: Callable[[SlipLaw], AbstractContextManager[None]] = lambda _: nullcontext(),
 ) -> list[LawScore]:
@@ -209,7 +209,7 @@ def score_laws(
 
     Args:
         weighed: The laws.
-        mapper: Where the refits are computed.
+        executor: Where the refits are computed; None for here.
         progress: Called with the share of the refits done, after each.
         explaining: Context in which the refits of a law are awaited, for its errors.
 
@@ -217,13 +217,12 @@ def score_laws(
         FitError: A fit without a run or load failed.
     """
     tasks = [refit for each in weighed for refit in each.refits]
-    interpreted = INTERPRETED * len(tasks)
     found: list[Refitted] = []
-    with closing(mapper.map(refit_without, None, tasks, interpreted=interpreted)) as results:
-        for task in tasks:
-            with explaining(task.posterior.law):
-                found.append(next(results))
-            progress(len(found) / len(tasks))
+    results = compute_tasks(executor, refit_without, tasks)
+    for task in tasks:
+        with explaining(task.posterior.law):
+            found.append(next(results))
+        progress(len(found) / len(tasks))
     scores = []
     for each in weighed:
         n = len(each.refits)

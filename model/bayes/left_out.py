@@ -2,6 +2,7 @@
 """Predictive density of left-out runs, or of all runs at a load, by weighted draws (PSIS-LOO)."""
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,11 +16,10 @@ from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import SlipPosterior
 from model.bayes.tails import approximate
 from model.bayes.weighted import WeightedDraws, pareto_smoothed, weighted_draws
-from model.mapping import HERE, Mapper
+from model.tasks import compute_tasks
 
 DRAWS = 2_000  # of a posterior, at first
 ENOUGH = 200.0  # effective draws of the posterior without a group
-INTERPRETED = 0.15  # time that a refit takes outside of compiled loops [s]
 _NEGLIGIBLE = 1e-12  # weight of a draw that is left out
 
 
@@ -111,7 +111,7 @@ def leave_out(
     *,
     approximation: LaplaceMixture,
     rng: np.random.Generator,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
 ) -> LeftOut:
     """Compute the density of each run's blocks given the runs of the other groups.
 
@@ -121,15 +121,14 @@ def leave_out(
         group: Group of each run, from 0, shape (n_runs,). At least two groups.
         approximation: Its Laplace approximations; searches for modes start at theirs.
         rng: Source of randomness of draws that are made anew.
-        mapper: Where fits without a group are computed.
+        executor: Where fits without a group are computed; None for here.
 
     Raises:
         FitError: Without a group's runs all modes lie outside the posterior's support.
     """
     weighed = by_weights(posterior, draws, group, approximation=approximation, rng=rng)
     refits = weighed.refits
-    interpreted = INTERPRETED * len(refits)
-    found = mapper.map(refit_without, None, refits, interpreted=interpreted)
+    found = compute_tasks(executor, refit_without, refits)
     return weighed.with_refits(list(found))
 
 
@@ -186,11 +185,10 @@ def _folds(groups: NDArray[np.intp]) -> list[NDArray[np.intp]]:
     return [groups[index::n_folds] for index in range(n_folds)]
 
 
-def refit_without(_: None, task: Refit) -> Refitted:
+def refit_without(task: Refit) -> Refitted:
     """Compute log densities of left-out runs by draws of the posterior without them.
 
     Args:
-        _: Nothing that refits share.
         task: The refit.
 
     Raises:

@@ -2,17 +2,18 @@
 """Ensembles of walks, each with its own law and robot, for the spread of a path."""
 
 from collections.abc import Callable, Sequence
-from contextlib import closing
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from model.arrays import Array
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
-from model.mapping import HERE, Mapper
 from model.poses import Poses
 from model.robot import Robot
+from model.tasks import compute_tasks
 from model.walk.areas import Area, with_areas
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.bent_walk import integrate_bent
@@ -112,7 +113,7 @@ def walk_ensemble(
     t: Array,
     *,
     options: DynamicsOptions = DEFAULT_OPTIONS,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
     tilt: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PlanarWalk:
@@ -122,7 +123,7 @@ def walk_ensemble(
         draws: The draws to walk.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
         options: Step length and contacts, the same for all draws but for the draws' factors.
-        mapper: Where draws are walked; a task is one draw.
+        executor: Where draws are walked; a task is one draw; None for here.
         tilt: Return roll and pitch too; not available where strides are repeated.
         progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
@@ -139,14 +140,14 @@ def walk_ensemble(
     times = WalkedTimes(t, options, tilt)
     n = len(draws)
     states = np.empty((n, len(t), 5 if tilt else 3))
-    with closing(mapper.map(walk_draw, times, draws)) as results:
-        for i in range(n):
-            try:
-                states[i] = next(results)
-            except WalkError as error:
-                raise WalkError(f"draw {i + 1} of {n}: {error}") from error
-            if progress is not None:
-                progress((i + 1) / n)
+    results = compute_tasks(executor, partial(walk_draw, times), draws)
+    for i in range(n):
+        try:
+            states[i] = next(results)
+        except WalkError as error:
+            raise WalkError(f"draw {i + 1} of {n}: {error}") from error
+        if progress is not None:
+            progress((i + 1) / n)
     return planar(t, states)
 
 

@@ -5,7 +5,6 @@ import os
 import signal
 import threading
 import time
-from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
@@ -14,26 +13,19 @@ from model.bayes import left_out
 from model.bayes.fit import prepare_fit
 from model.bayes.law_scores import score_laws, weigh_law
 from model.bayes.posterior import LoadCell
-from model.bayes.walks.prior import WalkPrior
-from model.mapping import HERE
 from model.slip import Brush, CoulombStribeck
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 from support.commands import started
 from support.tracked_walks import write_walk
 from support.walk_posteriors import write_calibration
-from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.walk_fit.prediction import fit_walks_on_file
-from zebro_lab.walk_fit.tracked_walks import read_walk_on_file
-from zebro_lab.workers.cluster import Cluster, open_cluster
+from zebro_lab.workers import WorkersRequest, open_executor
 
 pytest.importorskip("distributed")
 pytestmark = [pytest.mark.long, pytest.mark.filterwarnings("ignore")]
 
 PLAN = SweepPlan(slips=(-0.05, 0.01, 0.03, 0.3), loads=(4.0, 8.0), rate=40.0)
 UNEVEN = "slope_deg = [3.0, 0.0]\nroughness = { sd = 0.002, correlation = 0.05, seed = 1 }\n"
-KILLED_AFTER = 2
-"""Results of a map after which a worker is killed."""
 
 
 @pytest.fixture
@@ -46,29 +38,7 @@ def local():
         yield found
 
 
-@dataclass
-class Losing:
-    """Mapper over a cluster, of which one worker is killed on the way.
-
-    Attributes:
-        cluster: The cluster.
-        killed: Processes that were killed.
-    """
-
-    cluster: Cluster
-    killed: list[int] = field(default_factory=list)
-
-    def map(self, function, shared, tasks, *, interpreted=0.0):
-        """Yield the results; kill a worker after `KILLED_AFTER`, once."""
-        pids = [*self.cluster.client.run(os.getpid).values()]
-        for number, each in enumerate(self.cluster.map(function, shared, tasks), start=1):
-            if number == KILLED_AFTER < len(tasks) and not self.killed:
-                self.killed.append(pids[0])
-                os.kill(pids[0], signal.SIGKILL)
-            yield each
-
-
-def scored(mapper):
+def scored(executor):
     """Compare two laws by fits without each run and each load."""
     rng = np.random.default_rng(4)
     samples = simulate_sweep(
@@ -80,42 +50,7 @@ def scored(mapper):
             samples, law, load_cell=LoadCell(), rng=rng, block_choice=10, validate=False
         )
         weighed.append(weigh_law(law.name, fit, rng=rng))
-    return score_laws(weighed, mapper=mapper)
-
-
-def test_laws_are_compared_by_the_same_refits(local, monkeypatch):
-    monkeypatch.setattr(left_out, "MAX_PARETO_K", -10.0)  # so that all are refits
-    expected = scored(HERE)
-    with open_cluster(local.scheduler_address) as cluster:
-        losing = Losing(cluster)
-        found = scored(losing)
-    assert losing.killed
-    for mine, other in zip(found, expected, strict=True):
-        assert mine.runs.refitted.all()
-        for name in ("runs", "loads"):
-            a, b = getattr(mine, name), getattr(other, name)
-            np.testing.assert_array_equal(a.log_density, b.log_density)
-            np.testing.assert_array_equal(a.pareto_k, b.pareto_k)
-
-
-def test_walks_are_fitted_by_the_same_draws(local, tmp_path):
-    walks = [
-        read_walk_on_file(write_walk(tmp_path / "one")),
-        read_walk_on_file(write_walk(tmp_path / "two", begin=7.0, every=1.5)),
-    ]
-
-    def fitted(mapper):
-        rng = np.random.default_rng(1)
-        slip = parse_slip("coulomb:0.38")
-        return fit_walks_on_file(walks, slip, prior=WalkPrior(), rng=rng, mapper=mapper).posterior
-
-    expected = fitted(HERE)
-    with open_cluster(local.scheduler_address) as cluster:
-        losing = Losing(cluster)
-        found = fitted(losing)
-    assert losing.killed
-    for name in ("values", "case", "weight", "best"):
-        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+    return score_laws(weighed, executor=executor)
 
 
 def kill_one_at_work(local, killed):
@@ -131,6 +66,23 @@ def kill_one_at_work(local, killed):
                 killed.append(busy[0])
                 return
             time.sleep(0.005)
+
+
+def test_laws_are_compared_by_the_same_refits(local, monkeypatch):
+    monkeypatch.setattr(left_out, "MAX_PARETO_K", -10.0)  # so that all are refits
+    expected, killed = scored(None), []
+    watch = threading.Thread(target=kill_one_at_work, args=(local, killed))
+    watch.start()
+    with open_executor(WorkersRequest(scheduler=local.scheduler_address)) as executor:
+        found = scored(executor)
+    watch.join()
+    assert killed
+    for mine, other in zip(found, expected, strict=True):
+        assert mine.runs.refitted.all()
+        for name in ("runs", "loads"):
+            a, b = getattr(mine, name), getattr(other, name)
+            np.testing.assert_array_equal(a.log_density, b.log_density)
+            np.testing.assert_array_equal(a.pareto_k, b.pareto_k)
 
 
 @pytest.mark.parametrize("ground", ["", UNEVEN], ids=["level", "uneven"])

@@ -25,8 +25,7 @@ from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, render_robot_file
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.walk_fit.prediction import fit_walks_on_file, predict_from
 from zebro_lab.walk_fit.tracked_walks import WalkOnFile, read_walk_on_file
-from zebro_lab.workers.choice import cores_of
-from zebro_lab.workers.request import CoresRequest
+from zebro_lab.workers import WorkersRequest, open_executor
 
 COLUMNS = """
 source = "sim:virtual-world"
@@ -122,10 +121,11 @@ def half_circles(shared, tmp_path_factory) -> list[Scored]:
     scored = []
     for i, name in enumerate(HALF_CIRCLES):
         pair = (name, HALF_CIRCLES[(i + 1) % len(HALF_CIRCLES)])
-        fit = fit_walks_on_file(
-            [tracked[each][0] for each in pair], slip, prior=WalkPrior(),
-            rng=np.random.default_rng(1), mapper=cores_of(CoresRequest()),
-        )  # fmt: skip
+        with open_executor(WorkersRequest()) as executor:
+            fit = fit_walks_on_file(
+                [tracked[each][0] for each in pair], slip, prior=WalkPrior(),
+                rng=np.random.default_rng(1), executor=executor,
+            )  # fmt: skip
         for other in (each for each in HALF_CIRCLES if each not in pair):
             rng, tracks = np.random.default_rng(2), tracked[other]
             prediction = predict_from(fit.posterior, tracks[0], slip, rng=rng)

@@ -4,24 +4,26 @@
 import shlex
 import sys
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 
 import typer
 
-from model.mapping import Mapper
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.stopping import STOPPED
 
 
-def fit_and_report(request: CalibrationRequest, output: Output = TEXT, *, mapper: Mapper) -> bool:
+def fit_and_report(
+    request: CalibrationRequest, output: Output = TEXT, *, executor: Executor | None
+) -> bool:
     """Fit a slip law, write its folder, print the results; return whether the fit converged.
 
     Args:
         request: Options of the fit.
         output: How to print.
-        mapper: Where fits without left-out runs and loads are computed.
+        executor: Where fits without left-out runs and loads are computed; None for here.
 
     Raises:
         Exit: The fit was stopped (exit code 130); a line on stderr says so.
@@ -48,7 +50,7 @@ def fit_and_report(request: CalibrationRequest, output: Output = TEXT, *, mapper
                 request, watcher, data,
                 (lambda found: print_preview(console, found)) if request.engine == "auto"
                 else (lambda _: None),
-                mapper=mapper,
+                executor=executor,
             )  # fmt: skip
     except Stopped as stopped:
         if stopped.checkpoint is None:

@@ -11,7 +11,7 @@ from typer import Argument, Option
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
-from zebro_lab.workers.request import CoresRequest
+from zebro_lab.workers import WorkersRequest
 
 COMPARE: Final = "compare"
 """Value of `--law` that compares all laws."""
@@ -131,7 +131,7 @@ class CalibrationRequest:
         ),
     ] = 30_000
     seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
-    workers: CoresRequest = field(default_factory=CoresRequest)
+    workers: WorkersRequest = field(default_factory=WorkersRequest)
     resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
     form: FormatOption = "png"
 

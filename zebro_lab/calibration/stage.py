@@ -3,6 +3,7 @@
 
 import time
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import asdict
 from pathlib import Path
 
@@ -12,7 +13,6 @@ from model.bayes.calibration import Calibration
 from model.bayes.fit import scaled_load_cell
 from model.bayes.preview import Preview
 from model.bayes.sampler import Chains
-from model.mapping import HERE, Mapper
 from model.progress import Watcher
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
@@ -70,7 +70,7 @@ def calibrate(
     data: RigData | None = None,
     first: Callable[[Preview], object] = lambda _: None,
     *,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
 ) -> tuple[Calibration, RigData]:
     """Fit a slip law to rig data; write the calibration folder, with a checkpoint if not converged.
 
@@ -79,7 +79,7 @@ def calibrate(
         watcher: Receives progress and may request a stop.
         data: What `read` returned for the same request; None to read it here.
         first: Called with the first answer, before sampling.
-        mapper: Where fits without left-out runs and loads are computed.
+        executor: Where fits without left-out runs and loads are computed; None for here.
 
     Returns:
         The finished fit and the rig data that were fitted.
@@ -111,7 +111,7 @@ def calibrate(
             stated=stated.priors,
             scored=request.law == COMPARE,
             first=first,
-            mapper=mapper,
+            executor=executor,
         )
         watcher.step("drawing", None)
         _write(request, calibration, inputs, stated, data.lateral)

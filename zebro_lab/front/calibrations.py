@@ -23,7 +23,7 @@ from zebro_lab.calibration.request import (
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.calibration.rig_data import read_rig_data as read_rig_files
 from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
-from zebro_lab.workers.threads import Threads
+from zebro_lab.workers import open_executor
 
 if TYPE_CHECKING:
     import arviz as az
@@ -147,9 +147,10 @@ def calibrate(
             max_steps=max_steps,
             seed=seed,
         )
-        found, rig_data = calibration_stage.calibrate(
-            request, watcher or Silent(), mapper=Threads(request.workers.cores)
-        )
+        with open_executor(request.workers) as executor:
+            found, rig_data = calibration_stage.calibrate(
+                request, watcher or Silent(), executor=executor
+            )
         return CalibrationResult(found, rig_data, calibration_folder.read_slip(folder))
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The end pose of a walk as a target: walked with draws of the law, and regressed on these."""
 
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -14,7 +15,6 @@ from model.errors import DomainError, InsufficientData
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import LegState
-from model.mapping import HERE, Mapper
 from model.predict import ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY, Robot
 from model.walk.traction import TractionTable, law_table
@@ -73,7 +73,7 @@ def read_walk(path: Path) -> LoggedWalk:
 
 
 def end_poses(
-    walk: LoggedWalk, posterior: SlipPosterior, z: Array, *, mapper: Mapper = HERE
+    walk: LoggedWalk, posterior: SlipPosterior, z: Array, *, executor: Executor | None = None
 ) -> tuple[Array, Array]:
     """Walk with draws of the law; return coordinates (w, d) and end poses (w, 3) [m, m, rad].
 
@@ -83,7 +83,7 @@ def end_poses(
         walk: The walk.
         posterior: Law and priors, not straightened.
         z: Draws of the coordinates, shape (n, d).
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
 
     Raises:
         InsufficientData: No draw can be walked.
@@ -111,7 +111,7 @@ def end_poses(
     state = LegState.of_prior(len(tables), offset_sd=0.0, rng=rng)
     draws = walk_draws(walk.robot, walk.legs, tables, state, rng=rng)
     t = np.linspace(0.0, walk.duration, max(round(walk.duration / _SAMPLING), 1) + 1)
-    paths = predict_paths(draws, t, state=state, error=_EXACT, rng=rng, mapper=mapper)
+    paths = predict_paths(draws, t, state=state, error=_EXACT, rng=rng, executor=executor)
     return np.stack(walked), paths.states[:, -1]
 
 
@@ -122,7 +122,7 @@ def end_pose_target(
     z: Array,
     *,
     n_draws: int,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
 ) -> Target:
     """Return the end pose of a walk as target, linear in the law's coordinates.
 
@@ -132,13 +132,13 @@ def end_pose_target(
         posterior: Law and priors, not straightened.
         z: Draws of the coordinates, of which the first `WALKED` are walked, shape (w, d).
         n_draws: Number of draws around which the target is asked for.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
 
     Raises:
         InsufficientData: Too few draws can be walked.
         ModelError: A walk diverged.
     """
-    walked, poses = end_poses(walk, posterior, z[:WALKED], mapper=mapper)
+    walked, poses = end_poses(walk, posterior, z[:WALKED], executor=executor)
     own = {parameter.name for parameter in posterior.law.parameters}
     of_law = np.array([parameter.name in own for parameter in posterior.free])
     return regressed_target(

@@ -38,8 +38,7 @@ from zebro_lab.suggest.proposal import (
 from zebro_lab.suggest.request import SuggestRequest
 from zebro_lab.suggest.suggested import Suggested, points_of
 from zebro_lab.suggest.target_text import ForceText, ParameterText, TargetText
-from zebro_lab.workers.choice import cores_of
-from zebro_lab.workers.request import CoresRequest
+from zebro_lab.workers import WorkersRequest, open_executor
 
 READ_DRAWS: Final = 200
 """Draws of the posterior that are read, of which the first that can be used are."""
@@ -155,9 +154,10 @@ def _target(
         return found, ()
     walk = read_walk(asked.path)
     inside = z[np.isfinite(z).all(axis=1)]
-    found = end_pose_target(
-        text, walk, posterior, inside, n_draws=len(draws), mapper=cores_of(CoresRequest())
-    )
+    with open_executor(WorkersRequest()) as executor:
+        found = end_pose_target(
+            text, walk, posterior, inside, n_draws=len(draws), executor=executor
+        )
     return found, walk.files
 
 

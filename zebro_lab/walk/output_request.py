@@ -16,7 +16,7 @@ from zebro_lab.terminal.picture_options import (
     parse_instants,
     parse_window,
 )
-from zebro_lab.workers.request import CoresRequest
+from zebro_lab.workers import WorkersRequest
 
 MOST_ANISOTROPY: Final = 3.0
 """Largest factor by which lateral traction may be said to differ from longitudinal [-]."""
@@ -65,7 +65,7 @@ class BandRequest:
             min=0.0,
         ),
     ] = (0.0, 0.0, 0.0)
-    workers: CoresRequest = field(default_factory=CoresRequest)
+    workers: WorkersRequest = field(default_factory=WorkersRequest)
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for one or negative draws, their negative sd, or none to share."""

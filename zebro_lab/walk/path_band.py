@@ -2,6 +2,7 @@
 """The band of a predicted path: compute draws, write and read draws, quantiles and picture."""
 
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import asdict
 from pathlib import Path
 
@@ -11,7 +12,6 @@ from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.lateral_spread import ANISOTROPY
 from model.leg_state import LegState
-from model.mapping import HERE, Mapper
 from model.path_draws import LEVELS, STATES, anchored, quantiles
 from model.poses import Poses
 from model.predict import ModelSpread, on_terrain, predict_paths, walk_draws
@@ -62,7 +62,7 @@ def predict_band(
     duration: float,
     toe: ToeLaw,
     watcher: Watcher,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
 ) -> Poses:
     """Compute paths of a walk with slip law, legs, floor and start pose drawn at random.
 
@@ -73,7 +73,7 @@ def predict_band(
         duration: Duration of the walk [s].
         toe: Traction law of a leg on its toe: "saturated", "peak" or "bristle".
         watcher: Receives progress.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
 
     Returns:
         `request.draws` paths from time zero to `duration`, sampled about every 0.1 s.
@@ -108,7 +108,7 @@ def predict_band(
         draws = on_terrain(draws, terrain, laws, starts)
     t = np.linspace(0.0, duration, max(round(duration / SAMPLING), 1) + 1)
     paths = predict_paths(
-        draws, t, state=state, error=ModelSpread(), rng=rng, mapper=mapper,
+        draws, t, state=state, error=ModelSpread(), rng=rng, executor=executor,
         progress=_every(_STEPS_SHOWN, watcher),
     )  # fmt: skip
     if not terrain.is_alike_everywhere:

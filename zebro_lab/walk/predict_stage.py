@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab predict`: read leg angles, compute the path, write the walk folder."""
 
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from model.gait.inexact_log import InexactLog
-from model.mapping import Mapper
 from model.progress import Watcher
 from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
@@ -27,7 +27,7 @@ from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.request import PredictRequest
 from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
-from zebro_lab.workers.choice import open_workers
+from zebro_lab.workers import open_executor
 
 
 def prediction_folder(request: PredictRequest) -> Path:
@@ -57,11 +57,11 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         WalkStopped: The watcher requested a stop; nothing was written.
         ModelError: The walk cannot be computed.
     """
-    with open_workers(request.model.band.workers) as workers:  # a wrong address is told at once
-        return _predict(request, watcher, workers)
+    with open_executor(request.model.band.workers) as executor:  # a wrong address is told at once
+        return _predict(request, watcher, executor)
 
 
-def _predict(request: PredictRequest, watcher: Watcher, mapper: Mapper) -> Walked:
+def _predict(request: PredictRequest, watcher: Watcher, executor: Executor | None) -> Walked:
     settle(request.log)
     request = with_own_robot(request)
     out = prediction_folder(request)
@@ -97,7 +97,7 @@ def _predict(request: PredictRequest, watcher: Watcher, mapper: Mapper) -> Walke
     if request.model.band.draws:
         band = predict_band(
             request.model.band, walked, legs,
-            duration=end - start, toe=request.model.toe, watcher=watcher, mapper=mapper,
+            duration=end - start, toe=request.model.toe, watcher=watcher, executor=executor,
         )  # fmt: skip
         walked = replace(walked, band=band)
     walked = with_contacts(walked.delayed(start), request.model.contact, watcher)

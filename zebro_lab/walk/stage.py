@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab walk`: construct a gait or program, compute and write its path."""
 
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
-from model.mapping import Mapper
 from model.progress import Watcher
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, SettingsError
@@ -20,7 +20,7 @@ from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
-from zebro_lab.workers.choice import open_workers
+from zebro_lab.workers import open_executor
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
@@ -38,11 +38,11 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
             be replaced, or a stop was requested.
         ModelError: The gait is impossible, or the walk cannot be computed.
     """
-    with open_workers(request.model.band.workers) as workers:  # a wrong address is told at once
-        return _walk(request, watcher, workers)
+    with open_executor(request.model.band.workers) as executor:  # a wrong address is told at once
+        return _walk(request, watcher, executor)
 
 
-def _walk(request: WalkRequest, watcher: Watcher, mapper: Mapper) -> Walked:
+def _walk(request: WalkRequest, watcher: Watcher, executor: Executor | None) -> Walked:
     inputs = request.model.inputs if request.program is None else (
         request.program, *request.model.inputs
     )  # fmt: skip
@@ -62,7 +62,7 @@ def _walk(request: WalkRequest, watcher: Watcher, mapper: Mapper) -> Walked:
     if request.model.band.draws:
         band = predict_band(
             request.model.band, walked, asked.reference,
-            duration=duration, toe=request.model.toe, watcher=watcher, mapper=mapper,
+            duration=duration, toe=request.model.toe, watcher=watcher, executor=executor,
         )  # fmt: skip
         walked = replace(walked, band=band)
     walked = replace(

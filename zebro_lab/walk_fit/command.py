@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """`calibrate-slip DATA…`: fit a slip curve to rig data, and legs and floor to tracked walks."""
 
+from concurrent.futures import Executor
+
 import typer
 
-from model.mapping import Mapper
 from zebro_lab.calibration.command import fit_and_report
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.source_names import is_simulated
@@ -11,7 +12,7 @@ from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.version import Version
 from zebro_lab.walk_fit.request import WalksRequest
-from zebro_lab.workers.choice import open_workers
+from zebro_lab.workers import open_executor
 
 NOT_CONVERGED = 3
 
@@ -61,12 +62,12 @@ def calibrate(
         raise typer.BadParameter(
             "missing: rig data, or --walks and the --out of a finished calibration"
         )
-    with open_workers(request.workers) as workers:  # first, so that a wrong address is told at once
+    with open_executor(request.workers) as executor:  # a wrong address is told at once
         if request.data and tracked.walks:
             _require_walks(tracked, request, output)
-        converged = fit_and_report(request, output, mapper=workers) if request.data else True
+        converged = fit_and_report(request, output, executor=executor) if request.data else True
         if tracked.walks:
-            _fit_walks(tracked, request, output, workers)
+            _fit_walks(tracked, request, output, executor)
     if output.as_json:
         content = _document(request, with_walks=bool(tracked.walks))
         code = 0 if converged else NOT_CONVERGED
@@ -97,12 +98,15 @@ def _require_walks(tracked: WalksRequest, calibration: CalibrationRequest, outpu
 
 
 def _fit_walks(
-    tracked: WalksRequest, calibration: CalibrationRequest, output: Output, mapper: Mapper
+    tracked: WalksRequest,
+    calibration: CalibrationRequest,
+    output: Output,
+    executor: Executor | None,
 ) -> None:
     """Fit leg offsets and floor parameters to tracked walks, write `walks/`, print the results."""
     from zebro_lab.walk_fit.screen import print_walks
     from zebro_lab.walk_fit.stage import calibrate_walks
 
     with output.progress() as watcher:
-        done = calibrate_walks(tracked, calibration, watcher, mapper=mapper)
+        done = calibrate_walks(tracked, calibration, watcher, executor=executor)
     print_walks(output.console(), done)

@@ -2,6 +2,7 @@
 """Fit tracked walks, and predict each from a fit of the others (leave-one-out)."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from model.bayes.walks.prior import WalkPrior
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.judgement import Prediction
-from model.mapping import HERE, Mapper
 from model.predict import FINE, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.walk_models import baseline_paths
@@ -36,7 +36,7 @@ def fit_walks_on_file(
     *,
     prior: WalkPrior,
     rng: np.random.Generator,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> WalkFit:
     """Fit legs and floor to walks of one robot, with the slip law at its posterior mean.
@@ -46,7 +46,7 @@ def fit_walks_on_file(
         slip: Slip law named by `--slip`.
         prior: Prior of legs and floor.
         rng: Random number generator.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
         progress: Called with the fraction done, 0 to 1 [-].
 
     Raises:
@@ -62,7 +62,7 @@ def fit_walks_on_file(
         [walk.tracked for walk in walks],
         prior=prior,
         rng=rng,
-        mapper=mapper,
+        executor=executor,
         progress=progress,
     )
 
@@ -73,7 +73,7 @@ def judge_left_out(
     slip: NamedSlip,
     *,
     rng: np.random.Generator,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
     progress: Progress = lambda _: None,
 ) -> tuple[JudgedRun, ...]:
     """Predict each walk from a fit of the others, and compute errors of prediction and baselines.
@@ -83,7 +83,7 @@ def judge_left_out(
         walks: The fitted walks, in the order of the fit; a single one is not predicted.
         slip: Slip law of the fit.
         rng: Random number generator.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
         progress: Called with the fraction done, 0 to 1 [-].
 
     Returns:
@@ -96,7 +96,7 @@ def judge_left_out(
     judged = []
     for i, walk in enumerate(walks if len(walks) > 1 else ()):
         progress(i / len(walks))
-        prediction = predict_from(fit.without(i), walk, slip, rng=rng, mapper=mapper)
+        prediction = predict_from(fit.without(i), walk, slip, rng=rng, executor=executor)
         judged.append(judge_run(walk.name, prediction, walk.track, anchor=True, rng=rng))
     return tuple(judged)
 
@@ -113,7 +113,7 @@ def predict_from(
     *,
     rng: np.random.Generator,
     index: int | None = None,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
 ) -> PredictionFile:
     """Predict path, band and baselines of a walk from its leg angles, without using its track.
 
@@ -123,7 +123,7 @@ def predict_from(
         slip: Slip law.
         rng: Random number generator.
         index: Index of the walk in the posterior if it was fitted, else None.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
 
     Returns:
         The prediction, from time zero on; its band has 300 draws.
@@ -134,7 +134,7 @@ def predict_from(
     state = posterior.draw(DRAWS, rng=rng, walk=index)
     tables = slip_tables(slip, DRAWS, weight=weight, rng=rng)
     drawn = walk_draws(robot, walk.legs, tables, state, rng=rng)
-    band = predict_paths(drawn, t, state=state, error=spread, rng=rng, mapper=mapper)
+    band = predict_paths(drawn, t, state=state, error=spread, rng=rng, executor=executor)
     likely = posterior.most_likely(walk=index)
     drawn = walk_draws(robot, angles, [slip.traction_table(weight=weight)], likely, rng=rng)
     single = predict_paths(drawn, t, state=likely, error=EXACT, rng=rng, options=FINE).draws(0)

@@ -2,6 +2,7 @@
 """Stage of `calibrate-slip --walks`: fit legs and floor to tracked walks, write `walks/`."""
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +11,6 @@ import numpy as np
 from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import WalkPrior
 from model.lateral_spread import log_spread
-from model.mapping import HERE, Mapper
 from model.progress import Watcher
 from zebro_lab.calibration.folder import CALIBRATION, SLIP_TOML
 from zebro_lab.calibration.request import CalibrationRequest
@@ -77,7 +77,7 @@ def calibrate_walks(
     calibration: CalibrationRequest,
     watcher: Watcher,
     *,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
 ) -> WalksCalibrated:
     """Fit legs and floor to walks, predict each from the others, and write `walks/`.
 
@@ -86,7 +86,7 @@ def calibrate_walks(
         calibration: Options with the folder of the finished calibration, into which `walks/` is
             written, and seed.
         watcher: Receives progress.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
 
     Raises:
         ZebroLabError: No walk is named; a walk or the calibration is missing or cannot be used; or
@@ -100,7 +100,7 @@ def calibrate_walks(
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
     walks = read_walks(request.walks, robot=request.robot, clock=clock)
     prior = WalkPrior(lateral_sd=log_spread(request.anisotropy))
-    posterior, left_out = _fit(calibration, slip, walks, prior, watcher, mapper)
+    posterior, left_out = _fit(calibration, slip, walks, prior, watcher, executor)
     notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
     source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
     watcher.step("drawing", None)
@@ -133,16 +133,16 @@ def _fit(
     walks: Sequence[WalkOnFile],
     prior: WalkPrior,
     watcher: Watcher,
-    mapper: Mapper,
+    executor: Executor | None,
 ) -> tuple[WalkPosterior, tuple[JudgedRun, ...]]:
     """Fit all walks; return the posterior, and each walk predicted from a fit of the others."""
     rng = np.random.default_rng(request.seed)
     fit = fit_walks_on_file(
-        walks, slip, prior=prior, rng=rng, mapper=mapper,
+        walks, slip, prior=prior, rng=rng, executor=executor,
         progress=lambda done: watcher.step("fitting walks", 0.7 * done),
     )  # fmt: skip
     left_out = judge_left_out(
-        fit, walks, slip, rng=rng, mapper=mapper,
+        fit, walks, slip, rng=rng, executor=executor,
         progress=lambda done: watcher.step("fitting walks", 0.7 + 0.3 * done),
     )  # fmt: skip
     return fit.posterior, left_out

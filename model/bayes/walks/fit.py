@@ -10,6 +10,7 @@ cases then have similar weights.
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,6 @@ from model.bayes.walks.posterior import WalkPosterior, state_in
 from model.bayes.walks.prior import ACROSS, LINEAR, WALKED, WRONG, WalkPrior, all_cases
 from model.bayes.walks.terms import Terms
 from model.errors import InsufficientData
-from model.mapping import HERE, Mapper
 from model.robot import Robot
 from model.walk.traction import TractionTable
 
@@ -38,7 +38,7 @@ def fit_walks(
     *,
     prior: WalkPrior,
     rng: np.random.Generator,
-    mapper: Mapper = HERE,
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> "WalkFit":
     """Fit leg offsets and floor to tracked walks of one robot on one floor.
@@ -49,7 +49,7 @@ def fit_walks(
         walks: The tracked walks, one or more.
         prior: The prior.
         rng: Source of randomness of all draws, also of leg angles between encoder counts.
-        mapper: Where draws are walked.
+        executor: Where draws are walked; None for here.
         progress: Called with the fraction done, from 0; ends below 1 if few rounds suffice.
 
     Raises:
@@ -64,11 +64,11 @@ def fit_walks(
     for i, walk in enumerate(walks):
         report(0.05 * i / len(walks))
         misfits.append(
-            WalkMisfit.of(robot, table, walk, spread=prior.spread, rng=rng, mapper=mapper)
+            WalkMisfit.of(robot, table, walk, spread=prior.spread, rng=rng, executor=executor)
         )
-    search = ModeSearch(misfits, prior, mapper)
+    search = ModeSearch(misfits, prior, executor)
     modes = search.modes(progress=lambda done: report(0.05 + 0.25 * done))
-    density = _Density(misfits, prior, mapper)
+    density = _Density(misfits, prior, executor)
     inner = [mode.within(WALKED) for mode in modes]
     drawn = adaptive_draws(
         inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done), effort=EFFORT
@@ -79,8 +79,10 @@ def fit_walks(
 class _Density:
     """Posterior density with steering and stride integrated out; stores the terms of each call."""
 
-    def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, mapper: Mapper) -> None:
-        self.misfits, self.prior, self.mapper = misfits, prior, mapper
+    def __init__(
+        self, misfits: Sequence[WalkMisfit], prior: WalkPrior, executor: Executor | None
+    ) -> None:
+        self.misfits, self.prior, self.executor = misfits, prior, executor
         self.cases = all_cases(len(misfits))
         self.rounds: list[Terms] = []
 
@@ -111,7 +113,7 @@ class _Density:
         values[:, WALKED] = z * self.prior.scale[WALKED]
         steering, stride = self.prior.scale[LINEAR]
         states = [state_in(values, case, self.cases, walk=w) for w in range(len(self.misfits))]
-        walked = walk_states(self.misfits, states, mapper=self.mapper)
+        walked = walk_states(self.misfits, states, executor=self.executor)
         return Terms.concat_walks([
             misfit.terms(each, steering=steering, stride=stride)
             for misfit, each in zip(self.misfits, walked, strict=True)
@@ -216,7 +218,7 @@ class WalkFit:
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]
         search, finer = (
-            ModeSearch(walks, density.prior, density.mapper, numbers=keep, held=ACROSS)
+            ModeSearch(walks, density.prior, density.executor, numbers=keep, held=ACROSS)
             for walks in (misfits, [each.finer() for each in misfits])
         )
         tops = [search.climb(which, start)[0].z for start in starts]

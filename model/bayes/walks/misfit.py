@@ -14,7 +14,7 @@ walk, so the walk's poses are strongly correlated,
 """
 
 from collections.abc import Iterator, Sequence
-from contextlib import closing
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,11 +27,11 @@ from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.joint_covariance import JointCovariance
 from model.leg_state import LegState, law_in, robot_in
-from model.mapping import HERE, Mapper
 from model.path_draws import bent, states_at
 from model.poses import Poses, moved_onto, wrap
 from model.predict import FINE, ModelSpread, ensemble_step, motions
 from model.robot import N_LEGS, Robot
+from model.tasks import compute_tasks
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import (
     PlanarWalk,
@@ -116,7 +116,7 @@ class WalkMisfit:
         *,
         spread: ModelSpread,
         rng: np.random.Generator,
-        mapper: Mapper = HERE,
+        executor: Executor | None = None,
     ) -> "WalkMisfit":
         """Build the misfit of a walk: choose the time step and compute the whitening matrix.
 
@@ -126,7 +126,7 @@ class WalkMisfit:
             walk: The walk.
             spread: Errors of the walking model in one walk.
             rng: Source of randomness, for leg angles that encoder counts leave undetermined.
-            mapper: Where walks are computed.
+            executor: Where walks are computed; None for here.
 
         Raises:
             WalkError: A walk diverged, the robot cannot stand at its start, or there is an IMU and
@@ -140,7 +140,7 @@ class WalkMisfit:
         if walk.tilt is not None:
             tilt = TiltMisfit.of(walk.tilt, misfit._times(), walk.legs)
             misfit = replace(misfit, tilt=tilt)
-        covariance = misfit._covariance(spread, rng, mapper)
+        covariance = misfit._covariance(spread, rng, executor)
         # With L L^T the covariance, L^-1 makes the residuals' covariance the identity.
         return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
 
@@ -220,10 +220,14 @@ class WalkMisfit:
         """
         return planar(self._times(), np.stack(walked))
 
-    def _walked(self, draws: Sequence[WalkDraw], mapper: Mapper) -> PlanarWalk:
+    def _walked(self, draws: Sequence[WalkDraw], executor: Executor | None) -> PlanarWalk:
         """Compute every draw's walk at `_times`, with roll and pitch if there is an IMU."""
         return walk_ensemble(
-            draws, self._times(), options=self.options, mapper=mapper, tilt=self.tilt is not None
+            draws,
+            self._times(),
+            options=self.options,
+            executor=executor,
+            tilt=self.tilt is not None,
         )
 
     def _times(self) -> Array:
@@ -243,20 +247,24 @@ class WalkMisfit:
         difference[..., 2] = wrap(difference[..., 2])
         return difference.reshape(len(states), -1)
 
-    def _covariance(self, spread: ModelSpread, rng: np.random.Generator, mapper: Mapper) -> Array:
+    def _covariance(
+        self, spread: ModelSpread, rng: np.random.Generator, executor: Executor | None
+    ) -> Array:
         """Compute the covariance (k, k) of predicted minus tracked poses: the module's equation."""
         several = motions(self.walk.legs, RECONSTRUCTIONS, rng)
         draws = [WalkDraw(self.robot, each, self.table) for each in several]
-        paths = self._walked(draws, mapper).poses
+        paths = self._walked(draws, executor).poses
         one = paths.draws(slice(1))
         total = self._of_tracker(self._difference(one)[0])
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
-        total += self._of_contacts(spread, mapper)
+        total += self._of_contacts(spread, executor)
         if len(several) > 1:  # their spread includes the error of the step
             return total + np.cov(self._difference(paths).T)
-        return total + self._of_step(several[0], rng, mapper)
+        return total + self._of_step(several[0], rng, executor)
 
-    def _of_step(self, legs: LegReference, rng: np.random.Generator, mapper: Mapper) -> Array:
+    def _of_step(
+        self, legs: LegReference, rng: np.random.Generator, executor: Executor | None
+    ) -> Array:
         """Compute the covariance (k, k) of the time step's error, from walks at it and at half.
 
         The walks have small random leg offsets, since the error differs from path to path.
@@ -267,7 +275,7 @@ class WalkMisfit:
         ]
         half = replace(self, options=replace(self.options, dt=0.5 * self.options.dt))
         coarse, fine = (
-            each._difference(each._walked(draws, mapper).poses) for each in (self, half)
+            each._difference(each._walked(draws, executor).poses) for each in (self, half)
         )
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
@@ -296,7 +304,7 @@ class WalkMisfit:
         c = (self._difference(bent(path, distance=no, curvature=small))[0] - here) / _BEND
         return spread.distance**2 * np.outer(d, d) + spread.curvature**2 * np.outer(c, c)
 
-    def _of_contacts(self, spread: ModelSpread, mapper: Mapper) -> Array:
+    def _of_contacts(self, spread: ModelSpread, executor: Executor | None) -> Array:
         """Compute the covariance (k, k) due to uncertain stiffness and damping of contacts.
 
         Each is moved by one standard deviation of its logarithm up and down, and half the
@@ -307,7 +315,7 @@ class WalkMisfit:
         factors = np.exp(spread.contacts * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
         plain = WalkDraw(self.robot, middle(self.walk.legs), self.table)
         draws = [replace(plain, stiffness=k, damping=c) for k, c in factors]
-        paths = self._difference(self._walked(draws, mapper).poses)
+        paths = self._difference(self._walked(draws, executor).poses)
         moved = 0.5 * (paths[::2] - paths[1::2])
         return moved.T @ moved
 
@@ -349,14 +357,14 @@ def walk_state(_: None, task: StateToWalk) -> Array:
 
 
 def walk_states(
-    misfits: Sequence[WalkMisfit], states: Sequence[LegState], *, mapper: Mapper = HERE
+    misfits: Sequence[WalkMisfit], states: Sequence[LegState], *, executor: Executor | None = None
 ) -> list[PlanarWalk]:
     """Walk states of the legs in each of several walks, as tasks of all walks side by side.
 
     Args:
         misfits: The walks.
         states: The states of the legs in each of them, at least one.
-        mapper: Where states are walked.
+        executor: Where states are walked; None for here.
 
     Raises:
         WalkError: A walk diverged, or the robot cannot stand at its start.
@@ -364,11 +372,11 @@ def walk_states(
     pairs = zip(misfits, states, strict=True)
     tasks = [misfit.tasks(state) for misfit, state in pairs]
     each = [task for of_walk in tasks for task in of_walk]
-    with closing(mapper.map(walk_state, None, each)) as results:
-        return [
-            misfit.joined([_next_states(results, misfit.walk.name) for _ in of_walk])
-            for misfit, of_walk in zip(misfits, tasks, strict=True)
-        ]
+    results = compute_tasks(executor, walk_state, each)
+    return [
+        misfit.joined([_next_states(results, misfit.walk.name) for _ in of_walk])
+        for misfit, of_walk in zip(misfits, tasks, strict=True)
+    ]
 
 
 def _next_states(results: Iterator[Array], name: str) -> Array:

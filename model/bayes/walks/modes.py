@@ -16,6 +16,7 @@ early, and the better of the two results is kept.
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,6 @@ from model.arrays import Array
 from model.bayes.adaptive import Mode
 from model.bayes.walks.misfit import WalkMisfit, walk_states
 from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
-from model.mapping import HERE, Mapper
 from model.robot import N_LEGS
 
 # Steps of differences: offsets 0.1 degree, factors 5 %. Below, contacts are not smooth.
@@ -63,7 +63,7 @@ class ModeSearch:
     Args:
         misfits: Misfit of each walk.
         prior: The prior.
-        mapper: Where walks are computed.
+        executor: Where walks are computed; None for here.
         numbers: Index by which cases refer to each of these walks; 0, 1, ... when None.
         held: Indices of parameters that are not varied: they end at the middle of their prior.
     """
@@ -72,11 +72,11 @@ class ModeSearch:
         self,
         misfits: Sequence[WalkMisfit],
         prior: WalkPrior,
-        mapper: Mapper = HERE,
+        executor: Executor | None = None,
         numbers: Sequence[int] | None = None,
         held: Sequence[int] = (),
     ) -> None:
-        self.misfits, self.prior, self.mapper = misfits, prior, mapper
+        self.misfits, self.prior, self.executor = misfits, prior, executor
         self.numbers = range(len(misfits)) if numbers is None else numbers
         self.ends = np.cumsum([misfit.size for misfit in misfits])
         self.varied = prior.scale > 0
@@ -131,7 +131,7 @@ class ModeSearch:
         """
         values = z * self.prior.scale
         states = [legs_of(values, case, walk=w) for w in self.numbers]
-        walked = walk_states(self.misfits, states, mapper=self.mapper)
+        walked = walk_states(self.misfits, states, executor=self.executor)
         return np.concatenate(
             [
                 misfit.residuals(state, each)

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +22,6 @@ from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula, SlipDefinition
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
-from zebro_lab.workers.threads import Threads
 
 LAW = MagicFormula(curvature=0.0)
 LAW_VALUES = (20.0, 1.5, 0.38)
@@ -202,7 +202,7 @@ def test_many_runs_are_left_out_in_interleaved_groups(monkeypatch):
 
 
 def test_folds_fitted_at_once_or_in_turn_are_the_same(posterior, laplace, validation):
-    in_turn = cross_validate(posterior, laplace, mapper=Threads(2))
+    in_turn = cross_validate(posterior, laplace, executor=ThreadPoolExecutor(2))
     np.testing.assert_array_equal(in_turn.values, validation.values)
     np.testing.assert_array_equal(in_turn.log_density, validation.log_density)
 

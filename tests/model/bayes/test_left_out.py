@@ -75,7 +75,7 @@ def test_many_bad_weights_are_mended_in_ten_folds(left_out_by_groups, monkeypatc
     monkeypatch.setattr(left_out, "MAX_SINGLE_FOLDS", 3)
     monkeypatch.setattr(left_out, "N_GROUPED_FOLDS", 2)
 
-    def without(_, task):
+    def without(task):
         folds.append(np.flatnonzero(task.left_out).tolist())
         return Refitted(np.full(int(task.left_out.sum()), float(len(folds))), 0.1)
 

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,6 @@ from model.errors import DomainError, WalkError
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.mapping import HERE
 from model.robot import GRAVITY, Robot
 from model.slip import MagicFormula
 from model.walk.areas import Area
@@ -16,7 +16,6 @@ from model.walk.dynamics import DynamicsOptions, Start, walk
 from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
 from model.walk.ground import FLAT, with_slope
 from model.walk.traction import law_table
-from zebro_lab.workers.threads import Threads
 
 ROBOT = Robot()
 SOURCE = np.array([34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066])
@@ -36,7 +35,8 @@ def draws(n=6, *, gait=TURN):
 def test_an_ensemble_is_its_draws_wherever_they_are_walked():
     t = np.linspace(0, 20.0, 41)
     one, two = (
-        walk_ensemble(draws(), t, options=OPTIONS, mapper=each).poses for each in (HERE, Threads(2))
+        walk_ensemble(draws(), t, options=OPTIONS, executor=each).poses
+        for each in (None, ThreadPoolExecutor(2))
     )
     np.testing.assert_array_equal(one.position, two.position)
     np.testing.assert_array_equal(one.yaw, two.yaw)

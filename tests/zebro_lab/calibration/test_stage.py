@@ -5,6 +5,7 @@ import json
 import signal
 import tomllib
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import copytree
@@ -21,8 +22,7 @@ from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.stage import Stopped, calibrate
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.terminal.stopping import StoppedBySignal
-from zebro_lab.workers.request import CoresRequest
-from zebro_lab.workers.threads import Threads
+from zebro_lab.workers import WorkersRequest
 
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
 TABLES = {"slip.toml", "summary.csv", "posterior.nc", "manifest.json"}
@@ -76,7 +76,7 @@ def request_for(sweep):
             curvature="peak",
             block_length=30,
             max_steps=400,
-            workers=CoresRequest(1),
+            workers=WorkersRequest(1),
         )
         return replace(asked, **changes)
 
@@ -116,8 +116,8 @@ def test_fit_writes_its_files_and_a_checkpoint_while_it_has_not_converged(uninte
 
 
 def test_fit_is_the_same_with_two_threads(uninterrupted, request_for, tmp_path, no_pictures):
-    asked = request_for(tmp_path / "out", workers=CoresRequest(2))
-    calibrate(asked, Watcher(), mapper=Threads(2))
+    asked = request_for(tmp_path / "out", workers=WorkersRequest(2))
+    calibrate(asked, Watcher(), executor=ThreadPoolExecutor(2))
     assert_same_fit(tmp_path / "out", uninterrupted)
 
 

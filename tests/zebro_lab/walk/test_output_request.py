@@ -9,7 +9,7 @@ import typer
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.picture_options import parse_instants
 from zebro_lab.walk.output_request import BandRequest, ContactRequest, PictureRequest
-from zebro_lab.workers.request import CoresRequest
+from zebro_lab.workers import WorkersRequest
 
 
 def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
@@ -26,7 +26,7 @@ def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
 
 
 def test_a_scheduler_without_draws_to_share_is_wrong_usage():
-    workers = CoresRequest(scheduler="tcp://127.0.0.1:8786")
+    workers = WorkersRequest(scheduler="tcp://127.0.0.1:8786")
     assert BandRequest(2, workers=workers).workers == workers
     with pytest.raises(SettingsError, match="--scheduler: hands the draws of a band"):
         BandRequest(workers=workers)

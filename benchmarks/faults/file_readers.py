@@ -23,11 +23,11 @@ import tomlkit
 from openpyxl import Workbook
 
 from benchmarks.faults.device_parsers import Parser, Take
-from model.bayes.walks.prior import WRONG, WalkPrior
 from model.errors import ModelError
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
+from model.walk_fit.prior import WRONG, WalkPrior
 from rig.device import Sample
 from rig.errors import RigError
 from rig.imu.profile import load_imu_profile

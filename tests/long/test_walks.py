@@ -19,7 +19,7 @@ import pytest
 
 from benchmarks.accuracy.engine_walks import STRAIGHT, EngineWalk, radius, read_walk
 from benchmarks.tables import print_table
-from model.bayes.walks.prior import WalkPrior
+from model.walk_fit.prior import WalkPrior
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, render_robot_file
 from zebro_lab.validation.judged_run import JudgedRun, judge_run

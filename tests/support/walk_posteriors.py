@@ -4,9 +4,9 @@
 import numpy as np
 import pandas as pd
 
-from model.bayes.walks.posterior import WalkPosterior
-from model.bayes.walks.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
 from model.gait import tripod_angles, tripod_reference
+from model.walk_fit.posterior import WalkPosterior
+from model.walk_fit.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
 from support.watchers import Nobody
 from zebro_lab.calibration.walks_folder import WalksToWrite, read_stored_walks, write_walks
 from zebro_lab.robot.robot_file import RobotFile

@@ -11,10 +11,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from model.bayes.walks.posterior import FEW, WalkPosterior
-from model.bayes.walks.prior import ACROSS, UNITS, WRONG, WalkPrior, WrongLeg, all_cases
 from model.counted import counted
 from model.predict import ModelSpread
+from model.walk_fit.posterior import FEW, WalkPosterior
+from model.walk_fit.prior import ACROSS, UNITS, WRONG, WalkPrior, WrongLeg, all_cases
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError

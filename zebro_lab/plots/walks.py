@@ -5,9 +5,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.stats import norm
 
-from model.bayes.walks.posterior import Contraction, WalkPosterior
-from model.bayes.walks.prior import UNITS
 from model.counted import counted
+from model.walk_fit.posterior import Contraction, WalkPosterior
+from model.walk_fit.prior import UNITS
 from zebro_lab.files.units import shown_unit
 from zebro_lab.plots.sheet import BLUE, legend_below, new_figure, styled
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.walks.posterior import WalkPosterior
 from model.leg_state import LegState
+from model.walk_fit.posterior import WalkPosterior
 from zebro_lab.calibration.walks_folder import StoredWalks, describe_legs
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile

@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from model.bayes.walks.posterior import WalkPosterior
+from model.walk_fit.posterior import WalkPosterior
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.validation.judged_run import JudgedRun
 

@@ -6,15 +6,15 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from model.bayes.walks.fit import WalkFit, fit_walks
-from model.bayes.walks.misfit import middle
-from model.bayes.walks.posterior import WalkPosterior
-from model.bayes.walks.prior import WalkPrior
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.judgement import Prediction
 from model.predict import FINE, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
+from model.walk_fit.fit import WalkFit, fit_walks
+from model.walk_fit.misfit import middle
+from model.walk_fit.posterior import WalkPosterior
+from model.walk_fit.prior import WalkPrior
 from model.walk_models import baseline_paths
 from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import slip_tables

@@ -7,9 +7,9 @@ from rich.table import Table
 from rich.text import Text
 
 from model.bayes.estimate import informed
-from model.bayes.walks.posterior import Contraction, WalkPosterior
-from model.bayes.walks.prior import FALL, UNITS
 from model.counted import counted
+from model.walk_fit.posterior import Contraction, WalkPosterior
+from model.walk_fit.prior import FALL, UNITS
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import shown_unit
 from zebro_lab.terminal.messages import plain

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.walks.posterior import WalkPosterior
-from model.bayes.walks.prior import WalkPrior
 from model.lateral_spread import log_spread
 from model.progress import Watcher
+from model.walk_fit.posterior import WalkPosterior
+from model.walk_fit.prior import WalkPrior
 from zebro_lab.calibration.folder import CALIBRATION, SLIP_TOML
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.slip_argument import THESIS, NamedSlip, parse_slip

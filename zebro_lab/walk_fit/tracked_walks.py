@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.walks.misfit import FEWEST_POSES, TrackedWalk
-from model.bayes.walks.tilt import FEWEST, TIME, MeasuredTilt
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.told_apart import told_apart
+from model.walk_fit.misfit import FEWEST_POSES, TrackedWalk
+from model.walk_fit.tilt import FEWEST, TIME, MeasuredTilt
 from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import TRACK, numbered

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walks.prior import ACROSS, LATERAL, NAMES, WrongLeg, all_cases
+from model.walk_fit.prior import ACROSS, LATERAL, NAMES, WrongLeg, all_cases
 from support.walk_posteriors import (
     KNOCKED,
     OFF,

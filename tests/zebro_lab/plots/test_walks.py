@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.prior import NAMES, WrongLeg
+from model.walk_fit.prior import NAMES, WrongLeg
 from support.walk_posteriors import OFF, posterior_of
 from zebro_lab.plots.walks import walk_parameters
 

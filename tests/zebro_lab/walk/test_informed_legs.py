@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.walks.prior import WrongLeg
 from model.robot import Robot
+from model.walk_fit.prior import WrongLeg
 from support.walk_posteriors import KNOCKED, OFF, posterior_of, predict_log, stored
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.informed_legs import informed_legs

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walks.prior import WrongLeg
 from model.gait import tetrapod_reference
+from model.walk_fit.prior import WrongLeg
 from support.validated_walks import predicted
 from support.walk_posteriors import posterior_of, predict_log, stored
 from zebro_lab.files.errors import DataError

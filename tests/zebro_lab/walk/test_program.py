@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from model.bayes.walks.prior import WrongLeg
+from model.walk_fit.prior import WrongLeg
 from support.walk_posteriors import posterior_of, stored
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile

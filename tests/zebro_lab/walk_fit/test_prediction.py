@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.walks.misfit import middle
-from model.bayes.walks.prior import WalkPrior
 from model.errors import ModelError
 from model.gait.reference import SampledReference
+from model.walk_fit.misfit import middle
+from model.walk_fit.prior import WalkPrior
 from support.tracked_walks import write_walk
 from support.walk_posteriors import posterior_of
 from zebro_lab.calibration.slip_argument import parse_slip

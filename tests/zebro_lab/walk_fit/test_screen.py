@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from model.bayes.walks.prior import NAMES, WrongLeg
+from model.walk_fit.prior import NAMES, WrongLeg
 from support.judged_walks import judged_walk
 from support.walk_posteriors import posterior_of
 from zebro_lab.walk_fit.screen import print_walks

@@ -2,9 +2,9 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.posterior import WalkPosterior, state_in
-from model.bayes.walks.prior import FLOOR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
 from model.robot import N_LEGS
+from model.walk_fit.posterior import WalkPosterior, state_in
+from model.walk_fit.prior import FLOOR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
 
 N = 4000
 

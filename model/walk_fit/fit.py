@@ -3,9 +3,9 @@
 
 Two walks cannot identify six offsets unless most of them are small. The prior therefore states
 that every leg has a small offset, and that perhaps one leg has a large offset, wrongly mounted or
-knocked before one walk. Each of these cases has its mode (`model.bayes.walks.modes`), around which
+knocked before one walk. Each of these cases has its mode (`model.walk_fit.modes`), around which
 draws are made and weighted (`model.bayes.adaptive`), with steering and stride integrated
-out (`model.bayes.walks.terms`). Paths alone often cannot identify the wrongly mounted leg; several
+out (`model.walk_fit.terms`). Paths alone often cannot identify the wrongly mounted leg; several
 cases then have similar weights.
 """
 
@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.bayes.adaptive import Effort, WeightedCaseDraws, adaptive_draws
-from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, walk_states
-from model.bayes.walks.modes import ModeSearch
-from model.bayes.walks.posterior import WalkPosterior, state_in
-from model.bayes.walks.prior import ACROSS, LINEAR, WALKED, WRONG, WalkPrior, all_cases
-from model.bayes.walks.terms import Terms
 from model.errors import InsufficientData
 from model.robot import Robot
 from model.walk.traction import TractionTable
+from model.walk_fit.misfit import TrackedWalk, WalkMisfit, walk_states
+from model.walk_fit.modes import ModeSearch
+from model.walk_fit.posterior import WalkPosterior, state_in
+from model.walk_fit.prior import ACROSS, LINEAR, WALKED, WRONG, WalkPrior, all_cases
+from model.walk_fit.terms import Terms
 
 Progress = Callable[[float], None]
 

@@ -2,8 +2,6 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, walk_states
-from model.bayes.walks.prior import WRONG, legs_of
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
@@ -12,6 +10,8 @@ from model.predict import ModelSpread
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
+from model.walk_fit.misfit import TrackedWalk, WalkMisfit, walk_states
+from model.walk_fit.prior import WRONG, legs_of
 
 TABLE = VelocityCoulomb(0.38).table(weight=21.3)
 NOISE = np.array([0.001, 0.001, 0.003])

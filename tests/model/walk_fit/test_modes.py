@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.modes import ModeSearch
-from model.bayes.walks.prior import ACROSS, WRONG, WalkPrior, WrongLeg
 from model.robot import N_LEGS
+from model.walk_fit.modes import ModeSearch
+from model.walk_fit.prior import ACROSS, WRONG, WalkPrior, WrongLeg
 
 K = 40
 

@@ -2,7 +2,8 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.prior import (
+from model.errors import DomainError
+from model.walk_fit.prior import (
     ACROSS,
     FALL,
     NAMES,
@@ -15,7 +16,6 @@ from model.bayes.walks.prior import (
     legs_of,
     wrong_legs,
 )
-from model.errors import DomainError
 
 
 @pytest.mark.parametrize("walks", [1, 2, 5])

@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.tilt import SD, MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData, WalkError
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
@@ -12,6 +11,7 @@ from model.robot import Robot
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.traction import VelocityCoulomb
+from model.walk_fit.tilt import SD, MeasuredTilt, TiltMisfit
 
 DURATION = 8.0
 TABLE = VelocityCoulomb(0.38).table(weight=21.3)

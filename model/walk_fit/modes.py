@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.bayes.adaptive import Mode
-from model.bayes.walks.misfit import WalkMisfit, walk_states
-from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
 from model.robot import N_LEGS
+from model.walk_fit.misfit import WalkMisfit, walk_states
+from model.walk_fit.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
 
 # Steps of differences: offsets 0.1 degree, factors 5 %. Below, contacts are not smooth.
 DIFFERENCE = np.array([

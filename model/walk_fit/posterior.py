@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.walks.prior import (
+from model.leg_state import LegState
+from model.robot import N_LEGS
+from model.walk_fit.prior import (
     FLOOR,
     NAMES,
     WRONG,
@@ -17,8 +19,6 @@ from model.bayes.walks.prior import (
     leg_offsets,
     legs_of,
 )
-from model.leg_state import LegState
-from model.robot import N_LEGS
 
 UNINFORMED = 0.1  # contraction up to which a parameter counts as not constrained by the walks
 FEW = 30  # least effective sample size of a reliable posterior
@@ -26,7 +26,7 @@ FEW = 30  # least effective sample size of a reliable posterior
 
 @dataclass(frozen=True)
 class Contraction:
-    """Prior and posterior of one parameter; units are those of `model.bayes.walks.prior.UNITS`.
+    """Prior and posterior of one parameter; units are those of `model.walk_fit.prior.UNITS`.
 
     Attributes:
         name: One of `NAMES`; grip and slip stiffness are logarithms of factors.
@@ -81,7 +81,7 @@ class WalkPosterior:
             indices.
         cases: The cases: each a wrongly mounted leg, or None.
         values: Draws of the parameters in the order of `NAMES`, then the further offset of a
-            wrongly mounted leg, shape (n, 16), in the units of `model.bayes.walks.prior.UNITS` and
+            wrongly mounted leg, shape (n, 16), in the units of `model.walk_fit.prior.UNITS` and
             rad.
         case: Index into `cases` of each draw, shape (n,).
         weight: Weight of each draw, with sum one, shape (n,) [-].

@@ -4,9 +4,17 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.fit import fit_walks
-from model.bayes.walks.misfit import TrackedWalk
-from model.bayes.walks.prior import (
+from model.errors import InsufficientData
+from model.gait import tripod_angles, tripod_reference
+from model.gait.reference import SampledReference
+from model.joint_covariance import JointCovariance
+from model.predict import ModelSpread
+from model.robot import Robot
+from model.walk.ensemble import WalkDraw, planar_walk
+from model.walk.traction import VelocityCoulomb
+from model.walk_fit.fit import fit_walks
+from model.walk_fit.misfit import TrackedWalk
+from model.walk_fit.prior import (
     ACROSS,
     FLOOR,
     NAMES,
@@ -16,14 +24,6 @@ from model.bayes.walks.prior import (
     all_cases,
     legs_of,
 )
-from model.errors import InsufficientData
-from model.gait import tripod_angles, tripod_reference
-from model.gait.reference import SampledReference
-from model.joint_covariance import JointCovariance
-from model.predict import ModelSpread
-from model.robot import Robot
-from model.walk.ensemble import WalkDraw, planar_walk
-from model.walk.traction import VelocityCoulomb
 
 DURATION = 8.0
 NOISE = np.array([0.002, 0.002, 0.005])
@@ -60,7 +60,7 @@ def fitted(offset, *, turns=THREE):
 def straight_legs():
     walk = tracked(1.3, "left", offset=np.zeros(6), seed=0, duration=4.0)
     with pytest.MonkeyPatch.context() as patched:  # no leg is off, so that no case is worth a climb
-        patched.setattr("model.bayes.walks.modes.CLIMBED", 0)
+        patched.setattr("model.walk_fit.modes.CLIMBED", 0)
         fit = fit_walks(Robot(), TABLE, [walk], prior=PRIOR, rng=np.random.default_rng(1))
     return fit.posterior
 

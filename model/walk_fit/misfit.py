@@ -20,8 +20,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.walks.terms import Terms
-from model.bayes.walks.tilt import MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData, WalkError
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
@@ -42,6 +40,8 @@ from model.walk.ensemble import (
     walk_ensemble,
 )
 from model.walk.traction import TractionTable
+from model.walk_fit.terms import Terms
+from model.walk_fit.tilt import MeasuredTilt, TiltMisfit
 
 RECONSTRUCTIONS = 16  # motions drawn from counted angles; or walks that show the step's error
 # s; with a wrongly mounted leg 5 ms turns by 3 % more and saves a third of the time

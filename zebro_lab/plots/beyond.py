@@ -7,8 +7,6 @@ from matplotlib.axes import Axes
 from model.arrays import Array
 
 _APART = 0.01  # of the time shown; excursions closer than this share a mark
-_MARK = "0.25"
-_MOST_MARKS = 12  # of more, which would merge to a bar, only the furthest is marked
 
 
 def limits_without_tips(
@@ -36,8 +34,6 @@ def mark_beyond(
 ) -> None:
     """Draw a triangle at the edge of the axes for each excursion of a curve beyond its limits.
 
-    Of more than 12 at an edge, only the furthest has one, with the number of excursions beside it.
-
     Args:
         axes: Axes with the curve.
         t: Times, shape (n,) [s].
@@ -51,20 +47,8 @@ def mark_beyond(
         if not len(at):
             continue
         begins = at[np.diff(at, prepend=-np.inf) > _APART * (t[-1] - t[0])]
-        if len(begins) > _MOST_MARKS:
-            far = np.abs(values[outside])
-            _write_count(axes, float(at[far.argmax()]), edge, len(begins))
-            begins = at[[far.argmax()]]
         axes.plot(
             begins, np.full(len(begins), edge), transform=axes.get_xaxis_transform(),
-            ls="none", marker=shape, ms=3.5, color=_MARK, mew=0, clip_on=False, zorder=5,
+            ls="none", marker=shape, ms=3.5, color="0.25", mew=0, clip_on=False, zorder=5,
             label=label,
         )  # fmt: skip
-
-
-def _write_count(axes: Axes, at: float, edge: float, count: int) -> None:
-    axes.annotate(
-        f"1 of {count}", (at, edge), xycoords=axes.get_xaxis_transform(), xytext=(4, 0),
-        textcoords="offset points", ha="left", va="center", fontsize=7, color=_MARK,
-        bbox={"facecolor": "white", "alpha": 0.7, "lw": 0, "pad": 0.5}, zorder=5,
-    )  # fmt: skip

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator
 from numpy.typing import ArrayLike
 
 from model.arrays import Array
@@ -16,7 +17,6 @@ from zebro_lab.plots.sheet import (
     TRACTION_LABEL,
     legend_below,
     new_figure,
-    plain,
     point_alpha,
     slip_grid,
     slip_label,
@@ -24,6 +24,7 @@ from zebro_lab.plots.sheet import (
 )
 
 _BINS = 16  # of slip at each load, whose means are drawn beside the differences of the laws
+_TICKS = (-1.0, -0.3, -0.1, -0.03, 0.0, 0.03, 0.1, 0.3, 1.0)
 _STYLES = ("-", "--", "-.", ":")
 
 
@@ -59,25 +60,36 @@ def slip_laws(
     levels = np.sort(np.ravel(np.asarray(load_levels, dtype=float)))
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
     figure = new_figure("Slip laws compared", simulated, width=9.0, height=1.6 + 2.3 * len(levels))
-    grid = figure.add_gridspec(len(levels), 2)
-    for row, load in enumerate(levels):
-        whole, beside = (figure.add_subplot(grid[row, column]) for column in (0, 1))
+    panels = figure.subplots(len(levels), 2, squeeze=False)
+    for row, (load, (whole, beside)) in enumerate(zip(levels, panels, strict=True)):
         mine = nearest == row
         slip = slip_grid(blocks.slip[mine] if mine.any() else blocks.slip, 250)
-        _draw_points(whole, blocks.slip[mine], blocks.traction_force[mine])
+        whole.scatter(
+            blocks.slip[mine], blocks.traction_force[mine], s=9, color="0.35", linewidths=0,
+            alpha=point_alpha(int(mine.sum())), label="block means",
+        )  # fmt: skip
         _draw_means(beside, blocks.slip[mine], residual[mine])
-        _draw_laws(whole, beside, laws, reference, slip, float(load))
+        base = _median(laws[reference], slip, load)
+        for index, (name, law) in enumerate(laws.items()):
+            force = _median(law, slip, load)
+            fitted = name == reference
+            style = {
+                "color": CYCLE[index % len(CYCLE)],
+                "ls": "-" if fitted else _STYLES[index % len(_STYLES)],
+                "lw": 2.0 if fitted else 1.2,
+            }
+            whole.plot(slip, force, label=f"{name} (fitted)" if fitted else name, **style)
+            beside.plot(slip, force - base, **style)
         whole.set_title(f"load {load:.4g} N", loc="left")
         beside.set_title(f"less '{reference}'", loc="left")
         whole.set_ylabel(TRACTION_LABEL)
         beside.set_ylabel("difference [N]")
-    for axes in figure.axes[-2:]:
+    for axes in panels[-1]:
         axes.set_xlabel(slip_label(blocks.definition))
-    for axes in figure.axes:
+    for axes in panels.flat:
         axes.set_xscale("function", functions=(_root, _square))
+        axes.xaxis.set_major_locator(FixedLocator(_TICKS))
         axes.axhline(0, color="0.6", lw=0.5, zorder=0)
-        ticks = _ticks(axes)
-        axes.set_xticks(ticks, [plain(tick) for tick in ticks])
     legend_below(figure, columns=2)
     return figure
 
@@ -88,41 +100,11 @@ def _median(law: tuple[SlipLaw, Array], slip: Array, load: ArrayLike) -> Array:
     return np.median(formula.force(slip, load, draws.T[:, :, None]), axis=0)
 
 
-def _draw_laws(
-    whole: Axes,
-    beside: Axes,
-    laws: Mapping[str, tuple[SlipLaw, Array]],
-    reference: str,
-    slip: Array,
-    load: float,
-) -> None:
-    """Draw the median curve of each law, and its difference from the reference's."""
-    base = _median(laws[reference], slip, load)
-    for index, (name, law) in enumerate(laws.items()):
-        force = _median(law, slip, load)
-        own = name == reference
-        label = f"{name} (fitted)" if own else name
-        style = {
-            "color": CYCLE[index % len(CYCLE)],
-            "ls": "-" if own else _STYLES[index % len(_STYLES)],
-            "lw": 2.0 if own else 1.2,
-        }
-        whole.plot(slip, force, label=label, **style)
-        beside.plot(slip, force - base, **style)
-
-
-def _draw_points(axes: Axes, slip: Array, force: Array) -> None:
-    axes.scatter(
-        slip, force, s=9, color="0.35", alpha=point_alpha(len(slip)), linewidths=0,
-        label="block means",
-    )  # fmt: skip
-
-
 def _draw_means(axes: Axes, slip: Array, residual: Array) -> None:
     """Draw means of residuals in bins of equally many blocks, with their standard errors."""
-    parts = np.array_split(np.argsort(slip), min(_BINS, max(1, len(slip) // 3)))
     if not len(slip):
         return
+    parts = np.array_split(np.argsort(slip), min(_BINS, max(1, len(slip) // 3)))
     error = [np.std(residual[part], ddof=1) / np.sqrt(len(part)) if len(part) > 1 else 0.0
              for part in parts]  # fmt: skip
     axes.errorbar(
@@ -141,13 +123,3 @@ def _root(slip: Array) -> Array:
 def _square(position: Array) -> Array:
     """Map positions on the axis to slip ratios, the inverse of `_root`."""
     return np.sign(position) * np.square(position)
-
-
-def _ticks(axes: Axes) -> list[float]:
-    """Return ticks within the limits of a square-root axis: 1 and 3 times powers of ten, and 0."""
-    low, high = axes.get_xlim()
-    reach = max(-low, high)
-    power = 10.0 ** np.floor(np.log10(reach))
-    sizes = [part * power for part in (0.03, 0.1, 0.3, 1.0, 3.0) if part * power >= 0.07 * reach]
-    both = sorted({0.0, *sizes, *(-size for size in sizes)})
-    return [tick for tick in both if low <= tick <= high]

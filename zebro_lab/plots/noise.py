@@ -2,7 +2,6 @@
 """Residual plots of a fit: four checks of the noise model."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,12 +12,10 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.residuals import lag_correlation
-from zebro_lab.plots.sheet import BLUE, RED, new_figure, slip_label, styled, with_minus
+from zebro_lab.plots.sheet import BLUE, new_figure, slip_label, styled
 
 _MAX_LAG = 20
 _FEWEST_PAIRS = 8  # of a lag that is drawn: with fewer the band of chance is most of -1 to 1
-_NAMED = 3  # runs on either side whose names are written
-_LONGEST = 33  # characters of a written name
 _FAR = 8.0  # residuals further out would squeeze the histogram's body
 _NORMAL_90, _NORMAL_95 = 1.6449, 1.96  # half-widths of a standard normal's central parts
 
@@ -36,9 +33,8 @@ def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulate
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure: residuals over slip, their distribution, their autocorrelation within runs
-        with the limit of the verdict at lag 1, and the sorted run scores with the central 90 %
-        and the names of the runs furthest out.
+        The figure: residuals over slip, their distribution, their autocorrelation within runs,
+        and the sorted run scores with the central 90 %.
     """
     figure = new_figure("Residuals", simulated, width=7.5, height=6.2)
     over_slip, distribution, lags, runs = figure.subplots(2, 2).ravel()
@@ -50,7 +46,7 @@ def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulate
     figure.colorbar(points, ax=over_slip, label="normal force [N]")
     _draw_distribution(distribution, whitened)
     _draw_autocorrelation(lags, whitened, blocks.run)
-    _draw_run_scores(runs, run_score, blocks.run_names)
+    _draw_run_scores(runs, run_score)
     return figure
 
 
@@ -70,7 +66,7 @@ def _draw_distribution(axes: Axes, whitened: Array) -> None:
 
 
 def _draw_autocorrelation(axes: Axes, whitened: Array, run: NDArray[np.intp]) -> None:
-    """Draw the correlation at each lag with at least `_FEWEST_PAIRS`, and the verdict's limit."""
+    """Draw the correlation at each lag with at least `_FEWEST_PAIRS`."""
     axes.set(xlabel="lag within a run [blocks]", ylabel="autocorrelation [-]")
     rows = [
         (lag, *lag_correlation(whitened, run, lag)) for lag in range(1, min(_MAX_LAG + 1, len(run)))
@@ -86,11 +82,7 @@ def _draw_autocorrelation(axes: Axes, whitened: Array, run: NDArray[np.intp]) ->
     axes.vlines(lags, 0, correlations, color=BLUE, lw=2)
     axes.plot(lags, correlations, ls="none", marker="o", ms=3.5, color=BLUE)
     axes.axhline(0, color="black", lw=0.6)
-    from model.bayes.checks.fit import lag_one_limit  # late: it imports the sampler
-
-    limit = lag_one_limit(int(counts[0]))
-    axes.hlines([-limit, limit], 0.5, 1.5, color=RED, lw=1.4, label=f"limit at lag 1: ±{limit:.2f}")
-    reach = 1.15 * max(limit, float(np.abs(correlations).max()), float(chance.max()))
+    reach = 1.15 * max(float(np.abs(correlations).max()), float(chance.max()))
     axes.set(xlim=(0.5, lags[-1] + 0.5), ylim=(-reach, reach))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     _legend_above(axes, columns=1)
@@ -101,40 +93,15 @@ def _legend_above(axes: Axes, *, columns: int = 2) -> None:
     axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncols=columns, borderpad=0)
 
 
-def _draw_run_scores(axes: Axes, run_score: Array, names: Sequence[str]) -> None:
+def _draw_run_scores(axes: Axes, run_score: Array) -> None:
     outside = int(np.sum(np.abs(run_score) > _NORMAL_90))
     name = f"central 90 %: {outside} of {len(run_score)} outside"
     axes.axhspan(-_NORMAL_90, _NORMAL_90, color=BLUE, alpha=0.15, lw=0, label=name)
-    order = np.argsort(run_score, kind="stable")
     ranks = np.arange(1, len(run_score) + 1)
-    axes.plot(ranks, run_score[order], ls="none", marker="o", ms=3, color=BLUE)
+    axes.plot(ranks, np.sort(run_score), ls="none", marker="o", ms=3, color=BLUE)
     axes.axhline(0, color="black", lw=0.6)
     axes.set(xlabel="run, by rank [-]", ylabel="run mean less predicted [sd]")
     axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
     reach = 1.1 * max(3.0, float(np.abs(run_score).max()))
     axes.set_ylim(-reach, reach)
-    _name_furthest(axes, [(names[int(i)], float(run_score[i])) for i in order])
     _legend_above(axes)
-
-
-def _name_furthest(axes: Axes, ranked: Sequence[tuple[str, float]]) -> None:
-    """Name the runs furthest out, in the two corners that scores sorted by rank leave empty."""
-    lowest = [(name, score) for name, score in ranked[:_NAMED] if score < 0]
-    highest = [(name, score) for name, score in ranked[-_NAMED:] if score > 0]
-    for runs, x, y in ((highest[::-1], 0.02, 0.98), (lowest[::-1], 0.98, 0.02)):
-        text = "\n".join(f"{_short(name)}  {with_minus(f'{score:+.1f}')}" for name, score in runs)
-        sides = ("left", "top") if y > 0.5 else ("right", "bottom")
-        axes.text(
-            x, y, text, ha=sides[0], va=sides[1], fontsize=6.5, transform=axes.transAxes,
-            parse_math=False,
-        )  # fmt: skip
-
-
-def _short(name: str) -> str:
-    """Return at most `_LONGEST` characters of a run's name, an ellipsis for the middle of longer.
-
-    >>> _short("data/2024-05-01T10-00-00Z-rig-point-0007 Fn 8.13 N slip 0.2500")
-    'data/2024-05-01T10-…N slip 0.2500'
-    """
-    half = (_LONGEST - 1) // 2
-    return name if len(name) <= _LONGEST else f"{name[: half + 3]}…{name[-half + 3 :]}"

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from scipy.ndimage import gaussian_filter
 
 from model.arrays import Array
 from zebro_lab.plots.sheet import BLUE, CYCLE, legend_below, new_figure, styled, with_minus
@@ -105,8 +106,6 @@ def _density(values: Array, edges: Array) -> Array:
 
 def _smoothed(counts: Array, width: float | list[float]) -> Array:
     """Smooth counts by a Gaussian of a standard deviation along each axis [bins]."""
-    from scipy.ndimage import gaussian_filter  # late: every picture imports this file
-
     return gaussian_filter(counts, width, mode="constant")
 
 

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Plot slip curves, one panel for each tested load."""
+"""Plot slip curves, a row of panels for each tested load."""
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.gridspec import SubplotSpec
 from numpy.typing import ArrayLike, NDArray
 
 from model.arrays import Array
@@ -20,7 +17,6 @@ from zebro_lab.plots.sheet import (
     NARROW,
     RED,
     TRACTION_LABEL,
-    few_ticks,
     legend_below,
     new_figure,
     plain,
@@ -33,8 +29,6 @@ from zebro_lab.plots.sheet import (
 
 _QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CURVES = 400  # draws whose curves make the bands
-_LINE = 0.02  # of the height of a panel: a band that is narrower is hardly seen beside the line
-_NEAR_LOAD = 0.1  # relative load difference beyond which a block is not comparable with the curve
 
 
 @styled
@@ -46,13 +40,12 @@ def slip_curves(
     load_levels: ArrayLike,
     simulated: bool,
 ) -> Figure:
-    """Draw data and posterior slip curves, one panel for each tested load.
+    """Draw data and posterior slip curves, a row for each tested load.
 
-    Each block is drawn at the nearest load level; blocks whose load differs by more than 10 % are
-    hollow, since the curve is for another load. The bands are those of the curve (parameters only),
-    without noise and run offsets, over the slip tested at this load, or at all loads for a level
-    without blocks. If a peak is in the first 15 % of the tested slip, each load has a second panel
-    for that part.
+    Each block is drawn at the nearest load level; the loads of the blocks are written above. The
+    bands are those of the curve (parameters only), without noise and run offsets, over the slip
+    tested at this load, or at all loads for a level without blocks. If a peak is in the first 15 %
+    of the tested slip, each load has a second panel for that part.
 
     Args:
         blocks: Block means of slip ratio and forces.
@@ -65,27 +58,24 @@ def slip_curves(
         The figure.
     """
     curves = _load_curves(blocks, law, draws, np.sort(np.ravel(np.asarray(load_levels, float))))
-    reach = _narrow_reach(blocks, curves)
-    groups = math.ceil(math.sqrt(len(curves))) if reach is None else 1 + (len(curves) > 4)
-    rows, width = math.ceil(len(curves) / groups), 1 if reach is None else 2
-    sides = max(7.0, 3.2 * groups * width), 1.2 + 2.2 * max(rows, 1.6)
-    figure = new_figure("Slip curve by load", simulated, width=sides[0], height=sides[1])
-    grid = figure.add_gridspec(rows, groups * width)
-    drawn: list[tuple[list[Axes], _LoadCurve]] = []
-    for index, curve in enumerate(curves):
-        row, column = index // groups, index % groups * width
-        cells = [grid[row, column + i] for i in range(width)]
-        panels = _draw_load(figure, cells, blocks, curve, reach)
-        drawn.append((panels, curve))
-        if column == 0:
-            panels[0].set_ylabel(TRACTION_LABEL)
-        if index + groups >= len(curves):  # the last panel of its column
-            for axes in panels:
-                axes.set_xlabel(slip_label(blocks.definition))
-    hidden = all(curve.width() < _LINE * np.ptp(panels[0].get_ylim()) for panels, curve in drawn)
-    for panels, curve in drawn:
-        for axes in panels:
-            _draw_bands(axes, curve, hidden=hidden)
+    reach = NARROW * float(np.abs(blocks.slip).max())
+    columns = 1 + any(abs(curve.peaks[0, 0]) < reach for curve in curves if len(curve.peaks))
+    figure = new_figure(
+        "Slip curve by load", simulated, width=3.5 + 2.9 * columns, height=1.6 + 1.5 * len(curves)
+    )
+    panels = figure.subplots(len(curves), columns, squeeze=False, sharey="row")
+    for row, curve in zip(panels, curves, strict=True):
+        for axes in row:
+            _draw_curve(axes, blocks, curve)
+        row[0].set_ylabel(TRACTION_LABEL)
+        row[0].set_title(_load_text(blocks, curve), loc="left")
+        row[-1].set_title(_peak_text(curve), loc="right" if columns == 1 else "left")
+        if columns > 1:
+            low, high = max(-reach, curve.slip[0]), min(reach, curve.slip[-1])
+            margin = 0.02 * (high - low)
+            row[1].set_xlim(low - margin, high + margin)
+    for axes in panels[-1]:
+        axes.set_xlabel(slip_label(blocks.definition))
     legend_below(figure, columns=3)
     return figure
 
@@ -99,37 +89,6 @@ class _LoadCurve:
     slip: Array
     bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
     peaks: Array  # shape (0 to 2, 2): slip [-] and force [N] of driving, then of braking peak
-
-    def width(self) -> float:
-        """Return the median width of the band of 90 %, not that where the curve is steep [N]."""
-        return float(np.median(self.bands[-1] - self.bands[0]))
-
-    def main_peak(self) -> tuple[float, float] | None:
-        """Return slip [-] and force [N] of the driving peak, else the braking one, else None."""
-        return (float(self.peaks[0, 0]), float(self.peaks[0, 1])) if len(self.peaks) else None
-
-
-def _draw_load(
-    figure: Figure, cells: Sequence[SubplotSpec], blocks: SlipBlocks, curve: _LoadCurve,
-    reach: tuple[float, float] | None,
-) -> list[Axes]:  # fmt: skip
-    """Draw data and curve at one load, in a second cell the part within `reach`; return panels."""
-    whole = figure.add_subplot(cells[0])
-    _draw_load_curve(whole, blocks, curve)
-    load, peak = _load_text(blocks, curve), _peak_text(curve)
-    if reach is None:
-        whole.set_title(f"{load}\n{peak}", loc="left")
-        return [whole]
-    whole.set_title(load, loc="left")
-    close = figure.add_subplot(cells[1], sharey=whole)
-    inside = curve.rows & (reach[0] <= blocks.slip) & (blocks.slip <= reach[1])
-    _draw_load_curve(close, blocks, replace(curve, rows=inside))
-    margin = 0.02 * (reach[1] - reach[0])
-    close.set_xlim(reach[0] - margin, reach[1] + margin)
-    close.set_title(peak, loc="left")
-    close.tick_params(labelleft=False)
-    close.xaxis.set_major_locator(few_ticks(4))
-    return [whole, close]
 
 
 def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
@@ -157,57 +116,26 @@ def _peaks(law: SlipLaw, draws: Array, load: float, slip: Array) -> Array:
         law.force(np.minimum(own, reach), load, draws.T),
         law.force(np.maximum(braking, -reach), load, draws.T),
     )
-    both = np.array(
-        [
-            [np.median(at), np.median(force)]
-            for at, force in zip((own, braking), forces, strict=True)
-        ]
-    )
+    both = np.array([
+        [np.median(at), np.median(force)] for at, force in zip((own, braking), forces, strict=True)
+    ])  # fmt: skip
     return both[(both[:, 0] > slip[0]) & (both[:, 0] < slip[-1])]
 
 
-def _narrow_reach(blocks: SlipBlocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
-    """Return the slip range of the additional panel; None if no peak is in the first 15 %."""
-    reach = NARROW * float(np.abs(blocks.slip).max())
-    peaks = [peak for curve in curves if (peak := curve.main_peak())]
-    if not any(abs(slip) < reach for slip, _ in peaks):
-        return None
-    low, high = float(blocks.slip.min()), float(blocks.slip.max())
-    return max(-reach, min(low, 0.0)), min(reach, max(high, 0.0))
-
-
-def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
-    near = np.abs(blocks.normal_force - curve.load) <= _NEAR_LOAD * curve.load
-    slip, force = blocks.slip, blocks.traction_force
-    on, off = curve.rows & near, curve.rows & ~near
-    alpha = point_alpha(int(curve.rows.sum()))
+def _draw_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
+    """Draw block means, median, bands and peaks of the curve at one load."""
+    low, lower, median, upper, high = curve.bands
+    axes.fill_between(curve.slip, low, high, color=tint(0.25), lw=0, label="90 % of curves")
+    axes.fill_between(curve.slip, lower, upper, color=tint(0.6), lw=0, label="50 % of curves")
     axes.scatter(
-        slip[on], force[on], s=12, color="0.35", alpha=alpha, linewidths=0,
-        label="block means" if on.any() else None,
+        blocks.slip[curve.rows], blocks.traction_force[curve.rows], s=12, color="0.35",
+        alpha=point_alpha(int(curve.rows.sum())), linewidths=0,
+        label="block means" if curve.rows.any() else None,
     )  # fmt: skip
-    axes.scatter(
-        slip[off], force[off], s=12, facecolors="none", edgecolors="0.35", alpha=alpha,
-        linewidths=0.6, label="block means, load differs > 10 %" if off.any() else None,
-    )  # fmt: skip
-    axes.plot(curve.slip, curve.bands[2], color=BLUE, lw=1.4, label="posterior median")
+    axes.plot(curve.slip, median, color=BLUE, lw=1.4, label="posterior median")
     if len(curve.peaks):
-        axes.plot(
-            *curve.peaks.T, ls="none", marker="D", ms=5, color=RED,
-            mec="white", mew=0.6, label="peak",
-        )  # fmt: skip
+        axes.plot(*curve.peaks.T, "D", ms=5, color=RED, mec="white", mew=0.6, label="peak")
     axes.axhline(0, color="0.6", lw=0.5, zorder=0)
-
-
-def _draw_bands(axes: Axes, curve: _LoadCurve, *, hidden: bool) -> None:
-    """Draw the bands of curves; `hidden`: none is wider than the line, which their key says."""
-    low, lower, _, upper, high = curve.bands
-    note = " (hardly seen)" if hidden else ""
-    axes.fill_between(
-        curve.slip, low, high, color=tint(0.25), lw=0, zorder=0.5, label=f"90 % of curves{note}"
-    )
-    axes.fill_between(
-        curve.slip, lower, upper, color=tint(0.6), lw=0, zorder=0.6, label=f"50 % of curves{note}"
-    )
 
 
 def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:
@@ -219,6 +147,7 @@ def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:
 
 
 def _peak_text(curve: _LoadCurve) -> str:
-    if (peak := curve.main_peak()) is None:
+    if not len(curve.peaks):
         return "no peak in the tested slip"
-    return f"peak {plain(peak[1])} N at slip {plain(peak[0])}"
+    slip, force = curve.peaks[0]
+    return f"peak {plain(force)} N at slip {plain(slip)}"

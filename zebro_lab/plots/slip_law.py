@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Plot a slip law without data: curves at some loads, and the surface over slip and load."""
 
-from typing import Final, cast
+from typing import Final
 
 import numpy as np
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import Axes3D
 
 from model.slip.curve import SlipCurve
 from zebro_lab.plots.sheet import (
     CYCLE,
     TRACTION_LABEL,
-    few_ticks,
     legend_below,
     new_figure,
     plain,
@@ -19,6 +17,7 @@ from zebro_lab.plots.sheet import (
     slip_label,
     styled,
 )
+from zebro_lab.plots.surface import surface_axes
 
 THESIS_LOADS: Final = (2.13, 6.63, 8.13, 12.75)
 """Loads of Fig. 4-14 [N]."""
@@ -69,12 +68,4 @@ def _draw_surface(figure: Figure, curve: SlipCurve) -> None:
         slip_grid(np.asarray(curve.slip_range), 60), np.linspace(*curve.load_range, 25)
     )
     force = curve.force(slip, load, definition=curve.definition)
-    axes = cast("Axes3D", figure.add_subplot(1, 2, 2, projection="3d"))
-    axes.plot_surface(slip, load, force, cmap="viridis", lw=0, antialiased=False, rstride=1,
-                      cstride=1)  # fmt: skip
-    axes.set_xlabel(slip_label(curve.definition), labelpad=6)
-    axes.set_ylabel("normal force [N]", labelpad=6)
-    axes.set_zlabel("traction force [N]", labelpad=4)
-    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_major_locator(few_ticks(5))
-    axes.view_init(elev=24, azim=-125)
+    surface_axes(figure, 122, slip, load, force, definition=str(curve.definition))

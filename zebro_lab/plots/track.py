@@ -3,7 +3,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,6 +16,7 @@ _WIDTH = 9.0  # inches
 _GREEN = CYCLE[2]
 _DOT = 2.5  # points
 _MOST_ARROWS = 24
+_MOST_LABELS = 12
 _ORIGIN, _HEADING = "body's origin", "heading"
 _UNSEEN = "0.35"  # black, as pale as the photograph is drawn
 
@@ -116,7 +116,7 @@ def over_floor(
         extent: Lowest x, highest x, lowest y, highest y of the picture on the floor [m].
         poses: x, y [m] and yaw [rad], shape (n, 3); NaN interrupts the path.
         ellipses: Outline x, y of the confidence region around each pose, shape (m, 2) [m].
-        labels: Label of each pose, "" for none; every n-th is written, so that none overlap.
+        labels: Label of each pose, "" for none; at most twelve are written.
         title: Title of the figure.
         note: Note on the photograph, above it.
         simulated: Whether to append "(simulated)" to the title.
@@ -146,27 +146,9 @@ def over_floor(
         axes.fill_between([], [], color=_UNSEEN, lw=0, label="outside the photograph")
     legend_below(figure, columns=4)
     labelled = [k for k, label in enumerate(labels) if label]
-    _label_apart(figure, axes, poses[labelled, :2], [labels[k] for k in labelled])
+    for k in labelled[:: -(-len(labelled) // _MOST_LABELS) or 1]:
+        axes.annotate(labels[k], poses[k, :2], xytext=(6, -3), textcoords="offset points", va="top")
     return figure
-
-
-def _label_apart(figure: Figure, axes: Axes, points: Array, labels: Sequence[str]) -> None:
-    """Write every n-th label right below its point, with the least n at which none overlap."""
-    texts = [
-        axes.annotate(
-            label, (x, y), xytext=(6, -3), textcoords="offset points", ha="left", va="top",
-            fontsize=10,
-        )
-        for (x, y), label in zip(points, labels, strict=True)
-    ]  # fmt: skip
-    figure.draw_without_rendering()  # extents are known once it is laid out
-    boxes = [text.get_window_extent() for text in texts]
-    n = 1
-    while any(one.overlaps(other) for one, other in combinations(boxes[::n], 2)):
-        n += 1
-    for k, text in enumerate(texts):
-        if k % n:
-            text.remove()
 
 
 @styled

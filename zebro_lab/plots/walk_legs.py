@@ -20,7 +20,6 @@ from zebro_lab.plots.sheet import (
     few_ticks,
     legend_below,
     new_figure,
-    plain,
     styled,
     time_axis,
 )
@@ -226,15 +225,13 @@ def leg_panels(
         title: Title of the figure; "(simulated)" is appended.
     """
     figure = new_figure(title, True, width=8.0, height=6.4)
-    lines = {name: _drawn(values) for name, values in lines.items()}
-    beyond = f"beyond the axes; furthest {_furthest(lines, limits)} {unit}".removesuffix(" -")
     for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
         axes.yaxis.set_major_locator(few_ticks(5))
         _shade(axes, t, contact[:, leg])
         for (name, values), colour in zip(lines.items(), (BLUE, RED, GREEN), strict=False):
             axes.plot(t, values[:, leg], color=colour, lw=0.9, label=name)
-            mark_beyond(axes, t, values[:, leg], limits, label=beyond)
+            mark_beyond(axes, t, values[:, leg], limits, label="beyond the axes")
     drawn = contact if contact.any() else np.ones_like(contact)  # in the air forces are zero
     computed = any(np.isfinite(each[drawn]).any() for each in lines.values())
     _label(figure, t, f"{label} [{unit}]", computed=computed)
@@ -279,19 +276,6 @@ def turn_panels(
     for axes in figure.axes:
         axes.set(ylim=limits, yticks=range(least, least + 361, 90))
     return figure
-
-
-def _drawn(values: Array) -> Array:
-    """Return values with NaN for those between two of NaN, which no line shows, shape (n, 6)."""
-    known = np.pad(np.isfinite(values), ((1, 1), (0, 0)))
-    return np.where(known[:-2] | known[2:], values, np.nan)
-
-
-def _furthest(lines: Mapping[str, Array], limits: tuple[float, float]) -> str:
-    """Format the value that lies furthest beyond the limits; "0" if none does."""
-    values = np.concatenate([each.ravel() for each in lines.values()])
-    outside = values[(values < limits[0]) | (values > limits[1])]
-    return plain(float(outside[np.abs(outside).argmax()])) if len(outside) else "0"
 
 
 def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:

@@ -48,15 +48,3 @@ def test_rounding_errors_are_not_blown_up():
     low, high = limits_without_tips(1e-6 * np.sin(T), cut=0.0, margin=0.05, least=0.002)
     assert high - low == pytest.approx(0.002)
     assert limits_without_tips(np.full(3, np.nan), cut=0.0, margin=0.1, least=2.0) == (-1.0, 1.0)
-
-
-@pytest.mark.parametrize(("count", "shown"), [(12, 12), (13, 1)])
-def test_of_many_excursions_the_furthest_alone_is_marked_with_their_number(count, shown):
-    values = np.zeros_like(T)
-    values[50 : 50 + 60 * count : 60] = 5.0
-    values[110] = 7.0
-    marks, axes = marks_of(values, (-1.0, 1.0))
-    assert len(marks["^"]) == shown
-    if shown == 1:
-        np.testing.assert_allclose(marks["^"], [T[110]])
-        assert [text.get_text() for text in axes.texts] == ["1 of 13"]

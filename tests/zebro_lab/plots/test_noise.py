@@ -6,11 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.checks.fit import lag_one_limit
 from zebro_lab.plots import (
     residuals,
 )
-from zebro_lab.plots.noise import _short
 
 
 def test_runs_of_one_block_leave_a_note_in_place_of_lags(few):
@@ -42,13 +40,6 @@ def test_lags_are_drawn_with_the_band_of_white_noise(rig):
     pairs = [n - runs, n - 2 * runs]  # of neighbours, and of next neighbours
     assert chance[0] == pytest.approx(1.96 / np.sqrt(pairs[0]), rel=0.02)
     assert chance[1] == pytest.approx(1.96 / np.sqrt(pairs[1]), rel=0.05)
-    limits = {
-        segment[0][1]
-        for line in lags.collections
-        for segment in line.get_segments()
-        if segment[0][0] != segment[1][0]
-    }
-    assert sorted(limits) == [-lag_one_limit(pairs[0]), lag_one_limit(pairs[0])]
     assert (lags.get_xlabel(), lags.get_ylabel()) == (
         "lag within a run [blocks]", "autocorrelation [-]",
     )  # fmt: skip
@@ -60,24 +51,6 @@ def test_runs_are_drawn_by_rank(rig):
                        run_score=score, simulated=True)  # fmt: skip
     points = next(line for line in figure.axes[3].lines if line.get_marker() == "o")
     np.testing.assert_array_equal(points.get_xydata(), [[1, -2.0], [2, 0.5], [3, 1.0]])
-
-
-def test_the_runs_furthest_out_are_named_on_their_sides(rig):
-    score = np.array([0.2, -4.0, 0.1, 6.0, -2.5, 0.3, -0.1, 5.0])
-    figure = residuals(rig.blocks, whitened=np.zeros(len(rig.blocks.slip)) + 1e-3,
-                       run_score=score, simulated=True)  # fmt: skip
-    above, below = (text.get_text().splitlines() for text in figure.axes[3].texts)
-    assert above == ["run 3  +6.0", "run 7  +5.0", "run 5  +0.3"]
-    assert below == ["run 6  −0.1", "run 4  −2.5", "run 1  −4.0"]
-
-
-@pytest.mark.parametrize("length", [3, 33, 34, 35, 200])
-def test_a_written_name_fits_whatever_its_length(length):
-    name = "".join(chr(ord("a") + i % 26) for i in range(length))
-    short = _short(name)
-    assert len(short) <= 33
-    assert short.startswith(name[:3])
-    assert short.endswith(name[-3:])
 
 
 def test_a_lag_of_few_pairs_is_not_drawn(rig):

@@ -19,16 +19,6 @@ def test_every_block_is_drawn_once_and_at_its_nearest_load(rig):
         np.testing.assert_allclose(sorted(points.tolist()), sorted(expected.tolist()))
 
 
-def test_blocks_far_off_their_load_are_hollow(one_load):
-    load = one_load.blocks.normal_force.copy()
-    load[::4] *= 1.5
-    shifted = replace(one_load, blocks=replace(one_load.blocks, normal_force=load))
-    full, hollow = scatters(shifted.curves().axes[0])
-    assert (len(full.get_offsets()), len(hollow.get_offsets())) == (46, 16)
-    assert len(hollow.get_facecolors()) == 0
-    assert hollow.get_label() == "block means, load differs > 10 %"
-
-
 def test_the_median_of_one_repeated_draw_is_the_law(tyre):
     repeated = replace(tyre, draws=np.tile(tyre.truth, (5, 1)))
     medians = labelled_lines(repeated.curves(), "posterior median")
@@ -50,8 +40,6 @@ def test_a_narrow_peak_gets_a_close_up_and_a_wide_one_none(rig, one_load, tyre):
     assert (len(rig.curves().axes), len(one_load.curves().axes)) == (8, 2)
     close = rig.curves().axes[1]
     assert close.get_xlim()[1] == pytest.approx(0.15, abs=0.01)
-    shown = np.concatenate([np.asarray(each.get_offsets()) for each in scatters(close)])
-    assert 0.1 < shown[:, 0].max() <= 0.15  # none is cut by the edge of the panel
     assert len(tyre.curves().axes) == 4
 
 
@@ -67,12 +55,3 @@ def test_a_load_without_blocks_still_shows_its_curve(one_load):
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert "load 100 N (no blocks)" in titles
     assert len(labelled_lines(figure, "posterior median")) == 4
-
-
-@pytest.mark.parametrize("spread", [1e-4, 0.2])
-def test_bands_that_the_line_hides_say_so_in_the_key(one_load, spread):
-    factors = 1 + spread * np.linspace(-1, 1, 50)[:, None]
-    figure = replace(one_load, draws=one_load.truth * factors).curves()
-    keys = [text.get_text() for text in figure.legends[0].get_texts()]
-    note = " (hardly seen)" if spread < 1e-3 else ""
-    assert {f"90 % of curves{note}", f"50 % of curves{note}"} <= set(keys)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Pictures of a track have the scale, the direction and the honesty they should."""
 
-from itertools import combinations
-
 import numpy as np
 import pytest
 
@@ -37,21 +35,17 @@ def residuals(simulated: bool = True):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("step", [0.0, 0.01, 0.05, 0.1, 0.5])
-def test_labels_of_near_poses_do_not_overlap(step):
-    poses = np.column_stack([step * np.arange(12), np.zeros(12), np.zeros(12)])
+@pytest.mark.parametrize("count", [1, 12, 13, 40])
+def test_at_most_twelve_labels_are_written_evenly(count):
+    poses = np.column_stack([0.1 * np.arange(count), np.zeros(count), np.zeros(count)])
     figure = over_floor(
         PIXELS, extent=(-1.0, 6.0, -1.0, 1.0), poses=poses, ellipses=[],
-        labels=[f"{2 * k} s" for k in range(12)], title="Path", note="", simulated=True,
+        labels=[f"{2 * k} s" for k in range(count)], title="Path", note="", simulated=True,
     )  # fmt: skip
-    figure.draw_without_rendering()
-    texts = figure.axes[0].texts
-    boxes = [text.get_window_extent() for text in texts]
-    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
-    shown = [int(text.get_text().removesuffix(" s")) // 2 for text in texts]
+    shown = [int(text.get_text().removesuffix(" s")) // 2 for text in figure.axes[0].texts]
     assert shown[0] == 0
     assert len(set(np.diff(shown))) <= 1
-    assert len(shown) == 12 or step < 0.5
+    assert min(count, 7) <= len(shown) <= 12
 
 
 @pytest.mark.parametrize("draw", [floor, photograph, residuals])

@@ -91,7 +91,7 @@ def detect(
         raise PhotoError(
             photo,
             f"the robot's marker {robot.marker.marker_id} is seen {len(robots)} times, expected "
-            f"once; cover its other prints, or track a composite picture alone with --merged",
+            f"once; cover its other prints, or track a composite picture alone",
         )
     if floor.markers and not on_floor:
         raise PhotoError(photo, _no_floor(pixels, floor))

@@ -241,7 +241,7 @@ def write_photos(folder: Path, truth: Truth, rng: np.random.Generator) -> None:
         rows.append([name, f"{time:.3f}", *_fixed(truth.at(truth.pose, time), 6)])
     _table(folder / "photos.csv", ["photo", "t", *POSE], rows)
     chosen = [taken[index][1] for index in COMPOSITE_PHOTOS]
-    merged = composite(chosen, "pasted").astype(np.float32) / 255
+    merged = composite(chosen).astype(np.float32) / 255
     picture = folder / "composite" / "simulated_pasted.jpg"
     _write_jpeg(picture, merged, rng, kind=Conditions(
         exposure=1.0, read_noise_counts=0.0, shot_noise_counts=0.0, jpeg_quality=90))  # fmt: skip

@@ -3,7 +3,6 @@
 
 import csv
 import json
-from collections.abc import Collection
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
@@ -16,7 +15,6 @@ import numpy as np
 import pytest
 
 from support.synthetic import (
-    CompositeKind,
     Conditions,
     DrawnFloorMarker,
     DrawnPose,
@@ -29,12 +27,13 @@ from support.synthetic import (
     render_background,
     take_photo,
 )
-from tracking.body import TopPlate, marker_template
+from tracking.body import TopPlate
 from tracking.camera import Camera, CameraPose, project
-from tracking.composite import Merged, find_exposures, find_exposures_like, order_exposures
+from tracking.composite import find_exposures, find_exposures_like, order_exposures
 from tracking.errors import CompositeError
+from tracking.markers import Sighting
 from tracking.pose import BodyPose as FoundPose
-from tracking.pose import BodyPrior, RobotMarker
+from tracking.pose import BodyPrior, RobotMarker, fit_pose
 
 pytestmark = pytest.mark.long
 
@@ -54,10 +53,7 @@ NEAR, TURN = 0.03, np.radians(20)
 
 @dataclass(frozen=True)
 class Case:
-    """Three rows of the table: how far exposures are apart [m], how many there are, the promise.
-
-    Each kind of composite has walks of its own, so that no pose is judged twice.
-    """
+    """A row of the table: how far exposures are apart [m], how many there are, the promise."""
 
     name: str
     step: float
@@ -75,7 +71,6 @@ CASES = (
     Case("no marker, 1.1 body lengths apart", 0.264, 5, 20, 1.0, 0.5, 0.98, marked=False),
     Case("no marker, half a body apart", 0.12, 8, 13, 4.0, 2.0, 0.70, marked=False),
 )
-KINDS = tuple(CompositeKind)
 
 
 @cache
@@ -145,33 +140,29 @@ class Window:
             )  # fmt: skip
         return photos
 
-    def exposures_in(
-        self, picture: np.ndarray, kind: str, clicked: np.ndarray | None
-    ) -> np.ndarray:
+    def exposures_in(self, picture: np.ndarray, clicked: np.ndarray | None) -> np.ndarray:
         """Find exposures by their marker, or as one looks whose top was clicked on."""
         camera = self.scene.camera
         lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
         view = CameraPose.from_matrix(camera.rotation, camera.translation)
         prior = BodyPrior(HEIGHT, HEIGHT_SD, TILT_SD)
-        return ordered(
-            picture, lens, view, prior, self.hidden, merged=Merged(kind), clicked=clicked
-        )
+        return ordered(picture, lens, view, prior, self.hidden, clicked=clicked)
 
 
-def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
+def one_walk(task: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
     """Photograph and merge one walk; return it and what is found of it, as `ordered` does."""
     cv2.setNumThreads(1)
-    case, kind, rng = CASES[task[0]], KINDS[task[1]], np.random.default_rng(task)
+    case, rng = CASES[task[0]], np.random.default_rng((task[0], 0, task[1]))
     walk = draw_walk(case, rng)
     window = Window.around(walk)
-    picture = composite(window.photographs(walk, rng, marked=case.marked), kind)
+    picture = composite(window.photographs(walk, rng, marked=case.marked))
     # The last of pasted exposures hides the others and is hidden by none.
-    return walk, window.exposures_in(picture, Merged(kind), None if case.marked else walk[-1])
+    return walk, window.exposures_in(picture, None if case.marked else walk[-1])
 
 
 def ordered(
     picture: np.ndarray, lens: Camera, view: CameraPose, prior: BodyPrior, hidden: np.ndarray,
-    *, merged: Merged, body: tuple[float, float] = BODY, plate: TopPlate = PLATE,
+    *, body: tuple[float, float] = BODY, plate: TopPlate = PLATE,
     clicked: np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Find the exposures of a picture, in order: poses, then their deviations, shape (2, n, 3)."""
@@ -179,15 +170,22 @@ def ordered(
         if clicked is None:
             marker = DrawnRobotMarker()
             robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
+
+            def pose_of(seen: Sighting) -> FoundPose:
+                return fit_pose(
+                    lens, view, points_body=robot.points_body, corners_px=seen.corners_px,
+                    covariance=seen.covariance, prior=prior,
+                )  # fmt: skip
+
             found = find_exposures(
-                picture, lens, view, template=marker_template(robot), prior=prior, merged=merged,
-                body_size=body, hidden=hidden,
+                picture, lens, view, marker=robot, pose_of=pose_of, prior=prior, body_size=body,
+                hidden=hidden,
             )  # fmt: skip
         else:
             state = np.array([clicked[0], clicked[1], prior.height, 0, 0, clicked[2]])
             known = FoundPose(state, np.zeros((6, 6)))
             found = find_exposures_like(
-                picture, lens, view, known=known, plate=plate, prior=prior, merged=merged,
+                picture, lens, view, known=known, plate=plate, prior=prior,
                 body_size=body, hidden=hidden,
             )  # fmt: skip
     except CompositeError:
@@ -199,7 +197,7 @@ def ordered(
 
 @dataclass(frozen=True)
 class Row:
-    """What came of one kind of merging."""
+    """What came of the walks of a case."""
 
     found: int
     there: int
@@ -221,18 +219,6 @@ class Row:
             np.concatenate([sd for _, _, sd in parts]),
         )
 
-    @classmethod
-    def all_of(cls, rows: Collection["Row"]) -> "Row":
-        """Take the rows of several kinds for one."""
-        return cls(
-            sum(row.found for row in rows),
-            sum(row.there for row in rows),
-            sum(row.false for row in rows),
-            all(row.ordered for row in rows),
-            np.concatenate([row.error for row in rows]),
-            np.concatenate([row.sd for row in rows]),
-        )
-
     @property
     def inside(self) -> np.ndarray:
         """Share of 90 % intervals that hold x, y and yaw."""
@@ -246,18 +232,18 @@ class Row:
     def yaw_deg(self) -> float:
         return float(np.degrees(np.sqrt(np.mean(self.error[:, 2] ** 2))))
 
-    def line(self, case: str, kind: str) -> str:
+    def line(self, case: str) -> str:
         """Write the row of the table; last, how many 90 % intervals hold x, y and yaw."""
         return (
-            f"| {case} | {kind} | {self.found} of {self.there} | {self.false} "
+            f"| {case} | {self.found} of {self.there} | {self.false} "
             f"| {'right' if self.ordered else 'wrong'} | {self.xy_mm:.2f} mm "
             f"| {self.yaw_deg:.2f}° | {' | '.join(f'{share:.2f}' for share in self.inside)} |"
         )
 
 
 HEAD = (
-    "| simulated | kind | found | false | order | x, y rms | yaw rms | 90 % hold x | y | yaw |\n"
-    "|---|---|---:|---:|---|---:|---:|---:|---:|---:|"
+    "| simulated | found | false | order | x, y rms | yaw rms | 90 % hold x | y | yaw |\n"
+    "|---|---:|---:|---|---:|---:|---:|---:|---:|"
 )
 
 
@@ -275,54 +261,39 @@ def _compared(
 
 
 @pytest.fixture(scope="module", params=CASES, ids=lambda case: case.name)
-def measured(request) -> tuple[Case, dict[str, Row]]:
+def measured(request) -> tuple[Case, Row]:
     return request.param, measure(request.param)
 
 
-def measure(case: Case) -> dict[str, Row]:
-    """Find the exposures of every walk in each kind of composite."""
-    tasks = [
-        (CASES.index(case), kind, FIRST_WALK + n)
-        for kind in range(len(KINDS))
-        for n in range(case.walks)
-    ]
+def measure(case: Case) -> Row:
+    """Find the exposures of every walk."""
+    tasks = [(CASES.index(case), FIRST_WALK + n) for n in range(case.walks)]
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         results = list(pool.map(one_walk, tasks))
-    rows = {}
-    for number, kind in enumerate(KINDS):
-        own = results[number * case.walks : (number + 1) * case.walks]
-        rows[kind.value] = Row.of([walk for walk, _ in own], [found for _, found in own])
-    shown = rows | {"all three": Row.all_of(rows.values())}
-    lines = [row.line(case.name, kind) for kind, row in shown.items()]
-    print("\n\n" + "\n".join([HEAD, *lines]), flush=True)  # noqa: T201 `make test-long` is run for it
-    return rows
+    row = Row.of([walk for walk, _ in results], [found for _, found in results])
+    print(f"\n\n{HEAD}\n{row.line(case.name)}", flush=True)  # noqa: T201 `make test-long` is run for it
+    return row
 
 
-@pytest.mark.parametrize("kind", [kind.value for kind in CompositeKind])
-def test_exposures_are_found_and_none_is_made_up(measured, kind):
-    case, rows = measured
-    row = rows[kind]
+def test_exposures_are_found_and_none_is_made_up(measured):
+    case, row = measured
     assert row.found >= case.recall * row.there
     assert row.false == 0
     assert row.ordered
 
 
-@pytest.mark.parametrize("kind", [kind.value for kind in CompositeKind])
-def test_exposures_are_where_they_were(measured, kind):
-    case, rows = measured
-    assert rows[kind].xy_mm < case.xy_mm
-    assert rows[kind].yaw_deg < case.yaw_deg
+def test_exposures_are_where_they_were(measured):
+    case, row = measured
+    assert row.xy_mm < case.xy_mm
+    assert row.yaw_deg < case.yaw_deg
 
 
 def test_nominal_90_percent_intervals_hold_the_truth_at_their_rate(measured):
-    case, rows = measured
-    together = Row.all_of(rows.values())
-    if case.marked:
-        assert len(together.error) >= 500
+    case, row = measured
     # Two standard deviations of a share of 0.9, where fewer poses tell it less well.
-    spread = max(0.03, 2 * float(np.sqrt(0.09 / len(together.error))))
-    assert (together.inside >= 0.9 - spread).all()
-    assert (together.inside <= 0.9 + spread).all() or not case.marked
+    spread = max(0.03, 2 * float(np.sqrt(0.09 / len(row.error))))
+    assert (row.inside >= 0.9 - spread).all()
+    assert (row.inside <= 0.9 + spread).all() or not case.marked
 
 
 @dataclass(frozen=True)
@@ -352,11 +323,7 @@ class World:
             )
         return cls(photos, np.array(truth), lens, view, hidden.astype(bool))
 
-    def merged(self, photos: list[np.ndarray], kind: str) -> np.ndarray:
-        if kind == "mean":
-            return np.rint(np.mean(photos, axis=0)).astype(np.uint8)
-        if kind == "darkest":
-            return np.min(photos, axis=0)
+    def pasted(self, photos: list[np.ndarray]) -> np.ndarray:
         empty = np.median(self.photos, axis=0).astype(np.uint8)
         picture = empty.copy()
         for photo in photos:
@@ -376,21 +343,20 @@ def with_shadow(photo: np.ndarray, empty: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.reference
-@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
 @pytest.mark.parametrize("stride", [2, 1])
 @pytest.mark.parametrize("walk", ["s1.10_A", "s1.10_B"])
-def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride):
+def test_exposures_of_the_virtual_world_are_found(shared, walk, stride):
     world, marked = World.read(shared / "virtual-world/photos", walk), walk == "s1.10_A"
     truth, prior = world.truth[::stride], BodyPrior(0.0615, 1e-3, 0.01)
-    picture = world.merged(world.photos[::stride], kind)
+    picture = world.pasted(world.photos[::stride])
     found = ordered(
-        picture, world.lens, world.view, prior, world.hidden, merged=Merged(kind),
-        body=WORLD_BODY, plate=WORLD_PLATE, clicked=None if marked else truth[-1],
+        picture, world.lens, world.view, prior, world.hidden, body=WORLD_BODY, plate=WORLD_PLATE,
+        clicked=None if marked else truth[-1],
     )  # fmt: skip
     row = Row.of([truth], [found])
     step = np.median(np.hypot(*np.diff(truth[:, :2], axis=0).T)) / WORLD_BODY[0]
     name = f"{'' if marked else 'no marker, '}virtual world, {step:.1f} body lengths apart"
-    print(f"\n{row.line(name, kind)}", flush=True)  # noqa: T201 `make test-long` is run for it
+    print(f"\n{row.line(name)}", flush=True)  # noqa: T201 `make test-long` is run for it
     recall, xy_mm, yaw_deg = (1.0, 1.0, 0.5) if step >= 1 else (0.7, 4.0, 2.0)
     assert row.found >= recall * row.there
     assert row.false == 0

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Synthetic composite pictures of a blue board on a brown floor, merged in three ways."""
+"""Synthetic composite pictures of a blue board on a brown floor."""
 
 import cv2
 import numpy as np
-from hypothesis import strategies as st
 
 from tracking.body import TopPlate, floor_in_view
 from tracking.body.plane import Plane
 from tracking.camera import Camera, CameraPose, project
-from tracking.composite import Merged, find_exposures_like, order_exposures
+from tracking.composite import find_exposures_like, order_exposures
 from tracking.composite.known import KnownExposure
 from tracking.markers import square_homography
 from tracking.pose import BodyPose, BodyPrior
@@ -19,7 +18,6 @@ VIEW = CameraPose.from_matrix(_TURN[0] @ _TURN[2], [0.0, 0.15, 1.6])
 SIZE, TOP = (0.20, 0.20), 0.03  # m
 PLATE = TopPlate(0.19, 0.19, TOP)
 PRIOR = BodyPrior(0.06, 1e-3, 5e-3)
-STEPS = st.tuples(st.floats(0.05, 0.4), st.floats(-0.1, 0.1), st.floats(-0.6, 0.6)).map(np.array)
 
 
 def floor(rng):
@@ -65,12 +63,11 @@ def exposure(planar, rng, ground, light=1.0):
     return np.clip(picture + rng.normal(0, 1.2, picture.shape), 0, 255), mask[..., 0] > 0.05
 
 
-def composite(walk, kind, seed=0, lights=None, around_px=0):
-    """Draw exposures of a walk and merge them into one picture.
+def composite(walk, seed=0, lights=None, around_px=0):
+    """Draw exposures of a walk and paste them into one picture, later ones on top.
 
     Args:
         walk: Poses x, y [m] and yaw [rad], shape (n, 3).
-        kind: "mean", "darkest" or "pasted".
         seed: Seed of floor and noise.
         lights: Factor on the brightness of each exposure, or None for 1 [-].
         around_px: Margin of floor that is cut out with a pasted exposure [px].
@@ -82,10 +79,6 @@ def composite(walk, kind, seed=0, lights=None, around_px=0):
         *(exposure(planar, rng, ground, light) for planar, light in zip(walk, lights, strict=True)),
         strict=True,
     )
-    if kind == "mean":
-        return np.rint(np.mean(pictures, axis=0)).astype(np.uint8)
-    if kind == "darkest":
-        return np.min(pictures, axis=0).astype(np.uint8)
     whole = pictures[0].copy()
     scissors = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * around_px + 1,) * 2)
     for picture, mask in zip(pictures, masks, strict=True):
@@ -94,15 +87,25 @@ def composite(walk, kind, seed=0, lights=None, around_px=0):
     return whole.astype(np.uint8)
 
 
+def steady_walk(start, step, turn, count):
+    """Return poses that begin at x, y, yaw and go on by equal steps and turns, shape (count, 3)."""
+    poses = [np.asarray(start, dtype=float)]
+    for _ in range(count - 1):
+        x, y, yaw = poses[-1]
+        along = yaw + turn / 2
+        poses.append(np.array([x + step * np.cos(along), y + step * np.sin(along), yaw + turn]))
+    return np.array(poses)
+
+
 def known_at(planar):
     state = np.array([planar[0], planar[1], PRIOR.height, 0, 0, planar[2]])
     return BodyPose(state, np.zeros((6, 6)))
 
 
-def found_in(picture, planar, merged, **other):
+def found_in(picture, planar, **other):
     found = find_exposures_like(
         picture, LENS, VIEW, known=known_at(planar), plate=PLATE, body_size=SIZE, prior=PRIOR,
-        merged=Merged(merged), **other,
+        **other,
     )  # fmt: skip
     poses = np.array([each.alignment.pose.planar for each in found])
     return poses[list(order_exposures(poses))]

@@ -483,34 +483,28 @@ def series(background):
 
 
 def test_a_pasted_composite_shows_every_exposure_as_it_was(series):
-    merged = composite(series, "pasted")
+    merged = composite(series)
     for shot in series:
         robot = cv2.erode((shot.cover > 0.99).astype(np.uint8), np.ones((3, 3))) > 0
         difference = np.abs(merged[robot].astype(int) - shot.pixels[robot])
         assert np.mean(difference > 3) < 0.02
 
 
-def test_an_averaged_composite_is_the_mean_and_the_darkest_the_least(series):
-    pictures = np.array([shot.pixels for shot in series])
-    np.testing.assert_allclose(composite(series, "mean"), pictures.mean(axis=0), atol=0.5)
-    np.testing.assert_array_equal(composite(series, "darkest"), pictures.min(axis=0))
-
-
 def test_later_exposures_are_pasted_on_top(series):
     near = replace(STATE, pose=DrawnPose(0.1, 0.15, 0.0))
     later = take_photo(SCENE, near, rng=np.random.default_rng(0),
                        background=render_background(SCENE))  # fmt: skip
-    merged = composite([series[0], later], "pasted")
+    merged = composite([series[0], later])
     robot = cv2.erode((later.cover > 0.99).astype(np.uint8), np.ones((3, 3))) > 0
     assert np.abs(merged[robot].astype(int) - later.pixels[robot]).max() <= 3
 
 
 def test_a_composite_of_nothing_or_of_two_sizes_is_refused(series):
     with pytest.raises(ValueError, match="one or more"):
-        composite([], "pasted")
+        composite([])
     small = replace(series[0], pixels=series[0].pixels[:100])
     with pytest.raises(ValueError, match="480x100, 480x360"):
-        composite([series[0], small], "mean")
+        composite([series[0], small])
 
 
 # time stamps

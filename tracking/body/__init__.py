@@ -10,7 +10,6 @@ from tracking.body.template import (
     BodyTemplate,
     TopPlate,
     make_template,
-    marker_template,
     pixel_on_top,
 )
 
@@ -26,7 +25,6 @@ __all__ = [
     "find_body",
     "floor_in_view",
     "make_template",
-    "marker_template",
     "match_turned",
     "pixel_on_top",
     "refine_corners",

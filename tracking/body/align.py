@@ -26,6 +26,7 @@ _ITERATIONS = 25
 _HUBER = 1.5
 
 _FIRST_LOOKS = 5
+_LEVER = 0.375  # of the top's length, for yaw: calibrated so that its errors are as stated
 
 HOPELESS_SCORE = 0.25
 """Default of the least correlation after five steps of Gauss-Newton to continue them [-]."""
@@ -38,21 +39,14 @@ SCALE_SD = 5e-3
 
 MODEL_FACTOR = 4.0
 """Variance of model errors (shading, rims, legs) over that of white noise [-].
-
-They vary slowly over the picture; the covariance of an alignment by edges leaves them out."""
+"""
 
 MODEL_STEPS = 0.03
 """Least standard deviation of an alignment, which more points do not reduce, in steps of the
-template; in pixels of the photograph where the template is drawn and not cut out of another [-].
+template [-].
 
 Both pictures are interpolated, and the template has the errors of the photograph it was cut from.
 With 0.02, errors along x of 200 simulated poses were 1.11 times those stated."""
-
-SLOW = 1 / 24
-"""Width of the high-pass filter where other things shine through, in lengths of the template [-].
-
-The planks of a floor differ in brightness as much as a marker's black and white do in the mean of
-seven exposures. Edges carry the information on the pose, and the filter keeps them."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +56,7 @@ class Alignment:
     Attributes:
         pose: Pose of the robot with covariances.
         score: Correlation of the colours of photograph and template over all channels, each less
-            its mean; after the high-pass filter if things shine through; 0 of a rough pose [-].
+            its mean; 0 of a rough pose [-].
         log_likelihood: Log likelihood of the photograph's colours, up to a constant common to all
             poses in a photograph; it compares headings [-].
     """
@@ -76,7 +70,7 @@ def align(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
     prior: BodyPrior, start: Array, blurs_px: tuple[float, ...] = (2.5, 1.0),
     visible: NDArray[np.bool_] | None = None, least_visible: float = LEAST_VISIBLE,
-    least_hope: float = HOPELESS_SCORE, shines_through: bool = False, outlier_sd: float = np.inf,
+    least_hope: float = HOPELESS_SCORE, outlier_sd: float = np.inf,
 ) -> Alignment | None:  # fmt: skip
     """Fit the robot's pose by aligning its template with the colours of a photograph.
 
@@ -92,8 +86,6 @@ def align(
         visible: True at pixels of the photograph to use, shape (height, width); None for all.
         least_visible: Least share of the template that must be visible [-].
         least_hope: Least correlation after five steps for which the iteration continues [-].
-        shines_through: Whether floor or other exposures are visible through the robot: variation
-            over more than `SLOW` of the template is then filtered out.
         outlier_sd: Points that differ by more standard deviations in any colour are outliers and
             left out of the fit, but not of the score [-].
 
@@ -107,7 +99,7 @@ def align(
     for blur in blurs_px:
         job = _Job.prepare(
             pixels, camera, view, template, prior, state, blur, visible, least_visible,
-            shines_through, outlier_sd,
+            outlier_sd,
         )  # fmt: skip
         if job is None:
             return None
@@ -126,7 +118,7 @@ class _Job:
     derivatives by column (3 colours) and row, `hidden` 1 at pixels not to use, `points` (n, 3) in
     the body frame and `colours` (n, 3) the template's, blurred alike, `correlated` the number of
     values that count as one independent value, `floor` a covariance (6, 6) added to the pose's,
-    `raster` the template's rows and columns if it is high-pass filtered, `points_by` as of the
+    `points_by` as of the
     template.
     """
 
@@ -142,7 +134,6 @@ class _Job:
     correlated: float
     floor: Array
     least_visible: float
-    raster: tuple[int, int] | None
     outlier_sd: float
     points_by: Mapping[str, Array]
 
@@ -150,7 +141,7 @@ class _Job:
     def prepare(
         cls, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, template: BodyTemplate,
         prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
-        least_visible: float, shines_through: bool, outlier_sd: float,
+        least_visible: float, outlier_sd: float,
     ) -> "_Job | None":  # fmt: skip
         """Crop, blur and differentiate the photograph around a pose; None if a side is under 16 px.
 
@@ -186,10 +177,9 @@ class _Job:
             points,
             np.asarray(colours, dtype=float).reshape(-1, 3),
             prior,
-            repeated if shines_through else MODEL_FACTOR * repeated,
-            _least_covariance(template, density),
+            MODEL_FACTOR * repeated,
+            _least_covariance(template),
             least_visible,
-            template.colours.shape[:2] if shines_through else None,
             outlier_sd,
             template.points_by,
         )
@@ -234,8 +224,6 @@ class _Job:
         by_cause = {}
         for cause, pixels in moved.items():
             colours = self._slopes_at(seen[used]) @ pixels[used]
-            if self.raster is not None:
-                colours = _without_slow(colours, used, self.raster)
             by_colours = weighed.T @ colours.reshape(-1, pixels.shape[2])
             by_cause[cause] = (-spread @ by_colours)[:6]
         wrapped = state[:6].copy()
@@ -285,8 +273,6 @@ class _Job:
         slope = self._slopes_at(seen[used])
         values = sample(self.picture, (seen - self.origin)[used]).astype(float)
         colours, J = self.colours[used], slope @ (by_point[used] @ by_state)
-        if self.raster is not None:
-            colours, values, J = (_without_slow(f, used, self.raster) for f in (colours, values, J))
         score = _likeness(colours, values)
         residual = _relit(colours, values) - values
         spread = 1.4826 * np.median(np.abs(residual), axis=0)
@@ -297,32 +283,9 @@ class _Job:
         return residual, J, weight, noise, score
 
 
-def _without_slow(field: Array, used: NDArray[np.bool_], raster: tuple[int, int]) -> Array:
-    """Subtract from values (n, ...) at the n used points of a raster their local means.
-
-    The means are weighted by a Gaussian of standard deviation `SLOW` times the raster's rows.
-    """
-    width = SLOW * raster[0]
-    layers = np.zeros((*raster, 1 + field[0].size))
-    layers[used.reshape(raster)] = np.column_stack(
-        (np.ones(len(field)), field.reshape(len(field), -1))
-    )
-    mean = np.stack(
-        [
-            cv2.GaussianBlur(layer, (0, 0), width, borderType=cv2.BORDER_CONSTANT)
-            for layer in layers.transpose(2, 0, 1)
-        ]
-    )[:, used.reshape(raster)]
-    return field - (mean[1:] / mean[0]).T.reshape(field.shape)
-
-
-def _least_covariance(template: BodyTemplate, density: float) -> Array:
-    # Lever arms in lengths of the top, calibrated so that errors of yaw are as stated.
-    step, lever = template.step, 0.375
-    if template.drawn:
-        step, lever = template.step / max(density, 1e-3), 0.6
-    slip = MODEL_STEPS * step
-    turn = slip / (lever * template.plate.length)
+def _least_covariance(template: BodyTemplate) -> Array:
+    slip = MODEL_STEPS * template.step
+    turn = slip / (_LEVER * template.plate.length)
     return np.diag([slip, slip, 0, 0, 0, turn]) ** 2
 
 

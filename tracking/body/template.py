@@ -12,11 +12,10 @@ from model.arrays import Array
 from tracking.body.annotated import AnnotatedPose
 from tracking.camera.lens import Camera, CameraPose, project
 from tracking.errors import BodyError
-from tracking.markers import marker_picture
-from tracking.pose import BodyPose, BodyPrior, RobotMarker, body_to_floor
+from tracking.pose import BodyPose, BodyPrior, body_to_floor
 
 MOST_POINTS = 2500
-"""Default of the approximate largest number of points in a template."""
+"""Approximate largest number of points in a template; a larger top is sampled more coarsely."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,6 @@ class BodyTemplate:
         points_body: Points in the body frame, rows from front to rear and columns from left to
             right, as seen from above with the head up, shape (rows, columns, 3) [m].
         colours: BGR at these points, shape (rows, columns, 3) [grey levels].
-        drawn: Whether the colours are computed, not cut out of a photograph.
         points_by: By cause of shared errors, derivative of `points_body`, shape (rows * columns, 3,
             k).
     """
@@ -87,7 +85,6 @@ class BodyTemplate:
     step: float
     points_body: Array
     colours: NDArray[np.float32]
-    drawn: bool = False
     points_by: Mapping[str, Array] = field(default_factory=dict)
 
     @property
@@ -133,7 +130,7 @@ def pixel_on_top(camera: Camera, view: CameraPose, *, pose: BodyPose, plate: Top
 
 def make_template(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate,
-    most_points: int = MOST_POINTS, prior: BodyPrior | None = None,
+    prior: BodyPrior | None = None,
 ) -> BodyTemplate:  # fmt: skip
     """Cut the robot's template out of an annotated photograph.
 
@@ -143,7 +140,6 @@ def make_template(
         view: Pose of the camera.
         pose: Pose of the robot: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
         plate: The robot's top.
-        most_points: Approximate largest number of points; a larger top is sampled more coarsely.
         prior: Prior of height and tilt with which `pose` was fitted; None leaves out how the
             template errs with it.
 
@@ -157,7 +153,7 @@ def make_template(
     corners = body_to_floor(plate.corners_body, pose.state)
     _refuse_cut(project(camera, view, corners), camera.size)
     rear, front, right, left = plate.extent
-    most = np.sqrt((front - rear) * (left - right) / most_points)
+    most = np.sqrt((front - rear) * (left - right) / MOST_POINTS)
     step = max(pixel_on_top(camera, view, pose=pose, plate=plate), most)
     if plate.length / step < 16:
         raise BodyError(
@@ -179,48 +175,6 @@ def make_template(
             f"the scene better, or use a marker"
         )
     return template
-
-
-def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
-    """Draw the template of the robot's marker, without a photograph.
-
-    Args:
-        marker: The marker on the robot's back.
-        points: Points along each side of the template: the marker with half its white margin.
-
-    Returns:
-        The marker's picture in the body frame, grey level 20 for black and 235 for white, slightly
-        blurred.
-
-    Raises:
-        MarkerError: When there is no dictionary of the marker's name for it.
-    """
-    picture = marker_picture(marker.dictionary, marker.marker_id, 16)
-    cells = picture.shape[0] // 16 - 2
-    # The outermost half cell is left out, since prints are often cut there.
-    width = marker.side * (1 + 1 / cells)
-    plate = TopPlate(marker.side, marker.side, marker.position[2], marker.position[0],
-                     (width - marker.side) / 2, (width - marker.side) / 2,
-                     marker.position[1])  # fmt: skip
-    across = (np.arange(points) + 0.5) / points - 0.5
-    ahead, left = np.meshgrid(-across * width, -across * width, indexing="ij")
-    c, s = np.cos(marker.yaw), np.sin(marker.yaw)
-    # In the marker's own frame: to the right of the print, and up it.
-    right, up = c * ahead + s * left, -s * ahead + c * left
-    n = picture.shape[0]
-    scale = 16 * cells / marker.side
-    place = np.stack((right * scale + (n - 1) / 2, (n - 1) / 2 - up * scale), axis=-1)
-    soft = cv2.GaussianBlur(
-        np.asarray(picture, dtype=np.float32), (0, 0), 0.4 * width * scale / points
-    )
-    grey = 20 + 215 * sample(np.asarray(soft), place)
-    xyz = np.stack(
-        (ahead + marker.position[0], left + marker.position[1], np.full_like(ahead, plate.height)),
-        axis=-1,
-    )
-    colours = np.repeat(grey[:, :, None], 3, axis=2)
-    by_cause = marker.derivatives_at(xyz.reshape(-1, 3))
-    return BodyTemplate(plate, width / points, xyz, colours, drawn=True, points_by=by_cause)
 
 
 def _grid(plate: TopPlate, step: float) -> Array:

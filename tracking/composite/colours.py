@@ -24,9 +24,6 @@ _RARE = 0.1  # share of colours that may be any
 NOISE = 12.0
 """Standard deviation of the robot's colour, per channel, between exposures [grey levels]."""
 
-SCALE = 8.0
-"""Standard deviation to which whitening scales the floor's pattern [grey levels]."""
-
 
 @dataclass(frozen=True)
 class FloorColours:
@@ -55,7 +52,7 @@ class FloorColours:
         Returns:
             The model; up to three tenths of the points used may show the robot.
         """
-        light = smooth(picture, used, width)
+        light = _smooth(picture, used, width)
         inner = chi2.cdf(chi2.ppf(_TRUSTED, 3), 5) / _TRUSTED
         covariance = np.cov((picture - light)[used].T)
         for _ in range(_ROUNDS):
@@ -63,7 +60,7 @@ class FloorColours:
             far = floor.floor_distance(picture)
             usual = used & (far < np.quantile(far[used], _TRUSTED))
             covariance = np.cov((picture - light)[usual].T) / inner
-            light = smooth(picture, used & (far < max(_OUTLIER, np.median(far[used]))), width)
+            light = _smooth(picture, used & (far < max(_OUTLIER, np.median(far[used]))), width)
         return cls(light, covariance + noise**2 * np.eye(3))
 
     @cached_property
@@ -84,11 +81,6 @@ class FloorColours:
         share = (seen * light).sum(axis=-1) / np.maximum((light**2).sum(axis=-1), 1e-6)
         lit = np.clip(share, _SHADOW, 1.0)[..., None] * light
         return ((seen - lit) ** 2).sum(axis=-1) < _NO_FLOOR
-
-    def density(self, picture: NDArray[np.float32]) -> Array:
-        """Compute the floor's normal density at colours, (rows, columns), per cubed grey level."""
-        scale = np.sqrt((2 * np.pi) ** 3 * np.linalg.det(self.covariance))
-        return np.exp(-0.5 * self.floor_distance(picture)) / scale
 
 
 def colour_density(
@@ -123,7 +115,7 @@ def robot_density(difference: Array) -> Array:
     return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm
 
 
-def smooth(
+def _smooth(
     picture: NDArray[np.float32], used: NDArray[np.bool_], width: float
 ) -> NDArray[np.float32]:
     """Blur colours by a Gaussian over the points used (normalised convolution).

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A composite picture with one exposure of known pose, as the reference to align others."""
+"""Exposures of a composite picture; the one of known pose is the reference to align others."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,13 +14,11 @@ from tracking.body import (
     TopPlate,
     align,
     make_template,
-    pixel_on_top,
 )
 from tracking.body.plane import Plane
-from tracking.body.template import MOST_POINTS, sample
+from tracking.body.template import sample
 from tracking.camera.lens import Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
-from tracking.composite.exposure import disturbance, widened
 from tracking.errors import BodyError, CompositeError
 from tracking.pose import HELD, BodyPose, BodyPrior
 
@@ -35,6 +33,30 @@ RASTER_SD = 0.02
 
 _DIVERGED = 0.06  # of the length: an alignment that moves farther has diverged
 _DIVERGED_TURN = 0.15  # rad: the same
+
+
+@dataclass(frozen=True)
+class Exposure:
+    """One exposure of the robot in a composite picture.
+
+    Attributes:
+        alignment: Pose of the robot in the exposure, with covariances and score.
+        visible: Share of the robot's top that no other exposure hides, 0 to 1; always 1 of
+            exposures found by the robot's marker [-].
+    """
+
+    alignment: Alignment
+    visible: float
+
+    @property
+    def planar(self) -> Array:
+        """x, y [m] and yaw [rad] of the robot, shape (3,)."""
+        return self.alignment.pose.planar
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether alignment failed, so that the pose is that found on the coarse raster."""
+        return self.alignment.score == 0.0
 
 
 @dataclass(frozen=True)
@@ -73,37 +95,17 @@ class KnownExposure:
         """Plate of the body's size at the height of the top, about its origin, without margins."""
         return TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0)
 
-    @property
-    def length_px(self) -> float:
-        """Length of the robot in the known exposure, in pixels of mean size on its top [px]."""
-        pixel = pixel_on_top(self.camera, self.view, pose=self.pose, plate=self.body_plate)
-        return self.size[0] / pixel
-
-    def body_template(self, pixels: NDArray) -> BodyTemplate:
+    def body_template(self) -> BodyTemplate:
         """Cut the template of the whole body (`body_plate`) out of the known exposure.
 
-        Raises CompositeError, see `template`.
-        """
-        return self.template(pixels, self.body_plate)
-
-    def template(
-        self, pixels: NDArray, plate: TopPlate, *, most_points: int = MOST_POINTS
-    ) -> BodyTemplate:
-        """Cut a template out of the known exposure.
-
-        Args:
-            pixels: The picture, or one derived from it, shape (height, width, 3).
-            plate: Part of the robot's top to cut out.
-            most_points: Approximate largest number of points of the template.
-
         Raises:
-            CompositeError: The part is cut by the picture's edge, too small or of too little
+            CompositeError: The body is cut by the picture's edge, too small or of too little
                 contrast (`make_template`).
         """
         try:
             return make_template(
-                pixels, self.camera, self.view, pose=self.pose, plate=plate,
-                most_points=most_points, prior=self.prior,
+                self.pixels, self.camera, self.view, pose=self.pose, plate=self.body_plate,
+                prior=self.prior,
             )  # fmt: skip
         except BodyError as error:
             raise CompositeError(str(error)) from error
@@ -129,18 +131,16 @@ class KnownExposure:
         return np.array([pose[0], pose[1], self.prior.height, 0.0, 0.0, pose[2]])
 
     def aligned(
-        self, pose: Array, pixels: NDArray, template: BodyTemplate, visible: NDArray[np.bool_], *,
-        least: float, shines_through: bool = False, outlier_sd: float = np.inf,
+        self, pose: Array, template: BodyTemplate, visible: NDArray[np.bool_], *,
+        least: float, outlier_sd: float = np.inf,
     ) -> Alignment | None:  # fmt: skip
         """Align one exposure with a template.
 
         Args:
             pose: Pose to start from: x, y [m] and yaw [rad], shape (3,).
-            pixels: The picture, or one derived from it, shape (height, width, 3).
             template: Template of the robot.
             visible: True at pixels to use, shape (height, width).
             least: Least correlation to accept [-].
-            shines_through: As for `tracking.body.align`.
             outlier_sd: As for `tracking.body.align`.
 
         Returns:
@@ -148,9 +148,9 @@ class KnownExposure:
             visible, or it diverges (`has_diverged`).
         """
         found = align(
-            pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,
+            self.pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,
             visible=visible, blurs_px=(1.0,), least_visible=0.0, least_hope=-1.0,
-            shines_through=shines_through, outlier_sd=outlier_sd,
+            outlier_sd=outlier_sd,
         )  # fmt: skip
         return None if found is None or self.has_diverged(found, pose, least) else found
 
@@ -178,7 +178,7 @@ class KnownExposure:
         covariance[np.ix_(HELD, HELD)] = self.prior.covariance
         level = BodyPose(self.level(pose), covariance)
         slip = RASTER_SD * self.size[0]
-        return widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
+        return _widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
 
     def widened(self, alignment: Alignment, slip: float, *, lever: float) -> Alignment:
         """Add to the covariance the error that other exposures and the floor cause.
@@ -186,13 +186,13 @@ class KnownExposure:
         Args:
             alignment: The alignment, of a score above 0.
             slip: Standard deviation of x and of y where other things are as strong as the robot,
-                in lengths of the robot [-]; the variance is proportional to their power
-                (`disturbance`).
+                in lengths of the robot [-]; the variance is proportional to the ratio of their
+                power to the robot's, (1 - score²) / score².
             lever: Lever arm that converts it to heading, in lengths of the robot [-].
         """
         length = self.size[0]
-        slip *= length * float(np.sqrt(disturbance(alignment)))
-        return widened(alignment, slip, lever=lever * length)
+        power = max(1 - alignment.score**2, 0.0) / alignment.score**2
+        return _widened(alignment, slip * length * float(np.sqrt(power)), lever=lever * length)
 
     def on_photo(
         self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
@@ -237,3 +237,11 @@ class KnownExposure:
         pixels = np.stack((u, v), axis=-1).reshape(-1, 2).astype(float)
         xy = to_floor(self.camera, self.view, pixels, height).reshape(*u.shape, 2)
         return (slice(low[1], high[1]), slice(low[0], high[0])), xy
+
+
+def _widened(alignment: Alignment, slip: float, *, lever: float) -> Alignment:
+    """Add independent errors of standard deviation `slip` to x, y, and `slip / lever` to yaw."""
+    turn = slip / lever
+    added = np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2
+    pose = replace(alignment.pose, covariance=alignment.pose.covariance + added)
+    return replace(alignment, pose=pose)

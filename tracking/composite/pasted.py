@@ -24,8 +24,7 @@ from model.arrays import Array
 from tracking.body.template import sample
 from tracking.composite.body_raster import BodyRaster
 from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
-from tracking.composite.exposure import Exposure
-from tracking.composite.known import LEAST_SCORE
+from tracking.composite.known import LEAST_SCORE, Exposure
 from tracking.composite.match import match_whole
 from tracking.composite.reading import Reading
 from tracking.composite.steps import (
@@ -97,8 +96,6 @@ class PastedReading(Reading):
         with_floor: Whether floor and shadow around the robot were cut out with it.
     """
 
-    cells = 40
-
     with_floor: bool = False
 
     @cached_property
@@ -134,11 +131,11 @@ class PastedReading(Reading):
         The poses are those of `find`: each exposure hides pixels of those after it.
         """
         known, found = self.known, []
-        template, visible = known.body_template(known.pixels), ~known.hidden
+        template, visible = known.body_template(), ~known.hidden
         for pose in poses:
             share = known.share(pose, visible)
             alignment = known.aligned(
-                pose, known.pixels, template, visible, least=LEAST_SCORE, outlier_sd=OUTLIER_SD
+                pose, template, visible, least=LEAST_SCORE, outlier_sd=OUTLIER_SD
             )
             if alignment is None:
                 alignment = known.rough(pose)

@@ -3,32 +3,30 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from tracking.body import AnnotatedPose, marker_template
-from tracking.composite import (
-    Exposure,
-    Merged,
-    find_exposures,
-    find_exposures_like,
-    order_exposures,
-)
-from tracking.composite.steps import usual_step
+from tracking.body import AnnotatedPose
+from tracking.camera import CameraPose
+from tracking.composite import Exposure, find_exposures, find_exposures_like, order_exposures
+from tracking.detect import MarkedRobot, pose_of_marker
 from tracking.errors import CompositeError
 from tracking.images import PhotoTimes, read_pixels
+from tracking.markers import Sighting
 from tracking.photos.by_look import marked_tops, pose_of_top
 from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Tracked, finish, observation_of, times_by_name
 from tracking.photos.scene import Photo, Scene
 from tracking.photos.workers import Progress
+from tracking.pose import BodyPose
 
 _MANY_ROUGH = 1 / 3  # of a composite's exposures
 
 
 def track_exposures(
-    scene: Scene, photo: Photo, merged: Merged, *,
-    times_of: Callable[[Sequence[str]], PhotoTimes], gap: float | None, progress: Progress,
+    scene: Scene, photo: Photo, *, times_of: Callable[[Sequence[str]], PhotoTimes],
+    gap: float | None, progress: Progress,
 ) -> Tracked:  # fmt: skip
     """Track a robot through the exposures of one composite picture.
 
@@ -37,15 +35,13 @@ def track_exposures(
     Args:
         scene: Camera, floor and robot, which is found by its marker, or else its annotated top.
         photo: The picture.
-        merged: How the exposures were merged.
         times_of: Function from the names of the exposures, in order, to their times.
         gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
             interval.
         progress: Receiver of progress and of requests to stop.
 
     Returns:
-        The track; notes include warnings when a third of the exposures or more is rough, and when
-            exposures overlap in a mean without a marker, where intervals are too narrow.
+        The track; notes include a warning when a third of the exposures or more is rough.
 
     Raises:
         NoUsablePhoto: The picture cannot be used, or the annotated top is in another picture.
@@ -57,7 +53,7 @@ def track_exposures(
     seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)
     scene = replace(scene, camera=seen.fit.camera)  # the pose of the camera is for this lens
     progress.step("exposures", None)
-    exposures = _exposures(scene, seen, photo, merged)
+    exposures = _exposures(scene, seen, photo)
     order = order_exposures(np.array([each.alignment.pose.planar for each in exposures]))
     names = tuple(f"{photo.name}#{number}" for number in range(1, len(order) + 1))
     times = times_by_name(names, times_of(names))
@@ -77,11 +73,10 @@ def track_exposures(
         scene, seen, observations, unseen={}, times=times, gap=gap,
         annotations=None if annotated is None else {photo.name: annotated},
     )  # fmt: skip
-    notes = (*tracked.notes, *_rough_note(exposures), *_overlap_note(scene, merged, exposures))
-    return replace(tracked, notes=notes)
+    return replace(tracked, notes=(*tracked.notes, *_rough_note(exposures)))
 
 
-def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> tuple[Exposure, ...]:
+def _exposures(scene: Scene, seen: FloorSeen, photo: Photo) -> tuple[Exposure, ...]:
     """Find exposures by the robot's marker, or without one by the exposure of annotated top.
 
     Raises CompositeError if `scene.body_size` is None or none is found, and as `marked_tops`.
@@ -91,18 +86,25 @@ def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> t
         raise CompositeError("the robot's body has no size; give body_size in robot.toml")
     pixels = read_pixels(photo.path, size=scene.camera.size)
     view = seen.fit.pose_of(photo.name)
-    # The floor's markers are similar to the robot's, so they are masked.
     hidden = seen.marks_in(photo.name, pixels.shape[:2])
     if scene.robot is not None:
         return find_exposures(
-            pixels, scene.camera, view, template=marker_template(scene.robot.marker),
-            prior=scene.prior, merged=merged, body_size=size, hidden=hidden,
+            pixels, scene.camera, view, marker=scene.robot.marker,
+            pose_of=partial(_pose_of, scene.robot, seen, view), prior=scene.prior, body_size=size,
+            hidden=hidden,
         )  # fmt: skip
     top = marked_tops(scene, seen, [photo])[0]
     return find_exposures_like(
         pixels, scene.camera, view, known=pose_of_top(top, scene, view).pose, plate=top.plate,
-        prior=scene.prior, merged=merged, body_size=size, hidden=hidden,
+        prior=scene.prior, body_size=size, hidden=hidden,
     )  # fmt: skip
+
+
+def _pose_of(
+    robot: MarkedRobot, seen: FloorSeen, view: CameraPose, sighting: Sighting
+) -> BodyPose:  # fmt: skip
+    """Fit the robot's pose to its marker in one exposure."""
+    return pose_of_marker(seen.fit, view, sighting, robot)
 
 
 def _annotated(scene: Scene, seen: FloorSeen, photo: Photo) -> AnnotatedPose:
@@ -118,16 +120,4 @@ def _rough_note(exposures: Sequence[Exposure]) -> list[str]:
         f"{rough} of {len(exposures)} exposures could not be aligned: they are placed only roughly "
         "or are not the robot: look at overlay.png, check body_size in robot.toml, and without a "
         "marker annotate an exposure that is fully visible"
-    ]
-
-
-def _overlap_note(scene: Scene, merged: Merged, exposures: Sequence[Exposure]) -> list[str]:
-    step = usual_step(np.array([exposure.planar for exposure in exposures]))
-    size = scene.body_size
-    if scene.robot is not None or merged is not Merged.MEAN or size is None or step >= size[0]:
-        return []
-    return [
-        "the standard deviations of this track are too small: exposures that overlap in a mean, "
-        "without a marker, shift each other (in simulations 90 % intervals held 67 to 92 % of the "
-        "true x and y)"
     ]

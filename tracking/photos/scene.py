@@ -7,7 +7,6 @@ from pathlib import Path
 
 from tracking.body import TopPlate
 from tracking.camera import Camera
-from tracking.composite import Merged
 from tracking.corrections import Correction
 from tracking.detect import MarkedRobot
 from tracking.floor import FloorMap, FloorView
@@ -62,8 +61,7 @@ class Scene:
         tops: Annotations of the robot's top, each in another photograph, to track it by templates.
         clicks: By name of photograph and name of floor point, the pixel u, v clicked on [px].
         corrections: Manual corrections of the poses found, in the order in which they were made.
-        merged: How the exposures of one composite picture were merged; None for separate
-            photographs.
+        is_composite: Whether there is one picture, into which the exposures of a walk were pasted.
         body_size: Length and width of the robot's body, needed for a composite picture [m].
     """
 
@@ -74,7 +72,7 @@ class Scene:
     tops: tuple[MarkedTop, ...] = ()
     clicks: Mapping[str, Mapping[str, Click]] = field(default_factory=dict)
     corrections: tuple[Correction, ...] = ()
-    merged: Merged | None = None
+    is_composite: bool = False
     body_size: tuple[float, float] | None = None
 
     def with_clicks(self, view: FloorView) -> FloorView:

@@ -21,7 +21,8 @@ def track_photos(
 
     Args:
         scene: Camera, floor, robot and annotations; tracked is a composite picture if
-            `scene.merged` is given, else by the marker if `scene.robot` is, else by the template.
+            `scene.is_composite`, else by the marker if `scene.robot` is given, else by the
+            template.
         photos: The photographs, at least one, in order of time, or the one composite picture.
         times_of: Function from names of photographs, in order, to their times; of a composite
             picture, from names of its exposures found, `walk.jpg#1`, `walk.jpg#2` and so on.
@@ -45,10 +46,8 @@ def track_photos(
     if not photos:
         raise NoUsablePhoto("there are no photographs to track; expected one or more")
     progress = NoProgress() if progress is None else progress
-    if scene.merged is not None:
-        return track_exposures(
-            scene, photos[0], scene.merged, times_of=times_of, gap=gap, progress=progress
-        )
+    if scene.is_composite:
+        return track_exposures(scene, photos[0], times_of=times_of, gap=gap, progress=progress)
     names = [photo.name for photo in photos]
     times = times_by_name(names, times_of(names))
     if scene.robot is None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.file import read_track as read_track_file
-from zebro_lab.track.request import MergedAs, TimeRequest, TrackRequest
+from zebro_lab.track.request import TimeRequest, TrackRequest
 from zebro_lab.track.stage import TrackResult, track
 from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.validation.request import ValidateRequest
@@ -38,12 +38,11 @@ def track_photos(
     start: datetime | None = None,
     annotations: PathLike | None = None,
     without_marker: bool = False,
-    merged: MergedAs | None = None,
 ) -> TrackResult:
     """Track the robot in photographs, as `zebro-lab track` does.
 
     Args:
-        photos: Folder of photographs, video, or one composite picture.
+        photos: Folder of photographs, video, or one picture into which exposures were pasted.
         out: Track folder to write.
         camera: The `camera.toml`.
         floor: The `floor.toml`.
@@ -54,8 +53,6 @@ def track_photos(
             zone or with UTC; None for the first photograph.
         annotations: File of annotations that a person made in the photographs; None for none.
         without_marker: Whether to track the robot by a template, annotated in one photograph.
-        merged: How the exposures of a composite picture were merged: "pasted", "darkest" or
-            "mean"; None for other photographs.
 
     Raises:
         ZebroLabError: A file or an option cannot be used.
@@ -66,7 +63,7 @@ def track_photos(
     request = TrackRequest(
         Path(photos), Path(camera), Path(floor), robot=Path(robot), out=Path(out),
         times=TimeRequest(table=optional(times)), start=start, annotations=optional(annotations),
-        without_marker=without_marker, merged=merged, workers=1,
+        without_marker=without_marker, workers=1,
     )  # fmt: skip
     return track(request, Silent())
 

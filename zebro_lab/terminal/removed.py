@@ -15,6 +15,8 @@ REMOVED: Final[dict[str, str]] = {
     "(docs/experiments.md).",
     "study": "The fit is tested on simulated experiments by `make test-long` of a checkout "
     "(docs/coverage.md); rig suggest says how narrow further points make an interval.",
+    "track --merged": "One picture is read as exposures that were cut out and pasted; leave the "
+    "option out, and of an average or of darkest values give the photographs themselves.",
 }
 """What to use instead, a sentence, by "COMMAND", "COMMAND --option", or "--option" of any command.
 

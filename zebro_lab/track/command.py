@@ -33,7 +33,7 @@ zebro-lab track photos --camera camera.toml --floor floor.toml --robot robot.tom
 --without-marker --annotations annotations.toml --out track
 
 zebro-lab track composite.jpg --camera camera.toml --floor floor.toml --robot robot.toml
---merged pasted --interval 4 --out track
+--interval 4 --out track
 """
 
 
@@ -58,14 +58,10 @@ def track(request: TrackRequest, preview: PreviewPng = None, output: Output = TE
 
 def _track(request: TrackRequest, output: Output) -> None:
     from tracking.errors import TrackStopped
-    from zebro_lab.track.inputs import HowMergedUnknown
     from zebro_lab.track.stage import track as run_stage
 
-    try:
-        with output.progress(TrackStopped) as watcher:
-            result = run_stage(request, watcher)
-    except HowMergedUnknown as unknown:
-        raise typer.BadParameter(unknown.problem, param_hint="'--merged'") from unknown
+    with output.progress(TrackStopped) as watcher:
+        result = run_stage(request, watcher)
     for line in track_lines(result):
         output.say(line)
     _print_document(result, output)

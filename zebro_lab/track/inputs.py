@@ -4,8 +4,6 @@
 from dataclasses import dataclass, replace
 
 from tracking import Scene
-from tracking.composite import Merged
-from tracking.images import open_picture
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_numbers import require_apart
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
@@ -17,16 +15,6 @@ from zebro_lab.track.floor_file import read_floor_file
 from zebro_lab.track.photo_sequence import PhotoSequence, calibrated_for
 from zebro_lab.track.request import TrackRequest
 from zebro_lab.track.robot import body_prior, tracked_robot
-
-_HOW_MERGED = """\
-needed: a picture does not tell how its exposures were merged. Look at the robots:
-pasted: all are solid; where two overlap, one hides the other (cut out and laid on each other).
-darkest: dark parts are solid, bright ones vanish; where two overlap, the darker of both shows.
-mean: all are faint, and the floor shows through them (the average of all photographs)."""
-
-
-class HowMergedUnknown(SettingsError):
-    """Raised where `--merged` is missing: how the exposures of a composite were merged."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +39,8 @@ class TrackInputs:
         Raises:
             DataError: The photographs' aspect ratio differs from the calibration's.
         """
-        return replace(self.scene, camera=calibrated_for(self.scene.camera, sequence))
+        camera = calibrated_for(self.scene.camera, sequence)
+        return replace(self.scene, camera=camera, is_composite=sequence.is_composite)
 
     def source_of(self, sequence: PhotoSequence) -> str:
         """Return the photographs' source: the option, else the files', the run's or "unknown"."""
@@ -61,18 +50,12 @@ class TrackInputs:
             return sequence.source or "unknown"
         return self.manifest.source
 
-    def require_complete(self, sequence: PhotoSequence) -> None:
+    def require_complete(self) -> None:
         """Raise if an input that tracking needs is missing.
 
         Raises:
-            HowMergedUnknown: It is unknown how the exposures of a composite picture were merged.
             SettingsError: The robot carries no marker and its top is not annotated.
-            PhotoError: A composite picture cannot be read.
         """
-        if sequence.is_composite and self.request.merged is None:
-            with open_picture(sequence.photos[0].path):
-                pass  # files that are no pictures have their own error
-            raise HowMergedUnknown(_HOW_MERGED, key="--merged")
         if self.scene.robot is None and not self.scene.tops:
             raise SettingsError(
                 "needed: without a marker the robot is found by its look; annotate its top in one "
@@ -123,7 +106,6 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
     scene = Scene(
         camera, floor, prior, robot, tops=annotations.templates, clicks=annotations.clicks,
         corrections=annotations.corrections,
-        merged=None if request.merged is None else Merged(request.merged),
         body_size=(length, width),
     )  # fmt: skip
     return TrackInputs(request, scene, annotations, manifest)

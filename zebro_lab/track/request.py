@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated
 
 from typer import Argument, BadParameter, Option
 
@@ -15,7 +15,6 @@ from zebro_lab.robot.marker_print import LARGEST_PRINT, parse_marker
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 
-MergedAs: TypeAlias = Literal["pasted", "darkest", "mean"]
 KIND = "track"
 VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 
@@ -87,14 +86,14 @@ class TrackRequest:
     """Options of `zebro-lab track`.
 
     Raises:
-        SettingsError: `merged` is given, and `photos` is a folder or a video; or a length, the
-            marker or the source has another form.
+        SettingsError: A length, the marker or the source has another form.
     """
 
     photos: Annotated[
         Path,
         Argument(
-            metavar="PHOTOS", help="Folder of photographs, a video, or one composite picture."
+            metavar="PHOTOS",
+            help="Folder of photographs, a video, or one picture into which exposures were pasted.",
         ),
     ]
     camera: Annotated[Path, Option(metavar="FILE", help="camera.toml, the lens.")]
@@ -127,9 +126,6 @@ class TrackRequest:
         bool,
         Option("--without-marker", help="Track the robot by its top, annotated in one photograph."),
     ] = False
-    merged: Annotated[
-        MergedAs | None, Option(help="How the exposures of a composite picture were merged.")
-    ] = None
     annotations: Annotated[
         Path | None, Option(metavar="FILE", help="annotations.toml to apply.")
     ] = None
@@ -181,9 +177,6 @@ class TrackRequest:
             parse_marker(self.marker)
         if self.source is not None and not re.fullmatch("real|sim:.+", self.source):
             raise SettingsError(f"found '{self.source}'; expected real or sim:WHAT", key="--source")
-        is_picture = self.photos.is_file() and self.photos.suffix.lower() not in VIDEOS
-        if self.merged is not None and self.photos.exists() and not is_picture:
-            raise SettingsError("applies only to one composite picture", key="--merged")
 
     @property
     def folder(self) -> Path:

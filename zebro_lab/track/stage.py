@@ -68,7 +68,7 @@ def track(request: TrackRequest, watcher: Progress) -> TrackResult:
     require_replaceable(request.folder, TRACKED, inputs=request.inputs)
     inputs = read_inputs(request)
     with open_photos(request.photos, request.times, progress=watcher) as sequence:
-        inputs.require_complete(sequence)
+        inputs.require_complete()
         counted = inputs.counted_times(sequence)
         tracked = track_photos(
             inputs.scene_of(sequence), sequence.photos, times_of=_times_of(counted, request),
@@ -182,5 +182,4 @@ def _settings(inputs: TrackInputs) -> Mapping[str, object]:
         "mean_height_sd": request.stated_mean_height_sd,
         "height_sd": request.bounce_sd,
         "gap": request.gap,
-        **({"merged": request.merged} if request.merged is not None else {}),
     }

@@ -5,7 +5,7 @@ Rendered by inverse mapping (ray casting): each pixel is the mean over rays thro
 traced back through the lens to the floor, a print or the robot.
 """
 
-from support.synthetic.composite import CompositeKind, composite
+from support.synthetic.composite import composite
 from support.synthetic.lens import SyntheticCamera, look_at
 from support.synthetic.patterns import charuco_cells, checkerboard_cells, marker_cells
 from support.synthetic.photograph import (
@@ -38,7 +38,6 @@ from support.synthetic.stamp import with_time_stamp
 __all__ = [
     "HARSH",
     "IDEAL",
-    "CompositeKind",
     "Conditions",
     "DrawnFloorMarker",
     "DrawnPose",

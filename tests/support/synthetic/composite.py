@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Composite photographs: several exposures of one walk merged into one picture."""
+"""Composite photographs: exposures of one walk cut out and pasted into one picture."""
 
 from collections.abc import Sequence
-from enum import StrEnum
 
 import cv2
 import numpy as np
@@ -13,23 +12,11 @@ _CUT_MARGIN_PX = 5  # margin of a cut-out around the robot
 _FEATHER_PX = 1.5
 
 
-class CompositeKind(StrEnum):
-    """How exposures were merged."""
-
-    PASTED = "pasted"
-    """Each robot cut out with a margin and pasted over the first picture, later ones on top."""
-    MEAN = "mean"
-    """The mean of all: n exposures leave ghosts of 1/n contrast."""
-    DARKEST = "darkest"
-    """The darkest value of each pixel and colour; bright parts vanish in a brighter floor."""
-
-
-def composite(photos: Sequence[SyntheticPhoto], kind: CompositeKind | str) -> Pixels:
-    """Merge photographs of one scene.
+def composite(photos: Sequence[SyntheticPhoto]) -> Pixels:
+    """Cut the robot with a margin out of each photograph, paste it over the first, later on top.
 
     Args:
         photos: In order of time; of one camera that did not move.
-        kind: How they are merged.
 
     Returns:
         One picture, shape (height, width, 3).
@@ -43,17 +30,6 @@ def composite(photos: Sequence[SyntheticPhoto], kind: CompositeKind | str) -> Pi
     if len(sizes) > 1:
         found = ", ".join(f"{width}x{height}" for height, width in sorted(sizes))
         raise ValueError(f"photographs of sizes {found} px; expected one size")
-    pictures = [photo.pixels for photo in photos]
-    match CompositeKind(kind):
-        case CompositeKind.MEAN:
-            return np.rint(np.mean(pictures, axis=0)).astype(np.uint8)
-        case CompositeKind.DARKEST:
-            return np.min(pictures, axis=0)
-        case CompositeKind.PASTED:
-            return _pasted(photos)
-
-
-def _pasted(photos: Sequence[SyntheticPhoto]) -> Pixels:
     merged = photos[0].pixels.astype(np.float32)
     side = 2 * _CUT_MARGIN_PX + 1
     scissors = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))

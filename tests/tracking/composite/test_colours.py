@@ -10,7 +10,7 @@ from tracking.composite.colours import FloorColours
 
 
 def test_a_floor_in_shadow_is_still_the_floor_and_the_robot_is_not():
-    picture = composite(np.array([[0.0, 0.0, 0.3]]), "pasted").astype(np.float32)
+    picture = composite(np.array([[0.0, 0.0, 0.3]])).astype(np.float32)
     _, mask = exposure(np.array([0.0, 0.0, 0.3]), np.random.default_rng(0), picture)
     look = FloorColours.of(picture, np.ones(mask.shape, bool), width=80, noise=3.0)
     far = cv2.dilate(mask.astype(np.uint8), np.ones((9, 9))) == 0

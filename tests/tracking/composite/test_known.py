@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """An exposure is aligned with the one that is known, whatever lies on it."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from support.drawn_board import LENS, PRIOR, SIZE, TOP, VIEW, composite, likeness
@@ -9,15 +11,16 @@ from tracking.camera import project
 
 def test_something_that_lies_on_a_robot_does_not_draw_it_where_odd_points_are_left_out():
     planar = np.array([0.0, 0.0, 0.3])
-    clean = composite(planar[None], "pasted")
+    clean = composite(planar[None])
     view = likeness(clean, planar, reach=0.3)
     seen = project(LENS, VIEW, np.array([[*planar[:2], PRIOR.height + TOP]]))[0].astype(int)
     covered = clean.copy()
     covered[seen[1] + 8 : seen[1] + 40, seen[0] - 60 : seen[0] + 8] = (20, 220, 220)
 
     def off(outlier_sd):
-        found = view.aligned(planar, covered, view.body_template(clean), ~view.hidden,
-                             least=0.0, outlier_sd=outlier_sd)  # fmt: skip
+        found = replace(view, pixels=covered).aligned(
+            planar, view.body_template(), ~view.hidden, least=0.0, outlier_sd=outlier_sd
+        )
         return np.inf if found is None else np.hypot(*(found.pose.planar - planar)[:2])
 
     assert off(2.5) < 5e-4
@@ -26,7 +29,7 @@ def test_something_that_lies_on_a_robot_does_not_draw_it_where_odd_points_are_le
 
 def test_the_pixels_around_an_exposure_show_its_plane():
     planar = np.array([0.05, 0.0, 0.3])
-    view = likeness(composite(planar[None], "pasted"), planar, reach=0.3)
+    view = likeness(composite(planar[None]), planar, reach=0.3)
     (rows, columns), xy = view.around(planar, reach=0.75)
     assert xy.shape == (rows.stop - rows.start, columns.stop - columns.start, 2)
     seen = project(LENS, VIEW, np.array([[*planar[:2], PRIOR.height + TOP]]))[0]

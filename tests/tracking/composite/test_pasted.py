@@ -4,9 +4,8 @@
 import numpy as np
 import pytest
 
-from support.drawn_board import composite, likeness
+from support.drawn_board import composite, likeness, steady_walk
 from tracking.composite.pasted import Pasted, PastedReading
-from tracking.composite.steps import steady_chain
 
 WALK = np.array([[-0.22, -0.06, 0.15], [-0.08, -0.03, 0.25], [0.06, 0.01, 0.35]])
 
@@ -14,7 +13,7 @@ WALK = np.array([[-0.22, -0.06, 0.15], [-0.08, -0.03, 0.25], [0.06, 0.01, 0.35]]
 @pytest.fixture(scope="module")
 def reading() -> PastedReading:
     """Return a picture of three exposures, of which the last lies on top."""
-    picture = likeness(composite(WALK, "pasted"), WALK[-1], reach=0.35)
+    picture = likeness(composite(WALK), WALK[-1], reach=0.35)
     return PastedReading.of(picture, cells=30)
 
 
@@ -46,10 +45,9 @@ def test_an_exposure_much_nearer_than_the_others_are_is_none(reading):
 
 
 def test_pasted_exposures_are_found_in_light_that_changes_and_cut_out_with_floor():
-    step = np.array([0.15, 0.0, 0.08])
-    walk = steady_chain(np.array([-0.3, -0.1, 0.1]), step, 0.0, 4, 0)
+    walk = steady_walk((-0.3, -0.1, 0.1), 0.15, 0.08, 5)
     picture = likeness(
-        composite(walk, "pasted", lights=np.linspace(1.5, 1.0, 5), around_px=22),
+        composite(walk, lights=np.linspace(1.5, 1.0, 5), around_px=22),
         walk[-1],
         reach=0.45,
     )

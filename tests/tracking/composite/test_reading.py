@@ -8,30 +8,19 @@ import pytest
 
 from support.drawn_board import PRIOR, SIZE, TOP, composite, likeness
 from tracking.camera import project
-from tracking.composite import Merged
-from tracking.composite.reading import Reading
+from tracking.composite.reading import CELLS, Reading
 
 AT = np.array([0.05, 0.0, 0.3])
 
 
-class Plain(Reading):
-    """A reading that finds the known exposure alone."""
-
-    def find(self):
-        return self.known.pose.planar[None]
-
-    def align(self, poses):
-        return ()
-
-
 @pytest.fixture(scope="module")
 def known():
-    return likeness(composite(AT[None], Merged.PASTED), AT, reach=0.3)
+    return likeness(composite(AT[None]), AT, reach=0.3)
 
 
 def test_the_raster_is_as_fine_as_asked_and_lies_at_the_height_of_the_robots_top(known):
     for cells in (16, 32):
-        reading = Plain.of(known, cells=cells)
+        reading = Reading.of(known, cells=cells)
         plane = reading.plane
         assert plane.cell == pytest.approx(SIZE[0] / cells)
         assert reading.picture.shape == (*plane.seen_px.shape[:2], 3)
@@ -41,35 +30,24 @@ def test_the_raster_is_as_fine_as_asked_and_lies_at_the_height_of_the_robots_top
             plane.seen_px[3, 5], project(known.camera, known.view, world)[0], atol=1e-9
         )
     assert reading.length == SIZE[0]
-    assert Plain.of(known).plane.cell == pytest.approx(SIZE[0] / Plain.cells)
+    assert Reading.of(known).plane.cell == pytest.approx(SIZE[0] / CELLS)
 
 
 def test_the_raster_reaches_half_a_robot_beyond_the_area_of_the_search(known):
-    plane, half = Plain.of(known).plane, 0.5 * np.hypot(*SIZE)
+    plane, half = Reading.of(known).plane, 0.5 * np.hypot(*SIZE)
     np.testing.assert_allclose(plane.low, known.area[0] - half)
     np.testing.assert_allclose(plane.high, known.area[1] + half)
 
 
-def test_the_body_has_a_margin_of_its_class_in_lengths_of_the_robot(known):
-    class Wide(Plain):
-        margin = 0.25
-
-    cells = 20
-    plain, wide = Plain.of(known, cells=cells).body, Wide.of(known, cells=cells).body
-    assert plain.x.shape == (20, 20)
-    assert wide.x.shape == (30, 30)
-    assert wide.margin == 5
-
-
 def test_points_are_used_that_show_floor_or_robot_in_the_picture(known):
-    reading = Plain.of(known)
+    reading = Reading.of(known)
     column, row = np.moveaxis(reading.plane.seen_px, -1, 0)
     outside = (column < 0) | (row < 0) | (column > 639) | (row > 399)
     assert outside.any()
     np.testing.assert_array_equal(reading.used, ~outside)
     hidden = known.hidden.copy()
     hidden[150:250, 200:300] = True
-    used = Plain.of(replace(known, hidden=hidden)).used
+    used = Reading.of(replace(known, hidden=hidden)).used
     within = (row > 150) & (row < 249) & (column > 200) & (column < 299)
     around = (row > 140) & (row < 260) & (column > 190) & (column < 310)
     assert within.any()
@@ -78,7 +56,7 @@ def test_points_are_used_that_show_floor_or_robot_in_the_picture(known):
 
 
 def test_the_picture_on_the_raster_shows_the_robot_where_it_is(known):
-    reading = Plain.of(known)
+    reading = Reading.of(known)
     blue = reading.picture[..., 0] - reading.picture[..., 2]
     row, column = np.argwhere(blue > 40).mean(axis=0)
     np.testing.assert_allclose(reading.plane.xy_at(row, column), AT[:2], atol=0.03)

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Exposures of a marked robot are found, and none is made up."""
+"""Exposures of a robot are found by its marker or by how one of them looks, and none is made up."""
 
 import cv2
 import numpy as np
 import pytest
 
-from tracking.body import marker_template
+from support.drawn_board import composite, found_in, steady_walk
 from tracking.camera import Camera, CameraPose, project
-from tracking.composite import Merged, find_exposures, order_exposures
+from tracking.composite import find_exposures, order_exposures
 from tracking.errors import CompositeError
 from tracking.markers import marker_picture, square_homography
-from tracking.pose import BodyPrior, RobotMarker, rotation_with_derivatives
+from tracking.pose import BodyPrior, RobotMarker, fit_pose, rotation_with_derivatives
 
 LENS = Camera((800, 500), np.array([[900.0, 0, 400], [0, 900, 250], [0, 0, 1]]), np.zeros(5))
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
@@ -40,8 +40,27 @@ def exposure_of(planar, rng, number=3):
     return np.clip(picture, 0, 255), layers[1] > 0.05
 
 
-def composite_of(walk, kind, rng):
-    return merged([exposure_of(planar, rng) for planar in walk], kind)
+def pasted(pairs):
+    whole = pairs[0][0].copy()
+    for picture, mask in pairs:
+        whole[mask] = picture[mask]
+    return colours(whole)
+
+
+def colours(grey):
+    return np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)
+
+
+def pose_of(sighting):
+    return fit_pose(
+        LENS, VIEW, points_body=MARKER.points_body, corners_px=sighting.corners_px,
+        covariance=sighting.covariance, prior=PRIOR,
+    )  # fmt: skip
+
+
+def exposures_in(picture, **other):
+    asked = {"body_size": (0.16, 0.16), "near": (0, 0), "reach": 0.3} | other
+    return find_exposures(picture, LENS, VIEW, marker=MARKER, pose_of=pose_of, prior=PRIOR, **asked)
 
 
 @pytest.fixture(scope="module")
@@ -51,29 +70,8 @@ def exposures():
     return [exposure_of(planar, rng) for planar in WALK]
 
 
-def merged(pairs, kind):
-    stack = np.stack([picture for picture, _ in pairs])
-    if kind == "mean":
-        whole = stack.mean(axis=0)
-    elif kind == "darkest":
-        whole = stack.min(axis=0)
-    else:
-        whole = pairs[0][0].copy()
-        for picture, mask in pairs:
-            whole[mask] = picture[mask]
-    return np.repeat(whole.astype(np.uint8)[:, :, None], 3, axis=2)
-
-
-@pytest.mark.parametrize(
-    "kind", [pytest.param("pasted", marks=pytest.mark.long), "mean",
-             pytest.param("darkest", marks=pytest.mark.long)],
-)  # fmt: skip
-def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
-    picture = merged(exposures, kind)
-    found = find_exposures(
-        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, merged=Merged(kind),
-        near=(-0.1, 0.0), reach=0.5,
-    )  # fmt: skip
+def test_exposures_apart_are_all_found_and_in_order(exposures):
+    found = exposures_in(pasted(exposures), near=(-0.1, 0.0), reach=0.5)
     poses = np.array([exposure.alignment.pose.planar for exposure in found])
     assert len(poses) == len(WALK)
     error = poses[list(order_exposures(poses))] - WALK
@@ -83,11 +81,8 @@ def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
 
 def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     walk = np.array([[-0.2, 0.0, 0.0], [-0.105, 0.0, 0.0], [0.2, 0.0, 0.0]])
-    picture = composite_of(walk, "pasted", np.random.default_rng(1))
-    found = find_exposures(
-        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, merged=Merged.PASTED,
-        body_size=(0.16, 0.16), near=(0, 0), reach=0.3,
-    )  # fmt: skip
+    rng = np.random.default_rng(1)
+    found = exposures_in(pasted([exposure_of(planar, rng) for planar in walk]))
     poses = np.array([exposure.alignment.pose.planar for exposure in found])
     distances = np.hypot(*(poses[:, None, :2] - walk[None, :, :2]).transpose(2, 0, 1))
     assert sorted(distances.argmin(axis=1)) == [0, 1, 2]
@@ -95,22 +90,28 @@ def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     assert min(exposure.visible for exposure in found) < 0.95
 
 
-def test_an_empty_floor_has_no_exposure():
-    picture = composite_of(np.array([[9.0, 9.0, 0.0]]), "pasted", np.random.default_rng(2))
-    with pytest.raises(CompositeError, match="no exposure"):
-        find_exposures(
-            picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR,
-            merged=Merged.PASTED, near=(0, 0), reach=0.3,
-        )  # fmt: skip
+@pytest.mark.parametrize(("planar", "number"), [((9.0, 9.0, 0.0), 3), ((0.0, 0.0, 0.3), 43)])
+def test_an_empty_floor_and_another_marker_have_no_exposure(planar, number):
+    picture, _ = exposure_of(planar, np.random.default_rng(2), number)
+    with pytest.raises(CompositeError, match=r"no exposure .* give the photographs themselves"):
+        exposures_in(colours(picture))
 
 
-def test_a_marker_of_the_floor_is_no_exposure_where_it_is_known_to_lie():
-    picture, board = exposure_of([0.0, 0.0, 0.3], np.random.default_rng(3), number=43)
-    pixels = np.repeat(picture.astype(np.uint8)[:, :, None], 3, axis=2)
-    asked = {
-        "template": marker_template(MARKER), "prior": PRIOR, "merged": Merged.PASTED,
-        "near": (0, 0), "reach": 0.3,
-    }  # fmt: skip
-    assert len(find_exposures(pixels, LENS, VIEW, **asked)) == 1  # number 43 looks like number 3
-    with pytest.raises(CompositeError, match="no exposure"):
-        find_exposures(pixels, LENS, VIEW, hidden=board, **asked)
+def test_exposures_without_a_marker_that_overlap_are_found_in_order_and_none_is_made_up():
+    walk = steady_walk((-0.22, -0.1, 0.15), 0.11, 0.12, 5)
+    poses = found_in(composite(walk), walk[-1], near=(0.0, 0.0), reach=0.35)
+    assert len(poses) == len(walk)
+    assert np.abs(poses[:, :2] - walk[:, :2]).max() < 5e-3
+    assert np.degrees(np.abs(poses[:, 2] - walk[:, 2]).max()) < 2.5
+
+
+def test_one_exposure_alone_is_no_composite():
+    planar = np.array([0.0, 0.0, 0.3])
+    with pytest.raises(CompositeError, match=r"no second exposure .* give the photographs themse"):
+        found_in(composite(planar[None]), planar, near=(0, 0), reach=0.15)
+
+
+def test_a_known_exposure_cut_by_the_edge_is_refused():
+    picture = composite(np.array([[0.0, 0.0, 0.3]]))
+    with pytest.raises(CompositeError, match="edge"):
+        found_in(picture, np.array([0.66, 0.0, 0.0]), near=(0.5, 0), reach=0.4)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from tracking import track_photos
-from tracking.composite import Merged
 from tracking.errors import CompositeError, NoUsablePhoto
 from tracking.images import PhotoTimes
 
@@ -34,10 +33,10 @@ def test_without_a_marker_the_marked_top_is_tracked(scene, photos, walk, top):
 
 def test_one_picture_that_is_merged_is_no_photograph(scene, photos):
     with pytest.raises(CompositeError, match="body has no size"):
-        track_photos(replace(scene, merged=Merged.MEAN), photos, times_of=every_two_seconds)
+        track_photos(replace(scene, is_composite=True), photos, times_of=every_two_seconds)
 
 
-@pytest.mark.parametrize("merged", [None, Merged.MEAN])
-def test_no_photographs_at_all_are_refused(merged, scene):
+@pytest.mark.parametrize("is_composite", [False, True])
+def test_no_photographs_at_all_are_refused(is_composite, scene):
     with pytest.raises(NoUsablePhoto, match="no photographs"):
-        track_photos(replace(scene, merged=merged), (), times_of=every_two_seconds)
+        track_photos(replace(scene, is_composite=is_composite), (), times_of=every_two_seconds)

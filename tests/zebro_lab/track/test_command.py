@@ -4,14 +4,12 @@
 import subprocess
 import sys
 from pathlib import Path
-from typing import get_args
 
 import pytest
 
 from support.bundled_walk import PHOTOS, WALK, Nobody
 from support.commands import COMMAND
 from zebro_lab.track.command import track_lines
-from zebro_lab.track.request import MergedAs
 from zebro_lab.track.stage import track
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
@@ -95,19 +93,6 @@ def test_nowhere_to_write_and_nothing_to_say_are_wrong_usage(run_command, files)
     code, _, err = run_command("annotate", PHOTOS, "--out", files / "said.toml")
     assert code == 2
     assert "no annotation is given" in err
-
-
-def test_how_a_composite_was_merged_is_asked_for_with_a_line_for_each_way(run_command, files):
-    composite = WALK / "composite/simulated_pasted.jpg"
-    code, _, err = run_command(
-        "track", composite, "--camera", files / "camera.toml", "--floor", files / "floor.toml",
-        "--robot", WALK / "robot.toml", "--interval", "4", "--out", files / "out",
-    )  # fmt: skip
-    assert code == 2
-    assert "'--merged'" in err
-    for kind in get_args(MergedAs):
-        assert f"\n{kind}: " in err
-    assert not (files / "out").exists()
 
 
 def test_a_track_is_summed_up_in_lines_that_hold_no_line_breaks(request_, undrawn):

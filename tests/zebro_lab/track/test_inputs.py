@@ -6,10 +6,8 @@ from dataclasses import replace
 import pytest
 
 from support.bundled_walk import COMPOSITE
-from tracking.composite import Merged
-from tracking.errors import PhotoError
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.track.inputs import HowMergedUnknown, read_inputs
+from zebro_lab.track.inputs import read_inputs
 from zebro_lab.track.photo_sequence import open_photos
 from zebro_lab.track.request import TimeRequest
 
@@ -17,7 +15,7 @@ from zebro_lab.track.request import TimeRequest
 def checked(asked):
     inputs = read_inputs(asked)
     with open_photos(asked.photos, asked.times) as sequence:
-        inputs.require_complete(sequence)
+        inputs.require_complete()
         return inputs, sequence
 
 
@@ -27,26 +25,16 @@ def test_what_the_files_say_is_known_of_the_scene(request_):
     assert scene.floor.marker_ids == (10, 11, 12, 13)
     assert scene.robot is not None
     assert scene.robot.marker.marker_id == 0
-    assert scene.merged is None
+    assert not scene.is_composite
     assert scene.body_size is not None
     assert inputs.source_of(sequence) == "sim:photographs"
     assert replace(inputs, request=replace(request_, source="real")).source_of(sequence) == "real"
 
 
-def test_a_composite_picture_is_not_guessed_to_be_merged_in_one_way(request_):
-    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(4.0))
-    with pytest.raises(HowMergedUnknown) as unknown:
-        checked(asked)
-    for kind in Merged:
-        assert f"\n{kind}: " in unknown.value.problem
-    inputs, sequence = checked(replace(asked, merged=Merged.PASTED))
-    assert inputs.counted_times(sequence).times is None  # known once exposures are counted
-
-
-def test_what_is_no_picture_is_told_of_as_such(request_):
-    asked = replace(request_, photos=request_.floor, times=TimeRequest(4.0))
-    with pytest.raises(PhotoError, match="not a readable picture"):
-        checked(asked)
+def test_one_picture_is_a_composite_whose_exposures_are_not_counted_yet(request_):
+    inputs, sequence = checked(replace(request_, photos=COMPOSITE, times=TimeRequest(4.0)))
+    assert inputs.scene_of(sequence).is_composite
+    assert inputs.counted_times(sequence).times is None
 
 
 def test_without_a_marker_the_robots_top_must_be_marked(request_):

@@ -3,14 +3,11 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import get_args
 
 import pytest
 
-from support.bundled_walk import COMPOSITE
-from tracking.composite import Merged
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.track.request import MergedAs, TimeRequest, TrackRequest
+from zebro_lab.track.request import TimeRequest, TrackRequest
 
 ASKED = TrackRequest(Path("photos"), Path("camera.toml"), Path("floor.toml"))
 
@@ -25,16 +22,6 @@ def test_a_track_is_written_where_told_or_into_its_run():
 def test_every_file_that_is_named_is_an_input():
     asked = replace(ASKED, run=Path("run"), times=TimeRequest(table=Path("t.csv")))
     assert set(map(str, asked.inputs)) == {"photos", "camera.toml", "floor.toml", "t.csv", "run"}
-
-
-def test_photographs_of_a_folder_are_not_merged(request_):
-    with pytest.raises(SettingsError, match="only to one composite picture"):
-        replace(request_, merged=Merged.MEAN)
-    assert replace(request_, photos=COMPOSITE, merged=Merged.MEAN).merged is Merged.MEAN
-
-
-def test_the_option_knows_all_ways_to_merge():
-    assert set(get_args(MergedAs)) == set(Merged)
 
 
 def test_the_mean_height_is_as_uncertain_as_the_bounce_unless_said():

@@ -12,7 +12,7 @@ import pytest
 
 from support.bundled_walk import COMPOSITE, SOME, Nobody, truth
 from tracking.body import Alignment
-from tracking.composite import Exposure, Merged
+from tracking.composite import Exposure
 from tracking.errors import NoUsablePhoto, TrackingError, TrackStopped
 from tracking.path import TRACK_COLUMNS
 from tracking.photos import search
@@ -124,7 +124,7 @@ def walk_of_the_composite() -> pd.DataFrame:
 
 @pytest.mark.long
 def test_exposures_of_a_composite_picture_are_found(request_, undrawn):
-    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(4.0))
     result = track(asked, Nobody())
     assert result.source == "sim:photographs"
     true = walk_of_the_composite()
@@ -135,22 +135,21 @@ def test_exposures_of_a_composite_picture_are_found(request_, undrawn):
 
 
 @pytest.fixture
-def exposures(monkeypatch, request) -> pd.DataFrame:
+def exposures(monkeypatch) -> pd.DataFrame:
     """Let the composite's exposures be found where they are, in no order; return the walk."""
-    score = getattr(request, "param", 0.9)
     true = walk_of_the_composite()
     poses = [
         BodyPose(np.array([x, y, 0.06, 0, 0, yaw]), 1e-6 * np.eye(6))
         for x, y, yaw in true[["x", "y", "yaw"]].to_numpy()
     ]
     shuffled = np.random.default_rng(0).permutation(len(poses))
-    found = tuple(Exposure(Alignment(poses[k], score, 0.0), 1.0) for k in shuffled)
+    found = tuple(Exposure(Alignment(poses[k], 0.9, 0.0), 1.0) for k in shuffled)
     monkeypatch.setattr("tracking.photos.exposures.find_exposures", lambda *_, **__: found)
     return true
 
 
 def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, exposures):
-    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(4.0))
     result = track(asked, Nobody())
     observations = result.tracked.track.observations
     assert [seen.photo for seen in observations] == [
@@ -161,18 +160,9 @@ def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, expos
     np.testing.assert_allclose(np.diff([seen.t for seen in observations]), 4.0)
 
 
-@pytest.mark.parametrize(
-    ("exposures", "warned"), [(0.9, False), (0.0, True)], indirect=["exposures"]
-)
-def test_exposures_that_could_not_be_aligned_are_told_of(request_, undrawn, exposures, warned):
-    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
-    notes = track(asked, Nobody()).tracked.notes
-    assert any("only roughly" in note for note in notes) == warned
-
-
 def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):
     with pytest.raises(SettingsError, match="--interval"):
-        track(replace(request_, photos=COMPOSITE, merged=Merged.PASTED), Nobody())
+        track(replace(request_, photos=COMPOSITE), Nobody())
 
 
 def test_a_marker_of_another_side_is_noticed(request_, undrawn):

@@ -8,7 +8,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from model.arrays import Array
 from tracking.body.plane import Plane
 from tracking.composite.body_raster import BodyRaster
 from tracking.composite.known import KnownExposure

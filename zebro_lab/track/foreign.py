@@ -7,26 +7,18 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+import pandas as pd
 
 from model.arrays import Array
 from model.poses import wrap
 from model.travel import has_travelled, travel_direction
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.mcap.ros_bags import is_ros_log
-from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
-from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.track.file import TrackFile, track_of_table, tum_lines
 from zebro_lab.track.foreign_sd import ADVICE, PoseSd
-from zebro_lab.track.trajectory.file import Trajectory, number_lines_of, read_trajectory
-from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
-from zebro_lab.track.trajectory.table import (
-    COVARIANCE,
-    MAPPED_UNITS,
-    QUATERNION,
-    read_table_columns,
-    recognised,
-)
+from zebro_lab.track.trajectory.file import Trajectory, read_trajectory
+from zebro_lab.track.trajectory.request import TrajectoryRequest
+from zebro_lab.track.trajectory.table import COVARIANCE
 
 TRACK_UNITS: Final[Mapping[str, str]] = {
     "t_s": "s", "t_sigma": "s", "x_m": "m", "y_m": "m", "yaw_rad": "rad", **COVARIANCE, "z_m": "m",
@@ -100,40 +92,36 @@ def read_foreign_track(
 
     Raises:
         NotFound: A file does not exist.
-        DataError: As in `read_trajectory` and `track_of_foreign_table`; or there are no times.
+        DataError: As in `read_trajectory`; or there are no times, fewer than three poses, or a
+            covariance has a negative eigenvalue.
         SettingsError: An option does not fit the file, or has no effect on it; or the path extends
             across the plane of the floor, and that is not stated.
     """
-    table = None if is_ros_log(path) else _planar_table(path, mapping, request)
-    if table is not None:
-        _require_unused(path, request)
-        return track_of_foreign_table(table, mapping, sd=sd)
     trajectory = read_trajectory(path, request, mapping=mapping, topic=topic, topics=topics)
+    if trajectory.is_planar_table:
+        _require_unused(path, request)
     if not trajectory.timed:
         raise DataError("has no times; give the file of its times with --times", file=path)
-    if trajectory.leaves_plane and request.plane is None:
+    if request.plane is None and not trajectory.is_planar_table and trajectory.leaves_plane:
         raise SettingsError(
             f"{path} extends farther across the plane {trajectory.plane} than in it; state the "
             "plane of the floor, such as xy or xz",
             key="--plane",
         )
-    own = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped, keep=())
-    track = track_of_foreign_table(_flat(trajectory), own, sd=sd)
-    files = tuple(dict.fromkeys((*trajectory.files, *track.files[1:])))
-    return replace(track, files=files, topic=trajectory.topic)
-
-
-def _planar_table(
-    path: Path, mapping: MappedColumns, request: TrajectoryRequest
-) -> RawTable | None:
-    """Return the table of a path in the plane; None for any other trajectory."""
-    if number_lines_of(path, request.layout_of(0)) is not None:
-        return None
-    if request.plane not in (None, Plane.XY):
-        return None
-    table = read_table_file(path, sheet=mapping.sheet)
-    columns = recognised(table, mapping)
-    return None if all(columns.has(table, name) for name in QUATERNION) else table
+    columns = _planar_columns(trajectory)
+    if sd is not None:
+        columns |= sd.columns(columns, path)
+    notes = (*trajectory.notes, *_sideways(trajectory))
+    source = None if trajectory.source == "unknown" else trajectory.source
+    series = {name: pd.Series(values) for name, values in columns.items()}
+    rows = replace(trajectory.rows, columns=series, units={}, repeated=frozenset(), unreadable={})
+    track = track_of_table(replace(rows, source=source, notes=notes))
+    with_covariance = set(COVARIANCE) <= set(columns)
+    if track.poses.has_yaw and not with_covariance:
+        track = replace(track, notes=(*track.notes, f"a fit of walks needs a covariance: {ADVICE}"))
+    more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
+    files = tuple(dict.fromkeys((*trajectory.files, *([mapping.file] if mapping.file else []))))
+    return ForeignTrack(track, more, with_covariance, files, trajectory.topic)
 
 
 def _require_unused(path: Path, request: TrajectoryRequest) -> None:
@@ -147,32 +135,25 @@ def _require_unused(path: Path, request: TrajectoryRequest) -> None:
             )
 
 
-def _flat(trajectory: Trajectory) -> RawTable:
-    """Return a trajectory as a table of t_s, x_m, y_m, yaw_rad and z_m, as far as known."""
-    import pandas as pd
-
+def _planar_columns(trajectory: Trajectory) -> dict[str, Array]:
+    """Return the columns of `track.csv` that are known of a trajectory in its plane, in SI."""
+    if trajectory.is_planar_table:
+        return {n: trajectory.columns[n] for n in TRACK_UNITS if n in trajectory.columns}
     poses = trajectory.poses
     x, y = poses.position.T
     columns = {"t_s": poses.t, "x_m": x, "y_m": y}
-    notes = trajectory.notes
     if poses.has_yaw:
-        columns["yaw_rad"] = poses.yaw
-        notes = (*notes, *_sideways(trajectory))
-        if (covariance := trajectory.planar_covariance) is not None:
-            upper = zip(COVARIANCE, zip(*np.triu_indices(3), strict=True), strict=True)
-            columns |= {name: covariance[:, i, j] for name, (i, j) in upper}
+        columns |= {"yaw_rad": poses.yaw, **trajectory.planar_covariance}
     if trajectory.in_space:
         columns["z_m"] = trajectory.height
-    source = None if trajectory.source == "unknown" else trajectory.source
-    return RawTable(
-        trajectory.file, {n: pd.Series(v) for n, v in columns.items()}, source=source, notes=notes,
-        units={"yaw_rad": "rad"},
-    )  # fmt: skip
+    return columns
 
 
 def _sideways(trajectory: Trajectory) -> tuple[str, ...]:
     """Return a note if the body's forward axis mostly points elsewhere than it travels."""
     poses = trajectory.poses
+    if trajectory.is_planar_table or not poses.has_yaw:
+        return ()
     apart = float(np.median(np.abs(wrap(poses.yaw - travel_direction(poses)))))
     if apart < _SIDEWAYS or not has_travelled(poses):
         return ()
@@ -180,38 +161,3 @@ def _sideways(trajectory: Trajectory) -> tuple[str, ...]:
         f"{trajectory.file.name}: the heading, that of the {trajectory.forward} axis, is mostly "
         f"{np.degrees(apart):.0f} deg off the direction of travel; is another --forward meant?",
     )
-
-
-def track_of_foreign_table(
-    table: RawTable, mapping: MappedColumns, *, sd: PoseSd | None = None
-) -> ForeignTrack:
-    """Convert a path in a table of another program to SI and validate it.
-
-    Args:
-        table: The table.
-        mapping: Header, unit and sign of each column of `TRACK_UNITS`; the headers `t`, `x`, `y`,
-            `z` and `yaw` are recognised without an entry.
-        sd: Standard deviations of the poses of a table without covariance; None if not known.
-
-    Raises:
-        SettingsError: `sd` does not fit the table.
-        DataError: Time, x or y is missing, a cell holds no finite number, time does not increase, a
-            covariance has a negative eigenvalue, or there are fewer than three poses; names the
-            cell.
-    """
-    import pandas as pd
-
-    read = read_table_columns(table, mapping, TRACK_UNITS, what="track")
-    columns = dict(read.columns)
-    if sd is not None:
-        columns |= sd.columns(columns, table.path)
-    si = {name: pd.Series(values) for name, values in columns.items()}
-    source = mapping.source or table.source
-    checked = RawTable(table.path, si, source=source, notes=(*table.notes, *read.notes),
-                       header_line=table.header_line, kept=read.table.kept)  # fmt: skip
-    more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
-    files = (table.path, *([mapping.file] if mapping.file else []))
-    track, with_covariance = track_of_table(checked), set(COVARIANCE) <= set(columns)
-    if track.poses.has_yaw and not with_covariance:
-        track = replace(track, notes=(*track.notes, f"a fit of walks needs a covariance: {ADVICE}"))
-    return ForeignTrack(track, more, with_covariance, files)

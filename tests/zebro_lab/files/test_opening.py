@@ -12,7 +12,7 @@ from zebro_lab.files.opening import read_bytes, read_unpacked
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.slip_rig_log import read_log
 from zebro_lab.tables.table_files import read_table_file
-from zebro_lab.track.trajectory.numbers import read_number_lines
+from zebro_lab.track.trajectory.layouts import read_number_lines
 
 
 def test_what_is_no_file_is_told_with_its_name_once(tmp_path):

@@ -11,9 +11,8 @@ from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.tables.columns_file import read_section
 from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
-from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.track.file import tum_lines
-from zebro_lab.track.foreign import TRACK_UNITS, read_foreign_track, track_of_foreign_table
+from zebro_lab.track.foreign import read_foreign_track
 from zebro_lab.track.trajectory.request import Axis, TrajectoryRequest
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
@@ -24,13 +23,13 @@ COVARIANCE = {
 }  # fmt: skip
 
 
-def table(tmp_path, **columns) -> RawTable:
-    series = {name: pd.Series(values, dtype=float) for name, values in columns.items()}
-    return RawTable(tmp_path / "path.csv", series)
+def table(tmp_path, **columns) -> Path:
+    pd.DataFrame(columns).to_csv(tmp_path / "path.csv", index=False)
+    return tmp_path / "path.csv"
 
 
-def track_of(read: RawTable, zero: float = 0.0):
-    return track_of_foreign_table(read, canonical_columns(TRACK_UNITS)).since(zero)
+def track_of(file: Path, zero: float = 0.0):
+    return read(file).since(zero)
 
 
 def read(file: Path, **how):
@@ -70,7 +69,7 @@ def test_a_covariance_comes_back_where_all_of_it_is_there(tmp_path):
 
 
 def test_a_missing_place_is_named(tmp_path):
-    with pytest.raises(DataError, match="x_m of the track"):
+    with pytest.raises(DataError, match="x_m of the trajectory"):
         track_of(table(tmp_path, t_s=[0, 1, 2], y_m=[0, 0, 0]))
 
 
@@ -99,7 +98,7 @@ def test_a_tum_file_comes_back_as_it_was_written(tmp_path):
     ("text", "message"),
     [
         ("", "has no pose"),
-        ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.*found 3 numbers"),
+        ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.*found '1 1 0'"),
         ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.*length 2"),
         ("0 0 0 0 0 0 zero 1\n", "line of words; expected lines of 8"),
     ],

@@ -1,26 +1,33 @@
 # SPDX-License-Identifier: MIT
 """Read a trajectory of another program: TUM, KITTI, EuRoC, a table or a ROS log."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from model.arrays import Array
 from model.counted import counted
 from model.poses import Poses
 from model.rigid_path import RigidPath, plane_axes, rotations_of_quaternions
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
-from zebro_lab.tables.mapped_columns import MappedColumns
-from zebro_lab.tables.table_files import has_table_name
-from zebro_lab.track.trajectory.layouts import OrderedNumbers, ordered
-from zebro_lab.track.trajectory.logged_poses import LoggedPoses, read_logged_poses
-from zebro_lab.track.trajectory.numbers import NumberLines, read_number_lines
+from zebro_lab.mcap.ros_bags import bag_files
+from zebro_lab.mcap.ros_log import is_ros_log
+from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.track.trajectory.layouts import read_number_lines, read_number_table
+from zebro_lab.track.trajectory.logged_poses import read_logged_poses
 from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
-from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
-from zebro_lab.track.trajectory.table import read_table_trajectory
+from zebro_lab.track.trajectory.table import (
+    COVARIANCE,
+    MAPPED_UNITS,
+    QUATERNION,
+    TableColumns,
+    read_table_columns,
+)
 
 _TILTED = np.radians(5.0)  # a body that leaves the plane by more is told of
 
@@ -33,10 +40,11 @@ class Trajectory:
         file: The file.
         layout: Its layout.
         path: Poses in space; z is 0 where it is not known, and times are row numbers without times.
-        timed: Whether it has times.
-        in_space: Whether z is known.
+        columns: Columns in SI by canonical name, shape (n,) each.
+        rows: The rows of the file that the poses are, for messages.
         plane: Axes that span the floor.
         forward: Axis of the body that points ahead.
+        timed: Whether it has times.
         source: Where the poses come from, as stated; else "unknown".
         notes: Notes on how the file was read, one line each.
         files: Every file read.
@@ -48,15 +56,27 @@ class Trajectory:
     file: Path
     layout: Layout
     path: RigidPath
-    timed: bool
-    in_space: bool
+    columns: Mapping[str, Array]
+    rows: RawTable
     plane: Plane
     forward: Axis
+    timed: bool = True
     source: str = "unknown"
     notes: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
     topic: str | None = None
     covariance: Array | None = None
+
+    @property
+    def in_space(self) -> bool:
+        """Whether z is known."""
+        return "z_m" in self.columns
+
+    @property
+    def is_planar_table(self) -> bool:
+        """Whether it is a table of x, y and perhaps heading, whose columns are the path's."""
+        planar = self.layout is Layout.TABLE and self.plane is Plane.XY
+        return planar and not set(QUATERNION) <= set(self.columns)
 
     @property
     def poses(self) -> Poses:
@@ -82,14 +102,16 @@ class Trajectory:
         return self.path.position @ self.normal
 
     @property
-    def planar_covariance(self) -> Array | None:
-        """Covariance of x, y and heading in the plane, shape (n, 3, 3) [m, rad]; None without."""
+    def planar_covariance(self) -> Mapping[str, Array]:
+        """Columns `cov_xx` to `cov_yawyaw` of the covariance in the plane; empty without it."""
         if self.covariance is None:
-            return None
+            return {}
         chosen = np.zeros((3, 6))
         chosen[[0, 1], plane_axes(self.plane)] = 1.0
         chosen[2, 3:] = self.normal  # the heading turns about it
-        return chosen @ self.covariance @ chosen.T
+        planar = chosen @ self.covariance @ chosen.T
+        upper = zip(COVARIANCE, zip(*np.triu_indices(3), strict=True), strict=True)
+        return {name: planar[:, i, j] for name, (i, j) in upper}
 
 
 def read_trajectory(
@@ -106,7 +128,8 @@ def read_trajectory(
     Args:
         path: The file.
         request: How to read it.
-        mapping: Headers and units of the columns of a table.
+        mapping: Headers and units of the columns of a table; those that it leaves at their
+            canonical names are recognised by their headers.
         which: 0 for the first file of a command, 1 for the second.
         topic: Topic to read from a ROS log; None for one of `topics`, else the only one with poses.
         topics: Topics of a ROS log to prefer, also such of other messages.
@@ -118,134 +141,100 @@ def read_trajectory(
         SettingsError: An option does not fit the file.
     """
     stated = request.layout_of(which)
+    mapping = mapping or canonical_columns(MAPPED_UNITS)
+    plain = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped, keep=())
     if is_ros_log(path):
-        _require_no_other(path, request, which)
-        found = read_logged_poses(path, topic=topic, topics=topics)
-        return _with_all_rows(_of_ros_log(path, request, found), mapping)
+        _require_no_other(path, request, stated)
+        logged = read_logged_poses(path, topic=topic, topics=topics)
+        found = _trajectory(path, Layout.ROS, logged.table, plain, request)
+        kept = found.rows.kept
+        covariance = logged.covariance if kept is None or logged.covariance is None else (
+            logged.covariance[kept]
+        )  # fmt: skip
+        found = replace(
+            found, topic=logged.topic, covariance=covariance, files=tuple(bag_files(path))
+        )
+        return _with_all_rows(found, mapping)
     if stated is Layout.ROS:
         raise DataError("is no ROS log by its name; expected .mcap, .db3, .bag or a bag's folder, "
                         "or another --layout", file=path)  # fmt: skip
-    numbers = number_lines_of(path, stated)
+    numbers = read_number_table(path, stated, plane=request.plane)
     if numbers is None:
-        if stated not in (None, Layout.TABLE):
-            raise DataError(f"has a line of words; expected lines of numbers ({stated})", file=path)
-        return _of_table(path, request, mapping)
-    plane, forward = _frame(request, is_kitti=_has_matrices(numbers, stated))
-    read = ordered(numbers, stated, plane=plane)
-    t, notes, files = _times(read, numbers, request.times)
-    kept, more = kept_stamps(t, read.poses, fault=numbers.fault)
+        table = read_table_file(path, sheet=mapping.sheet)
+        return _trajectory(path, Layout.TABLE, table, mapping, request)
+    layout, table = numbers
+    times = request.times if layout is Layout.KITTI else None
+    if times is not None:
+        table = _with_times(table, times)
+    found = _trajectory(path, layout, table, plain, request)
+    timed = layout is not Layout.KITTI or times is not None
+    files = (path, *((times,) if times is not None else ()))
+    return _with_all_rows(replace(found, timed=timed, files=files), mapping)
+
+
+def _trajectory(
+    path: Path, layout: Layout, table: RawTable, mapping: MappedColumns, request: TrajectoryRequest
+) -> Trajectory:
+    """Convert a table of poses to a trajectory, with notes on what is doubtful."""
+    plane = request.plane or (Plane.XZ if layout is Layout.KITTI else Plane.XY)
+    forward = request.forward or (Axis.Z if "z" in plane else Axis.X)
+    read = read_table_columns(table, mapping, MAPPED_UNITS)
+    columns = read.columns
+    if "z_m" not in columns and plane is not Plane.XY:
+        raise SettingsError(f"{path} has no column z; leave --plane out", key="--plane")
+    zero = np.zeros(len(read.table))
+    position = np.column_stack([columns.get(name, zero) for name in ("x_m", "y_m", "z_m")])
     trajectory = Trajectory(
         file=path,
-        layout=read.layout,
-        path=RigidPath(t, read.position, read.rotation).part(kept),
-        timed=read.t is not None or request.times is not None,
-        in_space=True,
+        layout=layout,
+        path=RigidPath(columns["t_s"], position, _rotation(read)),
+        columns=columns,
+        rows=read.table,
         plane=plane,
         forward=forward,
-        notes=_named(path, (*notes, *more)),
-        files=(path, *files),
+        source=mapping.source or table.source or "unknown",
+        notes=_named(path, (*table.notes, *read.notes)),
+        files=(path, *([mapping.file] if mapping.file and layout is Layout.TABLE else [])),
     )
-    return _with_all_rows(_with_doubts(trajectory), mapping)
-
-
-def number_lines_of(path: Path, stated: Layout | None) -> NumberLines | None:
-    """Read lines of numbers; None for a table, which may be binary or in another encoding."""
-    if stated is Layout.TABLE or path.suffix.lower() in (".parquet", ".xlsx", ".gz"):
-        return None
-    try:
-        numbers = read_number_lines(path)
-    except DataError as error:
-        if has_table_name(path) and isinstance(error.__cause__, UnicodeDecodeError):
-            return None
-        raise
-    if numbers is None and not has_table_name(path):
-        raise DataError("has a line of words; expected lines of 8 (TUM) or 12 (KITTI) numbers, or "
-                        "a table with a suffix such as .csv", file=path)  # fmt: skip
-    return numbers
-
-
-def _has_matrices(numbers: NumberLines, stated: Layout | None) -> bool:
-    return stated is Layout.KITTI or (stated is None and numbers.values.shape[1] == 12)
-
-
-def _frame(request: TrajectoryRequest, *, is_kitti: bool) -> tuple[Plane, Axis]:
-    plane = request.plane or (Plane.XZ if is_kitti else Plane.XY)
-    return plane, request.forward or (Axis.Z if "z" in plane else Axis.X)
-
-
-def _times(
-    read: OrderedNumbers, numbers: NumberLines, file: Path | None
-) -> tuple[Array, tuple[str, ...], Sequence[Path]]:
-    """Return times [s], from the file of times or row numbers where there are none, and notes."""
-    if read.t is not None:
-        factor, notes = stamp_factor(read.t, read.time_unit, fault=numbers.fault)
-        return read.t * factor, notes, ()
-    count = len(read.position)
-    if file is None:
-        return np.arange(count, dtype=float), (), ()
-    times = read_number_lines(file)
-    if times is None or times.values.shape[1] != 1:
-        raise SettingsError(f"{file} is not a file of one number a line", key="--times")
-    if len(times.values) != count:
-        raise SettingsError(
-            f"{file} has {counted(len(times.values), 'time')}, {numbers.file} has "
-            f"{counted(count, 'pose')}; expected as many of both",
-            key="--times",
-        )
-    t = times.values[:, 0]
-    factor, notes = stamp_factor(t, "s", fault=times.fault)
-    kept_stamps(
-        t, np.arange(count, dtype=float)[:, None], fault=times.fault
-    )  # times that do not increase
-    return t * factor, notes, (file,)
-
-
-def _of_table(path: Path, request: TrajectoryRequest, mapping: MappedColumns | None) -> Trajectory:
-    table = read_table_trajectory(path, mapping)
-    plane, forward = _frame(request, is_kitti=False)
-    if not table.in_space and plane is not Plane.XY:
-        raise SettingsError(f"{path} has no column z; leave --plane out", key="--plane")
-    trajectory = Trajectory(
-        path, Layout.TABLE, table.path, True, table.in_space, plane, forward, table.source,
-        _named(path, table.notes), table.files,
-    )  # fmt: skip
     return _with_doubts(trajectory)
 
 
-def _require_no_other(path: Path, request: TrajectoryRequest, which: int) -> None:
+def _rotation(read: TableColumns) -> Array | None:
+    """Return rotations by the quaternion, else by the heading; None without either."""
+    columns = read.columns
+    if set(QUATERNION) <= set(columns):
+        return rotations_of_quaternions(np.column_stack([columns[name] for name in QUATERNION]))
+    if "yaw_rad" not in columns:
+        return None
+    half = columns["yaw_rad"] / 2
+    zero = np.zeros_like(half)
+    return rotations_of_quaternions(np.column_stack([zero, zero, np.sin(half), np.cos(half)]))
+
+
+def _with_times(table: RawTable, file: Path) -> RawTable:
+    """Return a table of poses with the times of another file, one a line [s]."""
+    times = read_number_lines(file)
+    if times is None or times.rows.shape[1] != 1:
+        raise SettingsError(f"{file} is not a file of one number a line", key="--times")
+    if len(times.rows) != len(table):
+        raise SettingsError(
+            f"{file} has {counted(len(times.rows), 'time')}, {table.path} has "
+            f"{counted(len(table), 'pose')}; expected as many of both",
+            key="--times",
+        )
+    t = pd.Series(times.rows[:, 0])
+    own = RawTable(file, {"t_s": t}, header_line=times.line - 1)
+    own.require_increasing("t_s", t.to_numpy())
+    return replace(table, columns={**table.columns, "t_s": t}, units={})
+
+
+def _require_no_other(path: Path, request: TrajectoryRequest, stated: Layout | None) -> None:
     """Raise `SettingsError` for options that do not fit a ROS log."""
     if request.times is not None:
         raise SettingsError(f"{path} is a ROS log, whose messages have times; leave the option out",
                             key="--times")  # fmt: skip
-    if request.layout_of(which) not in (None, Layout.ROS):
+    if stated not in (None, Layout.ROS):
         raise SettingsError(f"{path} is a ROS log; leave the option out", key="--layout")
-
-
-def _of_ros_log(path: Path, request: TrajectoryRequest, found: LoggedPoses) -> Trajectory:
-    rows, quaternion = found.rows, found.quaternion
-
-    def fault(problem: str, index: int) -> DataError:
-        return DataError(f"message {index + 1} on topic {rows.topic}: {problem}", file=path)
-
-    t = np.array(rows.t)
-    poses = found.position if quaternion is None else np.hstack([found.position, quaternion])
-    kept, notes = kept_stamps(t, poses, fault=fault)
-    rotation = None if quaternion is None else rotations_of_quaternions(quaternion)
-    plane, forward = _frame(request, is_kitti=False)
-    trajectory = Trajectory(
-        file=path,
-        layout=Layout.ROS,
-        path=RigidPath(t, found.position, rotation).part(kept),
-        timed=True,
-        in_space=True,
-        plane=plane,
-        forward=forward,
-        notes=_named(path, (rows.told, *rows.notes, *notes)),
-        files=tuple(bag_files(path)),
-        topic=rows.topic,
-        covariance=None if found.covariance is None else found.covariance[kept].reshape(-1, 6, 6),
-    )
-    return _with_doubts(trajectory)
 
 
 def _with_all_rows(trajectory: Trajectory, mapping: MappedColumns | None) -> Trajectory:

@@ -1,159 +1,213 @@
 # SPDX-License-Identifier: MIT
-"""Tell TUM, KITTI and EuRoC trajectories apart, and order their numbers."""
+"""Read text files of lines of numbers as tables of poses: TUM, KITTI and EuRoC trajectories."""
 
-from dataclasses import dataclass
-from typing import Final
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final, NamedTuple
 
 import numpy as np
+import pandas as pd
+from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
-from model.rigid_path import plane_axes, rotations_of_quaternions
-from zebro_lab.files.errors import DataError, UnitError
-from zebro_lab.files.units import factor_to_si
-from zebro_lab.track.trajectory.headers import named_columns
-from zebro_lab.track.trajectory.numbers import NumberLines
+from model.counted import counted
+from model.rigid_path import plane_axes
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import read_text
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.table_files import has_table_name
 from zebro_lab.track.trajectory.request import Layout
+from zebro_lab.track.trajectory.table import named_columns
 
-_POSE: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
+_TUM: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
 _EUROC: Final = ("t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz")
-_MATRIX: Final = 12
-_TOLERANCE: Final = 0.05
-"""Largest error of a quaternion's length and of a product of two columns of a rotation."""
+_MATRIX: Final = 12  # numbers of a KITTI line
+_ROTATION_TOLERANCE: Final = 0.05  # of a product of two columns; files round to a few digits
 _UPRIGHT: Final = 0.1
 """Largest part of a quaternion across the normal of the floor for a body that is upright."""
+_EXPECTED: Final = {
+    None: "8 (TUM) or 12 (KITTI)",
+    Layout.TUM: "8 (time, position, quaternion)",
+    Layout.EUROC: "8 or more (time, position, quaternion)",
+    Layout.KITTI: "12 (three rows of a matrix)",
+}  # fmt: skip
 
 
-@dataclass(frozen=True)
-class OrderedNumbers:
-    """Numbers of a trajectory in a known order.
+class NumberLines(NamedTuple):
+    """Lines of equally many numbers.
 
     Attributes:
-        layout: Their layout.
-        t: Stamps in the file's unit, shape (n,); None without stamps.
-        time_unit: Unit that header or layout state for the stamps.
-        position: Positions, shape (n, 3) [m].
-        rotation: Rotations, shape (n, 3, 3).
-        poses: The numbers of each pose as in the file, shape (n, columns).
+        rows: The numbers, shape (n, columns).
+        line: Line of the first of them in the file, counted from 1.
+        separated: Whether commas or semicolons, not white space, separate them.
+        header: Words of the last comment line before them if they are as many as the columns, else
+            empty.
     """
 
-    layout: Layout
-    t: Array | None
-    time_unit: str
-    position: Array
-    rotation: Array
-    poses: Array
+    rows: Array
+    line: int
+    separated: bool
+    header: tuple[str, ...]
 
 
-def ordered(numbers: NumberLines, stated: Layout | None, *, plane: str) -> OrderedNumbers:
-    """Order the numbers of a trajectory by the layout stated, by its header, or by their count.
+def read_number_lines(path: Path) -> NumberLines | None:
+    """Read a text file of numbers; None if its first line that is no comment has other words.
 
-    Args:
-        numbers: The numbers.
-        stated: The layout that the user states; None for that of the file.
-        plane: Axes of the floor; a body that is upright on it shows whether w is first or last.
+    Empty lines and those that begin with # are skipped. Numbers are separated by commas, by
+    semicolons, or by white space.
 
     Raises:
-        DataError: The layout is not known or does not fit, or a rotation is none.
+        NotFound: There is no such file.
+        DataError: The file is no text or too large, has no numbers, or a line has more or fewer
+            numbers than the first, a word that is none, or one that is not finite.
     """
-    count = numbers.values.shape[1]
+    # Not splitlines: it also splits at characters that editors do not count as line ends.
+    lines = [line.strip() for line in re.split(r"\r\n|\n|\r", read_text(path))]
+    kept = [k for k, line in enumerate(lines) if line and not line.startswith("#")]
+    if not kept:
+        raise DataError("has no pose; expected lines of numbers, or a table", file=path)
+    first = kept[0]
+    separator = next((sign for sign in (";", ",") if sign in lines[first]), None)
+    if _numbers(lines[first], separator) is None:
+        return None
+    rows = [_numbers(lines[k], separator) for k in kept]
+    count = len(_words(lines[first], separator))
+    for row, (k, numbers) in enumerate(zip(kept, rows, strict=True), start=1):
+        if numbers is None or len(numbers) != count or not all(map(math.isfinite, numbers)):
+            raise DataError(
+                f"found '{lines[k][:60]}'; expected {counted(count, 'finite number')} as in the "
+                "first line; correct or delete the line",
+                file=path, row=row, line=k + 1,
+            )  # fmt: skip
+    comment = next((line for line in lines[:first][::-1] if line.startswith("#")), "")
+    # A unit in brackets belongs to the word before it.
+    header = tuple(_words(re.sub(r"\s+(?=[\[(])", "", comment.lstrip("# ")), separator))
+    matching = header if len(header) == count else ()
+    return NumberLines(np.array(rows), first + 1, separator is not None, matching)
+
+
+def _words(text: str, separator: str | None) -> list[str]:
+    words = [word.strip() for word in text.split(separator)]
+    return words[:-1] if separator and not words[-1] else words
+
+
+def _numbers(text: str, separator: str | None) -> list[float] | None:
+    try:
+        return [float(word) for word in _words(text, separator)]
+    except ValueError:
+        return None
+
+
+def read_number_table(
+    path: Path, stated: Layout | None, *, plane: str | None
+) -> tuple[Layout, RawTable] | None:
+    """Read lines of numbers as a table with canonical headers; None for another file.
+
+    Args:
+        path: The file, a table of any kind or lines of numbers.
+        stated: The layout that the user states; None to find it by header and count of numbers.
+        plane: Axes of the floor, None for xy; a body that is upright on it shows whether w is first
+            or last.
+
+    Returns:
+        The layout, and columns t_s (of KITTI numbers of rows), x_m, y_m, z_m, qx, qy, qz and qw.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: The file is damaged, or its layout is not known or does not fit.
+    """
+    if stated is Layout.TABLE or path.suffix.lower() in (".parquet", ".xlsx", ".gz"):
+        return None
+    try:
+        numbers = read_number_lines(path)
+    except DataError as error:
+        if has_table_name(path) and isinstance(error.__cause__, UnicodeDecodeError):
+            return None  # a table in another encoding
+        raise
+    if numbers is None and (stated is not None or not has_table_name(path)):
+        raise DataError("has a line of words; expected lines of 8 (TUM) or 12 (KITTI) numbers, or "
+                        "a table with a suffix such as .csv", file=path)  # fmt: skip
+    return None if numbers is None else _ordered(path, numbers, stated, plane or "xy")
+
+
+def _ordered(
+    path: Path, numbers: NumberLines, stated: Layout | None, plane: str
+) -> tuple[Layout, RawTable]:
+    """Name the columns by the layout stated, by the header, or by their number."""
+    count = numbers.rows.shape[1]
     if stated is Layout.KITTI or (stated is None and count == _MATRIX and not numbers.header):
-        return _matrices(numbers)
+        return Layout.KITTI, _of_matrices(path, numbers)
     named = {} if stated else named_columns(numbers.header)
-    if set(_POSE) <= set(named):
-        order = [numbers.header.index(named[name].header) for name in _POSE]
-        euroc = order[_POSE.index("qw")] < order[_POSE.index("qx")]
-        layout = Layout.EUROC if euroc else Layout.TUM
-        return _quaternions(numbers, order, layout, units=[named[n].unit for n in _POSE[:4]])
-    layout = stated or (Layout.TUM if count == len(_POSE) and not numbers.separator else None)
-    if layout is None or count < len(_POSE) or (layout is Layout.TUM and count > len(_POSE)):
-        raise _unknown(numbers, stated)
-    columns = _EUROC if layout is Layout.EUROC else _POSE
-    order = [columns.index(name) for name in _POSE]
-    done = _quaternions(numbers, order, layout)
-    if stated is None:
-        _require_w_last(numbers, plane)
-    return done
+    if set(_TUM) <= set(named):
+        place = {name: numbers.header.index(named[name].header) for name in _TUM}
+        layout = Layout.EUROC if place["qw"] < place["qx"] else Layout.TUM
+        units = {name: unit for name in _TUM if (unit := named[name].unit)}
+    else:
+        layout = stated or (Layout.TUM if count == len(_TUM) and not numbers.separated else None)
+        if layout is None or count < len(_TUM) or (layout is Layout.TUM and count > len(_TUM)):
+            raise _unknown(path, count, stated)
+        names = _EUROC if layout is Layout.EUROC else _TUM
+        place, units = {name: names.index(name) for name in names}, {}
+        if stated is None:
+            _require_w_last(path, numbers.rows[:, 4:], plane)
+    columns = {name: numbers.rows[:, place[name]] for name in _TUM}
+    if layout is Layout.EUROC and np.all(columns["t_s"] == np.round(columns["t_s"])):
+        units.setdefault("t_s", "ns")
+    return layout, _table(path, columns, numbers.line, units)
 
 
-def _matrices(numbers: NumberLines) -> OrderedNumbers:
-    if numbers.values.shape[1] != _MATRIX:
-        raise _unknown(numbers, Layout.KITTI)
-    matrix = numbers.values.reshape(-1, 3, 4)
+def _table(
+    path: Path, columns: Mapping[str, Array], line: int, units: Mapping[str, str]
+) -> RawTable:
+    series = {name: pd.Series(values) for name, values in columns.items()}
+    return RawTable(path, series, header_line=line - 1, units=units)
+
+
+def _of_matrices(path: Path, numbers: NumberLines) -> RawTable:
+    """Convert the first three rows of 4x4 matrices to positions and quaternions."""
+    if numbers.rows.shape[1] != _MATRIX:
+        raise _unknown(path, numbers.rows.shape[1], Layout.KITTI)
+    matrix = numbers.rows.reshape(-1, 3, 4)
     rotation = matrix[:, :, :3]
-    product = np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)
-    wrong = (np.abs(product).max(axis=(1, 2)) > _TOLERANCE) | (np.linalg.det(rotation) < 0)
-    if wrong.any():
-        raise numbers.fault(
+    with np.errstate(invalid="ignore", over="ignore"):
+        product = np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)
+        right = np.abs(product).max(axis=(1, 2)) <= _ROTATION_TOLERANCE
+        right &= np.linalg.det(rotation) > 0
+    if not right.all():
+        row = int(np.argmin(right))
+        raise _table(path, {}, numbers.line, {}).fault(
             "numbers 1-3, 5-7 and 9-11 are no rotation matrix; expected lines of a KITTI "
             "trajectory, the first three rows of a 4x4 matrix",
-            int(np.argmax(wrong)),
+            "rotation",
+            row,
         )
-    return OrderedNumbers(Layout.KITTI, None, "s", matrix[:, :, 3], rotation, numbers.values)
+    quaternion = Rotation.from_matrix(rotation).as_quat()
+    values = np.column_stack((np.arange(len(matrix)), matrix[:, :, 3], quaternion))
+    return _table(path, dict(zip(_TUM, values.T, strict=True)), numbers.line, {"t_s": "s"})
 
 
-def _quaternions(
-    numbers: NumberLines, order: list[int], layout: Layout, *, units: list[str | None] | None = None
-) -> OrderedNumbers:
-    """Take stamp, position and quaternion from the columns `order`, in the order of `_POSE`."""
-    t, *position = numbers.values[:, order[:4]].T
-    quaternion = numbers.values[:, order[4:]]
-    length = np.linalg.norm(quaternion, axis=1)
-    wrong = np.abs(length - 1) > _TOLERANCE
-    if wrong.any():
-        index = int(np.argmax(wrong))
-        raise numbers.fault(
-            f"quaternion length {length[index]:.4g}; expected {1 - _TOLERANCE} to "
-            f"{1 + _TOLERANCE}: check that the order of the columns is that of the layout",
-            index,
-        )
-    whole = bool(np.all(t == np.round(t)))  # as nanoseconds are
-    time_unit, *lengths = units or [None] * 4
-    factors = [_factor(numbers, unit) for unit in lengths]
-    return OrderedNumbers(
-        layout=layout,
-        t=t,
-        time_unit=time_unit or ("ns" if layout is Layout.EUROC and whole else "s"),
-        position=np.column_stack(position) * factors,
-        rotation=rotations_of_quaternions(quaternion),
-        poses=numbers.values[:, order[1:]],
-    )
-
-
-def _factor(numbers: NumberLines, unit: str | None) -> float:
-    try:
-        return factor_to_si(unit or "m", "m")
-    except UnitError as error:
-        raise DataError(f"{error}; correct the header", file=numbers.file) from error
-
-
-def _require_w_last(numbers: NumberLines, plane: str) -> None:
+def _require_w_last(path: Path, quaternion: Array, plane: str) -> None:
     """Raise where a body stands upright if w is read first, and does not if it is read last."""
-    first = np.abs(numbers.values[:, 4:])
-    in_plane = np.array(plane_axes(plane))
-    if first[:, in_plane].max() > _UPRIGHT >= first[:, 1 + in_plane].max():
+    size, in_plane = np.abs(quaternion), np.array(plane_axes(plane))
+    if size[:, in_plane].max() > _UPRIGHT >= size[:, 1 + in_plane].max():
         raise DataError(
             "quaternions are upright if their first number is w, and upside down or tilted if the "
             "last is w as in TUM files; give --layout euroc (w first) or --layout tum (w last)",
-            file=numbers.file,
+            file=path,
         )
 
 
-def _unknown(numbers: NumberLines, stated: Layout | None) -> DataError:
-    count = numbers.values.shape[1]
-    if count in (len(_POSE), 17) and stated is None:
+def _unknown(path: Path, count: int, stated: Layout | None) -> DataError:
+    if count in (len(_TUM), 17) and stated is None:
         return DataError(
             f"has {count} numbers a line and no header that names them, so that the place of the "
             "quaternion's w is open; give --layout tum (w last) or --layout euroc (w first)",
-            file=numbers.file,
+            file=path,
         )
-    expected = {
-        Layout.TUM: "8 (time, position, quaternion)",
-        Layout.EUROC: "8 or more (time, position, quaternion)",
-        Layout.KITTI: "12 (three rows of a matrix)",
-    }
-    what = "8 (TUM) or 12 (KITTI)" if stated is None else expected[stated]
     return DataError(
-        f"has {count} numbers a line; expected {what}, or a table with a header line (t, x, y, "
-        "perhaps yaw, or z and qx, qy, qz, qw)",
-        file=numbers.file,
+        f"has {count} numbers a line; expected {_EXPECTED[stated]}, or a table with a header line "
+        "(t, x, y, perhaps yaw, or z and qx, qy, qz, qw)",
+        file=path,
     )

@@ -1,24 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Read a trajectory from a table with headers."""
+"""Convert the columns of a table of poses to SI and check them."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
+import re
+from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.counted import counted
-from model.rigid_path import RigidPath, rotations_of_quaternions
-from zebro_lab.files.errors import DataError
-from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
+from model.poses import Poses
+from model.travel import has_travelled, travel_direction
+from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import kept_rows
-from zebro_lab.tables.table_files import read_table_file
-from zebro_lab.track.trajectory.headers import named_columns
-from zebro_lab.track.trajectory.heading_unit import are_degrees
-from zebro_lab.track.trajectory.stamps import kept_stamps, stamp_factor
 
 NEEDED: Final = ("t_s", "x_m", "y_m")
 QUATERNION: Final = ("qx", "qy", "qz", "qw")
@@ -34,57 +30,63 @@ COVARIANCE: Final = {
 FASTEST: Final = 20.0
 """Largest mean speed of a path whose unit of length nobody states [m/s]."""
 _LEGS_OF_PATH: Final = 21  # so few that noise does not lengthen the path
+_ALIGNED: Final = 0.9  # alignment of heading and travel above which a unit fits the path
+_CLEARLY, _LEAST_LACK = 5.0, 0.05  # alignment that radians lack more than degrees: factor, least
+_UNITS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_SINCE_1970: Final = (6.3e8, 4.2e9)
+"""Seconds since 1970 of the years 1990 to 2102: no other unit has such numbers for these years."""
+_GAPS: Final = (1e-6, 1e4)
+"""Range of the median time between poses; outside the unit cannot be right [s]."""
+_MOST_REPEATED: Final = 0.01
+"""Largest share of rows that repeat a stamp with another pose; beyond, stamps are too coarse."""
+_TOLERANCE: Final = 0.05  # of a quaternion's length; files round to a few digits
 MAPPED_UNITS: Final[Mapping[str, str]] = {**POSE_UNITS, "t_sigma": "s", **COVARIANCE}
 """SI unit of each column that `[track.columns]` maps; not every command reads all of them."""
+_HEADERS: Final = {
+    "t_s": r"t|t_s|time|time_s|time_?stamps?|stamp|sec|seconds",
+    **{
+        f"{axis}_m": rf"{axis}|{axis}_m|[tp]_?{axis}|(p|pos|position|translation)[_. ]{axis}"
+        rf"|p_rs_r_{axis}|(pose\.)*position\.{axis}|(transform\.)?translation\.{axis}"
+        for axis in "xyz"
+    },
+    **{
+        f"q{axis}": rf"q_?{axis}|(q|quat|quaternion|rotation|orientation)[_. ]{axis}|q_rs_{axis}"
+        rf"|(pose\.)*orientation\.{axis}|(transform\.)?rotation\.{axis}"
+        for axis in "xyzw"
+    },
+    "yaw_rad": r"yaw|yaw_rad",
+}  # fmt: skip
+"""Regular expression of each canonical column's header, in lower case and without its unit."""
+_WITH_UNIT: Final = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]")
 
 
-@dataclass(frozen=True)
-class TableTrajectory:
-    """Trajectory in a table.
+class NamedColumn(NamedTuple):
+    """A recognised column.
 
     Attributes:
-        path: Poses in space; z is 0 where there is no column z.
-        in_space: Whether there is a column z.
-        source: Source as stated, else "unknown".
-        notes: Notes from reading, one line each.
-        files: The table, and its `columns.toml` if there is one.
+        header: Its header.
+        unit: The unit in brackets after its name; None without one.
     """
 
-    path: RigidPath
-    in_space: bool
-    source: str
-    notes: tuple[str, ...]
-    files: tuple[Path, ...]
+    header: str
+    unit: str | None
 
 
-def read_table_trajectory(path: Path, mapping: MappedColumns | None) -> TableTrajectory:
-    """Read time, position and quaternion, or yaw, from a table.
+def named_columns(headers: Sequence[str]) -> Mapping[str, NamedColumn]:
+    """Recognise the columns of a trajectory, by canonical name; of several that fit, the first.
 
-    Args:
-        path: The table.
-        mapping: Headers and units of the columns; those that it leaves at their canonical names are
-            recognised by their headers.
-
-    Raises:
-        NotFound: There is no such file.
-        DataError: The table is damaged, time, x or y is missing, a cell is no finite number, or
-            a stamp is earlier than the one before or repeated with another pose.
+    >>> named_columns(["#timestamp [ns]", "p_RS_R_x [m]"])["t_s"]
+    NamedColumn(header='#timestamp [ns]', unit='ns')
     """
-    mapping = mapping or canonical_columns(MAPPED_UNITS)
-    table = read_table_file(path, sheet=mapping.sheet)
-    read = read_table_columns(table, mapping, POSE_UNITS)
-    columns = read.columns
-    t = columns["t_s"]
-    position = np.column_stack(
-        [columns.get(name, np.zeros_like(t)) for name in ("x_m", "y_m", "z_m")]
-    )
-    return TableTrajectory(
-        path=RigidPath(t, position, _rotation(columns, read.table)),
-        in_space="z_m" in columns,
-        source=mapping.source or table.source or "unknown",
-        notes=(*table.notes, *read.notes),
-        files=(path, *([mapping.file] if mapping.file else [])),
-    )
+    found: dict[str, NamedColumn] = {}
+    for header in headers:
+        match = _WITH_UNIT.fullmatch(header.strip())
+        name, unit = (match[1], match[2].strip()) if match else (header, None)
+        word = name.strip("# ").lower()
+        for canonical, pattern in _HEADERS.items():
+            if re.fullmatch(pattern, word):
+                found.setdefault(canonical, NamedColumn(header, unit))
+    return found
 
 
 class TableColumns(NamedTuple):
@@ -129,23 +131,105 @@ def read_table_columns(
         for name in units
         if name in NEEDED or mapping.has(table, name)
     }
-    time = mapping.mapped["t_s"]
-
-    def fault(problem: str, index: int) -> DataError:
-        return table.fault(problem, time.name, index)
-
-    notes = said = (*empty, *mapping.conversions(table))
-    if time.name not in table.units and time.factor == 1.0:
-        factor, more = stamp_factor(columns["t_s"], "s", fault=fault)
-        notes = (*said, *more)
-        columns["t_s"] = columns["t_s"] * factor
+    notes = (*empty, *mapping.conversions(table), *_in_seconds(table, mapping, columns))
     _require_radians(table, mapping, columns)
-    metres = _require_metres(table, mapping, columns)
+    notes = (*notes, *_require_metres(table, mapping, columns))
+    kept, repeated = _kept_stamps(table, mapping, columns)
+    columns = {name: column[kept] for name, column in columns.items()}
+    table = table.part(kept)
+    _require_unit_quaternions(table, mapping, columns)
+    return TableColumns(columns, (*notes, *repeated), table)
+
+
+def _in_seconds(
+    table: RawTable, mapping: MappedColumns, columns: dict[str, Array]
+) -> tuple[str, ...]:
+    """Convert stamps whose unit nobody states to seconds if they are times since 1970; note it.
+
+    Raises:
+        DataError: Poses are hours, or less than a microsecond, apart, so that the unit must be
+            another.
+    """
+    time, t = mapping.mapped["t_s"], columns["t_s"]
+    stated = time.in_unit_of(table, "s")
+    notes = ()
+    if stated.factor == 1.0 and time.name not in table.units:
+        low, high = _SINCE_1970
+        for unit, factor in _UNITS.items():
+            if low <= float(np.abs(t).max(initial=0.0)) * factor <= high and factor != 1.0:
+                columns["t_s"] = t = t * factor
+                notes = (f"{table.path.name}: stamps are read as times since 1970 in {unit}",)
+    gap = abs(float(np.median(np.diff(t)))) if len(t) > 1 else 0.0
+    if gap and not _GAPS[0] < gap < _GAPS[1]:
+        raise table.fault(
+            f"stamps are {gap:.3g} s apart, if they are in {stated.unit}; convert them, or name "
+            "their unit in a header such as 'timestamp [ms]'",
+            time.name,
+            0,
+        )
+    return notes
+
+
+def _kept_stamps(
+    table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]
+) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+    """Return the rows to keep, the first of each stamp, and a note on those that are left out.
+
+    Raises:
+        DataError: A stamp is earlier than the one before, or more than one in a hundred rows repeat
+            a stamp with another pose.
+    """
+    t, header = columns["t_s"], mapping.mapped["t_s"].name
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
-    kept, more = kept_stamps(columns["t_s"], poses, fault=fault)
-    notes = (*notes, *metres, *more)
-    columns = {n: column[kept] for n, column in columns.items()}
-    return TableColumns(columns, notes, table.part(kept))
+    step = np.diff(t, prepend=-np.inf)
+    if np.any(step < 0):
+        at = int(np.argmax(step < 0))
+        raise table.fault(
+            f"the stamp {float(t[at])!r} s is earlier than {float(t[at - 1])!r} s of row "
+            f"{table.row(at - 1)}; expected increasing stamps: sort the rows by time, or, if "
+            "another recording begins here, make a file of each",
+            header,
+            at,
+        )
+    same = step == 0
+    moved = same & np.any(np.diff(poses, axis=0, prepend=poses[:1]) != 0, axis=1)
+    first = int(np.argmax(moved))
+    other = (
+        f"the stamp {float(t[first])!r} s is that of row {table.row(first - 1)}, with another pose"
+    )
+    if moved.sum() > _MOST_REPEATED * len(t) + 1:
+        raise table.fault(
+            f"{other}, as in {moved.sum()} rows; expected increasing stamps: write them with more "
+            "digits",
+            header,
+            first,
+        )
+    notes = []
+    if same.any():
+        rows = counted(int(same.sum()), "row")
+        notes.append(f"{table.path.name}: {rows} left out whose stamp is that of the row before")
+    if moved.any():
+        notes.append(f"{table.path.name}: row {table.row(first)}: {other}, which is kept")
+    return np.flatnonzero(~same), tuple(notes)
+
+
+def _require_unit_quaternions(
+    table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]
+) -> None:
+    if not set(QUATERNION) <= set(columns):
+        return
+    length = np.linalg.norm(
+        np.column_stack([np.clip(columns[name], -1e3, 1e3) for name in QUATERNION]), axis=1
+    )  # clipped, as damage may be huge
+    wrong = np.abs(length - 1) > _TOLERANCE
+    if wrong.any():
+        index = int(np.argmax(wrong))
+        raise table.fault(
+            f"quaternion length {length[index]:.4g}; expected {1 - _TOLERANCE} to "
+            f"{1 + _TOLERANCE}: check that the order of the columns is that of the layout",
+            mapping.mapped["qw"].name,
+            index,
+        )
 
 
 def _with_poses(table: RawTable, mapping: MappedColumns) -> tuple[RawTable, tuple[str, ...]]:
@@ -224,19 +308,26 @@ def recognised(table: RawTable, mapping: MappedColumns) -> MappedColumns:
     return mapping
 
 
-def _rotation(columns: Mapping[str, Array], table: RawTable) -> Array | None:
-    if set(QUATERNION) <= set(columns):
-        quaternion = np.column_stack([columns[name] for name in QUATERNION])
-        length = np.linalg.norm(quaternion, axis=1)
-        wrong = np.abs(length - 1) > 0.05
-        if wrong.any():
-            index = int(np.argmax(wrong))
-            raise table.fault(
-                f"quaternion length {length[index]:.4g}; expected 0.95 to 1.05", "qw", index
-            )
-        return rotations_of_quaternions(quaternion)
-    if "yaw_rad" not in columns:
-        return None
-    half = columns["yaw_rad"] / 2
-    zero = np.zeros_like(half)
-    return rotations_of_quaternions(np.column_stack([zero, zero, np.sin(half), np.cos(half)]))
+def are_degrees(heading: Array, position: Array) -> bool:
+    """Return whether headings above 2 pi fit the direction of travel in degrees alone.
+
+    The alignment is the length of the mean of unit vectors at heading minus direction of travel:
+    1 where they differ by a constant, about 0 where they have nothing to do with one another.
+    Degrees that grow by 6 to 7 from pose to pose are nearly whole turns as radians, and align well
+    too; a heading that stays fits in both units.
+
+    Args:
+        heading: Headings as in the file, shape (n,).
+        position: Positions in the plane, shape (n, 2) [m].
+    """
+    if len(heading) == 0 or np.abs(heading).max() <= 2 * np.pi:
+        return False
+    poses = Poses(np.arange(len(heading), dtype=float), position, heading)
+    if not has_travelled(poses):
+        return False
+    travel = travel_direction(poses)
+    in_radians, in_degrees = (
+        np.abs(np.exp(1j * (each - travel)).mean()) for each in (heading, np.radians(heading))
+    )
+    lacking = _CLEARLY * (1 - in_degrees) + _LEAST_LACK
+    return bool(in_degrees > _ALIGNED and 1 - in_radians > lacking)

@@ -2,7 +2,6 @@
 """Trajectories as other programs write them are read right, or refused in one line."""
 
 import gzip
-import re
 
 import numpy as np
 import pandas as pd
@@ -10,10 +9,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from support.foreign_trajectories import HEADER, drive, euroc, kitti, tum, written
-from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.trajectory.file import read_trajectory
-from zebro_lab.track.trajectory.mapping import trajectory_columns
 from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
+from zebro_lab.validation.trajectories.stage import trajectory_columns
 
 UNIX = 1_400_000_000.0
 T, POSITION, ROTATION = drive()
@@ -109,7 +108,7 @@ def test_kitti_has_no_times_but_those_of_another_file(tmp_path):
     with pytest.raises(SettingsError, match=r"59 times, .* has 60 poses"):
         read(file, times=times)
     np.savetxt(times, T[::-1], fmt="%.1f")
-    with pytest.raises(DataError, match=r"times.txt, row 2 .*5.8 s is earlier than 5.9 s"):
+    with pytest.raises(DataError, match=r"times.txt, .*row 2 .*time goes from 5.9 to 5.8 s"):
         read(file, times=times)
 
 
@@ -171,7 +170,7 @@ LINES = tum(UNIX + T, POSITION, ROTATION).splitlines()
 
 def test_a_repeated_row_is_left_out_with_a_note(tmp_path):
     trajectory = same(read(written(tmp_path / "a.txt", "\n".join([*LINES, LINES[-1]]))), UNIX + T)
-    assert trajectory.notes[0] == "a.txt: 1 rows repeat the row before and are left out"
+    assert trajectory.notes[0] == "a.txt: 1 row left out whose stamp is that of the row before"
 
 
 def test_a_stamp_with_two_poses_is_named_with_both_rows(tmp_path):
@@ -180,11 +179,8 @@ def test_a_stamp_with_two_poses_is_named_with_both_rows(tmp_path):
     trajectory = same(
         read(written(tmp_path / "a.txt", "\n".join([*LINES, " ".join(other)]))), UNIX + T
     )
-    note = trajectory.notes[0]
-    assert "row 61: the stamp 1400000005.9 s is that of row 60" in note
-    found = re.search(r"number 3 is (\S+), there (\S+)\)", note)
-    assert found
-    assert float(found[1]) - float(found[2]) == pytest.approx(1e-8, rel=0.5)
+    note = trajectory.notes[1]
+    assert "row 61: the stamp 1400000005.9 s is that of row 60, with another pose" in note
 
 
 def test_stamps_cut_to_whole_seconds_are_refused(tmp_path):
@@ -202,45 +198,15 @@ def test_an_unsorted_stamp_is_named_in_digits_that_differ(tmp_path):
         read(written(tmp_path / "a.txt", "\n".join(["# c", *lines])))
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "has no pose"),
-        ("# only a comment\n", "has no pose"),
-        ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.: found 3 numbers; expected 8"),
-        ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.: quaternion length 2"),
-        ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 zero 1\n", r"row 2 .line 2.: found 8 words, not all"),
-        ("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n", r"row 2 .line 2.: a number is not finite"),
-        ("0 1 2 3\n", r"4 numbers a line; expected 8 .TUM. or 12 .KITTI."),
-        ("1 2 3 4 5 6 7 8 9 10 11 12\n", r"row 1 .line 1.: .*no rotation matrix"),
-        ("1 0 0 0 0 1 0 0 0 0 -1 0\n", r"row 1 .line 1.: .*no rotation matrix"),
-    ],
-)
-def test_what_is_no_trajectory_is_refused_by_its_line(tmp_path, text, message):
-    with pytest.raises(DataError, match=message):
-        read(written(tmp_path / "a.txt", text))
-
-
-def test_a_layout_that_does_not_fit_is_refused(tmp_path):
-    with pytest.raises(DataError, match=r"8 numbers a line; expected 12"):
-        read(written(tmp_path / "a.txt", tum(T, POSITION, ROTATION)), layout=(Layout.KITTI,))
-    with pytest.raises(DataError, match="12 numbers a line; expected 8"):
-        read(written(tmp_path / "b.txt", kitti(POSITION, ROTATION)), layout=(Layout.TUM,))
-    with pytest.raises(DataError, match="line of words"):
-        read(written(tmp_path / "c.csv", "t,x,y\n0,0,0\n"), layout=(Layout.TUM,))
-    with pytest.raises(NotFound):
-        read(tmp_path / "missing.txt")
-
-
 def test_a_unit_that_cannot_be_one_of_time_is_refused(tmp_path):
     text = tum(T, POSITION, ROTATION, ",")
-    with pytest.raises(DataError, match=r"'mm' cannot be converted to s.*correct the header"):
+    with pytest.raises(DataError, match=r"'t_s'.*'mm' cannot be converted to s.*state unit"):
         read(written(tmp_path / "a.csv", "# t [mm], x, y, z, qx, qy, qz, qw\n" + text))
-    with pytest.raises(DataError, match=r"'s' cannot be converted to m.*correct the header"):
+    with pytest.raises(DataError, match=r"'x_m'.*'s' cannot be converted to m.*state unit"):
         read(written(tmp_path / "b.csv", "# t, x [s], y, z, qx, qy, qz, qw\n" + text))
     seconds = np.column_stack([np.arange(60), POSITION, np.roll(FLAT.as_quat(), 1, axis=1)])
     np.savetxt(tmp_path / "c.txt", seconds)
-    with pytest.raises(DataError, match="1 ns apart, if they are in ns"):
+    with pytest.raises(DataError, match="stamps are 1e-09 s apart, if they are in ns"):
         read(tmp_path / "c.txt", layout=(Layout.EUROC,))
 
 

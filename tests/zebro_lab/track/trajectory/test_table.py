@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from zebro_lab.track.trajectory.heading_unit import are_degrees
+from zebro_lab.track.trajectory.table import are_degrees
 
 TURN = np.linspace(0.0, 1.5, 40)
 

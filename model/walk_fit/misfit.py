@@ -346,11 +346,10 @@ class StateToWalk:
         )
 
 
-def walk_state(_: None, task: StateToWalk) -> Array:
+def walk_state(task: StateToWalk) -> Array:
     """Walk a state of the legs; see `model.walk.ensemble.walk_draw`.
 
     Args:
-        _: Nothing that tasks share.
         task: The state.
     """
     return walk_draw(task.times, task.draw)

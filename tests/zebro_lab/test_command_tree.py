@@ -15,7 +15,7 @@ import pytest
 
 from support.command_tree import LEAVES, ROOTS, TREE, Found, named
 from zebro_lab.terminal import ending
-from zebro_lab.terminal.option_display import value_types
+from zebro_lab.terminal.request_command import value_types
 
 FREE_TEXTS = {"TEXT", "NAME", "WORDS", "PHOTO", "PROFILE"}
 """Metavars of text that has no form, or is the name of something that is looked up."""

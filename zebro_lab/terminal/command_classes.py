@@ -4,16 +4,19 @@
 import inspect
 import re
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Final
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from zebro_lab.terminal.bad_values import values_named
-from zebro_lab.terminal.near_names import near_command, near_option
+from model.similar_name import similar_name
+from zebro_lab.terminal.removed import replacement
 
 SETTINGS: Final = {"help_option_names": ["-h", "--help"]}
+_EXPECTED: Final = {
+    "float": "a number", "int": "a whole number", "bool": "true or false", "path": "a path",
+}  # fmt: skip
 
 
 class _Strict:
@@ -27,10 +30,18 @@ class _Strict:
         Raises:
             BadParameter: An option that takes one value is given more than once.
         """
-        with near_option(ctx.command_path, _options(self, ctx)), values_named():
+        try:
             _require_single(self, ctx, args)
             typer_class: Any = super()  # comes after this class among the bases
             return typer_class.parse_args(ctx, args)
+        except Exception as error:
+            unknown: Any = error
+            if hasattr(unknown, "possibilities"):  # Typer's own are other options as well
+                unknown.possibilities = None
+                _offer(unknown, ctx.command_path, unknown.option_name, _options(self, ctx))
+            elif hasattr(error.__cause__, "errors"):  # by pydantic
+                unknown.message = _named_value(unknown.message, unknown.__cause__.errors()[0])
+            raise
 
     def get_short_help_str(self, limit: int = 45) -> str:
         """Return the first sentence of the help, not shortened to `limit` characters."""
@@ -67,8 +78,13 @@ class Group(_Strict, TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find a command as Typer does, with the name that an unknown one means in the message."""
-        with near_command(ctx.command_path, args[0], self.list_commands(ctx)):
+        known = self.list_commands(ctx)
+        try:
             return super().resolve_command(ctx, args)
+        except Exception as error:
+            if args[0] not in known:
+                _offer(error, ctx.command_path, args[0], known)
+            raise
 
 
 class Application(typer.Typer):
@@ -93,6 +109,22 @@ class Application(typer.Typer):
     def command(self, name: str | None = None, **settings: Any) -> Callable[..., Any]:
         """Return the decorator that adds a function as a command, as `typer.Typer.command`."""
         return super().command(name, **{"cls": Command, "context_settings": SETTINGS, **settings})
+
+
+def _offer(error: Any, path: str, name: str, known: Collection[str]) -> None:
+    """Add to the message what replaced a removed name, or else the known name that it resembles."""
+    near = similar_name(name, known)
+    advice = replacement(path, name) or (f"Did you mean '{near}'?" if near else None)
+    if hasattr(error, "message") and advice:
+        error.message = f"{error.message.rstrip('.')}. {advice}"
+
+
+def _named_value(message: str, found: Mapping[str, Any]) -> str:
+    """Return the message on a value that pydantic refuses, with the value."""
+    kind = str(found.get("type", "")).split("_")[0]
+    if kind in _EXPECTED:
+        return f"found '{found.get('input')}'; expected {_EXPECTED[kind]}"
+    return message.removeprefix("Value error, ")
 
 
 def _options(command: Any, ctx: Any) -> list[str]:

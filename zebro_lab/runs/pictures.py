@@ -19,10 +19,6 @@ _COLUMNS: Final = 1500
 """Number of intervals of a long curve; only the extremes of each interval are drawn."""
 _MOST_EVENTS: Final = 10
 _LONGEST_TEXT: Final = 90
-_DASH: Final = 4.0
-"""Length of the dashes of curves that lie on one another [line widths]."""
-_ALIKE: Final = 0.005
-"""Largest distance of curves that lie on one another, about a pixel, as a share of the panel."""
 
 
 @styled
@@ -80,43 +76,10 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
     return t[at], values[at]
 
 
-def dashes(lines: Sequence[Array]) -> list[str | tuple[float, tuple[float, float]]]:
-    """Return the line style of each curve: dashes in turn for those that lie on one another.
-
-    Args:
-        lines: Values of each curve of a panel, shape (n,) each; NaN where not measured.
-
-    Returns:
-        "-" for a curve that lies on no other; else offset and lengths of its dashes, so that each
-        of the curves is seen in the gaps of the others.
-
-    >>> t = np.arange(9.0)
-    >>> dashes([t, t + 5.0, t])
-    [(0.0, (4.0, 4.0)), '-', (4.0, (4.0, 4.0))]
-    """
-    values = np.array(lines, dtype=float)
-    near = _ALIKE * float(np.nanmax(values) - np.nanmin(values))
-    first = [next(i for i in range(k + 1) if _alike(values[i], values[k], near))
-             for k in range(len(values))]  # fmt: skip
-    styles: list[str | tuple[float, tuple[float, float]]] = []
-    for k, group in enumerate(first):
-        others, before = first.count(group) - 1, first[:k].count(group)
-        own = (_DASH * before, (_DASH, _DASH * others))
-        styles.append(own if others else "-")
-    return styles
-
-
-def _alike(one: Array, other: Array, near: float) -> bool:
-    same = np.isnan(one) == np.isnan(other)
-    return bool(same.all()) and bool((np.abs(one - other)[~np.isnan(one)] <= near).all())
-
-
 def _draw_panel(axes: Axes, panel: Panel) -> None:
-    styles = dashes(list(panel.lines.values()))
-    for (name, line), colour, style in zip(panel.lines.items(), CYCLE, styles, strict=False):
+    for (name, line), colour in zip(panel.lines.items(), CYCLE, strict=False):
         t, values = extremes(panel.t, np.asarray(line, dtype=float), _COLUMNS)
-        width = 0.7 if style == "-" else 1.2
-        axes.plot(*_broken(t, values, panel.gaps), color=colour, lw=width, ls=style, label=name)
+        axes.plot(*_broken(t, values, panel.gaps), color=colour, lw=0.7, label=name)
     spans = [(begin, max(end - begin, 1e-9)) for begin, end in panel.gaps.tolist()]
     axes.broken_barh(
         spans, (0, 1), transform=axes.get_xaxis_transform(), facecolor=RED, edgecolor=RED,
@@ -126,9 +89,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     simulated = " (simulated)" if panel.simulated else ""
     axes.set_title(f"{panel.title}{simulated}, {counted(len(panel.t), 'sample')}{gaps}", loc="left")
     axes.set_ylabel(f"[{panel.unit}]")
-    legend = axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=1.0)
-    for handle in legend.get_lines():
-        handle.set_linestyle("-")  # a key is shorter than the gap between dashes
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=1.0)
     axes.grid(color="0.92", lw=0.6)
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from zebro_lab.runs.pictures import dashes, extremes, raw_streams
+from zebro_lab.runs.pictures import extremes, raw_streams
 from zebro_lab.runs.signals import Event, Panel, RunSignals
 
 T = np.arange(0.0, 10.0, 0.01)
@@ -63,20 +63,3 @@ def test_times_to_mark_are_named_and_drawn_in_every_panel():
             1.5, 4.0,
         ]  # fmt: skip
         assert [text.get_text() for text in axes.texts] == ["1.5 s", "4 s"]
-
-
-def test_curves_that_lie_on_one_another_are_dashed_in_turn():
-    lines = {"leg 1": np.sin(T), "leg 2": T, "leg 3": np.sin(T), "leg 5": np.sin(T)}
-    panel = Panel("legs: angles", "rad", T, lines, False, np.empty((0, 2)))
-    (axes,) = raw_streams(RunSignals("run", "completed", "real", (panel,), ())).axes
-    dashed = {line.get_label(): line.is_dashed() for line in axes.get_lines()}
-    assert dashed == {"leg 1": True, "leg 2": False, "leg 3": True, "leg 5": True}
-    assert not any(key.is_dashed() for key in axes.get_legend().get_lines())
-    styles = dashes(list(lines.values()))
-    assert [styles[i] for i in (0, 2, 3)] == [(4.0 * k, (4.0, 8.0)) for k in range(3)]
-
-
-def test_a_curve_with_a_gap_of_its_own_lies_on_no_other():
-    partly = np.where(T < 5, np.nan, T)
-    assert dashes([T, partly]) == ["-", "-"]
-    assert dashes([partly, partly])[0] != "-"

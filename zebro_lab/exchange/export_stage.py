@@ -3,7 +3,9 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import Any, Final, Literal
+
+import pandas as pd
 
 from rig.sample_columns import SampleColumns
 from zebro_lab.files.atomic import atomic_folder, atomic_write_text
@@ -15,9 +17,6 @@ from zebro_lab.runs.folder import LOG_FILE, RECOVERED, read_slip_rig_run, run_st
 from zebro_lab.runs.manifest import RECORDING, read_manifest
 from zebro_lab.runs.recorded_legs import LEGS, read_recorded_legs
 from zebro_lab.tables.columns import COLUMNS_FILE
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Format = Literal["csv", "parquet"]
 FORMATS: Final[tuple[Format, ...]] = ("csv", "parquet")
@@ -99,8 +98,6 @@ def _raw_columns(stream: SampleColumns) -> Columns:
 
 
 def _write(file: Path, columns: Columns, *, to: Format, source: str) -> None:
-    import pandas as pd
-
     table = pd.DataFrame(dict(columns))
     if to == "parquet":
         _write_parquet(file, table, source)
@@ -117,7 +114,7 @@ def _write_source(file: Path, run: Path, source: str) -> None:
     atomic_write_text(file, fill_in(head + 'source = "unknown"\n', {"source": source}))
 
 
-def _write_parquet(file: Path, table: "pd.DataFrame", source: str) -> None:
+def _write_parquet(file: Path, table: pd.DataFrame, source: str) -> None:
     import pyarrow as pa
     import pyarrow.parquet as pq
 

@@ -2,19 +2,34 @@
 """Read the body's orientation from IMU messages in a ROS log."""
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+import pandas as pd
 
 from model.arrays import Array
-from zebro_lab.exchange.topic_table import TopicTable
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, TopicRows, read_topic
 from zebro_lab.mcap.ros_messages import IMU
+from zebro_lab.tables.raw_table import RawTable
 
 _VECTORS: Final = {"angular_velocity": "rate", "linear_acceleration": "force"}
+
+
+@dataclass(frozen=True)
+class TopicTable:
+    """Messages of one topic of a ROS log as a table.
+
+    Attributes:
+        table: A row per message, in SI.
+        topic: The topic that was read.
+    """
+
+    table: RawTable
+    topic: str
 
 
 def read_imu_messages(
@@ -46,7 +61,9 @@ def read_imu_messages(
             "it, such as imu_filter_madgwick",
             file=path,
         )
-    return TopicTable.of(path, columns, found)
+    series = {name: pd.Series(values) for name, values in columns.items()}
+    told = f"{path.name}: {found.told}"
+    return TopicTable(RawTable(path, series, notes=(told, *found.notes)), found.topic)
 
 
 def _columns(found: TopicRows) -> dict[str, Array] | None:

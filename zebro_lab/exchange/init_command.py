@@ -82,29 +82,22 @@ def _to_check(written: "WrittenColumns") -> list[str]:
         advice = ["no column was recognised; map each by hand in columns.toml, which lists all "
                   "columns of the table at its end"]  # fmt: skip
     if doubts:
-        marked = "value that ends" if doubts == 1 else f"{doubts} values that end"
-        advice = [f'the {marked} in "?" in columns.toml: correct each and delete its "?"; until '
-                  "then no command reads the table"]  # fmt: skip
-    if written.kind != "rig":
-        missing = [name for name in _NEEDED[written.kind] if name not in found]
-        if missing:
-            advice.append(f"no column was found for {', '.join(missing)}")
-        return advice
-    missing = [name for name in ("normal_force", "traction_force") if name not in found]
-    speeds = {"omega_leg", "omega_ground"} <= found
-    if not speeds and "slip_ratio" not in found:
-        missing.append("slip_ratio (or omega_leg and omega_ground)")
+        advice = [f'values that end in "?" in columns.toml, {doubts}: correct each and delete its '
+                  '"?"; until then no command reads the table']  # fmt: skip
+    needed = [set(names.split(" or ")) for names in _NEEDED[written.kind]]
+    missing = [" or ".join(sorted(names)) for names in needed if not names & found]
     if missing:
         advice.append(f"no column was found for {', '.join(missing)}: add [columns.NAME] for each")
-    if "slip_ratio" in found and "slip_definition" not in found:
-        advice.append("[columns.slip_ratio] needs definition: material, travel or larger")
-    if speeds and not {"radius_leg", "radius_ground"} <= found:
-        advice.append("[constants] needs radius_leg and radius_ground, except those in a column")
-    advice.append("[runs] must state what separates runs, if neither a column 'run' nor files do")
+    if written.kind == "rig":
+        advice.append(
+            "slip_ratio needs its definition, the speeds of both discs their radii in [constants], "
+            "and [runs] what separates runs, where neither a column 'run' nor files do"
+        )
     return advice
 
 
 _NEEDED = {
+    "rig": ("normal_force", "traction_force", "slip_ratio or omega_leg"),
     "legs": ("t", *(f"theta{leg}" for leg in range(1, 7))), "imu": ("t",),
     "track": ("t_s", "x_m", "y_m"),
 }  # fmt: skip

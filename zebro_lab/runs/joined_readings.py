@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 
 from model.arrays import Array
 from zebro_lab.files.errors import DataError
@@ -26,8 +27,6 @@ def joined_readings(table: RawTable, turns: Mapping[str, float]) -> RawTable:
         DataError: Stamps of a leg do not increase, or a row lies in a gap of a leg's readings, of
             over 5 of its median steps; or the direction of a wrapped leg is ambiguous.
     """
-    import pandas as pd
-
     angles = {name: table.columns[name].to_numpy(dtype=float) for name in turns}
     known = {name: ~np.isnan(values) for name, values in angles.items()}
     few = min(rows.sum() for rows in known.values()) < 2

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+import pandas as pd
 
 from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError
@@ -22,9 +23,6 @@ from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.runs.joined_readings import joined_readings
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 DYNAMIC: Final = "control_msgs/msg/DynamicJointState"
 """Message of ros2_control, which names the interfaces of each joint."""
@@ -93,8 +91,6 @@ def joint_table(log: JointLog, columns: MappedColumns) -> RawTable:
     Raises:
         DataError: A leg has no joint; names the joints there are.
     """
-    import pandas as pd
-
     aliases: dict[str, pd.Series] = {
         f"theta{leg}": log.table.columns[name]
         for name, leg in log.legs.items()
@@ -120,8 +116,6 @@ def joint_table(log: JointLog, columns: MappedColumns) -> RawTable:
 
 def _with_legs(table: RawTable, legs: Collection[str]) -> RawTable:
     """Return the rows that have a leg: others drive an arm or wheels on the same topic."""
-    import pandas as pd
-
     angles = np.column_stack([table.columns[name].to_numpy(dtype=float) for name in legs])
     kept = ~np.isnan(angles).all(axis=1)
     if kept.all():
@@ -183,9 +177,7 @@ def _positions_of(state: Any) -> SimpleNamespace:
 
 def _columns(
     t: Collection[float], rows: Collection[Mapping[str, float]]
-) -> "Mapping[str, pd.Series]":
-    import pandas as pd
-
+) -> Mapping[str, pd.Series]:
     columns = {"t": pd.Series(t, dtype=float)}
     for name in dict.fromkeys(name for row in rows for name in row):
         header = "joint t" if name == "t" else name

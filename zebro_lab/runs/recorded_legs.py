@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from rig.clock_watch import sample_times
 from rig.errors import RigError
@@ -41,8 +42,6 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
         DataError: Manifest or profile is invalid, the log is not MCAP or has another checksum than
             the manifest, its samples do not fit the profile, or no legs were recorded or imported.
     """
-    import pandas as pd
-
     manifest = read_manifest(folder)
     if manifest.is_track_alone:
         raise DataError(f"{folder}: {TRACK_ALONE}")

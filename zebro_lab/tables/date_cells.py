@@ -6,6 +6,7 @@ from datetime import datetime
 from typing import Final
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
@@ -48,8 +49,6 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
     Raises:
         DataError: The column is missing, or a cell is no such date; names the cell.
     """
-    import pandas as pd
-
     cells = table.column(name)
     if pd.api.types.is_numeric_dtype(cells) and not cells.isna().all():
         raise table.fault(f'holds numbers; expected dates, as unit = "{unit}" states', name)

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Assign the rows of a table to runs, and check their times."""
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from zebro_lab.tables.header_rows import unique_names
 from zebro_lab.tables.mapped_columns import require_usual_steps
 from zebro_lab.tables.rig_table import RigTable
 
@@ -92,7 +93,7 @@ def run_names(titles: Sequence[str], label: str, rule: str) -> tuple[str, ...]:
         return (label,) * len(titles)
     if not any(titles):
         return tuple(f"{label} run {k}" for k in range(1, len(titles) + 1))
-    return _unique([f"{label} {title}" for title in titles])
+    return tuple(unique_names([f"{label} {title}" for title in titles]))
 
 
 def run_times(table: RigTable, runs: Runs) -> Array | None:
@@ -151,8 +152,6 @@ def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
 
 
 def _at_changes(table: RigTable, names: tuple[str, ...]) -> NDArray[np.bool_]:
-    import pandas as pd
-
     starts = np.zeros(len(table.raw), dtype=bool)
     for name in names:
         codes, _ = pd.factorize(table.raw.column(name))
@@ -162,13 +161,3 @@ def _at_changes(table: RigTable, names: tuple[str, ...]) -> NDArray[np.bool_]:
 
 def _shown(cell: object) -> str:
     return f"{cell:g}" if isinstance(cell, (int, float, np.number)) else str(cell)
-
-
-def _unique(names: list[str]) -> tuple[str, ...]:
-    """Append " (2)", " (3)", … to the second and later occurrences of a name."""
-    seen: Counter[str] = Counter()
-    unique = []
-    for name in names:
-        seen[name] += 1
-        unique.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
-    return tuple(unique)

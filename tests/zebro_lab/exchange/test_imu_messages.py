@@ -15,6 +15,7 @@ def test_orientation_rate_and_force_are_read(tmp_path):
     found = read_imu_messages(write_bag(tmp_path / "bag", imu(T), storage="mcap"))
     table = found.table
     assert found.topic == "/imu"
+    assert table.notes == ("bag: topic /imu, sensor_msgs/msg/Imu, 10 messages",)
     np.testing.assert_allclose(table.numbers("qz"), np.sin(0.05 * T), atol=1e-12)
     np.testing.assert_allclose(table.numbers("qw"), np.cos(0.05 * T), atol=1e-12)
     assert set(table.numbers("rate_z")) == {0.1}

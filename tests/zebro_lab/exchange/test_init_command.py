@@ -21,20 +21,17 @@ def test_init_says_what_it_guessed_and_what_to_check(tmp_path):
     assert f"wrote {tmp_path / 'columns.toml'}" in result.output
     assert "normal_force    from 'FZ [N]' in N, sign reversed; CHECK sign" in result.output
     assert "traction_force  from 'FX' in N; CHECK unit, sign" in result.output
-    assert 'the 6 values that end in "?"' in result.output
-    assert "check: [constants] needs radius_leg and radius_ground" in result.output
-
-
-def test_init_speaks_of_a_single_doubt_in_the_singular(tmp_path):
-    (tmp_path / "rig.csv").write_text("t,normal_force,FX [N],slip_ratio\n0,5,1,0.1\n0.1,5,1,0.2\n")
-    result = CliRunner().invoke(app, [str(tmp_path / "rig.csv")])
-    assert 'the value that ends in "?" in columns.toml: correct each' in result.output
+    assert 'values that end in "?" in columns.toml, 6: correct each' in result.output
+    assert "radii in [constants]" in result.output
 
 
 def test_init_names_what_it_could_not_find(tmp_path):
     (tmp_path / "rig.csv").write_text("a,b\n1,2\n")
     result = CliRunner().invoke(app, [str(tmp_path / "rig.csv"), "--kind", "rig"])
-    assert "no column was found for normal_force, traction_force, slip_ratio" in result.output
+    assert (
+        "no column was found for normal_force, traction_force, omega_leg or slip_ratio"
+        in result.output
+    )
     assert "please check: no column was recognised; map each by hand" in result.output
     assert "names, units and signs above" not in result.output
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from model.arrays import Array
 from model.errors import DomainError
+from model.format_distinct import format_distinct
 from model.poses import Poses, moved_onto
-from model.told_apart import told_apart
 from model.walk.bend import Bend, bent_states
 from model.walk.path import WalkPath
 
@@ -70,7 +70,7 @@ def anchored(
         DomainError: The time of the pose lies outside the paths' times, or the pose is not finite.
     """
     if not paths.t[0] <= at <= paths.t[-1]:
-        known, start, end = told_apart(at, paths.t[0], paths.t[-1])
+        known, start, end = format_distinct(at, paths.t[0], paths.t[-1])
         raise DomainError(f"the known pose is of {known} s, but paths run from {start} to {end} s")
     here = states_at(paths, np.array([at]))[:, 0]
     wanted = pose

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from model.arrays import Array
 from model.errors import DomainError, InsufficientData
+from model.format_distinct import format_distinct
 from model.joint_covariance import JointCovariance
-from model.told_apart import told_apart
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Poses:
             )
         if not np.all(np.diff(self.t) > 0):
             worst = int(np.argmin(np.diff(self.t) > 0))
-            before, after = told_apart(*self.t[worst : worst + 2])
+            before, after = format_distinct(*self.t[worst : worst + 2])
             raise DomainError(
                 f"time goes from {before} to {after} s after pose "
                 f"{worst + 1} (the first is 1); expected increasing times"
@@ -146,7 +146,7 @@ class Poses:
         """
         at = np.asarray(t, dtype=float)
         if len(at) and (at.min() < self.t[0] or at.max() > self.t[-1]):
-            first, last, start, end = told_apart(at.min(), at.max(), self.t[0], self.t[-1])
+            first, last, start, end = format_distinct(at.min(), at.max(), self.t[0], self.t[-1])
             raise DomainError(
                 f"poses are asked for from {first} to {last} s, but the path runs from {start} to "
                 f"{end} s"
@@ -181,7 +181,7 @@ def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
     """
     inside = (first.t >= second.t[0]) & (first.t <= second.t[-1])
     if inside.sum() < 2:
-        begin, end, low, high = told_apart(*first.t[[0, -1]], *second.t[[0, -1]])
+        begin, end, low, high = format_distinct(*first.t[[0, -1]], *second.t[[0, -1]])
         raise InsufficientData(
             f"{inside.sum()} of {len(first)} poses from {begin} to {end} s lie within the other "
             f"path's {low} to {high} s; two are needed: do both keep the same clock?"

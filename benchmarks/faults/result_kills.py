@@ -20,7 +20,7 @@ from collections import Counter
 from pathlib import Path
 
 from zebro_lab.files.provenance import file_hash
-from zebro_lab.files.replacement import previous_of, settle
+from zebro_lab.files.replacement import previous_of, recover
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 
 KIND = ResultKind("kill-trial", "result_kills", ("numbers.bin", "more.bin"))
@@ -90,7 +90,7 @@ def trial(kills: int, seed: int) -> Counter[str]:
         (out / NOTES).write_text("mine")
         for _ in range(kills):
             found[kill_once(out, rng.uniform(0, LONGEST))] += 1
-            settle(out)
+            recover(out)
             found["not whole"] += not is_whole(out)
         write(out, 0)
         found["left beside"] += len(list(Path(folder).iterdir())) - 1

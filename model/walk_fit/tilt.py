@@ -18,9 +18,9 @@ import numpy as np
 
 from model.arrays import Array
 from model.errors import InsufficientData
+from model.format_distinct import format_distinct
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
-from model.told_apart import told_apart
 
 # Standard deviation of an IMU's means [rad]. The model errs by 0.02 degrees where a tripod carries,
 # by 0.5 where four legs do.
@@ -75,7 +75,7 @@ class TiltMisfit:
         path, imu = _means(t, k), _means(seen.t, k)
         shared = path.any(axis=1) & imu.any(axis=1)
         if shared.sum() < FEWEST:
-            first, last, start, end = told_apart(*seen.t[[0, -1]], *t[[0, -1]])
+            first, last, start, end = format_distinct(*seen.t[[0, -1]], *t[[0, -1]])
             raise InsufficientData(
                 f"IMU, {first} to {last} s, and walk, {start} to {end} s, share "
                 f"samples in {shared.sum()} intervals of {TIME:g} s; expected {FEWEST} or more"

@@ -23,7 +23,7 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import shortest_distinct
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.picture_format import in_every_format
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import ResultKind
 from zebro_lab.files.source_names import is_simulated
 
@@ -123,7 +123,7 @@ def read_slip(path: Path) -> SlipCurve:
 
 def read_slip_file(path: Path) -> SlipFile:
     """Read curve, source and verdict of a `slip.toml`; arguments and errors as in `read_slip`."""
-    settle(path)
+    recover(path)
     file = path / SLIP_TOML if path.is_dir() else path
     try:
         content = read_toml_document(file, remedy=_ADVICE, fault=DataError)

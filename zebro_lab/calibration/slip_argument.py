@@ -13,7 +13,7 @@ from zebro_lab.calibration.folder import POSTERIOR, SLIP_TOML, read_slip_file
 from zebro_lab.calibration.walks_folder import StoredWalks, read_stored_walks
 from zebro_lab.files.errors import NotFound
 from zebro_lab.files.folder_manifest import changed_output, lost_output
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 
 THESIS = "thesis"
 EXPECTED_SLIP = f"a {SLIP_TOML}, the folder that holds it, coulomb:MU[:V] or thesis"
@@ -70,7 +70,7 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
     numbers = coulomb_numbers(text)
     if numbers is not None:
         return NamedSlip(VelocityCoulomb(*numbers), "assumed", text)
-    path = settle(Path(text))
+    path = recover(Path(text))
     if not path.exists():
         raise NotFound(
             f"--slip: '{text}' is not a file or folder; expected {EXPECTED_SLIP}; "

@@ -21,7 +21,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.provenance import file_hash, file_hashes
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.robot.robot_file import RobotFile
@@ -167,7 +167,7 @@ def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
         NotFound: `draws.npz` is missing.
         DataError: A file is damaged, of another schema, or `slip.toml` has changed since the fit.
     """
-    folder = settle(slip_toml.parent / FOLDER)
+    folder = recover(slip_toml.parent / FOLDER)
     file = folder / WALKS_TOML
     if not (folder / MANIFEST).is_file() or not file.is_file():
         return None

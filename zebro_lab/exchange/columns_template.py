@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
+import tomlkit
 
 from zebro_lab.exchange.column_guesses import (
     UNITS,
@@ -13,7 +14,7 @@ from zebro_lab.exchange.column_guesses import (
     numbers_or_none,
 )
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE
-from zebro_lab.tables.columns_file import DOUBT
+from zebro_lab.tables.columns_sections import DOUBT
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_kinds import IMU, LEGS, RIG, TRACK
 
@@ -183,6 +184,4 @@ def _bare(name: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    import tomlkit
-
     return tomlkit.string(text).as_string()

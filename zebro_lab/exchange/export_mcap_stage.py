@@ -28,7 +28,7 @@ from model.walk.path import WalkPath
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import AlreadyExists, NotFound
 from zebro_lab.files.names import PATH_CSV, TRACK
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import JOINT_STATE, Schema, joint_state
 from zebro_lab.mcap.ros_poses import (
@@ -128,7 +128,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     if out.exists():
         raise AlreadyExists(f"{out} exists already; choose another name with --out")
     for part in (TRACK, PREDICTION):
-        settle(run / part)
+        recover(run / part)
     track = read_track(run / TRACK) if (run / TRACK / TRACK_CSV).is_file() else None
     predicted = _read_predicted(run / PREDICTION, track)
     recorded = read_manifest(run) if is_recorded(run) else None

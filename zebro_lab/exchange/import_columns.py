@@ -10,7 +10,8 @@ from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.robot.imu_log import IMU_UNITS
 from zebro_lab.robot.leg_log import LEG_UNITS
 from zebro_lab.tables.columns import Columns
-from zebro_lab.tables.columns_file import parse_columns, read_nearest, read_section
+from zebro_lab.tables.columns_file import parse_columns
+from zebro_lab.tables.columns_sections import read_nearest, read_section
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_kinds import IMU, LEGS, TRACK
 from zebro_lab.track.trajectory.table import MAPPED_UNITS

@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from model.arrays import Array
+from model.format_distinct import format_distinct
 from model.progress import Watcher
-from model.told_apart import told_apart
 from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
@@ -28,7 +28,7 @@ from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import columns_above
+from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.terminal.leg_options import joint_names
@@ -270,7 +270,7 @@ def _require_shared_time(
         if other is None or np.any((other[0] >= t[0]) & (other[0] <= t[-1])):
             continue
         times, file = other
-        first, last, start, end = told_apart(*(times[[0, -1]] + zero), *(t[[0, -1]] + zero))
+        first, last, start, end = format_distinct(*(times[[0, -1]] + zero), *(t[[0, -1]] + zero))
         later = f"{t[0] - times[0]:.3f}".rstrip("0").rstrip(".")
         offset = {
             TRACK: f"add --track-offset {later}",

@@ -15,8 +15,9 @@ from zebro_lab.files.opening import read_text
 from zebro_lab.mcap.ros_bags import is_ros_log
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns_sections import is_sectioned
 from zebro_lab.tables.table_files import read_table_file
-from zebro_lab.tables.table_kinds import RIG, is_sectioned
+from zebro_lab.tables.table_kinds import RIG
 
 _JOINTS: Final = "sensor_msgs/msg/JointState"
 Kind = Literal["rig", "legs", "imu", "track"]

@@ -86,7 +86,7 @@ def run(request: RigRunRequest, output: Output = TEXT) -> None:
 
 
 def _say_latched(data: Path) -> None:
-    from zebro_lab.terminal.last_words import say_in_time
+    from zebro_lab.terminal.timely_output import say_in_time
 
     say_in_time(
         f"an emergency stop is latched in {data}; inspect the rig, then repeat the command with "
@@ -100,7 +100,7 @@ def _end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> No
     from model.counted import counted
     from zebro_lab.experiment.documents import experiment_in_numbers
     from zebro_lab.experiment.journal import read_journal
-    from zebro_lab.terminal.last_words import leave_at_once
+    from zebro_lab.terminal.timely_output import leave_at_once
 
     words = (
         f"{outcome.reason}: {counted(outcome.finished, 'point')} finished, "

@@ -73,17 +73,27 @@ def read_folder_manifest(
     return content
 
 
+def listed_outputs(folder: Path) -> Mapping[str, object]:
+    """Return the SHA-256 of each file that the manifest of a result folder lists, by its name.
+
+    Nothing without a readable manifest. Names with a folder, and that of the manifest, are left
+    out.
+    """
+    try:
+        listed = read_json_object(folder / MANIFEST, of="result folder").get("outputs")
+    except ZebroLabError:
+        return {}
+    if not isinstance(listed, Mapping):
+        return {}
+    return {n: digest for n, digest in listed.items() if n == Path(n).name and n != MANIFEST}
+
+
 def changed_output(file: Path) -> tuple[str, ...]:
     """Return one sentence if a file of a result folder is not as it was written; else nothing.
 
-    The manifest beside it tells, by the SHA-256 under `outputs`. Nothing is said of a file that no
-    readable manifest lists, or that is missing.
+    Nothing is said of a file that no readable manifest lists, or that is missing.
     """
-    try:
-        listed = read_json_object(file.parent / MANIFEST, of="result folder").get("outputs")
-    except ZebroLabError:
-        return ()
-    digest = listed.get(file.name) if isinstance(listed, Mapping) else None
+    digest = listed_outputs(file.parent).get(file.name)
     if not isinstance(digest, str) or not file.is_file() or file_hash(file) == digest:
         return ()
     return (
@@ -94,13 +104,7 @@ def changed_output(file: Path) -> tuple[str, ...]:
 
 def lost_output(file: Path) -> tuple[str, ...]:
     """Return one sentence if a file that the manifest beside it lists is missing; else nothing."""
-    if file.exists():
-        return ()
-    try:
-        listed = read_json_object(file.parent / MANIFEST, of="result folder").get("outputs")
-    except ZebroLabError:
-        return ()
-    if not isinstance(listed, Mapping) or file.name not in listed:
+    if file.exists() or file.name not in listed_outputs(file.parent):
         return ()
     return (f"{file}, which {MANIFEST} lists, is missing; restore it",)
 

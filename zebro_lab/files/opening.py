@@ -21,7 +21,9 @@ Fault = type[DataError] | type[SettingsError]
 MOST_TEXT: Final = 64 << 20
 """Largest text file that is read at once: a trajectory of half a million poses [bytes]."""
 MOST_TABLE: Final = 1 << 30
-"""Largest size of a table, unpacked: some ten million rows of eight columns of text [bytes]."""
+"""Largest table that is read: some ten million rows of eight columns of text [bytes]."""
+MOST_UNPACKED: Final = 256 << 20
+"""Largest size of a packed table when it is unpacked: a small file may hold gigabytes [bytes]."""
 _KINDS: Final = (
     (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a FIFO"), (stat.S_ISSOCK, "a socket"),
     (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
@@ -110,28 +112,27 @@ def read_text(
         ) from error
 
 
-def read_unpacked(path: Path, *, most: int = MOST_TABLE) -> bytes:
-    """Read a whole binary file, decompressing it if its name ends in .gz.
-
-    Args:
-        path: The file.
-        most: Largest size, unpacked, that is accepted [bytes].
+def read_unpacked(path: Path) -> bytes:
+    """Read a whole table as bytes, decompressing it if its name ends in .gz.
 
     Raises:
         NotFound: There is no such file.
-        DataError: The file is not regular, not opened, not complete gzip, or larger than `most`.
+        DataError: The file is not regular, not opened, larger than `MOST_TABLE`, not complete gzip,
+            or unpacks to more than `MOST_UNPACKED`.
     """
     if not path.name.lower().endswith(".gz"):
-        return read_bytes(path, most=most)
-    with open_file(path, most=most) as file:
+        return read_bytes(path, most=MOST_TABLE)
+    with open_file(path, most=MOST_TABLE) as file:
         try:
-            data = gzip.GzipFile(fileobj=file).read(most + 1)
+            data = gzip.GzipFile(fileobj=file).read(MOST_UNPACKED + 1)
         except (EOFError, zlib.error, gzip.BadGzipFile) as error:
             raise DataError(
                 f"is not a complete gzip file ({error}); copy or export it again", file=path
             ) from error
-    if len(data) > most:
-        raise DataError(f"unpacks to more than {most >> 20} MiB; split it", file=path)
+    if len(data) > MOST_UNPACKED:
+        raise DataError(
+            f"unpacks to more than {MOST_UNPACKED >> 20} MiB; unpack it, or split it", file=path
+        )
     return data
 
 

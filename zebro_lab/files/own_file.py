@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from zebro_lab.files.errors import AlreadyExists, NotFound, ZebroLabError
-from zebro_lab.files.folder_manifest import read_json_object
+from zebro_lab.files.errors import AlreadyExists, NotFound
+from zebro_lab.files.folder_manifest import MANIFEST, listed_outputs
 from zebro_lab.files.picture_format import PictureFormat
-from zebro_lab.files.result_folder import MANIFEST
 
 _SEARCHED: Final = 1 << 16
 """Number of leading, and of trailing, bytes that are searched for the mark of a command."""
@@ -129,20 +128,10 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
         raise AlreadyExists(
             f"{out} was not made by {kind.command}; move it away, or choose another --out"
         )
-    if file.name in _listed_beside(file):
+    if file.name in listed_outputs(file.parent):
         raise AlreadyExists(
             f"{out} is part of the result in {file.parent} ({MANIFEST}); choose another --out"
         )
-
-
-def _listed_beside(file: Path) -> Sequence[str]:
-    """List the outputs in `manifest.json` beside a file; empty if none can be read."""
-    try:
-        manifest = read_json_object(file.parent / MANIFEST, of="result folder")
-    except ZebroLabError:
-        return ()
-    outputs = manifest.get("outputs")
-    return tuple(outputs) if isinstance(outputs, dict | list) else ()
 
 
 def _png_text(keyword: str, text: str) -> bytes:

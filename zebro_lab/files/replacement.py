@@ -66,11 +66,11 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
         AlreadyExists: Another process still replaces it after `PATIENCE`, or NAME.previous exists.
         OSError: The folder cannot be moved or written: the old one is unchanged. Or the new one is
             in place, but user's files cannot be moved into it from NAME.previous; the next
-            `settle` tries again.
+            `recover` tries again.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
     with _locked(folder) as note:
-        _settle_locked(folder, _read_note(note))
+        _recover_locked(folder, _read_note(note))
         names = frozenset(owned())
         if folder.exists():
             require_free_previous(folder)
@@ -78,14 +78,14 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
             with uninterrupted():
                 _write_note(note, _Note(folder.stat().st_ino, names))
                 _swap(folder, draft)
-                _settle_locked(folder, _read_note(note))
+                _recover_locked(folder, _read_note(note))
         else:
             _sync(draft)
             draft.rename(folder)
             sync_folder(folder.parent)
 
 
-def settle(path: Path, *, writing: bool = False) -> Path:
+def recover(path: Path, *, writing: bool = False) -> Path:
     """Restore a result folder after an interrupted replacement that left only NAME.previous.
 
     Every reader and writer of a result calls this function first. If NAME exists and a note says
@@ -108,7 +108,7 @@ def settle(path: Path, *, writing: bool = False) -> Path:
         if not folder.name or not previous_of(folder).is_dir():
             continue
         if _note_of(folder).exists() or not (writing or folder.exists()):
-            _settle(folder, writing=writing)
+            _recover(folder, writing=writing)
     return path
 
 
@@ -125,10 +125,10 @@ def require_free_previous(folder: Path) -> None:
         )
 
 
-def _settle(folder: Path, *, writing: bool) -> None:
+def _recover(folder: Path, *, writing: bool) -> None:
     try:
         with _locked(folder) as note:
-            _settle_locked(folder, _read_note(note))
+            _recover_locked(folder, _read_note(note))
             if not (writing or folder.exists()) and previous_of(folder).is_dir():
                 _restore(folder)
     except AlreadyExists:
@@ -143,7 +143,7 @@ def _settle(folder: Path, *, writing: bool) -> None:
         ) from error
 
 
-def _settle_locked(folder: Path, note: _Note | None) -> None:
+def _recover_locked(folder: Path, note: _Note | None) -> None:
     """Finish the replacement that a note records, or undo it if NAME is missing.
 
     Without a note, or if NAME.previous is another folder than in the note, nothing is done.

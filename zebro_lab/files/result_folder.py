@@ -20,9 +20,9 @@ from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
 from zebro_lab.files.commit import software_commit
 from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
-from zebro_lab.files.folder_manifest import MANIFEST, read_json_object
+from zebro_lab.files.folder_manifest import MANIFEST, listed_outputs, read_json_object
 from zebro_lab.files.provenance import file_hash, software
-from zebro_lab.files.replacement import replace_folder, require_free_previous, settle
+from zebro_lab.files.replacement import recover, replace_folder, require_free_previous
 
 _GLOB: Final = "*"
 
@@ -69,7 +69,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
     """
     software_commit()  # of the code that computes, not of what is committed meanwhile
     folder = real_place(out)
-    settle(folder, writing=True)
+    recover(folder, writing=True)
     _require_ground(out)
     if os.path.lexists(folder) and not folder.is_dir():
         raise AlreadyExists(f"{out} is a file; give the name of a folder as --out")
@@ -77,7 +77,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
     if folder.exists():
         require_free_previous(folder)
     for each in kind.inside:
-        settle(folder / each, writing=True)
+        recover(folder / each, writing=True)
     owned = _owned(folder, kind)
     fixed = [name for name in (*kind.names, MANIFEST) if _GLOB not in name]
     _require_free(folder, fixed, kind, owned)
@@ -198,7 +198,7 @@ def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
             f"{kind.command} does not replace; choose another folder with --out"
         )
     names = {MANIFEST}
-    for name, digest in _outputs(manifest).items():
+    for name, digest in listed_outputs(folder).items():
         if not (folder / name).is_file():
             continue
         if file_hash(folder / name) != digest:
@@ -230,17 +230,6 @@ def _manifest_of(folder: Path) -> Mapping[str, Any]:
             f"{folder} is not replaced, because its manifest cannot be read ({error}); move the "
             "folder away, or choose another folder with --out"
         ) from error
-
-
-def _outputs(manifest: Mapping[str, Any]) -> Mapping[str, object]:
-    """Return the hashes under `outputs` in a manifest by file name; none if it has no such table.
-
-    Names with a folder, and the name of the manifest itself, are left out.
-    """
-    listed = manifest.get("outputs")
-    if not isinstance(listed, Mapping):
-        return {}
-    return {n: digest for n, digest in listed.items() if n == Path(n).name and n != MANIFEST}
 
 
 def _require_free(

@@ -6,6 +6,8 @@ from collections.abc import Mapping, MutableMapping
 from typing import Any
 
 import numpy as np
+import tomlkit
+from tomlkit.items import InlineTable
 
 
 def fill_in(template: str, values: Mapping[str, Any]) -> str:
@@ -23,8 +25,6 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
     >>> fill_in("[legs]\nradius = 0  # of the arc [m]", {"legs": {"radius": 0.1 + 0.2}})
     '[legs]\nradius = 0.3  # of the arc [m]'
     """
-    import tomlkit  # takes 0.1 s, so imported only for writing
-
     document = tomlkit.parse(template)
     _fill(document, values)
     return tomlkit.dumps(document)
@@ -35,8 +35,6 @@ def inline_table(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
     Numbers are rounded as in `fill_in`.
     """
-    import tomlkit
-
     table = tomlkit.inline_table()
     table.update(_plain(values))
     return table
@@ -60,8 +58,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, str | bool | numbers.Integral):
         return value
     if isinstance(value, Mapping):
-        from tomlkit.items import InlineTable
-
         inline = isinstance(value, InlineTable)
         return value if inline else {key: _plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple | np.ndarray):

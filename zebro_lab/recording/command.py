@@ -37,7 +37,7 @@ def record(request: RecordRequest, output: Output = TEXT) -> None:
     from zebro_lab.recording import stage
     from zebro_lab.recording.screen import record_screen
     from zebro_lab.terminal.compiling import announcing_compilation
-    from zebro_lab.terminal.last_words import leave_at_once
+    from zebro_lab.terminal.timely_output import leave_at_once
 
     announcing = nullcontext() if output.quiet else announcing_compilation()
     with record_screen(Console(stderr=True, quiet=output.quiet)) as screen, announcing:

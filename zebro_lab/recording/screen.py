@@ -19,8 +19,8 @@ from rich.text import Text
 
 from zebro_lab.recording.drawing import draw_status, glyphs_of, stream_in_words, time_left
 from zebro_lab.recording.live_values import LiveValues
-from zebro_lab.terminal.last_words import in_time
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.timely_output import in_time
 
 if TYPE_CHECKING:
     from zebro_lab.recording.status import RecordStatus

@@ -14,7 +14,7 @@ from zebro_lab.files.documents import read_json_document, read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import TRACK
 from zebro_lab.files.opening import parsing, read_text
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.report.pictures import SUFFIXES, VALIDATION, lies_in, place_of
 from zebro_lab.runs.folder import find_runs
@@ -167,10 +167,10 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
             damaged.
     """
     for name in WALK_PARTS:
-        settle(data / name)
+        recover(data / name)
     found = find_runs(data)
     own = [name for name in WALK_PARTS if (data / name / MANIFEST).is_file()]
-    settle(calibration)
+    recover(calibration)
     slip = _part(CALIBRATION, calibration, data)
     walks = _part(WALKS, calibration / WALKS, data)
     walks = None if walks.missing else walks
@@ -199,7 +199,7 @@ def _run(folder: Path) -> ReportedRun:
 
 
 def _part(name: str, folder: Path, data: Path) -> Part:
-    settle(folder)
+    recover(folder)
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
     if not (folder / MANIFEST).is_file():
         return Part(name, folder, {}, (), maker)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.told_apart import told_apart
+from model.format_distinct import format_distinct
 from zebro_lab.tables.raw_table import RawTable
 
 WIDEST: Final = 5.0
@@ -46,7 +46,7 @@ def bridged_gaps(
     gaps = np.flatnonzero(steps > WIDEST * usual)
     notes = []
     for at in gaps:
-        before, now = told_apart(t[at], t[at + 1])
+        before, now = format_distinct(t[at], t[at + 1])
         if why := _why_not(t, theta, int(at), gaps):
             raise table.fault(
                 f"time jumps from {before} to {now} s, and {why}; expected at most {WIDEST:g} "

@@ -10,7 +10,8 @@ from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns
-from zebro_lab.tables.columns_file import columns_above, parse_columns, read_columns, read_nearest
+from zebro_lab.tables.columns_file import parse_columns, read_columns
+from zebro_lab.tables.columns_sections import columns_above, read_nearest
 from zebro_lab.tables.table_files import PLAIN_SUFFIXES, is_table_file
 from zebro_lab.tables.table_kinds import RIG
 

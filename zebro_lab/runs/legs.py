@@ -9,13 +9,13 @@ from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.folder_manifest import such_folder_in
 from zebro_lab.files.names import PATH_CSV
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
-from zebro_lab.tables.columns_file import columns_above, read_nearest, read_section
+from zebro_lab.tables.columns_sections import columns_above, read_nearest, read_section
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.tables.table_kinds import LEGS
@@ -126,7 +126,7 @@ def require_used(topics: Sequence[str], used: Sequence[str | None]) -> None:
 
 
 def _table_of(path: Path) -> Path:
-    settle(path)
+    recover(path)
     if not path.is_dir():
         return path
     if (path / PATH_CSV).is_file():

@@ -18,7 +18,7 @@ from model.leg_state import LegState
 from model.predict import ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY, Robot
 from model.walk.traction import TractionTable, law_table
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk.predict_stage import is_walk_folder, with_own_robot, without_offsets
@@ -59,7 +59,7 @@ def read_walk(path: Path) -> LoggedWalk:
     Raises:
         ZebroLabError: There are no leg angles, or they cannot be read.
     """
-    settle(path)
+    recover(path)
     request = with_own_robot(PredictRequest(path))
     described = robot_of(request.model)
     if is_walk_folder(path):

@@ -3,7 +3,8 @@
 
 import io
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any, Final
@@ -11,7 +12,7 @@ from typing import Any, Final
 import pandas as pd
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import MOST_TABLE, parsing, read_unpacked
+from zebro_lab.files.opening import MOST_UNPACKED, parsing, read_unpacked
 from zebro_lab.tables.cells import decimal_sign, kind_of
 from zebro_lab.tables.header_rows import Header, NoHeader, data_rows, find_header
 from zebro_lab.tables.raw_table import RawTable, differing_headers
@@ -37,10 +38,13 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
     content = read_unpacked(path)
     with parsing(path, "cannot be read as an Excel workbook", advice="save it again, or as CSV"):
         _require_bounded(path, content)
-        name, cells, first_row = _sheet(path, content, sheet)
+        name, cells = _filled_sheet(path, _sheets(path, content, values=True), sheet)
+        above = next(i for i, row in enumerate(cells) if any(cell is not None for cell in row))
+        cells = cells[above:]
         header = _header(path, name, cells)
-        _require_values(path, content, name, cells, first_row)
-        percent = _in_percent(path, content, name, first_row + header.first)
+        formulas = _sheets(path, content, values=False)[name][above:]
+        _require_values(path, name, cells, formulas, above + 1)
+        percent = _in_percent(path, content, name, above + 1 + header.first)
     notes = (f"sheet '{name}'", *header.notes)
     ratios = {header.names[i]: "dimensionless" for i in percent if i < len(header.names)}
     notes += tuple(f"'{each}' is shown in percent and stored as a ratio" for each in ratios)
@@ -52,36 +56,29 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
         decimal_comma=True,
         decimal=decimal_sign([c for row in cells[:_HEAD_ROWS] for c in row if isinstance(c, str)]),
         notes=tuple(f"{path.name}: {note}" for note in notes),
-        rows_from=first_row + header.first,
+        rows_from=above + 1 + header.first,
         units={**header.units, **ratios},
     )
 
 
-def _sheet(path: Path, content: bytes, wanted: str | None) -> tuple[str, Cells, int]:
-    """Return a sheet's name, its cells from the first row that is filled, and that row's number."""
-    book = _open(path, content, values=True)
-    try:
-        names = list(book.sheetnames)
-        if wanted is not None and wanted not in names:
-            raise DataError(f"has no sheet '{wanted}'; it has {_listed(names)}", file=path)
-        filled = {name: rows for name in ([wanted] if wanted else names)
-                  if (rows := _cells(book[name]))}  # fmt: skip
-    finally:
-        book.close()
+def _filled_sheet(path: Path, sheets: Mapping[str, Cells], wanted: str | None) -> tuple[str, Cells]:
+    """Return name and cells of the sheet that is wanted, or of the only one with cells."""
+    if wanted is not None and wanted not in sheets:
+        raise DataError(f"has no sheet '{wanted}'; it has {_listed(sheets)}", file=path)
+    filled = {name: rows for name, rows in sheets.items() if rows and wanted in (None, name)}
     if len(filled) > 1:
         raise DataError(
-            f"has several sheets with cells, {_listed(list(filled))}; name one with sheet = "
+            f"has several sheets with cells, {_listed(filled)}; name one with sheet = "
             f'"{next(iter(filled))}" in columns.toml (zebro-lab init FILE --sheet NAME writes it)',
             file=path,
         )
     if not filled:
         raise DataError("is empty; expected a header and rows", file=path)
-    name, rows = next(iter(filled.items()))
-    skipped = next(i for i, row in enumerate(rows) if any(cell is not None for cell in row))
-    return name, rows[skipped:], skipped + 1
+    return next(iter(filled.items()))
 
 
-def _open(path: Path, content: bytes, *, values: bool) -> Any:
+@contextmanager
+def _opened(path: Path, content: bytes, *, values: bool) -> Iterator[Any]:
     try:
         import openpyxl
     except ImportError as error:
@@ -90,17 +87,24 @@ def _open(path: Path, content: bytes, *, values: bool) -> Any:
             "the sheet as CSV",
             file=path,
         ) from error
-    return openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=values)
+    with closing(
+        openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=values)
+    ) as book:
+        yield book
 
 
-def _cells(sheet: Any) -> list[list[Any]]:
-    """Return the cells of a sheet, without empty rows at the end; empty for a sheet of charts."""
-    if not hasattr(sheet, "iter_rows"):
-        return []
-    rows = [list(row) for row in sheet.iter_rows(values_only=True)]
-    while rows and all(cell is None for cell in rows[-1]):
-        rows.pop()
-    return rows
+def _sheets(path: Path, content: bytes, *, values: bool) -> dict[str, Cells]:
+    """Return the cells of each sheet, none of a sheet of charts; their formulas, if not values."""
+    with _opened(path, content, values=values) as book:
+        sheets = {
+            name: [list(row) for row in book[name].iter_rows(values_only=True)]
+            for name in book.sheetnames
+            if hasattr(book[name], "iter_rows")
+        }
+    for rows in sheets.values():
+        while rows and all(cell is None for cell in rows[-1]):
+            rows.pop()
+    return sheets
 
 
 def _header(path: Path, name: str, cells: Cells) -> Header:
@@ -119,15 +123,8 @@ def _header(path: Path, name: str, cells: Cells) -> Header:
         ) from error
 
 
-def _require_values(path: Path, content: bytes, name: str, cells: Cells, first: int) -> None:
+def _require_values(path: Path, name: str, cells: Cells, formulas: Cells, first: int) -> None:
     """Raise if an empty cell has a formula: its value was never computed and stored."""
-    if all(cell is not None for row in cells for cell in row):
-        return
-    book = _open(path, content, values=False)
-    try:
-        formulas = _cells(book[name])[first - 1 :]
-    finally:
-        book.close()
     for i, (row, found) in enumerate(zip(formulas, cells, strict=False)):
         for j, (formula, value) in enumerate(zip(row, found, strict=False)):
             if value is None and formula is not None:
@@ -140,12 +137,9 @@ def _require_values(path: Path, content: bytes, name: str, cells: Cells, first: 
 
 def _in_percent(path: Path, content: bytes, name: str, row: int) -> list[int]:
     """Return the columns whose number in a row is shown in percent: 0.02 as 2 %."""
-    book = _open(path, content, values=True)
-    try:
+    with _opened(path, content, values=True) as book:
         cells = next(book[name].iter_rows(min_row=row, max_row=row), ())
         return [i for i, cell in enumerate(cells) if "%" in str(cell.number_format)]
-    finally:
-        book.close()
 
 
 def _columns(cells: Cells, header: Header) -> dict[str, pd.Series]:
@@ -184,13 +178,13 @@ def _require_bounded(path: Path, content: bytes) -> None:
                         file=path)  # fmt: skip
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         unpacked = sum(info.file_size for info in archive.infolist())
-    if unpacked > MOST_TABLE:
+    if unpacked > MOST_UNPACKED:
         raise DataError(
-            f"would unpack to {unpacked / 1e6:.0f} MB; expected at most {MOST_TABLE / 1e6:.0f} MB; "
-            "save it as CSV",
+            f"would unpack to {unpacked / 1e6:.0f} MB; expected at most "
+            f"{MOST_UNPACKED / 1e6:.0f} MB; save it as CSV",
             file=path,
         )
 
 
-def _listed(names: Sequence[str]) -> str:
+def _listed(names: Iterable[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)

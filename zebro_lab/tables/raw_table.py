@@ -13,8 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from model.format_distinct import format_distinct
 from model.similar_name import nearest
-from model.told_apart import told_apart
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing, read_unpacked
 from zebro_lab.tables.cells import kind_of, may_be_thousands
@@ -200,7 +200,7 @@ class RawTable:
         if later.all():
             return
         index = int(np.argmin(later)) + 1
-        before, now = told_apart(t[index - 1], t[index])
+        before, now = format_distinct(t[index - 1], t[index])
         raise self.fault(
             f"time goes from {before} to {now} s; expected increasing times: "
             "delete repeated rows, sort them by time, or, if another recording begins here, make a "

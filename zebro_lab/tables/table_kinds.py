@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Kinds of tables, and a table that by its headers is of another kind than expected."""
 
-from collections.abc import Collection, Mapping
-from typing import Any, Final
+from collections.abc import Collection
+from typing import Final
 
 LEGS, IMU, TRACK, RIG = "legs", "imu", "track", "rig"
 KINDS: Final = (LEGS, IMU, TRACK, RIG)
 """Kinds of tables; their names are those of the sections of a `columns.toml`."""
-PLAIN: Final = (LEGS, RIG)
-"""Kinds whose `columns.toml` may be without sections."""
 
 _MARKS: Final = tuple(
     (frozenset(names.split()), kind)
@@ -29,32 +27,6 @@ _TAKERS: Final = {
     IMU: "an IMU, which zebro-lab import takes as --imu, beside --legs",
 }
 """What a table of each kind is of, and the commands and options that take it."""
-
-
-def is_sectioned(document: Mapping[str, Any]) -> bool:
-    """Return whether the content of a `columns.toml` has sections of kinds of tables."""
-    return bool(set(document) & set(KINDS))
-
-
-def is_for(kind: str, document: Mapping[str, Any], *, beside: bool) -> bool:
-    """Return whether a `columns.toml` has something for a kind of table.
-
-    Args:
-        kind: One of `KINDS`.
-        document: Content of the file.
-        beside: Whether it is in the table's folder, not above it.
-    """
-    if is_sectioned(document):
-        return kind in document
-    columns = document.get("columns")
-    if beside or not isinstance(columns, dict):
-        return kind in PLAIN
-    return kind == (LEGS if any(name.startswith("theta") for name in columns) else RIG)
-
-
-def gives_source(kind: str, document: Mapping[str, Any]) -> bool:
-    """Return whether the source of a `columns.toml` holds for kinds that it does not map, too."""
-    return kind not in PLAIN or is_sectioned(document)
 
 
 def looks_like_other(headers: Collection[str], expected: Collection[str]) -> str:

@@ -7,6 +7,13 @@ import warnings
 from collections.abc import Callable
 from typing import Final
 
+from model.errors import ModelError
+from rig.errors import RigError, WrongDevice
+from zebro_lab.files.errors import SettingsError, ZebroLabError
+from zebro_lab.files.shown_text import shortened, shown
+from zebro_lab.terminal.stopping import StoppedBySignal
+from zebro_lab.terminal.timely_output import leave_at_once, say_in_time
+
 ERROR: Final = 1
 WRONG_USAGE: Final = 2
 _PLACES: Final = {
@@ -24,20 +31,13 @@ def run(app: Callable[[], object]) -> None:
     """
     # ArviZ warns developers about its next version once a day; this does not concern users.
     warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)
-    _guard(app)
-
-
-def _guard(command: Callable[[], object]) -> None:
     try:
-        command()
+        app()
     except Exception as error:
         _raise_stop_behind(error)
         message = f"{error}{_advice(error)}" if _is_known(error) else _of_a_file(error)
         if message is None:
             raise
-        from zebro_lab.files.shown_text import shortened, shown
-        from zebro_lab.terminal.last_words import leave_at_once, say_in_time
-
         code = WRONG_USAGE if _is_about_option(error) else ERROR
         if not say_in_time(f"error: {shortened(shown(message))}", err=True):
             leave_at_once(code)
@@ -46,17 +46,13 @@ def _guard(command: Callable[[], object]) -> None:
 
 def _raise_stop_behind(error: Exception) -> None:
     """Raise the stop by a signal that a library being imported has turned into its own error."""
-    stop = getattr(sys.modules.get("zebro_lab.terminal.stopping"), "StoppedBySignal", ())
-    cause = error.__cause__
-    if cause is not None and isinstance(cause, stop):
-        raise cause from None
+    if isinstance(error.__cause__, StoppedBySignal):
+        raise error.__cause__ from None
 
 
 def _advice(error: Exception) -> str:
     """Say where a profile belongs that describes another device; nothing of other errors."""
-    wrong_device = getattr(sys.modules.get("rig.errors"), "WrongDevice", ())
-    found = getattr(error, "found", "") if isinstance(error, wrong_device) else ""
-    place = _PLACES.get(found)
+    place = _PLACES.get(error.found) if isinstance(error, WrongDevice) else None
     return f"; this profile belongs to {place}" if place else ""
 
 
@@ -70,19 +66,11 @@ def _of_a_file(error: Exception) -> str | None:
 
 def _is_about_option(error: Exception) -> bool:
     """Return whether an error is a `SettingsError` about the value of an option."""
-    key = getattr(error, "key", None)
-    return getattr(error, "file", None) is None and isinstance(key, str) and key.startswith("--")
+    about = isinstance(error, SettingsError) and error.file is None and error.key
+    return bool(about) and str(about).startswith("--")
 
 
 def _is_known(error: Exception) -> bool:
-    # The root errors are looked up in loaded modules: importing them here would slow --help down.
-    roots = [
-        getattr(sys.modules.get(module), name, None)
-        for module, name in (
-            ("zebro_lab.files.errors", "ZebroLabError"),
-            ("model.errors", "ModelError"),
-            ("rig.errors", "RigError"),
-            ("tracking.errors", "TrackingError"),
-        )
-    ]
-    return any(root is not None and isinstance(error, root) for root in roots)
+    # Importing the package of photographs here would slow --help down.
+    tracking_error = getattr(sys.modules.get("tracking.errors"), "TrackingError", ())
+    return isinstance(error, (ZebroLabError, ModelError, RigError, tracking_error))

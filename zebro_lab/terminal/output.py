@@ -11,9 +11,9 @@ import typer
 
 from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.terminal.last_words import say_in_time
 from zebro_lab.terminal.messages import say, wide_console
 from zebro_lab.terminal.stopping import STOPPED, StoppedBySignal
+from zebro_lab.terminal.timely_output import say_in_time
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -71,7 +71,7 @@ class Output:
         """Write lines of results where `console` writes, with a timeout.
 
         Returns:
-            Whether they were written, as of `zebro_lab.terminal.last_words.say_in_time`; True if
+            Whether they were written, as of `zebro_lab.terminal.timely_output.say_in_time`; True if
             quiet.
         """
         return self.quiet or say_in_time(text, err=self.as_json)

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any, Final
 
-from zebro_lab.terminal.last_words import say_in_time
+from zebro_lab.terminal.timely_output import say_in_time
 
 STOPPED: Final = 130
 """Exit code of a command that was stopped."""

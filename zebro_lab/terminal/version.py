@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: MIT
 """The option `--version`: version and commit of the software."""
 
+from importlib.metadata import version
 from typing import Annotated, TypeAlias
 
 import typer
 
+from zebro_lab.files.commit import software_commit
+
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
-
-        from zebro_lab.files.commit import software_commit
-
         typer.echo(f"zebro-lab {version('zebro-lab')}, commit {software_commit()}")
         raise typer.Exit
 

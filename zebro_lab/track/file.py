@@ -14,7 +14,7 @@ from model.joint_covariance import JointCovariance
 from model.poses import Poses
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import changed_output
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
@@ -70,7 +70,7 @@ def read_track(path: Path) -> TrackFile:
             missing, a cell holds no finite number, time does not increase, a covariance has a
             negative eigenvalue, or there are fewer than `FEWEST` poses.
     """
-    settle(path)
+    recover(path)
     file = path / TRACK_CSV if path.is_dir() else path
     track = track_of_table(read_table_file(file))
     changed = (f"WARNING: {each}" for each in changed_output(file))

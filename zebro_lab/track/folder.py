@@ -8,7 +8,7 @@ from typing import Any
 
 from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.picture_format import in_every_format
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.track.annotations import ANNOTATIONS_FILE
 from zebro_lab.track.floor_file import FLOOR_FILE
@@ -77,7 +77,7 @@ def read_track_manifest(folder: Path) -> Mapping[str, Any]:
         NotFound: The folder has no manifest.
         DataError: The manifest is damaged, of another schema, or of another command.
     """
-    settle(folder)
+    recover(folder)
     return read_folder_manifest(folder / MANIFEST, of="track", kinds=(KIND,), schema=SCHEMA)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import PATH_CSV, TRACK, numbered
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
 from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_legs import TRACK_ALONE, is_recorded
@@ -65,7 +65,7 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
         NotFound: `prediction/path.csv` or `track/track.csv` is missing.
         DataError: The run was imported without leg angles, and has no prediction.
     """
-    prediction, track = settle(run / PREDICTION), settle(run / TRACK)
+    prediction, track = recover(run / PREDICTION), recover(run / TRACK)
     if not (prediction / PATH_CSV).is_file():
         if is_recorded(run) and read_manifest(run).is_track_alone:
             raise DataError(
@@ -142,7 +142,7 @@ def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
     return tuple(
         content_hash(file) if file.is_file() else str(file)
         for path, name in zip(pair, (PATH_CSV, TRACK_CSV), strict=True)
-        for file in [settle(path) / name if path.is_dir() else path]
+        for file in [recover(path) / name if path.is_dir() else path]
     )
 
 

@@ -19,7 +19,7 @@ from zebro_lab.files.errors import NotFound
 from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.picture_format import in_every_format
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
@@ -196,7 +196,7 @@ def read_walk(path: Path) -> WalkPath:
         DataError: The file is damaged or has no rows, a column is missing, a cell does not hold a
             finite number, or time does not increase; the message names file, row and column.
     """
-    settle(path)
+    recover(path)
     file = path / PATH_CSV if path.is_dir() else path
     if not file.exists():
         raise NotFound(f"{file}: no such file; choose a folder that walk or predict wrote")
@@ -221,7 +221,7 @@ def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
         NotFound: There is no manifest.
         DataError: The manifest is damaged, of another schema, or of another command.
     """
-    settle(folder)
+    recover(folder)
     return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)
 
 

@@ -11,7 +11,7 @@ from model.gait.inexact_log import InexactLog
 from model.progress import Watcher
 from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.ros_bags import is_ros_log
@@ -62,7 +62,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
 
 
 def _predict(request: PredictRequest, watcher: Watcher, executor: Executor | None) -> Walked:
-    settle(request.log)
+    recover(request.log)
     request = with_own_robot(request)
     out = prediction_folder(request)
     require_replaceable(out, WALKED["predict"], inputs=request.inputs)

@@ -17,7 +17,7 @@ from model.walk_models import baseline_paths
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.names import PATH_CSV
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.track.file import read_poses
 from zebro_lab.walk.folder import (
     DRAWS,
@@ -66,7 +66,7 @@ def read_prediction(path: Path) -> PredictionFile:
     Raises:
         ZebroLabError: A file is missing or damaged, or is not a path.
     """
-    settle(path)
+    recover(path)
     file = path / PATH_CSV if path.is_dir() else path
     poses = read_poses(file)
     folder = file.parent

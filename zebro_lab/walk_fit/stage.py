@@ -17,7 +17,7 @@ from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.slip_argument import THESIS, NamedSlip, parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, write_walks
 from zebro_lab.files.errors import NotFound, SettingsError
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.validation.judged_run import JudgedRun
@@ -151,7 +151,7 @@ def _fit(
 def _slip_of(request: WalksRequest, calibration: Path) -> Path:
     if not request.walks:
         raise SettingsError("missing: no walk was given to fit", key="--walks")
-    slip_toml = settle(calibration) / SLIP_TOML
+    slip_toml = recover(calibration) / SLIP_TOML
     if not slip_toml.is_file():
         raise NotFound(
             f"{slip_toml}: no such file; give rig data to calibrate from, or the --out of a "

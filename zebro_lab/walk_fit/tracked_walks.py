@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
+from model.format_distinct import format_distinct
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
-from model.told_apart import told_apart
 from model.walk_fit.misfit import FEWEST_POSES, TrackedWalk
 from model.walk_fit.tilt import FEWEST, TIME, MeasuredTilt
 from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import TRACK, numbered
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
 from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_each
@@ -137,7 +137,7 @@ def read_walk_on_file(
             poses lie within the log's time range, or `clock` rejects it.
     """
     log_file = _legs_of(folder)
-    track_file = settle(folder / TRACK) / TRACK_CSV
+    track_file = recover(folder / TRACK) / TRACK_CSV
     if not track_file.is_file():
         raise NotFound(f"{folder}: no track; zebro-lab track --out {folder / TRACK} makes one")
     own = folder / ROBOT_FILE
@@ -207,7 +207,7 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
     t = track.poses.t
     keep = (t >= 0) & (t <= end)
     if keep.sum() < FEWEST_POSES:
-        first, last, until = told_apart(t[0], t[-1], end)
+        first, last, until = format_distinct(t[0], t[-1], end)
         raise DataError(
             f"{keep.sum()} of {len(t)} poses, from {first} to {last} s after the leg log's "
             f"first sample, lie within its {until} s; expected {FEWEST_POSES} or more: do both "

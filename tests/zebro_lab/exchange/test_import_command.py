@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab import` takes every file that is named, and says what became of it."""
 
-import pytest
-
 from support.imported_files import COLUMNS
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import read_manifest
@@ -52,10 +50,3 @@ def test_a_rigs_runs_are_all_named(sweep, tmp_path, run_command):
         line for line in ended.out.splitlines() if line.startswith("SIMULATED source sim:rig-sweep")
     ]
     assert len(named) == len(list(tmp_path.iterdir())) == 24
-
-
-@pytest.mark.parametrize("start", ["yesterday", "2026-13-01"])
-def test_a_start_that_is_no_time_is_named(tmp_path, run_command, start):
-    ended = run_command("import", "--legs", "legs.csv", "--data", tmp_path, "--start", start)
-    assert ended.code == 2
-    assert f"found '{start}'; expected date and time like" in " ".join(ended.err.split())

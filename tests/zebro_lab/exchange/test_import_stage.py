@@ -13,7 +13,6 @@ from support.leg_motions import T as T12
 from support.leg_motions import tripod
 from support.watchers import Nobody
 from support.written_bags import JOINTS, imu, joints, odometry, transforms, write_bag
-from zebro_lab.exchange.export_stage import export_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import LOG, WARNING
@@ -112,14 +111,6 @@ def test_a_run_is_walked_by_the_robot_it_keeps(files, tmp_path):
     assert walked.described.robot.mass == 2.0
 
 
-def test_an_imported_run_is_exported_like_a_recorded_one(files, tmp_path):
-    folder, _ = everything(files, tmp_path)
-    written = export_run(folder, to="csv", out=tmp_path / "tables")
-    assert {file.name for file in written} >= {"legs.csv", "legs_raw.csv", "imu_raw.csv"}
-    again = pd.read_csv(tmp_path / "tables" / "legs.csv", comment="#")
-    np.testing.assert_allclose(again["t"], T, atol=1e-9)
-
-
 def test_times_since_1970_tell_when_a_run_began(files, tmp_path):
     table = pd.read_csv(files / "legs.csv")
     table["time_ms"] += 1_772_600_767_000.0
@@ -176,17 +167,10 @@ def rewritten(name, text):
     ("spoil", "error", "message"),
     [
         (change("legs.csv", fl=(3, "")), DataError, "column 'fl', row 4.*empty"),
-        (change("legs.csv", time_ms=(3, 0.0)), DataError, "time_ms.*row 4.*increasing"),
         (change("imu.csv", roll=(2, "x")), DataError, "imu.csv, column 'roll', row 3"),
         (rewritten("imu.csv", "t,a\n0,1\n1,2\n"), DataError, "holds no orientation"),
-        (rewritten("imu.csv", "t,qw,qx,qy,qz\n0,2,0,0,0\n"), DataError, "length 2; expected 1"),
         (change("track.csv", east_mm=(1, "inf")), DataError, "track.csv, column 'east_mm', row 2"),
-        (change("track.csv", t=(2, 0.1)), DataError, "row 3 .line 4.*increasing"),
         (change("track.csv", cov_xx=(1, -1.0)), DataError, "negative eigenvalue"),
-        (rewritten("robot.toml", "masss = 2"), SettingsError, "did you mean 'mass'"),
-        (rewritten("columns.toml", "[leg.columns]\n[legs]"), SettingsError, "mean 'legs'"),
-        (rewritten("columns.toml", "[legs.columns]\ntheta9 = 'x'"), SettingsError,
-         "legs.columns.theta9"),
         (rewritten("columns.toml", COLUMNS + "\n[imu.columns.roll]\nunit = 'm'"), SettingsError,
          "imu.columns.roll.unit"),
         (lambda files: (files / "track.csv").unlink(), NotFound, "track.csv: no such file"),
@@ -218,13 +202,10 @@ def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
         ({"track": "track.csv", "imu": "imu.csv"}, "^--imu: belongs to a walk"),
         ({"legs": "legs.csv", "trajectory": TrajectoryRequest(plane=Plane.XY)}, "^--track: .*add"),
         ({"track": "track.csv", "track_offset": 2.0}, "^--track-offset: .*files of both"),
-        ({"legs": "legs.csv", "track_sd": "1 mm"}, "^--track-sd: is that of a track"),
         ({"track": "track.csv", "track_sd_yaw": "1 deg"}, "^--track-sd: needs that of the pos"),
         ({"track": "track.csv", "track_sd": "1 mm"}, "^--track-sd: .*track.csv has a covariance"),
         ({"track": "path.tum", "track_sd": "1 mm"}, "^--track-sd-yaw: .*path.tum has headings"),
         ({"track": "track.csv", "track_sd": "0 mm"}, "^--track-sd: found 0 mm; expected above 0"),
-        ({"track": "track.csv", "track_sd": "2 m"}, "^--track-sd: found 2 m; .*at most 0.5 m"),
-        ({"track": "track.csv", "track_sd": "1 deg"}, "^--track-sd: .*deg"),
     ],
 )
 def test_half_a_request_is_refused(files, tmp_path, changes, message):

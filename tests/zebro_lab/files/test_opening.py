@@ -7,6 +7,7 @@ import os
 import pytest
 
 from support.bounded_reading import error_on_fifo, refusal
+from zebro_lab.files import opening
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import read_bytes, read_unpacked
 from zebro_lab.mcap.raw_log import read_raw_log
@@ -40,9 +41,11 @@ def test_a_gzip_file_cut_short_and_one_that_is_none_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["a.csv", "a.csv.gz"])
-def test_a_file_that_is_too_large_when_unpacked_is_refused(name, tmp_path):
+def test_a_table_that_is_too_large_when_unpacked_is_refused(name, tmp_path, monkeypatch):
     content = bytes(4 << 20)
     (tmp_path / name).write_bytes(gzip.compress(content) if name.endswith("gz") else content)
-    assert len(read_unpacked(tmp_path / name, most=4 << 20)) == 4 << 20
+    assert len(read_unpacked(tmp_path / name)) == 4 << 20
+    for limit in ("MOST_TABLE", "MOST_UNPACKED"):
+        monkeypatch.setattr(opening, limit, 1 << 20)
     with pytest.raises(DataError, match=r"at most|unpacks to more"):
-        read_unpacked(tmp_path / name, most=1 << 20)
+        read_unpacked(tmp_path / name)

@@ -59,15 +59,11 @@ def without(name: str, row: int, value: float = np.nan):
 
 FAULTS = {
     "missing leg": (lambda t: t.drop(columns="theta4"), "column 'theta4': the column of the angle"),
-    "missing time": (lambda t: t.drop(columns="t"), "'t': the column of the time is missing"),
     "empty cell": (without("theta2", 7), "column 'theta2', row 8 (line 9): is empty"),
-    "infinite angle": (without("theta5", 0, np.inf), "column 'theta5', row 1 (line 2): is infinit"),
     "reversed time": (lambda t: t.iloc[::-1], "column 't', row 2 (line 3): time goes from 1.99 to"),
-    "repeated time": (without("t", 5, 0.04), "column 't', row 6 (line 7): time goes from 0.04 to"),
     "gap": (lambda t: t.drop(index=range(50, 80)), "column 't', row 51 (line 52): time jumps from"),
     "half a turn": (lambda t: t.iloc[::90], "column 'theta1', row 2 (line 3): leg 1 turns by 2.7"),
     "one row": (lambda t: t.head(1), "has 1 row; expected two or more rows"),
-    "text": (lambda t: t.assign(theta1="x"), "column 'theta1', row 1 (line 2): 'x' is not a num"),
 }  # fmt: skip
 
 

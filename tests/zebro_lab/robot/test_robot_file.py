@@ -92,25 +92,16 @@ def assert_same_robot(found: Robot, expected: Robot) -> None:
 FAULTS = {
     "no TOML": ("mass 2", "cannot be read as TOML"),
     "unknown key": ("mas = 2.0", "mas: unknown key; did you mean 'mass'?"),
-    "unknown key of a leg": ("[legs]\nradios = 1.0", "legs.radios: unknown key; did you mean 'rad"),
     "seventh hip": ("[hips]\n7 = [0, 0, 0]", "hips.7: unknown key"),
     "negative mass": ("mass = -1.0", "mass is -1 kg; expected more than zero"),
-    "mass of another unit": ('mass = "3 m"', "mass: unit 'm' cannot be converted to kg"),
-    "text for a number": ('mass = "heavy"', "mass: 'heavy' is not a number with a unit"),
-    "truth for a number": ("mass = true", "mass: found True; expected a number in kg"),
     "five offsets": ("[legs]\noffset_deg = [0, 0, 0, 0, 0]", "expected a list of 6"),
     "sign of two": ("[legs]\nsign = [1, 1, 2, 1, 1, 1]", "expected a list of 6 signs, each 1"),
     "arc beyond a circle": ("[legs]\narc_deg = 400", "leg_arc is 400 degrees"),
-    "arc that is a text": ("[legs]\narc_deg = 'half'", "arc_deg: found 'half'; expected a finite"),
     "left hip on right": ("[hips]\n1 = [0.1, -0.1, 0]", "more than 0, as leg 1 is on the left"),
-    "right hip on left": ("[hips]\n6 = [0.1, 0.1, 0]", "less than 0, as leg 6 is on the"),
     "flat hip": ("[hips]\n1 = [0, 0]", "hips.1: found [0, 0]; expected a list of 3"),
     "marker nowhere": ("[marker]\nheight = 0.1", "marker.position: is missing"),
     "marker below ground": ("[marker]\nposition = [0, 0, 0]\nheight = -1", "height: is -1 m;"),
-    "half a marker's number": ("[marker]\nposition = [0, 0, 0]\nid = 1.5", "marker.id: found 1.5"),
     "marker of no size": ("[marker]\nposition = [0, 0, 0]\nside = 0", "marker.side: is 0 m"),
-    "dictionary by number": ("[marker]\nposition = [0, 0, 0]\ndictionary = 4", "marker.dictionary"),
-    "legs that are a number": ("legs = 6", "legs: found 6; expected a table"),
 }  # fmt: skip
 
 
@@ -128,11 +119,7 @@ def test_fault_is_one_line_that_names_file_and_key(text, message, read):
     [
         ("[legs]\nradius = 35", r'radius: is 35 m, .* at most 3 m .* "35 mm" \(or "35 m"\)$'),
         ('[legs]\nradius = "35"', r'radius: is 35 m, .* "35 mm"'),
-        ("[legs]\nradius = 3.5", r'"3.5 cm"'),
         ("mass = 2170", r'mass: is 2170 kg, .* at most 100 kg .* "2170 g"'),
-        ("body_size = [0.2, 251, 0.07]", r'body_size\[1\]: is 251 m, .* "251 mm"'),
-        ("[hips]\n1 = [97, 115, 0]", r'"97 mm"'),
-        ("[marker]\nposition = [0, 0, -40]", r'is -40 m, .* "-40 mm"'),
         ("[marker]\nposition = [0, 0, 0]\nheight = 80", r'height: is 80 m, .* "80 mm"'),
     ],
 )

@@ -13,7 +13,6 @@ from support.watchers import Nobody
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.import_stage import import_run
-from zebro_lab.experiment.check_stage import check_runs
 from zebro_lab.runs.counted_once import content_hash
 from zebro_lab.runs.exclusion import exclude_run
 
@@ -98,14 +97,6 @@ def test_what_is_excluded_does_not_come_back_under_another_name(data, sweep):
     assert len(found.samples.run_names) == len(alone.samples.run_names) - 1
 
 
-def test_one_imported_run_beside_its_table_leaves_the_table_its_other_runs(data, sweep):
-    folders = imported(data, data / "runs")
-    for folder in folders[1:]:
-        shutil.rmtree(folder)
-    found, alone = read_rig_data([data]), read_rig_data([sweep])
-    assert len(alone.samples) <= len(found.samples)
-
-
 def test_repeated_rows_within_one_table_are_its_own(tmp_path):
     trials = "slip_ratio,normal_force,traction_force\n" + "".join(
         f"{0.01 * i},5,{min(1.0, 0.1 * i)}\n" * 2 for i in range(1, 11)
@@ -116,20 +107,6 @@ def test_repeated_rows_within_one_table_are_its_own(tmp_path):
         "[runs]\neach_row = true\n"
     )
     assert len(read_rig_data([tmp_path]).samples) == 20
-
-
-def test_a_check_of_the_rig_says_what_is_there_twice(data, tmp_path, caplog):
-    as_copy(data / "sweep.csv")
-    (tmp_path / "slip.toml").write_text("""
-schema = 1
-slip_definition = "material"
-law = { name = "coulomb-stribeck", stribeck = false }
-parameters = { slip_stiffness = { mean = 20.0 }, friction = { mean = 0.4 } }
-covariance = { matrix = [[1.0, 0.0], [0.0, 1e-4]] }
-tested = { normal_force = [2.0, 13.0], slip_ratio = [0.0, 1.0] }
-""")
-    assert len(check_runs([data], tmp_path).runs) == 24
-    assert "was ignored: copy equals sweep" in caplog.text
 
 
 def test_a_damaged_gzip_file_is_told_apart_by_its_bytes(tmp_path):

@@ -73,7 +73,7 @@ def test_what_is_no_workbook_is_refused(tmp_path, content, problem):
 
 
 def test_a_workbook_that_unpacks_to_very_much_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(excel_files, "MOST_TABLE", 1 << 20)
+    monkeypatch.setattr(excel_files, "MOST_UNPACKED", 1 << 20)
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("xl/worksheets/sheet1.xml", bytes(2 << 20))

@@ -76,13 +76,6 @@ def test_wish_is_acknowledged_on_a_terminal_alone():
         assert ("Ctrl-C again to quit" in written_on(place)) == terminal
 
 
-def test_handlers_are_restored():
-    before = [signal.getsignal(number) for number in SIGNALS]
-    with progress_bar(console(terminal=False)):
-        assert [signal.getsignal(number) for number in SIGNALS] != before
-    assert [signal.getsignal(number) for number in SIGNALS] == before
-
-
 def test_handlers_are_restored_after_an_exception():
     before = [signal.getsignal(number) for number in SIGNALS]
     with pytest.raises(RuntimeError, match="fit"), progress_bar(console(terminal=False)):

@@ -9,7 +9,7 @@ import pytest
 
 from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.tables.columns_file import read_section
+from zebro_lab.tables.columns_sections import read_section
 from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
 from zebro_lab.track.file import tum_lines
 from zebro_lab.track.foreign import read_foreign_track

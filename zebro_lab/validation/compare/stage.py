@@ -14,7 +14,7 @@ from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.names import TRACK, shortest_distinct
 from zebro_lab.files.picture_format import PictureFormat, in_every_format
 from zebro_lab.files.provenance import file_hashes
-from zebro_lab.files.replacement import settle
+from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots.sheet import save
@@ -98,10 +98,10 @@ def compare(
 def _kind(path: Path) -> str:
     if is_curve(path):
         return "curve"
-    settle(path)
+    recover(path)
     if path.suffix.lower() == ".toml" or (path / SLIP_TOML).is_file():
         return "calibration"
-    if (settle(path / TRACK) / TRACK_CSV).is_file():
+    if (recover(path / TRACK) / TRACK_CSV).is_file():
         return "run"
     raise NotFound(
         f"{path} is no folder with {SLIP_TOML} or track/track.csv; choose "

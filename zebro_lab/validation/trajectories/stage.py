@@ -9,7 +9,7 @@ from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import (
+from zebro_lab.tables.columns_sections import (
     columns_above,
     read_nearest,
     read_section,

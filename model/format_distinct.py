@@ -7,12 +7,12 @@ _FEWEST: Final = 6  # significant digits, as of `:g`
 _ALL: Final = 17  # tell any two floats apart
 
 
-def told_apart(*values: float) -> tuple[str, ...]:
+def format_distinct(*values: float) -> tuple[str, ...]:
     """Format numbers with the fewest significant digits, six or more, that show the differences.
 
-    >>> told_apart(1403715524.907143, 1403715524.907144)
+    >>> format_distinct(1403715524.907143, 1403715524.907144)
     ('1403715524.907143', '1403715524.907144')
-    >>> told_apart(0.0, 29.98, 0.0)
+    >>> format_distinct(0.0, 29.98, 0.0)
     ('0', '29.98', '0')
     """
     different = len({float(value) for value in values})

@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from zebro_lab.terminal import last_words
-from zebro_lab.terminal.last_words import in_time, say_in_time
+from zebro_lab.terminal import timely_output
+from zebro_lab.terminal.timely_output import in_time, say_in_time
 
 
 @pytest.mark.parametrize("err", [False, True])
@@ -20,7 +20,7 @@ def test_a_line_is_written_whole(err, capsys):
 
 
 def test_a_blocked_terminal_is_given_up_in_time(monkeypatch):
-    monkeypatch.setattr(last_words, "PATIENCE", 0.05)
+    monkeypatch.setattr(timely_output, "PATIENCE", 0.05)
     release = threading.Event()
     before = time.monotonic()
     assert not in_time(release.wait)
@@ -48,7 +48,7 @@ def test_a_line_is_said_where_no_thread_can_be_started(monkeypatch, capsys):
 
 def test_leaving_at_once_waits_for_nothing_and_has_its_code():
     code = (
-        "import threading, time; from zebro_lab.terminal.last_words import leave_at_once\n"
+        "import threading, time; from zebro_lab.terminal.timely_output import leave_at_once\n"
         "threading.Thread(target=time.sleep, args=(60,)).start(); leave_at_once(7)"
     )
     assert subprocess.run([sys.executable, "-c", code], timeout=30).returncode == 7

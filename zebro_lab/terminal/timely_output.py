@@ -48,7 +48,7 @@ def in_time(act: Callable[[], object]) -> bool:
             return
         done.append(True)
 
-    thread = threading.Thread(target=run, daemon=True, name="last words")
+    thread = threading.Thread(target=run, daemon=True, name="timely output")
     try:
         thread.start()
     except RuntimeError:  # no thread can be started: print without one

@@ -46,7 +46,6 @@ class Line:
         serves: Whether it goes on until it is stopped.
         real_time: Whether its numbers depend on when it runs, so that exit codes and names of files
             alone can be compared.
-        prepares: Whether it stands in no page, and makes what the page's lines need.
     """
 
     page: str
@@ -55,7 +54,6 @@ class Line:
     note: str = ""
     serves: bool = False
     real_time: bool = False
-    prepares: bool = False
 
 
 def find_lines(checkout: Path) -> list[Line]:
@@ -70,7 +68,7 @@ def find_lines(checkout: Path) -> list[Line]:
     for page, lines in texts.items():
         read = [read_line(page, line) for line in lines]
         if any(each.command for each in read):
-            prepared = (Line(page, p, p, prepares=True) for p in PREPARED.get(page, ()))
+            prepared = (Line(page, p, p) for p in PREPARED.get(page, ()))
             found += [*prepared, *read]
     return found
 
@@ -119,16 +117,17 @@ _RIG_TABLE = (
     "[pd.read_parquet(f) for f in sorted(Path('datasets/rig-sim').glob('*.parquet'))])"
     ".to_csv('{}', index=False)\""
 )  # fmt: skip
-_TUM = (
+_SEEN = (
     "python -c \"import numpy as np, pandas as pd; p = pd.read_csv('datasets/walk-sim/truth.csv')"
-    "[::200]; z = 0 * p.t; np.savetxt('path.tum', np.column_stack([p.t, p.x, p.y, p.z, z, z, "
-    "np.sin(p.yaw / 2), np.cos(p.yaw / 2)]))\""
-)  # fmt: skip
-_TRACK = (
-    "python -c \"import pandas as pd; pd.read_csv('datasets/walk-sim/truth.csv')[::200].rename("
-    "columns=dict(t='t_s', x='x_m', y='y_m', yaw='yaw_rad'))[['t_s', 'x_m', 'y_m', 'yaw_rad']]"
-    ".to_csv('track.csv', index=False)\""
-)  # fmt: skip
+    '[::200]; z = 0 * p.t; {}"'
+)
+_TUM = _SEEN.format(
+    "np.savetxt('path.tum', np.column_stack([p.t, p.x, p.y, p.z, z, z, np.sin(p.yaw / 2), "
+    "np.cos(p.yaw / 2)]))"
+)
+_TRACK = _SEEN.format(
+    "pd.DataFrame(dict(t_s=p.t, x_m=p.x, y_m=p.y, yaw_rad=p.yaw)).to_csv('track.csv', index=False)"
+)
 _START = "--start 2026-03-04T05:06:07+00:00"
 _TAKEN = "--start 2020-06-01T12:00:00+00:00"  # when the bundled photographs were taken
 _LOGS = f"cp {_WALK}/legs.csv {_WALK}/imu.csv {_WALK}/robot.toml ."

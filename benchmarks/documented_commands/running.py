@@ -7,9 +7,9 @@ import shutil
 import signal
 import subprocess
 import time
-from collections.abc import Sequence
-from contextlib import ExitStack, suppress
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
 
@@ -28,33 +28,26 @@ class Outcome:
 
     Attributes:
         line: The line.
-        code: Exit code; None where it was left out or took too long.
+        code: Exit code; None where it was left out, serves, or took too long.
         stdout: What it printed.
         stderr: What it complained of.
-        seconds: How long it took.
-        over_limit: Whether it was ended because it took too long.
         files: Files that it made or changed, from the page's folder.
-        removed: Files that it removed.
     """
 
     line: Line
     code: int | None = None
     stdout: str = ""
     stderr: str = ""
-    seconds: float = 0.0
-    over_limit: bool = False
     files: tuple[str, ...] = ()
-    removed: tuple[str, ...] = ()
 
 
 def read_outcomes(out: Path) -> list[Outcome]:
     """Read what `run_lines` wrote."""
     rows = json.loads((out / RECORDS).read_text(encoding="utf-8"))
     return [
-        Outcome(**(row | {"line": Line(**row["line"]), "files": tuple(row["files"]),
-                          "removed": tuple(row["removed"])}))
+        Outcome(**(row | {"line": Line(**row["line"]), "files": tuple(row["files"])}))
         for row in rows
-    ]  # fmt: skip
+    ]
 
 
 def kept(out: Path, number: int) -> Path:
@@ -82,116 +75,70 @@ def run_lines(
         for name in ("datasets", "examples"):
             if (inputs / name).is_dir():
                 (work / name).symlink_to((inputs / name).resolve())
-        with ExitStack() as stack:
-            runner = Runner(work, programs=programs, limit=limit, stack=stack)
+        with ExitStack() as until_the_page_ends:
             for line in of_page:
-                outcome = runner.run(line)
+                said = [out / f"{len(outcomes):03d}.{kind}" for kind in ("out", "err")]
+                outcome = run_line(line, work, said, programs, limit, until_the_page_ends)
                 for name in outcome.files:
                     target = kept(out, len(outcomes)) / name
                     target.parent.mkdir(parents=True, exist_ok=True)
                     with suppress(FileNotFoundError):
                         shutil.copy2(work / name, target)
                 outcomes.append(outcome)
-                print(f"{outcome.code!s:>5} {outcome.seconds:6.1f} s  {page}: {line.text}",
-                      flush=True)  # fmt: skip
-        rows = [asdict(outcome) for outcome in outcomes]
-        (out / RECORDS).write_text(json.dumps(rows, indent=1), encoding="utf-8")
+                print(f"{outcome.code!s:>5}  {page}: {line.text}", flush=True)
+    rows = [asdict(outcome) for outcome in outcomes]
+    (out / RECORDS).write_text(json.dumps(rows, indent=1), encoding="utf-8")
     return outcomes
 
 
-@dataclass
-class Runner:
-    """Runs the lines of one page.
-
-    Attributes:
-        work: The page's folder.
-        programs: Folder of the environment's programs.
-        limit: Longest run of a line [s].
-        stack: Ends, with the page, what serves.
-    """
-
-    work: Path
-    programs: Path
-    limit: float
-    stack: ExitStack
-    _serving: int = field(default=0)
-
-    def run(self, line: Line) -> Outcome:
-        """Run a line, or start it where it serves."""
-        if not line.command:
-            return Outcome(line)
-        before, began = _tree(self.work), time.monotonic()
-        code, stdout, stderr, over = self._serve(line) if line.serves else self._wait(line)
-        after = _tree(self.work)
-        return Outcome(
-            line, code, stdout, stderr, time.monotonic() - began, over,
-            tuple(sorted(name for name, state in after.items() if before.get(name) != state)),
-            tuple(sorted(before.keys() - after.keys())),
-        )  # fmt: skip
-
-    def _start(self, line: Line, stdout: Path, stderr: Path) -> subprocess.Popen[bytes]:
-        environment = {
-            "PATH": f"{self.programs}:/usr/bin:/bin", "HOME": str(self.work.parent),
-            "LANG": "C.UTF-8", "COLUMNS": "120", "MPLBACKEND": "Agg", "TZ": "UTC",
-        }  # fmt: skip
-        for name in ("NUMBA_CACHE_DIR", "TMPDIR"):
-            if name in os.environ:
-                environment[name] = os.environ[name]
-        with stdout.open("wb") as out, stderr.open("wb") as err:
-            return subprocess.Popen(
-                ["bash", "-c", line.command], cwd=self.work, env=environment,
-                stdin=subprocess.DEVNULL, stdout=out, stderr=err, start_new_session=True,
-            )  # fmt: skip
-
-    def _wait(self, line: Line) -> tuple[int | None, str, str, bool]:
-        stdout, stderr = (self.work.parent / f"{self.work.name}.{kind}" for kind in ("out", "err"))
-        process = self._start(line, stdout, stderr)
-        over = False
-        try:
-            process.wait(self.limit)
-        except subprocess.TimeoutExpired:
-            over = True
-        with suppress(ProcessLookupError):  # what it left running, too
-            os.killpg(process.pid, signal.SIGKILL)
-        code = None if over else process.returncode
-        process.wait()
-        return code, _text(stdout), _text(stderr), over
-
-    def _serve(self, line: Line) -> tuple[int | None, str, str, bool]:
-        """Start a command that serves; return once it has said where, or has ended."""
-        self._serving += 1
-        stdout, stderr = (
-            self.work.parent / f"{self.work.name}.{self._serving}.{kind}" for kind in ("out", "err")
-        )
-        process = self._start(line, stdout, stderr)
-        self.stack.callback(_stop, process)
+def run_line(
+    line: Line, work: Path, said: Sequence[Path], programs: Path, limit: float, page: ExitStack
+) -> Outcome:
+    """Run a line in a folder; start it until the page ends where it serves."""
+    if not line.command:
+        return Outcome(line)
+    before, code = _tree(work), None
+    running = started(line.command, work, said, programs)
+    if line.serves:
+        process = page.enter_context(running)
         end = time.monotonic() + FIRST_OUTPUT
-        while not stdout.stat().st_size and process.poll() is None and time.monotonic() < end:
+        while not said[0].stat().st_size and process.poll() is None and time.monotonic() < end:
             time.sleep(0.05)
-        time.sleep(0.5)
-        return process.poll(), _text(stdout), _text(stderr), False
+        code = process.poll()
+    else:
+        with running as process, suppress(subprocess.TimeoutExpired):
+            code = process.wait(limit)
+    stdout, stderr = (file.read_text(encoding="utf-8", errors="replace") for file in said)
+    made = sorted(name for name, changed in _tree(work).items() if before.get(name) != changed)
+    return Outcome(line, code, stdout, stderr, tuple(made))
 
 
-def _stop(process: subprocess.Popen[bytes]) -> None:
-    for number, patience in ((signal.SIGINT, STOPPING), (signal.SIGKILL, STOPPING)):
-        with suppress(ProcessLookupError, subprocess.TimeoutExpired):
-            os.killpg(process.pid, number)
-            process.wait(patience)
-            return
+@contextmanager
+def started(
+    command: str, work: Path, said: Sequence[Path], programs: Path
+) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a command in an environment of its own; stop it, and what it left running, at last."""
+    environment = {
+        "PATH": f"{programs}:/usr/bin:/bin", "HOME": str(work.parent), "LANG": "C.UTF-8",
+        "COLUMNS": "120", "MPLBACKEND": "Agg", "TZ": "UTC",
+    }  # fmt: skip
+    with said[0].open("wb") as out, said[1].open("wb") as err:
+        process = subprocess.Popen(
+            ["bash", "-c", command], cwd=work, env=environment, stdin=subprocess.DEVNULL,
+            stdout=out, stderr=err, start_new_session=True,
+        )  # fmt: skip
+    try:
+        yield process
+    finally:
+        for number in (signal.SIGINT, signal.SIGKILL):
+            with suppress(ProcessLookupError, subprocess.TimeoutExpired):
+                os.killpg(process.pid, number)
+                process.wait(STOPPING)
+                break
+        process.wait()
 
 
-def _text(file: Path) -> str:
-    return file.read_text(encoding="utf-8", errors="replace")
-
-
-def _tree(folder: Path) -> dict[str, tuple[int, int, int]]:
-    """Return inode, size and time of change of every file in a folder; links are not followed."""
-    found = {}
-    for place, _, names in os.walk(folder):
-        for name in names:
-            file = Path(place) / name
-            if file.is_file() and not file.is_symlink():
-                state = file.stat()
-                key = str(file.relative_to(folder))
-                found[key] = (state.st_ino, state.st_size, state.st_mtime_ns)
-    return found
+def _tree(folder: Path) -> dict[str, int]:
+    """Return when every file in a folder was changed [ns]."""
+    files = (file for file in folder.rglob("*") if file.is_file() and not file.is_symlink())
+    return {str(file.relative_to(folder)): file.stat().st_mtime_ns for file in files}

@@ -53,6 +53,7 @@ from zebro_lab.report.sources import find_sources
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file, render_robot_file
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.stage import list_runs
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.table_files import read_table_file
@@ -222,8 +223,7 @@ def of_results() -> dict[str, Parser]:
         return read_stored_walks(file.parents[1] / "slip.toml")
 
     return {
-        "run.json": of(lambda file: list_runs(file.parents[1]), "run/run.json", [as_json(RUN)],
-                       special=[DEEP_JSON]),
+        "run.json": of(listed, "run/run.json", [as_json(RUN)], special=[DEEP_JSON]),
         "track's manifest": of(lambda file: read_track_manifest(file.parent), "manifest.json",
                                [as_json(MANIFEST)], special=[DEEP_JSON]),
         "journal": of(lambda file: read_journal(file.parent), JOURNAL_FILE, [journal]),
@@ -236,6 +236,11 @@ def of_results() -> dict[str, Parser]:
         "log.mcap": of(read_raw_log, "log.mcap", [recorded()]),
         **of_reports(as_toml(SLIP | {"parameters": shown})),
     }  # fmt: skip
+
+
+def listed(file: Path) -> object:
+    """List the runs of a folder, damaged ones too, and read the manifest of one."""
+    return list_runs(file.parents[1]), read_manifest(file.parent)
 
 
 def of_reports(slip: bytes) -> dict[str, Parser]:

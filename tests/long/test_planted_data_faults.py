@@ -225,10 +225,9 @@ def test_thin_data_are_trusted_as_far_as_they_were_tested(name, tmp_path):
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_data_are_not_trusted_and_their_fault_is_named(name, tmp_path):
     make, words = WRONG[name]
-    for seed in range(2):
-        state, said = judged(make(sound(seed)), tmp_path)
-        assert state not in GOOD
-        assert any(word in said for word in words.split("|")), said
+    state, said = judged(make(sound(0)), tmp_path)
+    assert state not in GOOD
+    assert any(word in said for word in words.split("|")), said
 
 
 @pytest.mark.parametrize("slips", [BOTH, DRIVING], ids=["two-sided", "one-sided"])

@@ -34,7 +34,7 @@ _FAR = {SIDE: (8.0, 32.0, 128.0), HEIGHT: (8.0,), TILT: (8.0,)}
 Another print, or another square of it, may have any side; a height is misread by centimetres."""
 
 _WORDS = {
-    SIDE: ("the side of the robot's marker (robot.toml, --marker)", " mm", 1e3),
+    SIDE: ("the side of the robot's marker (robot.toml)", " mm", 1e3),
     HEIGHT: ("the height of the body (marker.height in robot.toml, --body-height)", " mm", 1e3),
     TILT: ("the tilt of the robot's marker", " degrees", float(np.degrees(1))),
 }

@@ -67,7 +67,7 @@ def _robot_unseen(
     other = other_markers(read_pixels(first.path), robot, scene.floor)
     advice = "look at the first photograph with `zebro-lab track --preview`"
     if other is not None:
-        advice = f"{first.name} shows {other}: correct [marker] of robot.toml, or --marker"
+        advice = f"{first.name} shows {other}: correct [marker] of robot.toml"
     marker = robot.marker
     return (
         f"the robot's marker {marker.marker_id} of '{marker.dictionary}' is seen in none of "

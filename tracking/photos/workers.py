@@ -15,6 +15,9 @@ WORTH_WORKERS = 60e6
 """Least number of pixels of all photographs for which worker processes are used: each takes a
 second to start [px]."""
 
+PROCESSES = 2
+"""Usual number of worker processes: each holds some photographs in memory."""
+
 LONGEST_BATCH = 12
 
 Item = TypeVar("Item")

@@ -63,9 +63,9 @@ def track_photos(
     request = TrackRequest(
         Path(photos), Path(camera), Path(floor), robot=Path(robot), out=Path(out),
         times=TimeRequest(table=optional(times)), start=start, annotations=optional(annotations),
-        without_marker=without_marker, workers=1,
+        without_marker=without_marker,
     )  # fmt: skip
-    return track(request, Silent())
+    return track(request, Silent(), workers=1)
 
 
 def validate_walks(

@@ -43,5 +43,5 @@ def require_apart(robot: MarkedRobot, floor: FloorMap) -> None:
     if number in floor.marker_ids:
         raise MarkerError(
             f"marker {number} is listed both for the robot and for the floor; remove it from "
-            "floor.toml, or correct the robot's number (marker.id in robot.toml, or --marker)"
+            "floor.toml, or correct the robot's number (marker.id in robot.toml)"
         )

@@ -3,9 +3,6 @@
 
 from dataclasses import dataclass
 
-from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.units import option_to_si
-
 LARGEST_PRINT = 3.0
 """Largest length of a marker or of a robot's top that is believed without a unit [m]."""
 
@@ -26,7 +23,7 @@ class MarkerPrint:
 
     @property
     def text(self) -> str:
-        """The marker as "DICTIONARY:NUMBER:SIDE" with the side in mm, as `parse_marker` reads.
+        """The marker as "DICTIONARY:NUMBER:SIDE" with the side in mm,.
 
         >>> MarkerPrint().text
         '4x4_50:0:120mm'
@@ -36,25 +33,3 @@ class MarkerPrint:
 
 KIT_PRINT = MarkerPrint()
 """The robot marker of the printed kit."""
-
-
-def parse_marker(text: str) -> MarkerPrint:
-    """Parse a marker written as "DICTIONARY:NUMBER:SIDE"; a side without a unit is in m.
-
-    Raises:
-        SettingsError: The string has another form, NUMBER is not a whole number, or the side is not
-            a length above 0 or, without a unit, above `LARGEST_PRINT`.
-
-    >>> parse_marker("apriltag_36h11:4:10cm")
-    MarkerPrint(dictionary='apriltag_36h11', number=4, side=0.1)
-    """
-    parts = text.rsplit(":", 2)
-    if len(parts) != 3 or not parts[1].isdigit():
-        raise SettingsError(
-            f"found '{text}'; expected DICTIONARY:NUMBER:SIDE such as {KIT_PRINT.text}",
-            key="--marker",
-        )
-    side = option_to_si(parts[2], "m", key="--marker", usual=LARGEST_PRINT)
-    if side <= 0:
-        raise SettingsError(f"found '{text}'; expected a side above 0", key="--marker")
-    return MarkerPrint(parts[0], int(parts[1]), side)

@@ -15,8 +15,11 @@ REMOVED: Final[dict[str, str]] = {
     "(docs/experiments.md).",
     "study": "The fit is tested on simulated experiments by `make test-long` of a checkout "
     "(docs/coverage.md); rig suggest says how narrow further points make an interval.",
+    "track --marker": "State the robot's marker as dictionary, id and side in [marker] of "
+    "robot.toml.",
     "track --merged": "One picture is read as exposures that were cut out and pasted; leave the "
     "option out, and of an average or of darkest values give the photographs themselves.",
+    "track --workers": "Photographs are spread over two processes; leave the option out.",
 }
 """What to use instead, a sentence, by "COMMAND", "COMMAND --option", or "--option" of any command.
 

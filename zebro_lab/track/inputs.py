@@ -100,7 +100,7 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
     )  # fmt: skip
     robot = None
     if not request.without_marker:
-        robot = tracked_robot(described, request.marker, prior=prior)
+        robot = tracked_robot(described, prior=prior)
         require_apart(robot, floor)
     length, width = described.robot.body_size[:2]
     scene = Scene(

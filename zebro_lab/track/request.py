@@ -11,7 +11,7 @@ from typer import Argument, BadParameter, Option
 
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import option_to_si
-from zebro_lab.robot.marker_print import LARGEST_PRINT, parse_marker
+from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 
@@ -86,7 +86,7 @@ class TrackRequest:
     """Options of `zebro-lab track`.
 
     Raises:
-        SettingsError: A length, the marker or the source has another form.
+        SettingsError: A length or the source has another form.
     """
 
     photos: Annotated[
@@ -113,13 +113,6 @@ class TrackRequest:
             parser=_moment,
             help="Moment from which time is counted, as the camera's clock shows it; default: the "
             "run's start with --run and --clock, else the first photograph.",
-        ),
-    ] = None
-    marker: Annotated[
-        str | None,
-        Option(
-            metavar="DICTIONARY:NUMBER:SIDE",
-            help="Marker on the robot, as in 4x4_50:0:120mm; default: that of robot.toml.",
         ),
     ] = None
     without_marker: Annotated[
@@ -168,13 +161,10 @@ class TrackRequest:
             "the run.",
         ),
     ] = None
-    workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2
     form: FormatOption = "png"
 
     def __post_init__(self) -> None:
         _ = self.stated_height, self.stated_mean_height_sd, self.bounce_sd
-        if self.marker is not None:
-            parse_marker(self.marker)
         if self.source is not None and not re.fullmatch("real|sim:.+", self.source):
             raise SettingsError(f"found '{self.source}'; expected real or sim:WHAT", key="--source")
 

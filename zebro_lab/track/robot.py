@@ -8,7 +8,6 @@ from tracking.errors import TrackingError
 from tracking.pose import BodyPrior, RobotMarker
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_numbers import require_in_dictionary
-from zebro_lab.robot.marker_print import parse_marker
 from zebro_lab.robot.robot_file import RobotFile
 
 WALKING_TILT_SD = 0.02
@@ -18,23 +17,19 @@ STEEPEST = 0.05
 """Roll or pitch beyond which a marker on the robot is not level [rad]."""
 
 
-def tracked_robot(
-    described: RobotFile, marker: str | None = None, *, prior: BodyPrior
-) -> MarkedRobot:
-    """Return the robot with its marker from `robot.toml` and options.
+def tracked_robot(described: RobotFile, *, prior: BodyPrior) -> MarkedRobot:
+    """Return the robot with its marker from `robot.toml`.
 
     In `robot.toml` the marker's x axis is the print's upward direction: a print whose top points
     ahead has yaw 0.
 
     Args:
         described: Content of `robot.toml`.
-        marker: The robot's marker, such as "4x4_50:0:120mm"; None for that of the file.
         prior: Prior on height and tilt of the body.
 
     Raises:
         SettingsError: The marker's place is missing or not level, or the marker is invalid: of
             another form, not in its dictionary, or of an impossible size.
-        UnitError: The side in `marker` is not a length.
     """
     place = described.marker
     if place is None:
@@ -50,7 +45,7 @@ def tracked_robot(
             f"the robot must lie within {np.degrees(STEEPEST):.2f} degrees of level in both",
             file=described.file, key="marker.roll_pitch_yaw_deg",
         )  # fmt: skip
-    printed = place.printed if marker is None else parse_marker(marker)
+    printed = place.printed
     try:
         require_in_dictionary(printed.dictionary, [printed.number])
         on_robot = RobotMarker(
@@ -58,8 +53,7 @@ def tracked_robot(
             side_sd=place.side_sd, position_sd=place.position_sd, yaw_sd=place.yaw_sd,
         )  # fmt: skip
     except TrackingError as error:
-        file, key = (_file(described), "marker") if marker is None else (None, "--marker")
-        raise SettingsError(str(error), file=file, key=key) from error
+        raise SettingsError(str(error), file=_file(described), key="marker") from error
     return MarkedRobot(on_robot, prior)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from tracking import Tracked, track_photos
 from tracking.contributions import contributions, shared_part
 from tracking.images import PhotoTimes, read_pixels
-from tracking.photos.workers import Progress
+from tracking.photos.workers import PROCESSES, Progress
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
@@ -53,12 +53,13 @@ class TrackResult:
     is_composite: bool = False
 
 
-def track(request: TrackRequest, watcher: Progress) -> TrackResult:
+def track(request: TrackRequest, watcher: Progress, *, workers: int = PROCESSES) -> TrackResult:
     """Track a walk in photographs and write the track folder.
 
     Args:
         request: Photographs, files and options.
         watcher: Progress display, which may also request a stop.
+        workers: Largest number of processes.
 
     Raises:
         ZebroLabError: A file or an option is invalid, or the folder cannot be replaced or written.
@@ -72,7 +73,7 @@ def track(request: TrackRequest, watcher: Progress) -> TrackResult:
         counted = inputs.counted_times(sequence)
         tracked = track_photos(
             inputs.scene_of(sequence), sequence.photos, times_of=_times_of(counted, request),
-            gap=request.gap, workers=request.workers, progress=watcher,
+            gap=request.gap, workers=workers, progress=watcher,
         )  # fmt: skip
         result = _result(inputs, sequence, tracked, counted)
         watcher.step("pictures", None)

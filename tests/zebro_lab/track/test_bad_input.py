@@ -181,16 +181,16 @@ def test_a_mirrored_floor_is_called_so(lab, track):
     assert_refused(track("photos"), "the map of the floor is mirrored")
 
 
-@pytest.mark.parametrize("marker", ["5x5_50:0:120mm", "4x4_50:3:120mm"])
-def test_another_marker_than_the_robots_is_told_which_is_seen(marker, lab, track):
-    ended = track("photos", "--marker", marker)
+@pytest.mark.parametrize(("old", "new"), [("4x4_50", "5x5_50"), ("id = 0", "id = 3")])
+def test_another_marker_than_the_robots_is_told_which_is_seen(old, new, lab, track):
+    edit("robot.toml", old, new)
+    ended = track("photos")
     assert_refused(ended, "photographs; simulated_00.jpg shows 0 of '4x4_50': correct [marker]")
 
 
 def test_a_marker_that_is_the_robots_and_the_floors_is_refused(lab, track):
-    assert_refused(
-        track("photos", "--marker", "4x4_50:12:120mm"), "marker 12 is listed both for the robot and"
-    )
+    edit("robot.toml", "id = 0", "id = 12")
+    assert_refused(track("photos"), "marker 12 is listed both for the robot and")
 
 
 @pytest.mark.parametrize("kind", ["empty", "text", "cut short", "no frames"])

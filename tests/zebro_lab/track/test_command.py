@@ -56,8 +56,6 @@ def test_a_wrong_tape_is_pointed_at(run_command, files):
 ERRORS = {
     "no such photographs": (("nowhere",), "nowhere: no such folder, video or picture"),
     "no camera": ((PHOTOS, "--camera", "none.toml"), "none.toml: no such file"),
-    "no such marker": ((PHOTOS, "--marker", "zero"), "--marker: found 'zero'"),
-    "unknown dictionary": ((PHOTOS, "--marker", "4x4_51:0:1mm"), "'4x4_51' is unknown; known"),
     "no robot's height": ((PHOTOS, "--robot", "robot.toml"), "marker.height: missing"),
     "two sources of time": ((PHOTOS, "--interval", "2", "--times", "t.csv"), "--times: not toge"),
     "no unit": ((PHOTOS, "--body-height", "6 kg"), "unit 'kg'"),

@@ -37,21 +37,17 @@ def test_the_body_is_as_high_as_its_marker_less_its_place_on_it():
     assert (prior.height, prior.height_sd, prior.mean_height_sd) == (0.07, 0.006, 0.001)
 
 
-def test_the_files_own_marker_is_sought_unless_another_is_named():
+def test_the_files_own_marker_is_sought():
     own = RobotFile(marker=Marker((0, 0, 0.04), printed=MarkerPrint("apriltag_36h11", 7, 0.1)))
     marker = tracked_robot(own, prior=PRIOR).marker
     assert (marker.dictionary, marker.marker_id, marker.side) == ("apriltag_36h11", 7, 0.1)
-    named = tracked_robot(own, "5x5_50:3:80mm", prior=PRIOR).marker
-    assert (named.dictionary, named.marker_id, named.side) == ("5x5_50", 3, 0.08)
 
 
 def test_a_number_beyond_its_dictionary_says_how_far_it_goes():
-    with pytest.raises(SettingsError, match=r"--marker: marker 50 .* 0 to 49"):
-        tracked_robot(RobotFile(marker=Marker((0, 0, 0.04))), "4x4_50:50:1cm", prior=PRIOR)
     own = RobotFile(
         marker=Marker((0, 0, 0.04), printed=MarkerPrint(number=99)), file=Path("robot.toml")
     )
-    with pytest.raises(SettingsError, match=r"robot\.toml, marker: marker 99"):
+    with pytest.raises(SettingsError, match=r"robot\.toml, marker: marker 99 .* 0 to 49"):
         tracked_robot(own, prior=PRIOR)
 
 

@@ -81,7 +81,7 @@ def test_a_mean_height_known_better_makes_all_poses_surer_and_keeps_the_bounce(
 def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
     monkeypatch.setattr(search, "WORTH_WORKERS", 0.0)
     one = track(request_, Nobody())
-    two = track(replace(request_, workers=2, out=tmp_path / "two"), Nobody())
+    two = track(replace(request_, out=tmp_path / "two"), Nobody(), workers=2)
     # Not to the last digit: a stretch begins by looking at the whole photograph.
     difference = one.tracked.track.poses - two.tracked.track.poses
     assert np.abs(difference).max() < 1e-4
@@ -165,9 +165,10 @@ def test_a_composite_picture_without_times_asks_for_the_interval(request_, undra
         track(replace(request_, photos=COMPOSITE), Nobody())
 
 
-def test_a_marker_of_another_side_is_noticed(request_, undrawn):
-    result = track(replace(request_, marker="4x4_50:0:150mm"), Nobody())
-    assert any("--marker" in note for note in result.tracked.notes)
+def test_a_marker_of_another_side_is_noticed(request_, undrawn, tmp_path):
+    other = edited(request_, tmp_path, "robot.toml", "side = 0.12", "side = 0.15")
+    result = track(other, Nobody())
+    assert any("the side of the robot's marker" in note for note in result.tracked.notes)
 
 
 def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str) -> TrackRequest:

@@ -55,7 +55,7 @@ def track(run_command, photos: Path, *options: object) -> np.ndarray:
     ended = run_command(
         "track", photos, "--camera", "camera.toml", "--floor", "floor.toml", "--robot",
         "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out",
-        "--workers", 1, *options,
+        *options,
     )  # fmt: skip
     assert ended.code == 0
     table = pd.read_csv("out/track.csv")
@@ -165,7 +165,7 @@ def test_the_photograph_that_track_suggests_makes_an_unmarked_walk_surer_and_edg
         ended = run_command(
             "track", photos, "--camera", "camera.toml", "--floor", "floor.toml", "--robot",
             "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out",
-            "--workers", 1, "--without-marker", "--annotations", "annotations.toml",
+            "--without-marker", "--annotations", "annotations.toml",
         )  # fmt: skip
         assert ended.code == 0
         table = pd.read_csv("out/track.csv")

@@ -278,7 +278,7 @@ def _instructions(size: tuple[float, float]) -> KitPage:
 _TEXT = """\
 PRINT at 100 % ("actual size", never "fit to page") on stiff matt paper: gloss gives glare.
 Measure the 100 mm bar of every page. If it is off, write the true side into floor.toml
-and --marker; a printer that stretches one direction only cannot be used.
+and robot.toml; a printer that stretches one direction only cannot be used.
 
 CAMERA  Fix zoom and focus, and keep them fixed from here on. Photograph the board 12 to 15
 times, tilted by 20 to 45 degrees another way each time, also in the picture's corners.

@@ -31,7 +31,6 @@ class CameraRequest:
             "Terms that a named model leaves out are taken to be zero."
         ),
     ] = "auto"
-    workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for a board that does not exist."""

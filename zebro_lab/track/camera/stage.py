@@ -19,7 +19,7 @@ from tracking.camera import (
 )
 from tracking.errors import CalibrationError, PhotoError
 from tracking.images import find_photos, read_pixels
-from tracking.photos.workers import WORTH_WORKERS, Progress, run_batches
+from tracking.photos.workers import PROCESSES, WORTH_WORKERS, Progress, run_batches
 from zebro_lab.files.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.own_file import require_own, text_file
@@ -72,7 +72,7 @@ def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult
     if not sizes:
         raise CalibrationError(f"{request.photos}: none of {len(paths)} photographs can be read")
     size = sizes.most_common(1)[0][0]
-    workers = request.workers if len(paths) * size[0] * size[1] > WORTH_WORKERS else 1
+    workers = PROCESSES if len(paths) * size[0] * size[1] > WORTH_WORKERS else 1
     jobs = [(path, board, size) for path in paths]
     looks = run_batches(_look, jobs, workers=workers, progress=progress, what="boards")
     views = [view for view in looks if isinstance(view, SeenBoard)]

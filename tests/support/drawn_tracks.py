@@ -12,7 +12,6 @@ from tracking.camera import Camera, CameraPose, project
 from tracking.detect import Detection, MarkedRobot, observe
 from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.markers import Sighting
-from tracking.next_annotation import next_annotation
 from tracking.photos.by_look import nearest_of, pose_of_top
 from tracking.photos.edges import edge_spread
 from tracking.photos.floor_seen import FloorSeen
@@ -99,15 +98,10 @@ def track_unmarked(walk: DrawnWalk, rng: np.random.Generator, annotated: int = 1
                 annotated=(annotated_in, pose),
             )  # fmt: skip
             (observations if annotated_in == nearest[name] else again).append(observation)
-    tracked = finish(
+    return finish(
         scene, seen, observations, unseen={}, times=times, gap=None, again=again,
         annotations={name: pose for name, (pose, _) in clicked.items()},
     )  # fmt: skip
-    suggested = next_annotation(
-        tracked.track, {name: seen.fit.pose_of(name) for name in names}, camera=scene.camera,
-        prior=scene.prior, plate=PLATE, corner_sd_px=CLICK_SD, annotated=clicked,
-    )  # fmt: skip
-    return replace(tracked, next_annotation=suggested)
 
 
 def _clicked_on(photos: int, annotated: int) -> list[int]:

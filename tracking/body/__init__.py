@@ -4,7 +4,7 @@
 from tracking.body.align import Alignment, align
 from tracking.body.annotated import AnnotatedPose
 from tracking.body.heading import resolve_headings
-from tracking.body.plate_edges import RefinedCorners, expected_covariance, refine_corners
+from tracking.body.plate_edges import RefinedCorners, refine_corners
 from tracking.body.search import BodyCandidates, find_body, floor_in_view, match_turned
 from tracking.body.template import (
     BodyTemplate,
@@ -21,7 +21,6 @@ __all__ = [
     "RefinedCorners",
     "TopPlate",
     "align",
-    "expected_covariance",
     "find_body",
     "floor_in_view",
     "make_template",

@@ -143,21 +143,6 @@ def _contradicted(surprise: Array, information: Array) -> int | None:
     return worst if squares[worst] > chi2.isf(_ALARM_OF_SIDE, 2) else None
 
 
-def expected_covariance(corners_px: Array, *, sd_px: float) -> Array:
-    """Compute the covariance of refined corners where all four edges are clear, shape (8, 8) [px²].
-
-    Args:
-        corners_px: Corners u, v in order around the top, shape (4, 2) [px].
-        sd_px: Standard deviation of u and of v of a click [px].
-    """
-    corners = np.asarray(corners_px, dtype=float)
-    outline = [np.array([corners[k], corners[(k + 1) % 4]]) for k in range(4)]
-    edges = {k: _Edge(np.zeros(2), _side_errors(_length(side))) for k, side in enumerate(outline)}
-    by_corner, noise = _measurement(outline, corners.mean(axis=0), edges)
-    information = np.eye(8) / sd_px**2 + by_corner.T @ np.linalg.solve(noise, by_corner)
-    return np.linalg.inv(information)
-
-
 def _sd(of: tuple[float, float], length: float) -> float:
     """Return a standard deviation [px] of a side of a length [px]."""
     return float(np.hypot(of[0], of[1] * length))

@@ -23,7 +23,6 @@ from tracking.body import (
 from tracking.camera import Camera, CameraPose
 from tracking.errors import BodyError, NoUsablePhoto, PhotoError
 from tracking.images import read_pixels
-from tracking.next_annotation import next_annotation
 from tracking.path import PoseObservation
 from tracking.photos.floor_seen import FloorSeen, see_floor
 from tracking.photos.result import Times, Tracked, finish, observation_of
@@ -110,15 +109,9 @@ def track_by_look(
         annotations={name: annotated for name, (_, annotated) in templates.items()},
         again=_again(scene, photos, templates, observations),
     )  # fmt: skip
-    top = scene.tops[-1]
-    suggested = next_annotation(
-        tracked.track, {photo.name: seen.fit.pose_of(photo.name) for photo in usable},
-        camera=scene.camera, prior=scene.prior, plate=top.plate, corner_sd_px=top.corner_sd_px,
-        annotated=templates, by_edges=corners[top.photo].sides == len(top.corners_px),
-    )  # fmt: skip
     views = {top.photo: seen.fit.pose_of(top.photo) for top in scene.tops}
     notes = (*_click_notes(scene, views, corners), *tracked.notes)
-    return replace(tracked, notes=notes, next_annotation=suggested, corners=corners)
+    return replace(tracked, notes=notes, corners=corners)
 
 
 def _click_notes(

@@ -10,7 +10,6 @@ from tracking.body import Alignment, AnnotatedPose, RefinedCorners
 from tracking.corrections import Correction, Move, replay
 from tracking.doubt import REMARKABLE, doubts, heading_doubts
 from tracking.images import PhotoTimes
-from tracking.next_annotation import NextAnnotation
 from tracking.path import PoseObservation, Track, assemble_track
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.scene import Scene
@@ -31,7 +30,6 @@ class Tracked:
         lost: By name of each photograph without a pose in the track, the reason: it cannot be used,
             does not show the robot, or its pose was deleted by a correction.
         notes: Notes and warnings for the user, one line each.
-        next_annotation: Without a marker, the photograph to annotate next; None where none gains.
         corners: By name of annotated photograph, the corners of the top by clicks and edges.
     """
 
@@ -39,7 +37,6 @@ class Tracked:
     floor: FloorSeen
     lost: Mapping[str, str]
     notes: tuple[str, ...]
-    next_annotation: NextAnnotation | None = None
     corners: Mapping[str, RefinedCorners] = field(default_factory=dict)
 
 

@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
 from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import recover
@@ -60,8 +62,6 @@ def track_folder(
             was changed, or a user's file has a name to be written; others are kept.
         NotWritten: The folder cannot be created or moved.
     """
-    import pandas as pd
-
     content = {"source": source, "settings": settings, **report, "inputs": inputs}
     with result_folder(out, TRACKED, content=content) as draft:
         table = pd.DataFrame(dict(columns))

@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO
 
 import numpy as np
 
@@ -14,10 +14,11 @@ from tracking.floor import FloorMap
 from tracking.path import Track
 from tracking.pictures import ellipse_90
 from zebro_lab.files.picture_format import PictureFormat
+from zebro_lab.plots import save
+from zebro_lab.plots import track as draw
+from zebro_lab.plots.sheet import CYCLE, RED
+from zebro_lab.plots.track import SeenMarks
 from zebro_lab.track.photographs import PlacedPhoto
-
-if TYPE_CHECKING:
-    from zebro_lab.plots.track import SeenMarks
 
 _AHEAD = 0.08  # length of a heading's arrow over a photograph [m]
 _MARGIN = 0.3  # around path and floor marks on the map [m]
@@ -41,9 +42,6 @@ def draw_track(
         simulated: Whether the photographs are simulated; the titles then say so.
         form: Format, and suffix, of the pictures.
     """
-    from zebro_lab.plots import save  # matplotlib takes most of a second
-    from zebro_lab.plots import track as draw
-
     path, ahead = _path_px(track, photo)
     figure = draw.over_photo(
         photo.pixels,
@@ -84,17 +82,12 @@ def draw_preview(
         simulated: Whether the photograph is simulated; the figure then says so.
         command: Command to record in the file's metadata.
     """
-    from zebro_lab.plots import save
-    from zebro_lab.plots import track as draw
-
     marks = seen_marks(photo, floor, detection)
     figure = draw.over_photo(photo.pixels, title=title, simulated=simulated, marks=marks)
     save(figure, file, command=command)
 
 
-def seen_marks(
-    photo: PlacedPhoto, floor: FloorMap, detection: Detection | None
-) -> "list[SeenMarks]":
+def seen_marks(photo: PlacedPhoto, floor: FloorMap, detection: Detection | None) -> list[SeenMarks]:
     """Compute outlines of the floor's marks, projected from the map, and of the robot's marker.
 
     Args:
@@ -105,9 +98,6 @@ def seen_marks(
     Returns:
         Outlines [px] with labels and colours: the floor's, then the robot's if it was detected.
     """
-    from zebro_lab.plots.sheet import CYCLE, RED
-    from zebro_lab.plots.track import SeenMarks
-
     outlines = [project(photo.camera, photo.pose, mark.points) for mark in floor.marks.values()]
     labels = [str(key) for key in floor.marks]
     marks = [SeenMarks(outlines, labels, "mark of the floor", CYCLE[0])]
@@ -134,9 +124,6 @@ def _broken(rows: Array, track: Track) -> Array:
 def _draw_map(
     file: Path, track: Track, photo: PlacedPhoto, floor: FloorMap, title: str, simulated: bool
 ) -> None:  # fmt: skip
-    from zebro_lab.plots import save
-    from zebro_lab.plots.track import over_floor
-
     places = [track.poses[:, :2], *(mark.points[:, :2] for mark in floor.marks.values())]
     low = np.min([place.min(axis=0) for place in places], axis=0) - _MARGIN
     high = np.max([place.max(axis=0) for place in places], axis=0) + _MARGIN
@@ -148,7 +135,7 @@ def _draw_map(
     ]
     poses = _broken(track.poses, track)
     extent = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-    figure = over_floor(
+    figure = draw.over_floor(
         picture, extent=extent, poses=poses, ellipses=ellipses, labels=_time_labels(track, poses),
         title=f"Path over the floor: {title}",
         note=f"photograph of the last pose, {track.t[-1]:.1f} s; raised objects are displaced",

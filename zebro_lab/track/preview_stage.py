@@ -15,7 +15,6 @@ from zebro_lab.files.source_names import is_simulated
 from zebro_lab.track.inputs import lens_note, read_inputs
 from zebro_lab.track.photo_sequence import PhotoSequence, open_photos
 from zebro_lab.track.photographs import PlacedPhoto
-from zebro_lab.track.pictures import draw_preview
 from zebro_lab.track.request import TimeRequest, TrackRequest
 
 PREVIEW = picture("track --preview")
@@ -36,6 +35,8 @@ def preview(request: TrackRequest, file: Path) -> Preview:
             unreadable, shows fewer than 4 points of the floor or the robot's marker twice, or the
             floor's map does not fit its marks or has the robot's marker.
     """
+    from zebro_lab.track import pictures  # matplotlib takes most of a second
+
     target = require_own(file, PREVIEW, inputs=request.inputs)
     inputs = read_inputs(request)
     with ExitStack() as stack:
@@ -45,7 +46,7 @@ def preview(request: TrackRequest, file: Path) -> Preview:
             scene = replace(scene, robot=None)
         found = preview_photo(scene, photo)
         drawn = BytesIO()
-        draw_preview(
+        pictures.draw_preview(
             drawn, PlacedPhoto(read_pixels(photo.path), found.camera, found.pose),
             floor=scene.floor, detection=found.detection, title=f"Preview: {photo.name}",
             simulated=is_simulated(inputs.source_of(sequence)), command=PREVIEW.command,

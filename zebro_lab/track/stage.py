@@ -28,7 +28,6 @@ from zebro_lab.track.photo_sequence import (
     open_photos,
 )
 from zebro_lab.track.photographs import PlacedPhoto
-from zebro_lab.track.pictures import draw_track
 from zebro_lab.track.request import TrackRequest
 
 
@@ -128,13 +127,15 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
 
 
 def _draw(draft: Path, result: TrackResult, sequence: PhotoSequence, form: PictureFormat) -> None:
+    from zebro_lab.track import pictures  # matplotlib takes most of a second
+
     track, seen = result.tracked.track, result.tracked.floor
     # In the last photograph the robot no longer hides the floor where the path begins.
     last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None
     shown = last or track.observations[-1].photo
     path = next(photo.path for photo in sequence.photos if photo.name == shown)
     detection = next((each for each in seen.detections if each.photo == shown), None)
-    draw_track(
+    pictures.draw_track(
         draft, track, PlacedPhoto(read_pixels(path), seen.fit.camera, seen.fit.pose_of(shown)),
         floor=seen.fit.floor, detection=detection,
         title=sequence.origin.name,

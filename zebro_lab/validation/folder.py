@@ -4,9 +4,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from model.errors import InsufficientData
 from model.judgement import Judged, TiltJudged
@@ -17,10 +17,7 @@ from zebro_lab.files.result_folder import ResultKind, result_folder
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.track.file import tum_lines
 from zebro_lab.validation.judged_run import JudgedRun
-from zebro_lab.validation.pictures import ShownRun, draw_validation
-
-if TYPE_CHECKING:
-    import pandas as pd
+from zebro_lab.validation.predicted_walks import ShownRun
 
 SCHEMA = 1
 METRICS, ERRORS = "metrics.csv", "errors.csv"
@@ -158,6 +155,8 @@ def write_validation(
     Raises:
         AlreadyExists, NotWritten: As in `result_folder`.
     """
+    from zebro_lab.validation import pictures  # matplotlib takes most of a second
+
     runs = [each.run for each in shown]
     notes = [f"{run.name}: {note}" for run in runs for note in run.notes]
     content = {
@@ -174,13 +173,13 @@ def write_validation(
     with result_folder(out, VALIDATION, content=content) as draft:
         _write_tables(draft, runs)
         for each in shown:
-            undrawn = draw_validation(draft, each, simulated=is_simulated(source), form=form)
+            undrawn = pictures.draw_validation(
+                draft, each, simulated=is_simulated(source), form=form
+            )
             notes += [f"{each.run.name}: {why}" for why in undrawn]
 
 
 def _write_tables(draft: Path, runs: Sequence[JudgedRun]) -> None:
-    import pandas as pd
-
     table = [{"run": run.name, "model": r.name, **metrics(r)} for run in runs for r in run.rows]
     _to_csv(pd.DataFrame(table), draft / METRICS)
     parts = []
@@ -198,5 +197,5 @@ def _write_tables(draft: Path, runs: Sequence[JudgedRun]) -> None:
     _to_csv(pd.concat(parts), draft / ERRORS)
 
 
-def _to_csv(table: "pd.DataFrame", file: Path) -> None:
+def _to_csv(table: pd.DataFrame, file: Path) -> None:
     table.to_csv(file, index=False, float_format="%.8g", lineterminator="\n")

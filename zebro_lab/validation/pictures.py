@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Pictures of a validation: errors, roll and pitch, and the photographs of the walk."""
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,35 +9,20 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from tracking.errors import TrackingError
 from zebro_lab.files.picture_format import PictureFormat
+from zebro_lab.plots import save
+from zebro_lab.plots.path_validation import path_validation
+from zebro_lab.plots.photo_poses import Shot, band_over_floor, photos_beside_poses
+from zebro_lab.plots.tilt import tilt
 from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
 from zebro_lab.validation.judged_run import JudgedRun
-from zebro_lab.walk.prediction_file import PredictionFile, WalkedPath
-
-if TYPE_CHECKING:
-    from zebro_lab.plots.photo_poses import Shot
+from zebro_lab.validation.predicted_walks import ShownRun
+from zebro_lab.walk.prediction_file import WalkedPath
 
 SHOTS = 4
 _CROP = 0.45  # side of the region shown around the robot [m]
 _CROP_SCALE = 900.0  # px/m
 _MARGIN = 0.3  # around the paths on the floor [m]
 _MOST_FLOOR_PIXELS = 1.5e6
-
-
-@dataclass(frozen=True)
-class ShownRun:
-    """Errors of a walk, with the content of the pictures that show them.
-
-    Attributes:
-        run: Errors of the walk.
-        prediction: The prediction, with band and single path.
-        photos: Photographs of the track; None if there are none to show.
-        time_offset: Time added to the track's times to bring them to the prediction's clock [s].
-    """
-
-    run: JudgedRun
-    prediction: PredictionFile
-    photos: TrackedPhotos | None = None
-    time_offset: float = 0.0
 
 
 def draw_validation(
@@ -58,10 +41,6 @@ def draw_validation(
     Returns:
         Notes on pictures that could not be drawn, one line each.
     """
-    from zebro_lab.plots import save
-    from zebro_lab.plots.path_validation import path_validation
-    from zebro_lab.plots.tilt import tilt
-
     run = shown.run
     rows = {row.name: row.path for row in run.rows}
     figure = path_validation(rows, run.track, band=run.band, title=run.name, simulated=simulated)
@@ -80,9 +59,6 @@ def draw_validation(
 
 
 def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos, form: PictureFormat) -> None:
-    from zebro_lab.plots import save
-    from zebro_lab.plots.photo_poses import photos_beside_poses
-
     run, walk = shown.run, shown.prediction.walk
     rows = _instants(run, photos, shown.time_offset)
     if walk is None or not len(rows):
@@ -107,9 +83,7 @@ def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDAr
     return np.unique(scored[np.linspace(0, len(scored) - 1, SHOTS).round().astype(int)])
 
 
-def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> "Shot":
-    from zebro_lab.plots.photo_poses import Shot
-
+def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> Shot:
     tracked, predicted = run.track.at([t]), run.rows[0].path.at([t])
     row = int(np.abs(walk.path.t - t).argmin())
     z, (roll, pitch) = walk.path.position[row, 2], walk.path.orientation[row, :2]
@@ -131,9 +105,6 @@ def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> "Sho
 def _draw_floor(
     file: Path, run: JudgedRun, view: PlacedPhoto, t: float, *, simulated_photos: bool
 ) -> None:
-    from zebro_lab.plots import save
-    from zebro_lab.plots.photo_poses import band_over_floor
-
     path = run.rows[0].path
     places = np.vstack([path.position, run.track.position])
     low, high = places.min(axis=0) - _MARGIN, places.max(axis=0) + _MARGIN

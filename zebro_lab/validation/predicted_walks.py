@@ -58,6 +58,23 @@ class PredictedWalk:
         return (*self.prediction.files, self.track.file, *tilt)
 
 
+@dataclass(frozen=True)
+class ShownRun:
+    """Errors of a walk, with the content of the pictures that show them.
+
+    Attributes:
+        run: Errors of the walk.
+        prediction: The prediction, with band and single path.
+        photos: Photographs of the track; None if there are none to show.
+        time_offset: Time added to the track's times to bring them to the prediction's clock [s].
+    """
+
+    run: JudgedRun
+    prediction: PredictionFile
+    photos: TrackedPhotos | None = None
+    time_offset: float = 0.0
+
+
 def pairs_of_run(run: Path) -> tuple[Path, Path]:
     """Return the folders `prediction` and `track` of a run folder.
 

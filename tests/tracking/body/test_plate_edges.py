@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from support.synthetic import look_at
-from tracking.body import AnnotatedPose, TopPlate, expected_covariance, refine_corners
+from tracking.body import AnnotatedPose, TopPlate, plate_edges, refine_corners
 from tracking.body.plate_edges import OFFSET_SD, OUTLINE_SD
 from tracking.camera import Camera, CameraPose, project, to_floor
 from tracking.pose import BodyPrior, fit_pose, rotation_with_derivatives
@@ -158,6 +158,24 @@ def test_a_top_of_a_few_pixels_keeps_its_clicks():
     picture = drawn(plate=tiny)
     assert np.ptp(corners(tiny), axis=0).max() < 15
     assert refined(picture, corners(tiny), plate=tiny).sides == 0
+
+
+def expected_covariance(corners_px: np.ndarray, *, sd_px: float) -> np.ndarray:
+    """Compute the covariance of refined corners where all four edges are clear, shape (8, 8) [px²].
+
+    Args:
+        corners_px: Corners u, v in order around the top, shape (4, 2) [px].
+        sd_px: Standard deviation of u and of v of a click [px].
+    """
+    corners = np.asarray(corners_px, dtype=float)
+    outline = [np.array([corners[k], corners[(k + 1) % 4]]) for k in range(4)]
+    edges = {
+        k: plate_edges._Edge(np.zeros(2), plate_edges._side_errors(plate_edges._length(side)))
+        for k, side in enumerate(outline)
+    }
+    by_corner, noise = plate_edges._measurement(outline, corners.mean(axis=0), edges)
+    information = np.eye(8) / sd_px**2 + by_corner.T @ np.linalg.solve(noise, by_corner)
+    return np.linalg.inv(information)
 
 
 def test_what_is_expected_of_edges_is_what_is_found():

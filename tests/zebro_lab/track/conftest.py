@@ -52,4 +52,4 @@ def request_(bench, tmp_path) -> TrackRequest:
 @pytest.fixture
 def undrawn(monkeypatch):
     """Leave out the pictures, which take longer than the tracking of so few photographs."""
-    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
+    monkeypatch.setattr("zebro_lab.track.pictures.draw_track", lambda *_, **__: None)

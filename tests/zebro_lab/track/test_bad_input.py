@@ -39,7 +39,7 @@ def lab(small, tmp_path, monkeypatch) -> Path:
     shutil.copytree(small, tmp_path / "photos")
     for name in ("camera.toml", "floor.toml", "robot.toml"):
         shutil.copy(WALK / name, tmp_path)
-    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
+    monkeypatch.setattr("zebro_lab.track.pictures.draw_track", lambda *_, **__: None)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

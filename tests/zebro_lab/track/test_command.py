@@ -7,10 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from support.bundled_walk import PHOTOS, WALK, Nobody
+from support.bundled_walk import PHOTOS, WALK
 from support.commands import COMMAND
-from zebro_lab.track.command import track_lines
-from zebro_lab.track.stage import track
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
 
@@ -91,11 +89,3 @@ def test_nowhere_to_write_and_nothing_to_say_are_wrong_usage(run_command, files)
     code, _, err = run_command("annotate", PHOTOS, "--out", files / "said.toml")
     assert code == 2
     assert "no annotation is given" in err
-
-
-def test_a_track_is_summed_up_in_lines_that_hold_no_line_breaks(request_, undrawn):
-    result = track(request_, Nobody())
-    lines = track_lines(result)
-    assert lines[0].startswith("SIMULATED track ")
-    assert f"written to {result.folder}:" in lines
-    assert not any("\n" in line for line in lines)

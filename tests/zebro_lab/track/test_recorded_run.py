@@ -61,7 +61,7 @@ def lab(recorded, tmp_path, monkeypatch) -> Path:
     """Return a copy of it to work in, whose run is `run/`; no picture is drawn."""
     shutil.copytree(recorded / "photos", tmp_path / "photos")
     shutil.copytree(next((recorded / "data").iterdir()), tmp_path / "run")
-    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
+    monkeypatch.setattr("zebro_lab.track.pictures.draw_track", lambda *_, **__: None)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

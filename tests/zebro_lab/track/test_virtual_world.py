@@ -45,7 +45,7 @@ def lab(world, tmp_path, monkeypatch) -> Path:
         f'[marker]\ndictionary = "{top["dict"]}"\nid = {top["id"]}\nside = {top["side"]}\n'
         f"position = [{x}, {y}, {z}]\nheight = 0.1\n"
     )
-    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
+    monkeypatch.setattr("zebro_lab.track.pictures.draw_track", lambda *_, **__: None)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -15,7 +15,8 @@ from zebro_lab.runs.recorded_tilt import Tilt
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.photographs import photos_of_track
 from zebro_lab.validation.judged_run import judge_run
-from zebro_lab.validation.pictures import ShownRun, draw_validation
+from zebro_lab.validation.pictures import draw_validation
+from zebro_lab.validation.predicted_walks import ShownRun
 from zebro_lab.walk.prediction_file import PredictionFile, WalkedPath
 
 

@@ -6,6 +6,7 @@ from tracking.errors import TrackingError
 from tracking.markers import dictionary_named
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import option_to_si
+from zebro_lab.track.camera.kit import BOARD
 
 _EXPECTED = (
     "expected kit, checkerboard:COLUMNSxROWS:SQUARE (inner corners) such as "
@@ -28,8 +29,6 @@ def parse_board(text: str) -> Board:
     """
     kind, *parts = text.split(":")
     if kind == "kit" and not parts:
-        from zebro_lab.track.camera.kit import BOARD
-
         return BOARD
     if kind == "checkerboard" and len(parts) == 2:
         columns, rows = _grid(text, parts[0])

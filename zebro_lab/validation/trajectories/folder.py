@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from model.metrics.path_errors import pose_errors
 from model.metrics.rigid_errors import rotation_angles
@@ -85,8 +86,6 @@ def write_trajectories(
 
 
 def _write_tables(draft: Path, judged: JudgedPair) -> None:
-    import pandas as pd
-
     table = [{"in": row.where, **metrics(row)} for row in judged.rows]
     errors = pose_errors(judged.estimated, judged.tracked)
     columns = {

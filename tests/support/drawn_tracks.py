@@ -13,7 +13,7 @@ from tracking.detect import Detection, MarkedRobot, observe
 from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.markers import Sighting
 from tracking.photos.by_look import nearest_of, pose_of_top
-from tracking.photos.edges import edge_spread
+from tracking.photos.by_marker import edge_spread
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.result import Times, Tracked, finish, observation_of, shared_errors
 from tracking.photos.scene import MarkedTop, Scene

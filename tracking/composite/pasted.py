@@ -22,11 +22,10 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from tracking.body.template import sample
-from tracking.composite.body_raster import BodyRaster
 from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
 from tracking.composite.known import LEAST_SCORE, Exposure
 from tracking.composite.match import match_whole
-from tracking.composite.reading import Reading
+from tracking.composite.reading import BodyRaster, Reading
 from tracking.composite.steps import (
     CLIMB,
     LEAST_STEP,

@@ -8,9 +8,88 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.body.plane import Plane
-from tracking.composite.body_raster import BodyRaster
+from tracking.body.template import BodyTemplate, TopPlate, sample
 from tracking.composite.known import KnownExposure
+
+
+@dataclass(frozen=True)
+class BodyRaster:
+    """Points of a level rectangle in the body frame, front to rear and in each row left to right.
+
+    Attributes:
+        plane: Raster of the plane on which the robot is sampled.
+        x: Distance of each point ahead of the body's middle, shape (rows, columns) [m].
+        y: Distance of each point left of the body's middle, shape (rows, columns) [m].
+        cell: Distance between neighbouring points [m].
+    """
+
+    plane: Plane
+    x: Array
+    y: Array
+    cell: float
+
+    @classmethod
+    def over(cls, plane: Plane, size: tuple[float, float]) -> "BodyRaster":
+        """Build a raster, as fine as that of a plane, that covers a body.
+
+        Args:
+            plane: Raster of the plane, whose cell is taken.
+            size: Length and width of the body [m].
+        """
+        cell = plane.cell
+        rows, columns = (round(side / cell) for side in size)
+        ahead = ((rows - 1) / 2 - np.arange(rows)) * cell
+        left = ((columns - 1) / 2 - np.arange(columns)) * cell
+        x, y = np.meshgrid(ahead, left, indexing="ij")
+        return cls(plane, x, y, cell)
+
+    def thinned(self) -> "BodyRaster":
+        """Return a raster of every second row and column, from the second on."""
+        return BodyRaster(self.plane, self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
+
+    def template(self, values: NDArray[np.float32], height: float) -> BodyTemplate:
+        """Build the template of a flat top, the size of the body, from its colours.
+
+        Args:
+            values: Colours on the raster, shape (rows, columns, 3).
+            height: Height of the top over the body's origin [m].
+        """
+        rows, columns = self.x.shape
+        points = np.stack((self.x, self.y, np.full_like(self.x, height)), axis=-1)
+        plate = TopPlate(
+            rows * self.cell, columns * self.cell, height, margin=0.0, front_margin=0.0
+        )
+        return BodyTemplate(plate, self.cell, points, values)
+
+    def on(self, poses: Array) -> Array:
+        """Compute the coordinates of the points on the plane's raster.
+
+        Args:
+            poses: x, y [m] and yaw [rad] of the robot, shape (n, 3).
+
+        Returns:
+            Column and row on the plane's raster, shape (n, rows, columns, 2) [cells].
+        """
+        c, s = (f(poses[:, 2])[:, None, None] for f in (np.cos, np.sin))
+        x = poses[:, 0][:, None, None] + c * self.x - s * self.y
+        y = poses[:, 1][:, None, None] + s * self.x + c * self.y
+        plane = self.plane
+        return np.stack(((x - plane.low[0]) / plane.cell, (plane.high[1] - y) / plane.cell), -1)
+
+    def read(self, layer: NDArray, pose: Array) -> NDArray[np.float32]:
+        """Interpolate a layer of the plane at the points of the robot.
+
+        Args:
+            layer: Values on the plane's raster, shape (plane rows, plane columns, ...).
+            pose: x, y [m] and yaw [rad] of the robot, shape (3,).
+
+        Returns:
+            Values, shape (rows, columns, ...) of the robot's raster; 0 outside the plane.
+        """
+        return sample(layer, self.on(pose[None])[0])
+
 
 CELLS = 40
 """Default of the number of raster points along the robot."""

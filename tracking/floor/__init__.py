@@ -4,8 +4,7 @@
 from tracking.floor.adjustment import EDGE_SPREADS, EdgeSpread
 from tracking.floor.locate import FloorView, locate_camera
 from tracking.floor.marks import FloorMap, FloorMarker, FloorPoint
-from tracking.floor.refine import FloorFit, Stand, refine_floor
-from tracking.floor.stands import split_stands
+from tracking.floor.refine import FloorFit, Stand, refine_floor, split_stands
 
 __all__ = [
     "EDGE_SPREADS",

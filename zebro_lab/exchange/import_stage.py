@@ -32,8 +32,7 @@ from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.terminal.leg_options import joint_names
-from zebro_lab.track.foreign import ForeignTrack, read_foreign_track
-from zebro_lab.track.foreign_sd import PoseSd
+from zebro_lab.track.foreign import ForeignTrack, PoseSd, read_foreign_track
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 _UNIX: Final = 1e9

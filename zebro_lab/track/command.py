@@ -76,9 +76,9 @@ def _print_document(result: "TrackResult", output: Output) -> None:
 
 
 def _preview(request: TrackRequest, file: Path, output: Output) -> None:
-    from zebro_lab.track import preview_stage, screen
+    from zebro_lab.track import screen, stage
 
-    seen = preview_stage.preview(request, file)
+    seen = stage.preview(request, file)
     for line in (*screen.preview_lines(seen), f"wrote {file}"):
         output.say(line)
     output.document("track", {"written": [file]})

@@ -11,10 +11,14 @@ from model.progress import Watcher
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.validation.chosen_runs import pairs_of_runs
 from zebro_lab.validation.folder import VALIDATION, Summary, summarise_runs, write_validation
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
-from zebro_lab.validation.predicted_walks import PredictedWalk, ShownRun, read_predicted_walks
+from zebro_lab.validation.predicted_walks import (
+    PredictedWalk,
+    ShownRun,
+    pairs_of_runs,
+    read_predicted_walks,
+)
 from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.shared_clock import estimated_clock, shifted
 

@@ -26,7 +26,7 @@ from zebro_lab.runs.recorded_tilt import read_recorded_tilt
 from zebro_lab.tables.table_files import TABLE_SUFFIXES
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
-from zebro_lab.track.foreign_sd import ADVICE
+from zebro_lab.track.foreign import ADVICE
 from zebro_lab.validation.shared_clock import shifted
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk_fit.clocks import Clock

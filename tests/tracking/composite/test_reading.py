@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from support.drawn_board import PRIOR, SIZE, TOP, composite, likeness
+from support.drawn_board import PRIOR, SIZE, TOP, composite, level_plane, likeness
 from tracking.camera import project
-from tracking.composite.reading import CELLS, Reading
+from tracking.composite.reading import CELLS, BodyRaster, Reading
 
 AT = np.array([0.05, 0.0, 0.3])
 
@@ -60,3 +60,24 @@ def test_the_picture_on_the_raster_shows_the_robot_where_it_is(known):
     blue = reading.picture[..., 0] - reading.picture[..., 2]
     row, column = np.argwhere(blue > 40).mean(axis=0)
     np.testing.assert_allclose(reading.plane.xy_at(row, column), AT[:2], atol=0.03)
+
+
+def test_a_layer_is_read_at_the_points_of_the_robot():
+    plane = level_plane()
+    body = BodyRaster.over(plane, SIZE)
+    rows, columns = plane.seen_px.shape[:2]
+    row, column = np.indices((rows, columns))
+    xy = np.stack((plane.low[0] + column * plane.cell, plane.high[1] - row * plane.cell), axis=-1)
+    x, y, yaw = pose = np.array([0.1, -0.05, 0.7])
+    seen = body.read(xy.astype(np.float32), pose)
+    c, s = np.cos(yaw), np.sin(yaw)
+    np.testing.assert_allclose(seen[..., 0], x + c * body.x - s * body.y, atol=1e-4)
+    np.testing.assert_allclose(seen[..., 1], y + s * body.x + c * body.y, atol=1e-4)
+    assert body.thinned().x.shape == tuple(side // 2 for side in body.x.shape)
+
+
+def test_the_template_is_as_large_as_the_body():
+    body = BodyRaster.over(level_plane(), SIZE)
+    template = body.template(np.zeros((*body.x.shape, 3), np.float32), 0.03)
+    assert (template.plate.length, template.plate.width) == pytest.approx(SIZE, abs=body.cell)
+    assert template.points_body[..., 2] == pytest.approx(0.03)

@@ -8,7 +8,7 @@ import pytest
 
 from support.drawn_floor import FLOOR, LENS, camera_pose, see
 from tracking.errors import FloorError
-from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
+from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor, split_stands
 
 
 def test_a_photograph_without_marks_is_named_and_the_others_go_on():
@@ -97,3 +97,22 @@ def test_a_tape_worse_than_it_is_said_to_be_widens_the_camera_and_not_the_pixels
     fit = refine_floor(LENS, FloorMap("4x4_50", tuple(slack)), [see(FLOOR, camera_pose(), rng)])
     assert fit.noise_factor == 1.0
     assert 2.0 < fit.tape_factor < 9.0
+
+
+@pytest.mark.parametrize("degrees", [0.05, 0.3])
+def test_a_bumped_tripod_is_noticed_where_it_happens(degrees):
+    rng = np.random.default_rng(4)
+    poses = [camera_pose()] * 6 + [camera_pose(pan=np.radians(degrees))] * 5
+    views = [see(FLOOR, pose, rng, f"p{index}.jpg") for index, pose in enumerate(poses)]
+    assert split_stands(views) == (0,) * 6 + (1,) * 5
+    fit = refine_floor(LENS, FLOOR, views)
+    assert "moved between p5.jpg and p6.jpg" in fit.warnings[0]
+    turn = fit.pose_of("p0.jpg").rotation @ fit.pose_of("p10.jpg").rotation.T
+    angle = np.degrees(np.arccos((np.trace(turn) - 1) / 2))
+    assert angle == pytest.approx(degrees, rel=0.1)
+
+
+def test_a_camera_at_rest_is_one_stand():
+    rng = np.random.default_rng(5)
+    views = [see(FLOOR, camera_pose(), rng, f"p{index}.jpg") for index in range(60)]
+    assert set(split_stands(views)) == {0}

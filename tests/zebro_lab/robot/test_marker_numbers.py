@@ -9,7 +9,7 @@ from zebro_lab.robot.marker_numbers import require_apart, require_in_dictionary
 from zebro_lab.robot.marker_print import MarkerPrint
 from zebro_lab.robot.robot_file import Marker, RobotFile
 from zebro_lab.track.camera.kit import FLOOR_MARKERS, starter_floor
-from zebro_lab.track.robot import tracked_robot
+from zebro_lab.track.inputs import tracked_robot
 
 
 @pytest.mark.parametrize(

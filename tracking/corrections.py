@@ -66,22 +66,8 @@ class Delete:
     photo: str
 
 
-@dataclass(frozen=True)
-class Order:
-    """Set the order in time of photographs, or of the exposures of a composite photograph.
-
-    Attributes:
-        photos: Names of photographs in order; the earliest of their times is given to the first
-            and so on. Photographs that are not named keep their times; each is named once.
-    """
-
-    photos: tuple[str, ...]
-
-
-Correction: TypeAlias = Move | Flip | Delete | Order
-_KINDS: dict[str, type[Correction]] = {
-    "move": Move, "flip": Flip, "delete": Delete, "order": Order,
-}  # fmt: skip
+Correction: TypeAlias = Move | Flip | Delete
+_KINDS: dict[str, type[Correction]] = {"move": Move, "flip": Flip, "delete": Delete}
 
 
 def replay(
@@ -103,13 +89,11 @@ def replay(
 
     Raises:
         CorrectionError: When a correction names a photograph without an observation (a `Move`:
-            also without a time), or an `Order` names a photograph twice.
+            also without a time).
     """
     found = {seen.photo: seen for seen in observations}
     for correction in corrections:
-        if isinstance(correction, Order):
-            found = _ordered(found, correction)
-        elif isinstance(correction, Move):
+        if isinstance(correction, Move):
             found[correction.photo] = _moved(found, correction, times or {}, prior)
         elif isinstance(correction, Delete):
             _known(found, correction.photo)
@@ -123,12 +107,11 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     """Parse a correction from plain values, as a file holds them.
 
     Args:
-        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind;
-            `photos` as a list.
+        entry: `kind` ("move", "flip" or "delete") and the attributes of that kind.
 
     Raises:
         CorrectionError: The kind or a key is unknown, a required key is missing, or a value is
-            not a name, a list of names, a finite number or, for a standard deviation, a positive
+            not a name, a finite number or, for a standard deviation, a positive
             one.
     """
     kind = str(entry.get("kind", ""))
@@ -141,8 +124,6 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
     missing = [name for name in needed if name not in values]
     if missing:
         raise CorrectionError(f"correction '{kind}' needs {', '.join(missing)}")
-    if kind == "order":
-        values["photos"] = tuple(values["photos"])
     return _KINDS[kind](**values)
 
 
@@ -153,10 +134,7 @@ def _require_value(kind: str, key: str, value: Any) -> None:
         near = similar_name(key, names)
         hint = f"did you mean '{near}'?" if near else f"known: {', '.join(names)}"
         raise CorrectionError(f"correction '{kind}' has no '{key}'; {hint}")
-    if key == "photos":
-        wanted, valid = "a list of names", isinstance(value, list | tuple)
-        valid = valid and all(isinstance(name, str) for name in value)
-    elif key == "photo":
+    if key == "photo":
         wanted, valid = "a name", isinstance(value, str)
     else:
         sd = key.endswith("_sd")
@@ -173,10 +151,7 @@ def plain(correction: Correction) -> dict[str, Any]:
     {'kind': 'flip', 'photo': 'p3.jpg'}
     """
     kind = next(name for name, kind in _KINDS.items() if isinstance(correction, kind))
-    values = asdict(correction)
-    if isinstance(correction, Order):
-        values["photos"] = list(correction.photos)
-    return {"kind": kind, **values}
+    return {"kind": kind, **asdict(correction)}
 
 
 def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
@@ -226,15 +201,3 @@ def _moved(
         _known(found, move.photo)
     t, t_sd = times[move.photo]
     return PoseObservation(move.photo, t, t_sd, BodyPose(state, covariance), 1.0, "hand")
-
-
-def _ordered(found: Mapping[str, PoseObservation], order: Order) -> dict[str, PoseObservation]:
-    if len(set(order.photos)) < len(order.photos):
-        raise CorrectionError("a correction of kind 'order' names a photograph twice; name it once")
-    named = [_known(found, photo) for photo in order.photos]
-    slots = sorted((seen.t, seen.t_sd) for seen in named)
-    again = {
-        seen.photo: replace(seen, t=t, t_sd=t_sd)
-        for seen, (t, t_sd) in zip(named, slots, strict=True)
-    }
-    return {photo: again.get(photo, seen) for photo, seen in found.items()}

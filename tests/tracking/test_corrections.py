@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.corrections import Delete, Flip, Move, Order, correction_from, plain, replay
+from tracking.corrections import Delete, Flip, Move, correction_from, plain, replay
 from tracking.errors import CorrectionError
 from tracking.path import PoseObservation
 from tracking.pose import BodyPose, BodyPrior
@@ -26,7 +26,6 @@ NUMBER = st.floats(-10, 10)
 CORRECTIONS = st.one_of(
     st.builds(Move, NAMES, NUMBER, NUMBER, NUMBER),
     st.builds(Flip, NAMES),
-    st.builds(Order, st.lists(NAMES, unique=True, min_size=2).map(tuple)),
 )
 
 
@@ -74,18 +73,12 @@ def test_a_robot_is_moved_into_a_photograph_without_one():
     assert (added.photo, added.t, added.t_sd) == ("p9.jpg", 18.0, 0.1)
 
 
-def test_an_order_shares_out_the_times():
-    again = {o.photo: o.t for o in replay(WALK, [Order(("p2.jpg", "p1.jpg"))], prior=PRIOR)}
-    assert again == {"p0.jpg": 0.0, "p1.jpg": 4.0, "p2.jpg": 2.0, "p3.jpg": 6.0}
-
-
 @pytest.mark.parametrize(
     ("correction", "message"),
     [
         (Flip("p1.jpgg"), "p1.jpgg.*did you mean 'p1.jpg'"),
         (Delete("x"), "'x'"),
         (Move("q.jpg", 0, 0, 0), r"q\.jpg"),
-        (Order(("p1.jpg", "p1.jpg")), "twice"),
     ],
 )
 def test_a_correction_of_nothing_is_named(correction, message):
@@ -99,9 +92,7 @@ def test_a_correction_of_nothing_is_named(correction, message):
         ({"kind": "turn", "photo": "a"}, "'turn' is missing or unknown"),
         ({"kind": "flip", "phto": "a"}, "did you mean 'photo'"),
         ({"kind": "move", "photo": "a", "y": 1}, "needs x, yaw"),
-        ({"kind": "order"}, "needs photos"),
-        ({"kind": "order", "photos": 5}, "photos of correction 'order' is 5; expected a list"),
-        ({"kind": "order", "photos": "abc"}, "is 'abc'; expected a list of names"),
+        ({"kind": "order", "photos": ["a"]}, "'order' is missing or unknown"),
         ({"kind": "flip", "photo": 3}, "photo of correction 'flip' is 3; expected a name"),
         ({"kind": "move", "photo": "a", "x": "b"}, "x of .* is 'b'; expected a finite number"),
         ({"kind": "move", "photo": "a", "x": float("nan")}, "is nan; expected a finite number"),

@@ -4,6 +4,7 @@
 from typing import Final
 
 REMOVED: Final[dict[str, str]] = {
+    "annotate --order": "State the times of photographs in a table: track --times CSV.",
     "calibrate --discrepancy": "No departure from the law is fitted: --law compare finds the law "
     "that predicts best, and mean residuals say where it does not hold.",
     "calibrate --noise": "Noise is Gaussian: leave out rows with faults by [rows] keep in "

@@ -69,7 +69,7 @@ def _annotate(request: AnnotateRequest, output: Output) -> None:
 
     if request.is_empty:
         raise typer.BadParameter(
-            "no annotation is given; use --corners, --click, --move, --flip, --delete, --order, "
+            "no annotation is given; use --corners, --click, --move, --flip, --delete, "
             "--from or --grid",
             param_hint="'annotate'",
         )

@@ -55,9 +55,6 @@ class AnnotateRequest:
         tuple[str, ...],
         Option("--delete", metavar="PHOTO", help="Delete the pose in a photograph; repeatable."),
     ] = ()
-    order: Annotated[
-        str | None, Option(metavar="PHOTO,PHOTO,…", help="Order in time of these photographs.")
-    ] = None
     added: Annotated[
         Path | None, Option("--from", metavar="TOML", help="Another annotations.toml to add.")
     ] = None
@@ -66,4 +63,4 @@ class AnnotateRequest:
     def is_empty(self) -> bool:
         """Whether no annotation is given."""
         return not any((self.corners, self.clicks, self.moves, self.flips, self.deletes,
-                        self.order, self.added))  # fmt: skip
+                        self.added))  # fmt: skip

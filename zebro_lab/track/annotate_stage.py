@@ -12,7 +12,7 @@ from pathlib import Path
 
 from model.similar_name import similar_name
 from tracking.body import TopPlate
-from tracking.corrections import Correction, Delete, Flip, Move, Order
+from tracking.corrections import Correction, Delete, Flip, Move
 from tracking.images import find_photos, read_pixels
 from tracking.photos.scene import Click, MarkedTop
 from zebro_lab.files.atomic import atomic_write_bytes, atomic_write_text
@@ -37,7 +37,7 @@ def annotate(request: AnnotateRequest) -> Annotations:
 
     Args:
         request: New annotations. Corrections of one request are applied in the sequence moves,
-            flips, deletions, order, after all earlier corrections; those of its file `added` last.
+            flips, deletions, after all earlier corrections; those of its file `added` last.
 
     Returns:
         All annotations, old and new.
@@ -156,15 +156,7 @@ def _corrections(request: AnnotateRequest) -> tuple[Correction, ...]:
     moves = [_move(text) for text in request.moves]
     flips = [Flip(photo) for photo in request.flips]
     deletes = [Delete(photo) for photo in request.deletes]
-    order = [_order(request.order)] if request.order else []
-    return (*moves, *flips, *deletes, *order)
-
-
-def _order(text: str) -> Order:
-    photos = tuple(text.split(","))
-    if len(photos) < 2 or not all(photos):
-        raise SettingsError(f"'{text}' is not PHOTO,PHOTO,…, two or more", key="--order")
-    return Order(photos)
+    return (*moves, *flips, *deletes)
 
 
 def _move(text: str) -> Move:
@@ -193,10 +185,9 @@ def _numbers(text: str, key: str) -> list[float]:
 
 
 def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
-    photos = [*(top.photo for top in annotations.templates), *annotations.clicks]
-    for each in annotations.corrections:
-        photos += each.photos if isinstance(each, Order) else (each.photo,)
-    for photo in photos:
+    corrected = [each.photo for each in annotations.corrections]
+    tops = [top.photo for top in annotations.templates]
+    for photo in (*tops, *annotations.clicks, *corrected):
         _require_photo(photo, names)
 
 

@@ -16,14 +16,14 @@ def test_annotations_are_added_to_those_before(run_command, tmp_path):
     )  # fmt: skip
     assert code == 0
     code, out, _ = run_command(
-        "annotate", PHOTOS, "--out", file, "--click", "simulated_03.jpg:door=10,20", "--order",
-        "simulated_05.jpg,simulated_04.jpg", "--delete", "simulated_06.jpg",
+        "annotate", PHOTOS, "--out", file, "--click", "simulated_03.jpg:door=10,20",
+        "--delete", "simulated_06.jpg",
     )  # fmt: skip
     assert code == 0
-    assert "robot's top in simulated_01.jpg, 1 points of the floor, 3 corrections" in out
+    assert "robot's top in simulated_01.jpg, 1 points of the floor, 2 corrections" in out
     said = read_annotations(file)
     assert said.templates[0].plate.width == 0.14
-    assert len(said.corrections) == 3
+    assert len(said.corrections) == 2
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ def test_a_photograph_alone_is_nothing_to_write():
 @pytest.mark.parametrize(
     "option",
     [{"corners": "1,2"}, {"clicks": ("p:a=1,2",)}, {"moves": ("p:1,2,3",)}, {"flips": ("p",)},
-     {"deletes": ("p",)}, {"order": "p,q"}, {"added": Path("more.toml")}],
+     {"deletes": ("p",)}, {"added": Path("more.toml")}],
 )  # fmt: skip
 def test_each_annotation_is_something_to_write(option):
     assert not replace(NOTHING, **option).is_empty

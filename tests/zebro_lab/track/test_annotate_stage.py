@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking.corrections import Delete, Flip, Move, Order
+from tracking.corrections import Delete, Flip, Move
 from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.track.annotate_request import AnnotateRequest
@@ -33,14 +33,12 @@ def asked(photos, tmp_path) -> AnnotateRequest:
     return AnnotateRequest(photos, tmp_path / "said.toml")
 
 
-def test_corrections_come_as_moves_flips_deletions_and_order(asked):
+def test_corrections_come_as_moves_flips_and_deletions(asked):
     said = annotate(replace(
         asked, moves=("p1.png:0.5,-0.1,90",), flips=("p2.png",), deletes=("p1.png",),
-        order="p2.png,p1.png",
     ))  # fmt: skip
     assert said.corrections == (
         Move("p1.png", 0.5, -0.1, pi / 2), Flip("p2.png"), Delete("p1.png"),
-        Order(("p2.png", "p1.png")),
     )  # fmt: skip
     again = read_annotations(asked.out)
     assert again.corrections[1:] == said.corrections[1:]

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from tracking.body import TopPlate
-from tracking.corrections import Delete, Flip, Move, Order
+from tracking.corrections import Delete, Flip, Move
 from tracking.photos.scene import MarkedTop
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.track.annotations import Annotations, read_annotations, render_annotations
@@ -15,7 +15,7 @@ CORNERS = ((1.5, 2.0), (3.0, 2.5), (3.0, 8.0), (1.25, 8.0))
 SAID = Annotations(
     (MarkedTop("p 1.jpg", CORNERS, TopPlate(0.2, 0.15, 0.04, margin=0.02)),),
     {'p "2".jpg': {"door": (10.0, 20.5)}},
-    (Move("p3.jpg", 0.5, -0.25, 1.0), Flip("p4.jpg"), Delete("p5.jpg"), Order(("b", "a"))),
+    (Move("p3.jpg", 0.5, -0.25, 1.0), Flip("p4.jpg"), Delete("p5.jpg")),
 )
 
 

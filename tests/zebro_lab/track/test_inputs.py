@@ -100,5 +100,3 @@ def test_what_is_missing_or_impossible_is_named():
     tilted = RobotFile(marker=Marker((0, 0, 0.04), (0.3, 0, 0)))
     with pytest.raises(SettingsError, match="level"):
         tracked_robot(tilted, prior=PRIOR)
-    with pytest.raises(SettingsError, match="side"):
-        tracked_robot(RobotFile(marker=Marker((0, 0, 0.04))), "4x4_50:0:0mm", prior=PRIOR)

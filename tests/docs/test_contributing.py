@@ -26,8 +26,3 @@ def test_every_target_that_is_named_is_one_of_make():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for target in re.findall(r"`make ([a-z-]+)`", TEXT):
         assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
-
-
-def test_there_is_a_recipe_for_each_kind_of_addition():
-    recipes = re.findall(r"^### Adding an? (.+)$", TEXT, re.MULTILINE)
-    assert recipes == ["command", "device", "gait", "result folder", "slip law"]

@@ -38,7 +38,7 @@ LIMITS = {
     "`--slip coulomb:MU`": (MOST_FRICTION,),
     "lengths in `robot.toml`": (LARGEST,),
     "mass in `robot.toml`": (HEAVIEST,),
-    "`--time` of `rig suggest`, `--budget` of `rig run`": (LONGEST_TIME,),
+    "`--time` of `rig suggest`": (LONGEST_TIME,),
     "`--rate` of `rig suggest`": (HIGHEST_RATE,),
     "angles of a gait": (0, LEAST_DEG),
     "`--anisotropy`": (1, MOST_ANISOTROPY),

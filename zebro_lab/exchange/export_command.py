@@ -30,8 +30,7 @@ def export(run: RunFolder, out: Out, to: To = "csv", output: Output = TEXT) -> N
         exported = export_mcap(run, out=out)
         for topic, count in exported.topics.items():
             output.say(f"{topic}: {count} messages")
-        for line in (*exported.notes, f"wrote {exported.file}"):
-            output.say(line)
+        output.say(*exported.notes, f"wrote {exported.file}")
         content = {"messages": dict(exported.topics), "notes": list(exported.notes)}
         output.document("export", {**content, "written": [exported.file]})
         return
@@ -39,6 +38,5 @@ def export(run: RunFolder, out: Out, to: To = "csv", output: Output = TEXT) -> N
 
     files = list(export_run(run, to=to, out=out))
     notes = list(unended_notes(run))
-    for line in (*notes, *(f"wrote {file}" for file in files)):
-        output.say(line)
+    output.say(*notes, *(f"wrote {file}" for file in files))
     output.document("export", {"written": files, "notes": notes})

@@ -34,8 +34,7 @@ def import_files(request: ImportRequest, output: Output = TEXT) -> None:
 
     with output.progress() as watcher:
         imported = import_run(request, watcher)
-    for note in imported.notes:
-        output.say(note)
+    output.say(*imported.notes)
     manifests = {folder: read_manifest(folder) for folder in imported.folders}
     for folder, manifest in manifests.items():
         simulated = "SIMULATED " if is_simulated(manifest.source) else ""

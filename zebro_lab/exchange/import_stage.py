@@ -12,7 +12,6 @@ import numpy as np
 from model.arrays import Array
 from model.format_distinct import format_distinct
 from model.progress import Watcher
-from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
@@ -20,20 +19,23 @@ from zebro_lab.exchange.imu_messages import read_imu_messages
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
 from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
-from zebro_lab.robot.imu_log import ImuLog, imu_of_table
-from zebro_lab.robot.leg_log import LegLog
+from zebro_lab.robot.imu_log import IMU_UNITS, ImuLog, imu_of_table
+from zebro_lab.robot.leg_log import LEG_UNITS, LegLog
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns_file import rig_columns
 from zebro_lab.tables.columns_sections import columns_above
+from zebro_lab.tables.mapped_columns import read_mapped_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
-from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, RIG, TRACK
+from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, TRACK
 from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import ForeignTrack, PoseSd, read_foreign_track
 from zebro_lab.track.trajectory.request import TrajectoryRequest
+from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
 _UNIX: Final = 1e9
 """First time that counts as Unix time, since no run lasts for 30 years [s]."""
@@ -175,26 +177,25 @@ def _manifest(request: ImportRequest, start: datetime, sources: Mapping[str, str
 
 def _legs(path: Path, request: ImportRequest) -> tuple[LegLog, str | None]:
     """Read the leg log; return it, and the topic that was read of a ROS log. So do the others."""
-    columns = foreign_columns(LEGS, path, request.columns)
-    names = LegNames(joint_names(request.joints), request.topic, columns.topic)
-    return legs_of_file(path, columns.series(LEGS), names=names)
+    mapping, topic = read_mapped_columns(LEGS, path, request.columns, LEG_UNITS)
+    names = LegNames(joint_names(request.joints), request.topic, topic)
+    return legs_of_file(path, mapping, names=names)
 
 
 def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
-    columns = foreign_columns(IMU, path, request.columns)
-    series = columns.series(IMU)
+    series, topic = read_mapped_columns(IMU, path, request.columns, IMU_UNITS)
     if not is_ros_log(path):
         return imu_of_table(read_table_file(path, sheet=series.sheet), series), None
-    found = read_imu_messages(path, topic=columns.topic, topics=request.topic)
+    found = read_imu_messages(path, topic=topic, topics=request.topic)
     imu = imu_of_table(found.table, series)
     return replace(imu, files=(*bag_files(path), *imu.files[1:])), found.topic
 
 
 def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:
     alone = request.legs is None and request.rig is None
-    columns = foreign_columns(TRACK, path, request.columns, alone=alone)
+    columns, topic = read_mapped_columns(TRACK, path, request.columns, MAPPED_UNITS, alone=alone)
     track = read_foreign_track(
-        path, columns.series(TRACK), request.trajectory, topic=columns.topic, topics=request.topic,
+        path, columns, request.trajectory, topic=topic, topics=request.topic,
         sd=None if request.pose_sd is None else PoseSd(*request.pose_sd),
     )  # fmt: skip
     return track, track.topic
@@ -203,7 +204,7 @@ def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None
 def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
     path = request.rig or Path()
     label = request.label or table_stem(path)
-    columns = foreign_columns(RIG, path, request.columns).rig()
+    columns = rig_columns(path, request.columns)
     runs, notes = rig_runs(
         path, columns, label=label, material=request.material, operator=request.operator
     )

@@ -45,17 +45,14 @@ def init(
     from zebro_lab.exchange.init_stage import write_columns_template
 
     written = write_columns_template(file, kind=kind, sheet=sheet, force=force)
-    for note in written.notes:
-        output.say(note)
-    output.say(f"wrote {written.file} for a table of kind {written.kind}")
+    output.say(*written.notes, f"wrote {written.file} for a table of kind {written.kind}")
     for name, guess in written.guesses.items():
         sign = ", sign reversed" if guess.sign < 0 else ""
         unit = f" in {guess.unit.unit}" if guess.unit and guess.unit.unit != "dimensionless" else ""
         check = f"; CHECK {', '.join(guess.doubts)}" if guess.doubts else ""
         output.say(f"  {name:<15} from '{guess.name}'{unit}{sign}{check}")
     advice = _to_check(written)
-    for line in advice:
-        output.say(f"please check: {line}")
+    output.say(*(f"please check: {line}" for line in advice))
     columns = {name: guess.name for name, guess in written.guesses.items()}
     content = {"written": [written.file], "kind": written.kind, "columns": columns}
     output.document("init", {**content, "to_check": advice, "notes": list(written.notes)})

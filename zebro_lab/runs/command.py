@@ -27,9 +27,7 @@ def runs(data: DataDir, output: Output = TEXT) -> None:
     from zebro_lab.runs.stage import list_runs
 
     listed = list_runs(data)
-    for run in listed:
-        output.say(_in_words(run))
-    output.say(f"{counted(len(listed), 'run')} in {data}")
+    output.say(*map(_in_words, listed), f"{counted(len(listed), 'run')} in {data}")
     simulated = any(is_simulated(run.source or "") for run in listed)
     output.document("runs", {"simulated": simulated, "runs": [_in_numbers(run) for run in listed]})
 

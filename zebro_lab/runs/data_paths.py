@@ -10,8 +10,8 @@ from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns
-from zebro_lab.tables.columns_file import parse_columns, read_columns
-from zebro_lab.tables.columns_sections import columns_above, read_nearest
+from zebro_lab.tables.columns_file import read_columns, rig_columns
+from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import PLAIN_SUFFIXES, is_table_file
 from zebro_lab.tables.table_kinds import RIG
 
@@ -45,8 +45,7 @@ class DataSource:
         if self.is_run_folder:
             file = self._columns_of_run()
             return Columns() if file is None else read_columns(file)
-        entries = read_nearest(RIG, self.path.parent)
-        return Columns() if entries is None else parse_columns(entries)
+        return rig_columns(self.path)
 
     def _columns_of_run(self) -> Path | None:
         folder = self.path

@@ -15,8 +15,8 @@ from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
-from zebro_lab.tables.columns_sections import columns_above, read_nearest, read_section
-from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
+from zebro_lab.tables.columns_sections import columns_above
+from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, read_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.tables.table_kinds import LEGS
 
@@ -71,7 +71,7 @@ def read_leg_log(
         mapping = canonical_columns(LEG_UNITS)
         return legs_of_table(table, mapping, files=files, leg_sign=leg_sign, mending=_IN_A_RUN)
     file = path if is_ros_log(path) else _table_of(path)
-    mapping, topic = _read_columns(file, columns)
+    mapping, topic = read_mapped_columns(LEGS, file, columns, LEG_UNITS)
     names = replace(names or LegNames(), topic=topic)
     log, used = legs_of_file(file, mapping, names=names, leg_sign=leg_sign)
     require_used(names.topics, [used])
@@ -137,12 +137,3 @@ def _table_of(path: Path) -> Path:
         f"{such_folder_in(path, MANIFEST_FILE)}",
         file=path,
     )
-
-
-def _read_columns(file: Path, named: Path | None) -> tuple[MappedColumns, str | None]:
-    """Return the column map of a leg log, and the topic of a ROS log if it states one."""
-    table = read_section(LEGS, named) if named else read_nearest(LEGS, file.parent)
-    if table is None:
-        return canonical_columns(LEG_UNITS), None
-    topic = table.text("topic") if "topic" in table else None
-    return parse_mapped_columns(table, LEG_UNITS), topic

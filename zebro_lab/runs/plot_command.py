@@ -64,8 +64,7 @@ def plot(
         watcher.step("drawing", None)
         marked = () if at is None else at.t
         drawn = plot_run(run, out=out, form=form, at=marked, window=window)
-    for note in drawn.signals.notes:
-        output.say(note)
+    output.say(*drawn.signals.notes)
     for panel in drawn.signals.panels:
         simulated = "SIMULATED " if panel.simulated else ""
         gaps = f", {counted(len(panel.gaps), 'gap')}" if len(panel.gaps) else ""

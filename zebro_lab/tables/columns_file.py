@@ -21,7 +21,7 @@ from zebro_lab.tables.columns import (
     parse_definition,
     scaled,
 )
-from zebro_lab.tables.columns_sections import read_section, read_source
+from zebro_lab.tables.columns_sections import read_nearest, read_section, read_source
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.row_conditions import read_row_conditions
 from zebro_lab.tables.table_kinds import RIG
@@ -54,6 +54,20 @@ def read_columns(file: Path) -> Columns:
             than one run rule.
     """
     return parse_columns(read_section(RIG, file))
+
+
+def rig_columns(table: Path, named: Path | None = None) -> Columns:
+    """Read the column map of a table of a rig: that named, else the nearest, else the default.
+
+    Args:
+        table: Path of the table.
+        named: A `columns.toml`; None for the nearest, from the table's folder upwards, if any.
+
+    Raises:
+        NotFound, SettingsError: As `read_columns`.
+    """
+    entries = read_section(RIG, named) if named else read_nearest(RIG, table.parent)
+    return Columns() if entries is None else parse_columns(entries)
 
 
 def parse_columns(table: SettingsTable) -> Columns:

@@ -14,9 +14,10 @@ from model.similar_name import nearest
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn
 from zebro_lab.tables.columns_file import parse_mapped_column
+from zebro_lab.tables.columns_sections import read_nearest, read_section
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition, read_row_conditions
-from zebro_lab.tables.table_kinds import looks_like_other
+from zebro_lab.tables.table_kinds import TRACK, looks_like_other
 
 INTERVALS: Final = (2e-5, 2.0)
 """Range of the median time between samples of a table whose unit of time is not stated [s]."""
@@ -222,3 +223,30 @@ def parse_mapped_columns(
         {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where, sheet,
         units, keep,
     )  # fmt: skip
+
+
+def read_mapped_columns(
+    kind: str, table: Path, named: Path | None, units: Mapping[str, str], *, alone: bool = False
+) -> tuple[MappedColumns, str | None]:
+    """Read the column map of a time series from the `columns.toml` that applies to its table.
+
+    Args:
+        kind: Kind of the table: `legs`, `imu` or `track`.
+        table: Path of the table, or of the ROS log.
+        named: A `columns.toml`; None for the nearest, from the table's folder upwards, if any.
+        units: SI unit of each column, by canonical name.
+        alone: Whether all entries of a named file without sections are for this table.
+
+    Returns:
+        The map, canonical names and units without a `columns.toml`; and the topic of a ROS log
+        that it states, if any.
+
+    Raises:
+        NotFound: The named `columns.toml` does not exist.
+        SettingsError: It cannot be read, or a key, a unit or a sign is invalid.
+    """
+    entries = read_section(kind, named, alone=alone) if named else read_nearest(kind, table.parent)
+    if entries is None:
+        return replace(canonical_columns(units), where=f"{kind}."), None
+    topic = entries.text("topic") if "topic" in entries else None
+    return parse_mapped_columns(entries, units, with_rows=kind == TRACK), topic

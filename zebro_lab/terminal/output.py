@@ -62,9 +62,9 @@ class Output:
             return wide_console()
         return Console(stderr=True, quiet=self.quiet, highlight=False, width=120)
 
-    def say(self, line: str) -> None:
-        """Write one line of results where `console` writes."""
-        if not self.quiet:
+    def say(self, *lines: str) -> None:
+        """Write lines of results where `console` writes."""
+        for line in () if self.quiet else lines:
             say(line, err=self.as_json)
 
     def say_in_time(self, text: str) -> bool:

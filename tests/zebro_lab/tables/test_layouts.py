@@ -14,11 +14,12 @@ import pandas as pd
 import pytest
 
 from support.bounded_reading import LONGEST_MESSAGE
-from zebro_lab.exchange.import_columns import foreign_columns
+from zebro_lab.exchange.column_guesses import UNITS
 from zebro_lab.exchange.init_stage import WrittenColumns, write_columns_template
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.tables.columns import CANONICAL
 from zebro_lab.tables.columns_file import read_columns
+from zebro_lab.tables.mapped_columns import read_mapped_columns
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.table_files import read_table_file
 
@@ -47,7 +48,7 @@ def numbers(file: Path, kind: str) -> dict[str, np.ndarray]:
         names = [name for name, column in CANONICAL.items() if column.unit]
         found = {name: table.source_of(name) for name in names}
         return {name: column.in_si(raw) for name, column in found.items() if column}
-    columns = foreign_columns(kind, file, None).series(kind)
+    columns = read_mapped_columns(kind, file, None, UNITS[kind])[0]
     return {
         name: mapped.in_unit_of(raw, columns.units[name]).in_si(raw)
         for name, mapped in columns.mapped.items() if columns.has(raw, name)

@@ -9,7 +9,11 @@ import pytest
 
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.settings_table import SettingsTable
-from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
+from zebro_lab.tables.mapped_columns import (
+    canonical_columns,
+    parse_mapped_columns,
+    read_mapped_columns,
+)
 from zebro_lab.tables.raw_table import RawTable
 
 UNITS = {"t": "s", "roll": "rad"}
@@ -72,3 +76,32 @@ def test_a_cell_without_a_finite_number_is_named(cell, found):
 def test_a_fault_of_the_map_names_its_key(content, message):
     with pytest.raises(SettingsError, match=message):
         parse(**content)
+
+
+SECTIONS = """
+source = "sim:x"
+[legs]
+topic = "/joints"
+columns.theta1 = {name = "fl", unit = "deg"}
+[imu.columns]
+roll = "R"
+"""
+
+
+def test_each_kind_of_table_has_its_section_and_the_common_source(tmp_path):
+    (tmp_path / "columns.toml").write_text(SECTIONS)
+    table = tmp_path / "table.csv"
+    legs, topic = read_mapped_columns("legs", table, None, {"theta1": "rad"})
+    assert (legs.mapped["theta1"].name, legs.source, topic) == ("fl", "sim:x", "/joints")
+    imu, topic = read_mapped_columns("imu", table, None, {"roll": "rad"})
+    assert (imu.mapped["roll"].name, imu.file, topic) == ("R", tmp_path / "columns.toml", None)
+    other = tmp_path / "other.toml"
+    other.write_text('[imu.columns]\nroll = "theirs"')
+    assert read_mapped_columns("imu", table, other, {"roll": "rad"})[0].mapped["roll"].name == (
+        "theirs"
+    )
+
+
+def test_without_a_file_names_are_canonical(tmp_path):
+    found, topic = read_mapped_columns("imu", tmp_path / "a.csv", None, {"roll": "rad"})
+    assert (found.mapped["roll"].name, found.where, topic) == ("roll", "imu.", None)

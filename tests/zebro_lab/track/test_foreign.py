@@ -7,10 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from zebro_lab.exchange.import_columns import foreign_columns
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.tables.columns_sections import read_section
-from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
+from zebro_lab.tables.mapped_columns import (
+    canonical_columns,
+    parse_mapped_columns,
+    read_mapped_columns,
+)
 from zebro_lab.track.file import tum_lines
 from zebro_lab.track.foreign import read_foreign_track
 from zebro_lab.track.trajectory.request import Axis, TrajectoryRequest
@@ -142,7 +145,7 @@ def test_a_pose_that_is_partly_empty_is_refused_and_left_out_as_the_message_says
     advice = 'keep = ["`x` > -1e9"]'
     assert advice in str(raised.value)
     (tmp_path / "columns.toml").write_text(f"[track.rows]\n{advice}\n")
-    stated = foreign_columns("track", file, None).series("track")
+    stated = read_mapped_columns("track", file, None, MAPPED_UNITS)[0]
     path = read_foreign_track(file, stated, TrajectoryRequest())
     np.testing.assert_allclose(path.track.poses.t, [0, 0.1, 0.5, 0.7, 0.8])
 
@@ -150,11 +153,11 @@ def test_a_pose_that_is_partly_empty_is_refused_and_left_out_as_the_message_says
 def test_rows_of_a_track_are_kept_by_a_condition_on_any_column(tmp_path):
     file = mocap(tmp_path)
     (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["Frame < 5"]\n')
-    stated = foreign_columns("track", file, None).series("track")
+    stated = read_mapped_columns("track", file, None, MAPPED_UNITS)[0]
     path = read_foreign_track(file, stated, TrajectoryRequest())
     np.testing.assert_allclose(path.track.poses.t, [0, 0.1, 0.4])
     (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["Frame < -5"]\n')
-    stated = foreign_columns("track", file, None).series("track")
+    stated = read_mapped_columns("track", file, None, MAPPED_UNITS)[0]
     with pytest.raises(
         DataError, match=r"none of the 9 rows meets \[track.rows\] keep: Frame < -5"
     ):

@@ -302,7 +302,7 @@ class TomlTable:
             raise self.fault(f"found {value!r}; expected a list of {count} numbers", key)
         return value
 
-    def _finite(self, value: object, key: str) -> float:
+    def _finite(self, value: Any, key: str) -> float:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if is_number and abs(value) <= sys.float_info.max:
             return float(value)

@@ -93,7 +93,7 @@ def _opened(path: Path, content: bytes, *, values: bool) -> Iterator[Any]:
         yield book
 
 
-def _sheets(path: Path, content: bytes, *, values: bool) -> dict[str, Cells]:
+def _sheets(path: Path, content: bytes, *, values: bool) -> Mapping[str, Cells]:
     """Return the cells of each sheet, none of a sheet of charts; their formulas, if not values."""
     with _opened(path, content, values=values) as book:
         sheets = {

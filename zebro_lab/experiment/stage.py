@@ -39,8 +39,8 @@ from zebro_lab.files.errors import (
     SettingsError,
     ZebroLabError,
 )
+from zebro_lab.runs.folder import removing_new_folders
 from zebro_lab.runs.manifest import MANIFEST_FILE, RunManifest
-from zebro_lab.runs.new_folders import removing_new_folders
 
 CONTROL_FILE: Final = "control.json"
 LOCK_FILE: Final = ".experiment.lock"

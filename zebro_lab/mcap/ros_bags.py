@@ -5,17 +5,32 @@ from collections.abc import Collection, Iterator
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zebro_lab.files.errors import NotFound
 from zebro_lab.files.opening import open_file, parsing
-from zebro_lab.mcap.logged_message import LoggedMessage
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
 
 BAG_SUFFIXES = (".db3", ".bag")
 METADATA = "metadata.yaml"
+
+
+class LoggedMessage(NamedTuple):
+    """Decoded ROS message of a log.
+
+    Attributes:
+        topic: Topic of the message.
+        log_time: Time of logging since the Unix epoch [ns].
+        content: The decoded message, an object with the message's fields as attributes.
+        type: Name of its type, such as `sensor_msgs/msg/JointState`.
+    """
+
+    topic: str
+    log_time: int
+    content: Any
+    type: str = ""
 
 
 def is_bag(path: Path) -> bool:

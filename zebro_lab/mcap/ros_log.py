@@ -12,8 +12,7 @@ from mcap.well_known import MessageEncoding
 from mcap_ros2.decoder import DecoderFactory
 
 from zebro_lab.mcap.log_records import Decode, read_log_messages
-from zebro_lab.mcap.logged_message import LoggedMessage
-from zebro_lab.mcap.ros_bags import is_bag, read_bag
+from zebro_lab.mcap.ros_bags import LoggedMessage, is_bag, read_bag
 
 
 def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:

@@ -26,9 +26,8 @@ from zebro_lab.mcap.ros_messages import INFO
 from zebro_lab.recording.place import require_space
 from zebro_lab.recording.run_files import RunFiles
 from zebro_lab.recording.threads import needing_threads
-from zebro_lab.runs.folder import LOG_FILE, new_run_folder
+from zebro_lab.runs.folder import LOG_FILE, new_run_folder, removing_new_folders
 from zebro_lab.runs.manifest import RunManifest
-from zebro_lab.runs.new_folders import removing_new_folders
 
 FLUSH_EVERY: Final = 0.1
 """Interval at which the queues are written and flushed [s]."""

@@ -6,6 +6,8 @@ Only this module depends on the layout of run folders, which docs/formats.md des
 
 import re
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -112,6 +114,25 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
             f"cannot write to {data_dir}: {error.strerror}; choose another folder with --data"
         ) from error
     return folder
+
+
+@contextmanager
+def removing_new_folders(folder: Path) -> Iterator[None]:
+    """Remove a folder, and those it lies in, if the body fails; not those that exist before.
+
+    A folder that is not empty stays, whoever has written into it.
+
+    Args:
+        folder: Folder that the body creates where it is missing.
+    """
+    missing = [each for each in (folder, *folder.parents) if not each.exists()]
+    try:
+        yield
+    except BaseException:
+        for each in missing:
+            with suppress(OSError):  # it is not empty, or was not created
+                each.rmdir()
+        raise
 
 
 def find_runs(data_dir: Path) -> list[Path]:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Read joint angles from a ROS log to a table of leg angles."""
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -16,9 +17,8 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, SeveralTopics, read_topic
-from zebro_lab.mcap.logged_message import LoggedMessage
+from zebro_lab.mcap.ros_bags import LoggedMessage
 from zebro_lab.mcap.ros_messages import JOINT_STATE
-from zebro_lab.robot.joint_names import legs_of_joints
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.runs.joined_readings import joined_readings
 from zebro_lab.tables.mapped_columns import MappedColumns
@@ -27,6 +27,13 @@ from zebro_lab.tables.raw_table import RawTable
 DYNAMIC: Final = "control_msgs/msg/DynamicJointState"
 """Message of ros2_control, which names the interfaces of each joint."""
 _ORDER = "front left, front right, middle left, middle right, rear left, rear right"
+_WORDS: Final = {
+    "front": "F", "fore": "F", "middle": "M", "mid": "M", "center": "M", "centre": "M",
+    "rear": "R", "back": "R", "hind": "R",
+}  # fmt: skip
+_SIDES: Final = {"left": 0, "right": 1}
+_ROWS: Final = {"F": 0, "M": 1, "C": 1, "R": 2, "B": 2, "H": 2}
+_SHORT: Final = re.compile(r"([FMCRBH])([LR])|([LR])([FMCRBH])")
 
 
 @dataclass(frozen=True)
@@ -190,3 +197,47 @@ def _told(legs: Mapping[str, int]) -> tuple[str, ...]:
         return ()
     listed = ", ".join(f"{leg} {name}" for name, leg in sorted(legs.items(), key=lambda x: x[1]))
     return (f"leg log: legs and their joints by name: {listed}",)
+
+
+def legs_of_joints(names: Iterable[str]) -> dict[str, int]:
+    """Return the leg of each joint whose name states it; none where two joints claim one leg.
+
+    A name states a number from 1 to 6 after `leg` or `theta` (docs/conventions.md numbers the
+    legs), or row and side in words or as in LF, FL: `leg_3`, `leg_front_left_joint`, `RM_hip`.
+
+    Args:
+        names: Names of the joints.
+
+    >>> legs_of_joints(["leg_front_left_joint", "MR_hip", "gripper"])
+    {'leg_front_left_joint': 1, 'MR_hip': 4}
+    """
+    told = {name: leg for name in names if (leg := _leg(name)) is not None}
+    if len(set(told.values())) < len(told):
+        return {}
+    return told
+
+
+def _leg(name: str) -> int | None:
+    words = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)
+    place = _place([word.lower() for word in words]) or _short_place(words)
+    if place is not None:
+        row, side = place
+        return 2 * row + side + 1
+    number = re.fullmatch(r"(?:.*_)?(?:leg|theta)_?([1-9]\d*)(?:_.*)?", name.lower())
+    if number is None or not 1 <= int(number[1]) <= N_LEGS:
+        return None
+    return int(number[1])
+
+
+def _place(words: list[str]) -> tuple[int, int] | None:
+    rows = {_ROWS[_WORDS[word]] for word in words if word in _WORDS}
+    sides = {_SIDES[word] for word in words if word in _SIDES}
+    return (rows.pop(), sides.pop()) if len(rows) == len(sides) == 1 else None
+
+
+def _short_place(words: list[str]) -> tuple[int, int] | None:
+    found = [match for word in words if (match := _SHORT.fullmatch(word.upper()))]
+    if len(found) != 1:
+        return None
+    row, side, other_side, other_row = found[0].groups()
+    return _ROWS[row or other_row], "LR".index(side or other_side)

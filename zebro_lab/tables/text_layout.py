@@ -18,7 +18,7 @@ from zebro_lab.tables.header_rows import (
     find_header,
     made_header,
 )
-from zebro_lab.tables.stated_settings import SeveralSegments, after_lvm_header, stated_units
+from zebro_lab.tables.header_units import SeveralSegments, after_lvm_header, stated_units
 
 BLANKS: Final = r"\s+"
 SEPARATORS: Final[Mapping[str, str]] = {

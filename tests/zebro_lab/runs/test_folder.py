@@ -14,7 +14,7 @@ from zebro_lab.mcap.cdr import CdrWriter
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import Schema
 from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, SCHEMA_TEXT, TOPIC
-from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.folder import read_slip_rig_run, removing_new_folders
 from zebro_lab.runs.manifest import read_manifest
 
 FIELDS = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
@@ -166,3 +166,31 @@ def test_many_run_folders_are_as_many_runs_without_the_excluded(tmp_path):
     assert f"{bad.name}: left out, belt came off" in data.notes
     with pytest.raises(DataError, match=r"every run is left out: .*belt came off"):
         read_rig_data([bad])
+
+
+def create(folder, *, file=None, error=None):
+    """Create a folder, perhaps with a file beside it, and raise an error if there is one."""
+    with removing_new_folders(folder):
+        folder.mkdir(parents=True)
+        if file is not None:
+            file.touch()
+        if error is not None:
+            raise error
+
+
+def test_new_folders_go_and_old_ones_stay(tmp_path):
+    with pytest.raises(KeyboardInterrupt):
+        create(tmp_path / "a" / "b", error=KeyboardInterrupt())
+    assert tmp_path.is_dir()
+    assert not (tmp_path / "a").exists()
+
+
+def test_a_folder_with_a_file_stays(tmp_path):
+    with pytest.raises(OSError, match="disk"):
+        create(tmp_path / "a" / "b", file=tmp_path / "a" / "mine", error=OSError("disk"))
+    assert [path.name for path in (tmp_path / "a").iterdir()] == ["mine"]
+
+
+def test_folders_stay_where_nothing_fails(tmp_path):
+    create(tmp_path / "a")
+    assert (tmp_path / "a").is_dir()

@@ -11,7 +11,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import JOINT_STATE, joint_state
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
-from zebro_lab.runs.joint_log import joint_table, read_joint_log
+from zebro_lab.runs.joint_log import joint_table, legs_of_joints, read_joint_log
 from zebro_lab.tables.mapped_columns import canonical_columns
 
 Stamped = tuple[str, float, float, dict[str, float]]
@@ -181,3 +181,38 @@ def test_positions_of_dynamic_joint_states_are_read(tmp_path):
     assert log.joints == tuple(f"leg_{leg}" for leg in range(1, 7))
     np.testing.assert_allclose(log.table.numbers("t"), [5.0, 5.1, 5.2])
     np.testing.assert_allclose(log.table.numbers("leg_4"), [4.0, 4.1, 4.2])
+
+
+SIDES = ("left", "right")
+NAMES = {
+    "numbers": [f"leg_{leg}" for leg in range(1, 7)],
+    "numbers within": [f"base_leg{leg}_joint" for leg in range(1, 7)],
+    "words": [f"leg_{row}_{side}_joint" for row in ("front", "middle", "rear") for side in SIDES],
+    "side first": [f"{side}_{row}" for row in ("fore", "mid", "hind") for side in SIDES],
+    "humps": ["frontLeftHip", "frontRightHip", "centerLeftHip", "centerRightHip", "backLeftHip",
+              "backRightHip"],
+    "short": [f"{each}_hip" for each in ("FL", "FR", "ML", "MR", "RL", "RR")],
+    "short, side first": ["lf", "rf", "lm", "rm", "lr", "rr"],
+    "back": ["motor_lb", "motor_rb"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("names", NAMES.values(), ids=NAMES)
+def test_names_state_their_legs_in_any_order(names):
+    first = 5 if names[0] == "motor_lb" else 1
+    expected = {name: leg for leg, name in enumerate(names, first)}
+    assert legs_of_joints(names) == expected
+    assert legs_of_joints([*reversed(names), "gripper"]) == expected
+
+
+@pytest.mark.parametrize(
+    "name", ["leg_0", "leg_7", "leg12", "motor_3", "left", "wheel_left", "", "lr_fl"]
+)
+def test_other_names_state_nothing(name):
+    assert legs_of_joints([name]) == {}
+
+
+def test_two_joints_of_a_leg_state_nothing():
+    """Which of them turns the leg is not to be told from names."""
+    assert legs_of_joints(["leg_1_coxa", "leg_1_femur", "leg_2_coxa"]) == {}
+    assert legs_of_joints([f"leg_{number}" for number in range(6)] + ["lf"]) == {}

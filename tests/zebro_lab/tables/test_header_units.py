@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zebro_lab.tables.header_units import suffix_in_header, suffix_unit, unit_in_header
+from zebro_lab.tables.header_units import (
+    SeveralSegments,
+    after_lvm_header,
+    stated_units,
+    suffix_in_header,
+    suffix_unit,
+    unit_in_header,
+)
 
 
 @pytest.mark.parametrize(
@@ -45,3 +52,38 @@ def test_any_header_has_a_unit_or_none(header, si_unit):
     for unit in (unit_in_header(header), suffix_unit(header, si_unit)):
         assert unit is None or unit
     assert suffix_in_header("") is None
+
+
+@pytest.mark.parametrize(
+    ("settings", "names", "units"),
+    [
+        ([["Y_Unit_Label", "N", "", "V"]], ["X_Value", "a", "b", "c"], {"a": "N", "c": "V"}),
+        ([["Y_Unit_Label", "N", "", "rpm"], ["X_Dimension", "Time", "", "Time"]],
+         ["X_Value", "a", "X_Value (2)", "b"],
+         {"X_Value": "s", "X_Value (2)": "s", "a": "N", "b": "rpm"}),
+        ([["Y_Unit_Label", "N"], ["X_Dimension", "Frequency"]], ["X_Value", "a"], {"a": "N"}),
+        ([["Format Version", "1.2", "Length Units", "Centimeters"]],
+         ["Time", "Position X", "Rotation X"], {"Position X": "centimeters"}),
+        ([["Format Version", "1.2", "Length Units"]], ["Position X"], {}),
+        ([["Length Units", "Millimeters"]], ["Position X"], {}),
+        ([], ["t"], {}),
+    ],
+)  # fmt: skip
+def test_settings_state_units_of_channels_or_positions(settings, names, units):
+    assert stated_units(settings, names) == units
+
+
+def test_only_what_is_below_the_last_header_of_labview_is_left():
+    end = "***End_of_Header***\t"
+    lines = list(enumerate(["LabVIEW Measurement", end, "Channels\t1", end, "X_Value\ta"]))
+    assert after_lvm_header(lines) == [(4, "X_Value\ta")]
+    assert after_lvm_header(lines[4:]) == [(4, "X_Value\ta")]
+
+
+def test_a_second_segment_of_labview_is_not_taken_for_the_whole_file():
+    end = "***End_of_Header***\t"
+    lines = list(
+        enumerate(["LabVIEW Measurement", end, end, "X_Value\ta", "0\t1", end, "X_Value\ta"], 1)
+    )
+    with pytest.raises(SeveralSegments, match="that of the second ends in line 6: make a file of"):
+        after_lvm_header(lines)

@@ -3,19 +3,16 @@
 
 import io
 from collections import Counter
-from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import Any
 
-from zebro_lab.files.opening import open_file, parsing, read_unpacked
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from zebro_lab.files.opening import parsing, read_unpacked
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import pyarrow as pa
-
-_ADVICE = "export the file again"
 
 
 def read_parquet_file(path: Path) -> RawTable:
@@ -29,15 +26,18 @@ def read_parquet_file(path: Path) -> RawTable:
         NotFound: There is no such file.
         DataError: The file is not complete Parquet, or too large.
     """
-    with _opened(path) as file, parsing(path, "is not a complete Parquet file", advice=_ADVICE):
-        table = _read(file)
-        return _raw(path, table, table.schema.metadata)
+    content = read_unpacked(path)
+    with parsing(path, "is not a complete Parquet file", advice="export the file again"):
+        # In one thread: of several, a damaged column could abort the process at exit (pyarrow 17).
+        with pq.ParquetFile(io.BytesIO(content)) as opened:
+            table = opened.read(use_threads=False)
+        return _raw(path, table)
 
 
-def _raw(path: Path, table: "pa.Table", metadata: Any) -> RawTable:
+def _raw(path: Path, table: pa.Table) -> RawTable:
     """Return a table of Arrow as a raw table."""
     columns = {name: _cells(table.column(i)) for i, name in enumerate(table.column_names)}
-    source = (metadata or {}).get(b"source")
+    source = (table.schema.metadata or {}).get(b"source")
     names = Counter(table.column_names)
     return RawTable(
         path,
@@ -50,40 +50,15 @@ def _raw(path: Path, table: "pa.Table", metadata: Any) -> RawTable:
     )  # fmt: skip
 
 
-def _opened(path: Path) -> AbstractContextManager[IO[bytes]]:
-    if path.name.lower().endswith(".gz"):
-        return io.BytesIO(read_unpacked(path))
-    return open_file(path)
-
-
-def _read(file: IO[bytes]) -> "pa.Table":
-    import pyarrow.parquet as pq
-
-    # In one thread: of several, a damaged column could abort the process at exit (pyarrow 17).
-    with pq.ParquetFile(file) as opened:
-        return opened.read(use_threads=False)
-
-
-def _cells(column: "pa.ChunkedArray") -> "pd.Series":
-    import pandas as pd
-    import pyarrow as pa
-
+def _cells(column: pa.ChunkedArray) -> pd.Series:
     if not _is_plain(column.type):
         return pd.Series([None] * len(column), dtype=object)
     cells = column.to_pandas()
     return cells.astype(object) if pa.types.is_dictionary(column.type) else cells
 
 
-def _is_plain(kind: "pa.DataType") -> bool:
-    import pyarrow as pa
-
-    if isinstance(kind, pa.DictionaryType):
-        kind = kind.value_type
-    return _is_text(kind) or (pa.types.is_primitive(kind) or pa.types.is_null(kind)
-                              or pa.types.is_decimal(kind))  # fmt: skip
-
-
-def _is_text(kind: "pa.DataType") -> bool:
-    import pyarrow as pa
-
-    return pa.types.is_string(kind) or pa.types.is_large_string(kind)
+def _is_plain(kind: Any) -> bool:
+    kind = kind.value_type if isinstance(kind, pa.DictionaryType) else kind
+    known = (pa.types.is_string, pa.types.is_large_string, pa.types.is_primitive, pa.types.is_null,
+             pa.types.is_decimal)  # fmt: skip
+    return any(is_kind(kind) for is_kind in known)

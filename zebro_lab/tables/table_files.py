@@ -8,9 +8,20 @@ from typing import Final
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.tables.csv_files import read_csv_file
 from zebro_lab.tables.excel_files import read_excel_file
-from zebro_lab.tables.parquet_files import read_parquet_file
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_checks import require_no_footer
+
+
+def _read_parquet(path: Path) -> RawTable:
+    try:
+        from zebro_lab.tables.parquet_files import read_parquet_file
+    except ImportError as error:
+        raise DataError(
+            "is a Parquet table, which needs pyarrow: pip install pyarrow, or save it as CSV",
+            file=path,
+        ) from error
+    return read_parquet_file(path)
+
 
 READERS: Final[Mapping[str, Callable[[Path], RawTable]]] = {
     ".csv": read_csv_file,
@@ -18,7 +29,7 @@ READERS: Final[Mapping[str, Callable[[Path], RawTable]]] = {
     ".dat": read_csv_file,
     ".lvm": read_csv_file,
     ".txt": read_csv_file,
-    ".parquet": read_parquet_file,
+    ".parquet": _read_parquet,
 }
 """Reader of each table format without sheets, by the suffix of its files, which may be gzipped."""
 _EXCEL: Final = ".xlsx"

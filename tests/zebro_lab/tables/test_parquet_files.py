@@ -55,3 +55,10 @@ def test_truncated_parquet_is_named(tmp_path):
     given_slip().to_parquet(path)
     path.write_bytes(path.read_bytes()[:-100])
     assert f"{path}: is not a complete Parquet file" in refusal(read_table_file, path)
+
+
+def test_without_pyarrow_the_line_says_how_to_get_it(tmp_path, monkeypatch):
+    file = parquet(tmp_path, pa.table({"t": [0.0, 1.0]}))
+    monkeypatch.delitem(sys.modules, "zebro_lab.tables.parquet_files", raising=False)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert "needs pyarrow: pip install pyarrow" in refusal(read_table_file, file)

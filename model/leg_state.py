@@ -110,22 +110,10 @@ def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
         stiffness=float(state.stiffness[i]),
         fall=float(state.fall[i]),
     )
-    return with_anisotropy(
-        scaled, grip=float(state.lateral_grip[i]), stiffness=float(state.lateral_stiffness[i])
+    return scaled._replace(
+        lateral_grip=float(state.lateral_grip[i]),
+        lateral_stiffness=float(state.lateral_stiffness[i]),
     )
-
-
-def with_anisotropy(table: TractionTable, *, grip: float, stiffness: float) -> TractionTable:
-    """Return a slip law's table with lateral grip and stiffness, over longitudinal ones.
-
-    Args:
-        table: The law.
-        grip: Lateral over longitudinal grip [-].
-        stiffness: Lateral over longitudinal slip stiffness [-].
-    """
-    if (grip, stiffness) == (table.lateral_grip, table.lateral_stiffness):
-        return table
-    return table._replace(lateral_grip=grip, lateral_stiffness=stiffness)
 
 
 def bend_in(state: LegState, i: int) -> Bend:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Predict paths with uncertainty from a robot, its leg log and its slip law.
 
-Five uncertainties spread a path: the slip law's posterior; how much traction across the legs'
+Four uncertainties spread a path: the slip law's posterior; how much traction across the legs'
 rolling direction differs from that along it; the legs' angles (each leg's constant offset, and the
-angle between two counts of a coarse encoder); the pose it starts from; and the error of the walking
-model, stated here as an error of distance and one of curvature.
+angle between two counts of a coarse encoder); and the error of the walking model, here an error of
+distance and one of curvature.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,15 +18,14 @@ from model.arrays import Array
 from model.errors import DomainError
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
-from model.leg_state import LegState, law_in, robot_in, with_anisotropy
+from model.leg_state import LegState, law_in, robot_in
 from model.path_draws import bent
 from model.poses import Poses
 from model.robot import Robot
-from model.walk.areas import Area
 from model.walk.bend import Bend
-from model.walk.dynamics import DynamicsOptions, Start
+from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, walk_ensemble
-from model.walk.terrain import Terrain
+from model.walk.ground import FLAT, Ground
 from model.walk.traction import TractionTable
 
 STEPS = (0.005, 0.0025, 0.00125)  # s; an ensemble uses the largest one that has converged
@@ -76,6 +75,7 @@ def walk_draws(
     state: LegState,
     *,
     rng: np.random.Generator,
+    ground: Ground = FLAT,
 ) -> list[WalkDraw]:
     """Combine each draw of the legs' state with a slip law and a leg motion to one walk's inputs.
 
@@ -88,6 +88,7 @@ def walk_draws(
             post-peak drop scale the law, lateral grip and stiffness its traction across the legs'
             rolling direction; steering and stride are for `predict_paths`.
         rng: Source of randomness of the motions.
+        ground: The ground.
     """
     drawn = motions(legs, min(len(state), MOST_MOTIONS), rng)
     return [
@@ -95,39 +96,10 @@ def walk_draws(
             robot_in(robot, state, i),
             drawn[i % len(drawn)],
             law_in(tables[i % len(tables)], state, i),
+            ground=ground,
         )
         for i in range(len(state))
     ]
-
-
-def on_terrain(
-    draws: Sequence[WalkDraw],
-    terrain: Terrain,
-    tables: Sequence[Sequence[TractionTable]],
-    starts: Array,
-) -> list[WalkDraw]:
-    """Put draws on a terrain, each with laws of its areas and from a pose of its own.
-
-    The legs' corrections to the slip law, which walks on one floor were fitted to, are those of the
-    ground outside of the areas; laws of the areas are not scaled. How much traction differs across
-    the legs is taken to be of the feet, and the same in areas.
-
-    Args:
-        draws: Inputs of m walks.
-        terrain: The terrain.
-        tables: Draws of the slip law of each area, repeated in turn when fewer than m.
-        starts: x, y [m] and yaw [rad] of each start, shape (m, 3).
-    """
-    placed = []
-    for i, (draw, (x, y, yaw)) in enumerate(zip(draws, starts.tolist(), strict=True)):
-        grip, stiffness = draw.table.lateral_grip, draw.table.lateral_stiffness
-        areas = tuple(
-            Area(area.polygon, with_anisotropy(laws[i % len(laws)], grip=grip, stiffness=stiffness))
-            for area, laws in zip(terrain.areas, tables, strict=True)
-        )
-        start = Start(x=x, y=y, yaw=yaw)
-        placed.append(replace(draw, ground=terrain.ground, areas=areas, start=start))
-    return placed
 
 
 def motions(
@@ -189,7 +161,7 @@ def predict_paths(
 ) -> Poses:
     """Compute the path of every draw, bent by its steering, its stride and a drawn model error.
 
-    Where the ground is not alike everywhere each draw walks on the ground under its bent path.
+    Where the ground is not level each draw walks on the ground under its bent path.
 
     Args:
         draws: Inputs of m walks; `with_contacts` draws stiffness and damping of the contacts.

@@ -2,12 +2,11 @@
 """The walking models by name, and the baselines that a prediction is compared with."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import Literal
 
 from model.errors import DomainError, WalkError
-from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import LegReference, SampledReference
 from model.leg_state import LegState, bend_in, law_in, robot_in
@@ -15,17 +14,10 @@ from model.path_draws import bent_walk
 from model.poses import Poses
 from model.robot import GRAVITY, Robot
 from model.slip.thesis import thesis_curve
+from model.walk.ground import FLAT, Ground, is_level
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.slipping import SLIPPING
-from model.walk.terrain import LEVEL, Terrain
-from model.walk.thesis_switches import AS_LISTED, ThesisSwitches
-from model.walk.traction import ToeLaw
-
-if TYPE_CHECKING:
-    from model.contact.detection import Detection
-    from model.contact.tripod import Automaton
-    from model.walk.thesis import Switch, SwitchedLegs
 
 BASELINES = ("no-slip-simple", "no-slip", "thesis")
 
@@ -40,16 +32,12 @@ class ModelRun:
         slip: The slip law; None for a model without slip.
         duration: Time walked [s].
         dt: Length of a step [s].
-        toe: Traction of a leg on its toe, see `law_table`; only the model "dynamics" uses it.
         direction: Side to which the gait turns; only the thesis's model uses it.
-        automaton: What decides contact in the thesis's model: "listing" or "table" in its dynamics
-            of tripods, "events" or "balanced" in its kinematics of any gait; None for "listing",
-            or for "events" if a cyclic gait is no tripod.
-        switch: Where the legs of a gait change speed; only the thesis's model uses it.
+        rule: What the thesis's dynamics follows where its listing and its text differ; only that
+            model uses it.
         legs: Corrections to robot, slip law and path, of which draw 0 is used; None for none. Only
             the model "dynamics" uses them.
-        thesis: Switches of the thesis's model; only that model uses them.
-        terrain: The ground; only the model "dynamics" walks on other than level ground of one law.
+        ground: The ground; only the model "dynamics" walks on other than level ground.
     """
 
     robot: Robot
@@ -57,13 +45,10 @@ class ModelRun:
     slip: Slip | None
     duration: float
     dt: float
-    toe: ToeLaw = "saturated"
     direction: Direction = "left"
-    automaton: "Automaton | Detection | None" = None
-    switch: "Switch" = "angle"
+    rule: Literal["listing", "text"] = "listing"
     legs: LegState | None = None
-    thesis: ThesisSwitches = AS_LISTED
-    terrain: Terrain = LEVEL
+    ground: Ground = FLAT
 
 
 @dataclass(frozen=True)
@@ -120,82 +105,33 @@ def baseline_paths(
 
 def _dynamics(run: ModelRun) -> WalkPath:
     """Walk by the project's model; with `legs`, correct robot, law and path by their draw 0."""
-    from model.walk.areas import with_areas
     from model.walk.bent_walk import walk_bent
     from model.walk.dynamics import DynamicsOptions, walk
 
-    weight, options = run.robot.mass * GRAVITY, DynamicsOptions(dt=run.dt)
-    robot, law = run.robot, _slip_of(run).traction_table(weight=weight, toe=run.toe)
-    if run.legs is not None:
-        robot, law = robot_in(robot, run.legs, 0), law_in(law, run.legs, 0)
-    laws = with_areas(law, run.terrain.tabulated(weight=weight, toe=run.toe))
-    if run.legs is not None and not run.terrain.is_alike_everywhere:
-        return walk_bent(
-            robot, run.reference, laws, bend=bend_in(run.legs, 0), duration=run.duration,
-            options=options, ground=run.terrain.ground,
-        )  # fmt: skip
-    path = walk(
-        robot, run.reference, laws, duration=run.duration, options=options,
-        ground=run.terrain.ground,
-    )  # fmt: skip
+    options = DynamicsOptions(dt=run.dt)
+    robot, law = run.robot, _slip_of(run).traction_table(weight=run.robot.mass * GRAVITY)
     if run.legs is None:
-        return path
-    return bent_walk(path, bend_in(run.legs, 0))
+        return walk(
+            robot, run.reference, law, duration=run.duration, options=options, ground=run.ground
+        )
+    robot, law, bend = robot_in(robot, run.legs, 0), law_in(law, run.legs, 0), bend_in(run.legs, 0)
+    if is_level(run.ground):
+        path = walk(robot, run.reference, law, duration=run.duration, options=options)
+        return bent_walk(path, bend)
+    return walk_bent(
+        robot, run.reference, law, bend=bend, duration=run.duration, options=options,
+        ground=run.ground,
+    )  # fmt: skip
 
 
 def _thesis(run: ModelRun) -> WalkPath:
-    """Walk by the thesis's model: dynamics of tripods, or kinematics of any gait.
+    """Walk by the thesis's model."""
+    from model.thesis.model import walk_by_thesis
 
-    The dynamics have `ThesisOptions.mend_slip` unless a cyclic gait is walked.
-    """
-    from model.walk.detected import walk_detected
-    from model.walk.thesis import ThesisOptions, walk_thesis
-    from model.walk.thesis.kinematic import kinematic_path
-
-    automaton = thesis_automaton(run.automaton, run.reference)
-    if automaton == "events" or automaton == "balanced":
-        if run.switch == "contact":
-            raise DomainError(
-                f"legs that change speed at contact need the dynamics of tripods; by '{automaton}' "
-                "the legs follow the gait: use the automaton 'listing' or 'table' and a tripod"
-            )
-        if run.thesis != AS_LISTED:
-            raise DomainError(
-                "switches of the thesis's model are of its dynamics of tripods; by the automaton "
-                f"'{automaton}' it walks kinematics: leave them out, or walk a tripod"
-            )
-        path = walk_detected(
-            run.robot, run.reference, duration=run.duration, dt=run.dt, detection=automaton
-        )
-        return kinematic_path(run.robot, path)
-    traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
-    legs = _legs_of_the_thesis(run.reference)
-    # The legs of a log stand still and turn back by fractions of a degree; by the listing's slip
-    # ratio such a leg would have full traction.
-    logged = not isinstance(run.reference, CyclicReference)
-    mended = replace(run.thesis, mend_slip=logged or run.thesis.mend_slip)
-    options = ThesisOptions(
-        **vars(mended), dt=run.dt, direction=run.direction, automaton=automaton, switch=run.switch
-    )
-    return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
-
-
-def thesis_automaton(
-    asked: "Automaton | Detection | None", reference: LegReference
-) -> "Automaton | Detection":
-    """Return what decides contact in the thesis's model: what was asked for, or its default.
-
-    Args:
-        asked: The rule that was asked for; None for the default: "events" for a cyclic gait that is
-            no tripod, "listing" for all other leg angles.
-        reference: Leg angles over time.
-    """
-    from model.walk.thesis import is_tripod
-
-    if asked is not None:
-        return asked
-    cyclic = isinstance(reference, CyclicReference)
-    return "events" if cyclic and not is_tripod(reference) else "listing"
+    return walk_by_thesis(
+        run.robot, run.reference, run.slip, duration=run.duration, dt=run.dt,
+        direction=run.direction, rule=run.rule,
+    )  # fmt: skip
 
 
 def decides_contact(run: ModelRun, model: str) -> str:
@@ -206,24 +142,22 @@ def decides_contact(run: ModelRun, model: str) -> str:
         model: Name of the model. "rest": legs on which the robot rests, as in models without slip.
     """
     if model == "thesis":
-        return thesis_automaton(run.automaton, run.reference)
+        return "events" if is_kinematic(model, run.reference) else run.rule
     return "force" if MODELS[model].slips else "rest"
 
 
-def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs":
-    """Convert a cyclic gait to legs that switch speed by angle, as the thesis's do.
+def is_kinematic(model: str, reference: LegReference) -> bool:
+    """Return whether a model with slip walks leg angles by kinematics, without: the thesis's.
 
-    A log is returned unchanged, and so is a gait with pauses or offsets, or with touchdown or
-    lift-off outside 0 to 360 degrees: these are followed by the clock.
+    Args:
+        model: Name of the model.
+        reference: Leg angles over time.
     """
-    from model.walk.thesis import SwitchedLegs
+    if model != "thesis":
+        return False
+    from model.thesis.model import is_kinematic as is_no_tripod
 
-    if not isinstance(reference, CyclicReference):
-        return reference
-    try:
-        return SwitchedLegs.of(reference)
-    except DomainError:
-        return reference
+    return is_no_tripod(reference)
 
 
 def _no_slip(run: ModelRun) -> WalkPath:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Walks on slopes, patches, steps and rough ground, by the command and by an independent engine.
+"""Walks on slopes and rough ground, by the command and by an independent engine.
 
 The engine (group `bench`) walks the leg angles of the command's path.csv and searches each leg's
 arc for the places where it touches the same ground. Compared are the path and, at every hundredth
@@ -15,7 +15,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import repeat
 from multiprocessing import get_context
 from pathlib import Path
@@ -25,7 +25,7 @@ import pandas as pd
 
 from benchmarks.accuracy.engine_programs import COMMAND, FINE, angles_on_file, motion_on_file
 from benchmarks.accuracy.rigid_engine.agreement import Agreement, Motion, agreement, motion_of
-from benchmarks.accuracy.rigid_engine.arcs import FLAT, NO_STEPS, Heights
+from benchmarks.accuracy.rigid_engine.arcs import FLAT, Heights
 from benchmarks.accuracy.rigid_engine.references import refined
 from benchmarks.accuracy.rigid_engine.stepping import Friction
 from benchmarks.accuracy.rigid_engine.walking import SETTINGS, Settings, walk
@@ -33,7 +33,6 @@ from benchmarks.tables import print_table
 from model.arrays import Array
 from model.gait.reference import SampledReference
 from model.robot import GRAVITY, Robot
-from model.walk.areas import with_areas
 from model.walk.dynamics import DEFAULT_OPTIONS, DynamicsOptions
 from model.walk.dynamics import walk as dynamics_walk
 from model.walk.traction import VelocityCoulomb
@@ -46,9 +45,8 @@ GAITS = {
     "left": ["--gait", "tripod", "--steering", "1.2"],
     "right": ["--gait", "tripod", "--steering", "1.3", "--direction", "right"],
 }
-STEP_HEIGHT = 0.01  # m
 ROUGHNESS, CORRELATION, GRID = 0.005, 0.05, 0.005  # m
-ALLOWED = {"slope": 0.002, "patches": 0.002, "steps": 0.01, "rough": 0.01}  # of the length
+ALLOWED = {"slope": 0.002, "rough": 0.01}  # of the length
 HALF = 1.28  # m; half the side of the map, which repeats itself at twice that
 
 
@@ -57,12 +55,10 @@ class Case:
     """A walk on a ground.
 
     Attributes:
-        kind: slope, patches, steps or rough.
+        kind: slope or rough.
         name: What it is.
         gait: Key of `GAITS`.
         slope: Slope along x and y [deg].
-        edges: x and height of steps [m], shape (k, 2).
-        patches: x from, x to, y from, y to [m] and friction of patches, shape (k, 5).
         seed: Of a rough ground; none of an even one.
     """
 
@@ -70,40 +66,27 @@ class Case:
     name: str
     gait: str
     slope: tuple[float, float] = (0.0, 0.0)
-    edges: Array = field(default_factory=lambda: np.zeros((0, 2)))
-    patches: Array = field(default_factory=lambda: np.zeros((0, 5)))
     seed: int | None = None
 
 
-def slopes_and_patches() -> list[Case]:
-    """Return walks up, down and across a slope of 5 degrees, and over patches of other friction."""
-    across = np.array([[x, x + 0.12, -5, 5, mu] for x, mu in zip(
-        np.arange(-0.1, 1.4, 0.24), (0.15, 0.7) * 7, strict=False)])  # fmt: skip
-    beside = np.array([[-1.0, 5.0, 0.0, 5.0, 0.12]])
+def slopes() -> list[Case]:
+    """Return walks up, down and across a slope of 5 degrees."""
     return [
         Case("slope", "up 5°", "straight", (5.0, 0.0)),
         Case("slope", "down 5°", "straight", (-5.0, 0.0)),
         Case("slope", "across 5°", "straight", (0.0, 5.0)),
         Case("slope", "up 5°, turning left", "left", (5.0, 0.0)),
         Case("slope", "up 4° and across 3°, turning right", "right", (4.0, 3.0)),
-        Case("patches", "stripes of 0.15 and 0.7", "straight", patches=across),
-        Case("patches", "stripes of 0.15 and 0.7, turning", "right", patches=across),
-        Case("patches", "0.12 under the left legs", "straight", patches=beside),
-        Case("patches", "0.12 to the left of x, turning left", "left", patches=beside),
     ]
 
 
-def steps_and_roughness(seeds: int) -> list[Case]:
-    """Return walks over steps of 10 mm at random places, up and down, and on rough ground."""
-    cases = []
-    for seed in range(1, seeds + 1):
-        rng = np.random.default_rng(seed)
-        gait = str(rng.choice(list(GAITS)))
-        x = 0.1 + np.cumsum(rng.uniform(0.12, 0.3, 5))
-        up = STEP_HEIGHT * rng.choice([-1.0, 1.0], 5)
-        cases.append(Case("steps", f"seed {seed}", gait, edges=np.column_stack([x, up])))
-        cases.append(Case("rough", f"seed {seed}", gait, seed=seed))
-    return sorted(cases, key=lambda each: each.kind, reverse=True)
+def rough(seeds: int) -> list[Case]:
+    """Return walks on rough ground."""
+    gaits = list(GAITS)
+    return [
+        Case("rough", f"seed {seed}", str(np.random.default_rng(seed).choice(gaits)), seed=seed)
+        for seed in range(1, seeds + 1)
+    ]
 
 
 def rough_heights(seed: int) -> Array:
@@ -119,18 +102,13 @@ def rough_heights(seed: int) -> Array:
 def engine_ground(case: Case) -> tuple[Heights, Friction]:
     """Return the ground and friction of a case for the engine."""
     z = np.zeros((1, 1)) if case.seed is None else rough_heights(case.seed)
-    edge, up = (
-        (np.ascontiguousarray(each) for each in case.edges.T)
-        if len(case.edges)
-        else (NO_STEPS,) * 2
-    )
-    highest = float(z.max() + max(0.0, np.cumsum(up).max(initial=0.0)))
     rise = np.tan(np.radians(case.slope))
-    heights = FLAT._replace(z=z, highest=highest, rise_x=float(rise[0]), rise_y=float(rise[1]),
-                            edge=edge, up=up)  # fmt: skip
+    heights = FLAT._replace(
+        z=z, highest=float(z.max()), rise_x=float(rise[0]), rise_y=float(rise[1])
+    )
     if case.seed is not None:
         heights = heights._replace(x=-HALF, y=-HALF, step=GRID)
-    return heights, Friction(FRICTION, 1e-3, case.patches)
+    return heights, Friction(FRICTION, 1e-3, np.zeros((0, 5)))
 
 
 def write_ground(case: Case, folder: Path) -> Path:
@@ -142,10 +120,6 @@ def write_ground(case: Case, folder: Path) -> Path:
         np.savetxt(folder / "heights.csv", seen_from_above, fmt="%.17g", delimiter=",")
         place = f"step = {GRID}, origin = [{-HALF}, {-HALF}]"
         parts.append(f'heights = {{ file = "heights.csv", {place} }}')
-    parts += [f"[[step]]\nx = {x!r}\nheight = {up!r}" for x, up in case.edges.tolist()]
-    for x0, x1, y0, y1, mu in case.patches.tolist():
-        corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
-        parts.append(f'[[area]]\npolygon = {corners}\nslip = "coulomb:{mu:g}:0.001"')
     file = folder / "ground.toml"
     file.write_text("\n\n".join(parts) + "\n")
     return file
@@ -167,15 +141,11 @@ def walk_by_model(
     ground: Path, t: Array, theta: Array, options: DynamicsOptions = DEFAULT_OPTIONS
 ) -> Motion:
     """Walk leg angles on the ground of a file by our model, without the command."""
-    terrain, robot = read_ground(ground).terrain, Robot()
-    weight = robot.mass * GRAVITY
-    table = with_areas(
-        VelocityCoulomb(FRICTION, 1e-3).table(weight=weight),
-        terrain.tabulated(weight=weight, toe="saturated"),
-    )
+    robot = Robot()
+    table = VelocityCoulomb(FRICTION, 1e-3).table(weight=robot.mass * GRAVITY)
     path = dynamics_walk(
-        robot, SampledReference(t, theta), table, duration=float(t[-1]), ground=terrain.ground,
-        options=options,
+        robot, SampledReference(t, theta), table, duration=float(t[-1]), options=options,
+        ground=read_ground(ground).ground,
     )  # fmt: skip
     return Motion(path.t, path.position[:, :2], path.yaw, path.normal_force)
 
@@ -244,14 +214,14 @@ def _row(one: Compared) -> tuple[str, ...]:
 def main(arguments: list[str] | None = None) -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=10, help="of steps and of rough ground each")
-    parser.add_argument("--only", choices=("slope", "patches", "steps", "rough"))
+    parser.add_argument("--seeds", type=int, default=10, help="of rough ground")
+    parser.add_argument("--only", choices=("slope", "rough"))
     parser.add_argument("--cycle", type=float, default=CYCLE, help="of the gait [s]")
     parser.add_argument("--finer", action="store_true", help="refine our model and the engine, too")
     parser.add_argument("--processes", type=int, default=2, help="at a time")
     parser.add_argument("--keep", type=Path, help="new folder for grounds and walks")
     asked = parser.parse_args(arguments)
-    cases = slopes_and_patches() + steps_and_roughness(asked.seeds)
+    cases = slopes() + rough(asked.seeds)
     cases = [case for case in cases if asked.only in (None, case.kind)]
     all_compared = []
     with (

@@ -21,10 +21,10 @@ from model.errors import DomainError
 from model.gait.reference import SampledReference
 from model.predict import FINE
 from model.robot import GRAVITY, Robot
+from model.thesis import ThesisOptions, table_traction, walk_thesis
 from model.walk.dynamics import DEFAULT_OPTIONS, DynamicsOptions, walk
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import WalkPath, turning_radius
-from model.walk.thesis import ThesisOptions, table_traction, walk_thesis
 from model.walk.traction import VelocityCoulomb
 
 STRAIGHT = 5.0  # a radius beyond this is a straight line's [m]

@@ -18,11 +18,11 @@ from model.gait.steering import TripodAngles, tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
 from model.robot import Robot
 from model.slip import MagicFormula
+from model.thesis import walk_thesis
 from model.walk.dynamics import walk
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import WalkPath, turning_radius
-from model.walk.thesis import walk_thesis
-from model.walk.traction import TOE_LAWS, ToeLaw, TractionTable, law_table
+from model.walk.traction import TractionTable, law_table
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt
@@ -41,10 +41,10 @@ HALF, LONG = Robot(), Robot(leg_arc=np.radians(200.0))
 
 
 @cache
-def slip_table(mu: float = 0.3798, toe: ToeLaw = "saturated") -> TractionTable:
+def slip_table(mu: float = 0.3798) -> TractionTable:
     """Tabulate the thesis's law, its friction replaced and its shape kept."""
     values = SOURCE * [mu / 0.3798, 1.0, mu / 0.3798, 1.0]
-    return law_table(MagicFormula("peak"), values, weight=HALF.mass * 9.81, toe=toe)
+    return law_table(MagicFormula("peak"), values, weight=HALF.mass * 9.81)
 
 
 def measured_angles(factor: float) -> TripodAngles:
@@ -65,12 +65,10 @@ def radius(path: WalkPath, *, period: float = CYCLE) -> float:
     return turning_radius(path.position[ends, :2], path.yaw[ends])
 
 
-def turn(
-    angles: TripodAngles, robot: Robot, *, mu: float = 0.3798, toe: ToeLaw = "saturated"
-) -> float:
+def turn(angles: TripodAngles, robot: Robot, *, mu: float = 0.3798) -> float:
     """Compute the radius of our model [m]."""
     gait = tripod_reference(angles, CYCLE)
-    return radius(walk(robot, gait, slip_table(mu, toe), duration=5 * CYCLE))
+    return radius(walk(robot, gait, slip_table(mu), duration=5 * CYCLE))
 
 
 def no_slip_turn(angles: TripodAngles, robot: Robot) -> float:
@@ -148,7 +146,7 @@ def contributions() -> None:
 
 
 def grip() -> None:
-    """Print what friction and the toe law change."""
+    """Print what friction changes."""
     rows = [
         [
             f"{mu:g}",
@@ -159,13 +157,6 @@ def grip() -> None:
     ]
     table("Radius [m] against friction, s = 1.3",
           ["μ", "matched heights", "measured angles, 200° legs"], rows)  # fmt: skip
-    rows = [
-        [toe, f"{turn(ideal_angles(1.3), HALF, toe=toe):.4f}",
-         f"{turn(measured_angles(1.3), LONG, toe=toe):.4f}"]
-        for toe in TOE_LAWS
-    ]  # fmt: skip
-    table("Radius [m] against the law of a leg on its toe, s = 1.3",
-          ["toe law", "matched heights", "measured angles, 200° legs"], rows)  # fmt: skip
 
 
 OFFSETS = (-5.0, -1.8, -0.5, 0.0, 0.5, 1.8, 5.0)  # degrees

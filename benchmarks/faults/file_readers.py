@@ -64,7 +64,7 @@ from zebro_lab.track.floor_file import read_floor_file
 from zebro_lab.track.folder import read_track_manifest
 from zebro_lab.track.trajectory.file import read_trajectory
 from zebro_lab.track.trajectory.request import TrajectoryRequest
-from zebro_lab.walk.path_band import DRAWS, read_draws
+from zebro_lab.walk.folder import DRAWS, read_draws
 
 ROOT = Path(__file__).parents[2]
 MADE = datetime(2026, 1, 1, tzinfo=UTC)

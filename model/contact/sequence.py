@@ -198,18 +198,3 @@ def _cycle(
         states[0].start,
         len(states) // count,
     )
-
-
-def agreement(one: NDArray[np.bool_], other: NDArray[np.bool_]) -> tuple[float, Array]:
-    """Compute in what share of the samples two contact sequences agree.
-
-    Args:
-        one: Which legs are on the ground, shape (n, 6).
-        other: The same by another rule, shape (n, 6).
-
-    Returns:
-        Share of the samples with the same set of legs [-]; share in which each leg is on the
-        ground, or off it, in both, shape (6,) [-].
-    """
-    same = one == other
-    return float(same.all(axis=1).mean()), same.mean(axis=0)

@@ -54,7 +54,7 @@ def find_across(law, work, i):
 
 @inlined
 def effective_size(lateral, across, x, y, z):
-    """Compute the size of a slip, or of a bristle's stretch, that an isotropic law takes for it.
+    """Compute the size of a slip that an isotropic law takes for it.
 
     Args:
         lateral: b - 1 and (b / a)^2 - 1, shape (2,).
@@ -78,7 +78,7 @@ def sideways(lateral, across, vector):
     Args:
         lateral: b - 1 and (b / a)^2 - 1, shape (2,).
         across: Direction across the rolling direction, shape (3,).
-        vector: Slip velocity or stretch, along the ground, shape (3,).
+        vector: Slip velocity along the ground, shape (3,).
     """
     if lateral[0] == 0.0:
         return 0.0

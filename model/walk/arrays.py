@@ -48,21 +48,19 @@ class Contacts(NamedTuple):
 
 
 class State(NamedTuple):
-    """Position, orientation, velocities and bristles of the body; each step overwrites them.
+    """Position, orientation and velocities of the body; each step overwrites them.
 
     Attributes:
         p: Position of the body's centre in the world frame, shape (3,) [m].
         q: Orientation as a unit quaternion (w, x, y, z), body to world, shape (4,).
         v: Velocity of the body's centre in the world frame, shape (3,) [m/s].
         w: Angular velocity in the world frame, shape (3,) [rad/s].
-        stretch: Stretch of each contact's bristle in the world frame, shape (14, 3) [m].
     """
 
     p: Array
     q: Array
     v: Array
     w: Array
-    stretch: Array
 
 
 class Work(NamedTuple):
@@ -81,8 +79,7 @@ class Work(NamedTuple):
         flow: Radius of the arc where a leg rolls, else zero, shape (14,) [m].
         kind: HIP, ROLLING or TOE; TOE for corners, shape (14,).
         load: Normal force, zero in the air, shape (14,) [N].
-        secant: Traction over slip velocity, zero in the air and where a bristle holds, (14,)
-            [N s/m].
+        secant: Traction over slip velocity, zero in the air, shape (14,) [N s/m].
         R: Rotation of the body, body to world, shape (3, 3).
         A: Matrix of the step's linear system, lower half, shape (6, 6).
         b: Right side of the system, then its solution: final v [m/s] and w [rad/s], shape (6,).
@@ -143,7 +140,7 @@ def new_work():
 @compiled
 def new_state():
     """Allocate a state whose arrays are uninitialised."""
-    return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))
+    return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3))
 
 
 @inlined
@@ -158,6 +155,3 @@ def copy_state(state, to):
         to.p[i], to.v[i], to.w[i] = state.p[i], state.v[i], state.w[i]
     for i in range(4):
         to.q[i] = state.q[i]
-    for i in range(N_CONTACTS):
-        for a in range(3):
-            to.stretch[i, a] = state.stretch[i, a]

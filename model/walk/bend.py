@@ -98,10 +98,10 @@ def move_state(state: State, pose: Array, yaw: float) -> None:
     """Move a state to a pose that differs from its own by a turn about the vertical.
 
     Args:
-        state: State of the body, overwritten; velocities and bristles are turned.
+        state: State of the body, overwritten; velocities are turned.
         pose: Position [m] and quaternion, shape (7,).
         yaw: The turn, positive to the left [rad].
     """
     state.p[:], state.q[:] = pose[:3], pose[3:]
-    for vectors in (state.v, state.w, state.stretch):
+    for vectors in (state.v, state.w):
         vectors[:] = turned_vectors(vectors, yaw)

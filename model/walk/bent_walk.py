@@ -12,7 +12,6 @@ import numpy as np
 from model.arrays import Array
 from model.gait.reference import LegReference
 from model.robot import Robot
-from model.walk.areas import AreaTractions
 from model.walk.arrays import State
 from model.walk.bend import Bend, bent_poses, move_state, turned_vectors
 from model.walk.dynamics import DynamicsOptions, integrate, path_of, start_state, step_times
@@ -26,7 +25,7 @@ EVERY = 0.5  # s; after each such time, contacts are followed in finer steps for
 def walk_bent(
     robot: Robot,
     reference: LegReference,
-    table: TractionTable | AreaTractions,
+    table: TractionTable,
     *,
     bend: Bend,
     duration: float,
@@ -38,7 +37,7 @@ def walk_bent(
     Args:
         robot: The robot; its leg offsets are added to the angles.
         reference: Leg angles over time.
-        table: The slip law, or those of several areas.
+        table: The slip law.
         bend: How the path is stretched and bent.
         duration: Time walked, from the reference's time zero on [s].
         options: Step length and contacts.
@@ -59,7 +58,7 @@ def walk_bent(
 
 def integrate_bent(
     robot: Robot,
-    table: TractionTable | AreaTractions,
+    table: TractionTable,
     state: State,
     theta: Array,
     options: DynamicsOptions,
@@ -73,7 +72,7 @@ def integrate_bent(
 
     Args:
         robot: The robot.
-        table: The slip law, or those of several areas.
+        table: The slip law.
         state: Initial state, overwritten with the final one.
         theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
         options: Step length and contacts.

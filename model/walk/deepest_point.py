@@ -8,11 +8,11 @@ Points of the circle of the arc lie in the leg's plane in the direction psi from
 
 with the body's axes e_x, e_z. Depth is vertical, the ground's height at q less that of q. On the
 arc it is largest where the arc and the ground have a common tangent, at an edge of the ground, or
-at an end of the arc. It is therefore computed at both ends, at every edge of a step, and at angles
-so close that no cell of the grid is left out; around the best of these it is refined.
+at an end of the arc. It is therefore computed at both ends, and at angles so close that no cell of
+the grid is left out; around the best of these it is refined.
 
-A leg that rolls has the normal that is square to the arc and to the ground across the leg: at the
-edge of a step it points to the arc's centre. An end of the arc has the normal of the ground.
+A leg that rolls has the normal that is square to the arc and to the ground across the leg. An end
+of the arc has the normal of the ground.
 """
 
 import numpy as np
@@ -26,7 +26,6 @@ SPACING = np.radians(2.0), np.radians(10.0)  # least and largest angle between p
 REFINED = 12  # halvings (golden section) between neighbouring points: below a micrometre of depth
 FAR = 0.005  # m over the ground from which on a point is not refined
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-SKEW = 0.3  # least sine between arc and step's edge; a leg along an edge has the ground's normal
 
 
 @borrowing  # not inlined: flat ground, which does not need it, stays as fast as it is without
@@ -73,22 +72,9 @@ def deepest_point(body, ground, p, R, hip, theta, down_x, down_z, normal):
         psi, depth = _refined(ground, p, R, centre_x, y, centre_z, r, low, high)
         if depth > deepest:
             state, best, deepest = ROLLING, psi, depth
-    edge = -1
-    swing = np.hypot(R[0, 0], R[0, 2])
-    for k in range(ground.edge.size):
-        start = p[0] + R[0, 0] * centre_x + R[0, 1] * y + R[0, 2] * centre_z
-        share = (ground.edge[k] - start) / (r * max(swing, 1e-9))
-        if abs(share) > 1:
-            continue
-        for side in (-1.0, 1.0):
-            psi = -np.arctan2(R[0, 2], R[0, 0]) + side * np.arccos(share)
-            if (psi - toe) % (2 * np.pi) <= arc:
-                depth = _depth(ground, p, R, centre_x, y, centre_z, r, psi)
-                if depth > deepest:
-                    state, best, deepest, edge = ROLLING, psi, depth, k
     c, s = np.cos(best), np.sin(best)
     x, z = centre_x + r * c, centre_z - r * s
-    _contact_normal(ground, p, R, x, y, z, c, s, state == ROLLING, edge, normal)
+    _contact_normal(ground, p, R, x, y, z, c, s, state == ROLLING, normal)
     return x - hip[0], z - hip[2], state, -deepest * normal[2]
 
 
@@ -125,7 +111,7 @@ def _refined(ground, p, R, centre_x, y, centre_z, r, low, high):
 
 
 @inlined
-def _contact_normal(ground, p, R, x, y, z, c, s, rolls, edge, normal):
+def _contact_normal(ground, p, R, x, y, z, c, s, rolls, normal):
     """Fill `normal` with the unit normal of a contact at body coordinates x, y, z.
 
     Args:
@@ -138,7 +124,6 @@ def _contact_normal(ground, p, R, x, y, z, c, s, rolls, edge, normal):
         c: Cosine of the contact's direction psi from the arc's centre [-].
         s: Sine of psi [-].
         rolls: Whether the contact is within the arc; an end of it has the ground's normal.
-        edge: Index of the step whose edge is touched; -1 for none.
         normal: Filled, shape (3,) [-].
     """
     at_x = p[0] + R[0, 0] * x + R[0, 1] * y + R[0, 2] * z
@@ -150,9 +135,6 @@ def _contact_normal(ground, p, R, x, y, z, c, s, rolls, edge, normal):
         tx, ty = -s * R[0, 0] - c * R[0, 2], -s * R[1, 0] - c * R[1, 2]
         tz = -s * R[2, 0] - c * R[2, 2]
         ux, uy = R[0, 1], R[1, 1]
-        if edge >= 0 and abs(tx) > SKEW:
-            ux, uy = 0.0, 1.0 if R[1, 1] >= 0 else -1.0
-            sx = ground.slope_x
         uz = sx * ux + sy * uy
         nx, ny, nz = uy * tz - uz * ty, uz * tx - ux * tz, ux * ty - uy * tx
         if abs(nz) > 1e-6:

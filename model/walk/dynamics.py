@@ -15,8 +15,7 @@ from model.arrays import Array
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
-from model.walk.areas import AreaTractions
-from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
+from model.walk.arrays import Contacts, State, body_arrays
 from model.walk.ground import FLAT, Ground, ground_at, highest_near, is_even, is_level
 from model.walk.loop import run_steps
 from model.walk.path import WalkPath, path_of
@@ -87,7 +86,7 @@ ORIGIN = Start()
 def walk(
     robot: Robot,
     reference: LegReference,
-    table: TractionTable | AreaTractions,
+    table: TractionTable,
     *,
     duration: float,
     ground: Ground = FLAT,
@@ -99,7 +98,7 @@ def walk(
     Args:
         robot: The robot; its leg offsets are added to the angles.
         reference: Leg angles over time.
-        table: The slip law; see `model.walk.traction`, and `with_areas` for several.
+        table: The slip law; see `model.walk.traction`.
         duration: Time walked, from the reference's time zero on [s].
         ground: The ground.
         start: Initial pose and velocity.
@@ -144,7 +143,7 @@ def step_times(duration: float, dt: float) -> Array:
 
 def integrate(
     robot: Robot,
-    table: TractionTable | AreaTractions,
+    table: TractionTable,
     state: State,
     theta: Array,
     options: DynamicsOptions,
@@ -157,7 +156,7 @@ def integrate(
 
     Args:
         robot: The robot.
-        table: The slip law, or those of several areas.
+        table: The slip law.
         state: Initial state, overwritten with the final one.
         theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
         options: Step length and contacts.
@@ -208,7 +207,7 @@ def start_state(
 ) -> State:
     """Compute the initial state: the robot settled on its legs, or level at the start's height.
 
-    Angular velocity and bristles are zero. A robot that its legs do not hold settles on its body.
+    Angular velocity is zero. A robot that its legs do not hold settles on its body.
     On uneven ground it is held above its place all the time, and the ground is slippery: moved back
     there afterwards, its legs could be deep in the ground. It then comes to rest by itself, see
     `_come_to_rest`.
@@ -259,7 +258,6 @@ def unsettled_state(robot: Robot, *, ground: Ground = FLAT, start: Start = ORIGI
         q=np.array([np.cos(half), 0.0, 0.0, np.sin(half)]),
         v=np.zeros(3) if start.height is None else np.array(start.velocity, dtype=float),
         w=np.zeros(3),
-        stretch=np.zeros((N_CONTACTS, 3)),
     )
 
 
@@ -283,7 +281,7 @@ def settled(state: State, *, ground: Ground = FLAT, start: Start = ORIGIN) -> St
     Args:
         state: State after 1 s on motionless legs, overwritten and returned: its height as settled
             over the ground at x and y, roll and pitch as settled, its velocity the start's, angular
-            velocity and bristles zero.
+            velocity zero.
         ground: The ground.
         start: Initial pose and velocity.
     """
@@ -293,7 +291,6 @@ def settled(state: State, *, ground: Ground = FLAT, start: Start = ORIGIN) -> St
     _hold(state, start.x, start.y, start.yaw)
     state.v[:] = start.velocity
     state.w[:] = 0.0
-    state.stretch[:] = 0.0
     return state
 
 

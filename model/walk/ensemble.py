@@ -14,7 +14,6 @@ from model.gait.reference import LegReference
 from model.poses import Poses
 from model.robot import Robot
 from model.tasks import compute_tasks
-from model.walk.areas import Area, with_areas
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.bent_walk import integrate_bent
 from model.walk.dynamics import (
@@ -43,9 +42,8 @@ class WalkDraw:
         stiffness: Factor on the contact stiffness of an ensemble's options [-].
         damping: Factor on the contact damping of an ensemble's options [-].
         ground: The ground.
-        areas: Areas of the ground with other slip laws.
         start: Initial pose.
-        bend: How the path is stretched and bent while it is walked; on level ground of one law it
+        bend: How the path is stretched and bent while it is walked; on level ground it
             can as well be bent afterwards.
     """
 
@@ -55,15 +53,14 @@ class WalkDraw:
     stiffness: float = 1.0
     damping: float = 1.0
     ground: Ground = FLAT
-    areas: tuple[Area, ...] = ()
     start: Start = ORIGIN
     bend: Bend = STRAIGHT
 
     @property
     def is_alike_everywhere(self) -> bool:
-        """Whether the walk depends on no place or heading: level ground of one law, from zero."""
+        """Whether the walk depends on no place or heading: level ground, from zero."""
         from_zero = self.start == ORIGIN and self.bend == STRAIGHT
-        return is_level(self.ground) and not self.areas and from_zero
+        return is_level(self.ground) and from_zero
 
     def options(self, common: DynamicsOptions) -> DynamicsOptions:
         """Return the common options, contact stiffness and damping times this draw's factors."""
@@ -231,12 +228,11 @@ def planar_walk(
     t = step_times(duration, options.dt)
     theta = draw.reference.angles(t) + draw.robot.leg_offset
     state = start_state(draw.robot, theta[0], options, ground=draw.ground, start=draw.start)
-    law = with_areas(draw.table, draw.areas)
     if draw.bend == STRAIGHT:
-        pose, _ = integrate(draw.robot, law, state, theta, options, ground=draw.ground)
+        pose, _ = integrate(draw.robot, draw.table, state, theta, options, ground=draw.ground)
     else:
         pose, _ = integrate_bent(
-            draw.robot, law, state, theta, options, bend=draw.bend, ground=draw.ground
+            draw.robot, draw.table, state, theta, options, bend=draw.bend, ground=draw.ground
         )
     q = pose[:, 3:]
     poses = Poses(t, pose[:, :2], unwrapped_yaw(q))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ground under a walk: a plane, steps across the way, and heights on a grid, which add up."""
+"""The ground under a walk: a plane, and heights on a grid, which add up."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -10,29 +10,21 @@ from model.arrays import Array
 from model.compiled import compiled, inlined
 from model.errors import DomainError
 
-FACE = 0.002  # m; length of a step's face along x: nearly upright, and still with a slope
-_NO_EDGES = np.zeros(0)
-
 
 class Ground(NamedTuple):
-    """Height of the ground: a plane, steps across x, and a square grid with bilinear interpolation.
+    """Height of the ground: a plane, and a square grid with bilinear interpolation.
 
-    The three heights add up. Beyond the grid the height of its edge continues, unless it repeats
-    itself. It is a named tuple because numba accepts one directly.
+    Both heights add up. Beyond the grid the height of its edge continues. It is a named tuple
+    because numba accepts one directly.
 
     Attributes:
         x: Position of the grid's first row [m].
         y: Position of the grid's first column [m].
         step: Distance between neighbours [m].
         height: Heights, rows along x, columns along y, shape (m, n); (1, 1) for a constant [m].
-        highest: The largest height over the plane that grid and steps can have together [m].
+        highest: The largest height of the grid [m].
         slope_x: Rise of the plane, which is zero at the origin, for each metre of x [-].
         slope_y: Rise of the plane for each metre of y [-].
-        repeats: Whether the grid repeats itself along x and y; its last row and column are then
-            equal to its first ones.
-        edge: x of each step's upper edge, along y, shape (k,) [m].
-        rise: How much higher the ground is beyond each edge than before it, negative for a step
-            down, shape (k,). The face of a step is `FACE` long, on its lower side [m].
     """
 
     x: float
@@ -42,9 +34,6 @@ class Ground(NamedTuple):
     highest: float
     slope_x: float = 0.0
     slope_y: float = 0.0
-    repeats: bool = False
-    edge: Array = _NO_EDGES
-    rise: Array = _NO_EDGES
 
 
 FLAT = Ground(0.0, 0.0, 1.0, np.zeros((1, 1)), 0.0)
@@ -56,15 +45,13 @@ def is_level(ground: Ground) -> bool:
     Args:
         ground: The ground.
     """
-    even = ground.height.size == 1 and not len(ground.edge)
-    return even and ground.slope_x == 0 and ground.slope_y == 0
+    return ground.height.size == 1 and ground.slope_x == 0 and ground.slope_y == 0
 
 
 def highest_near(ground: Ground, x: float, y: float, far: float) -> float:
     """Return a height that no ground near a place is above [m].
 
-    Where the distance goes beyond the grid, the grid's edge counts; of a grid that repeats itself
-    all of it counts.
+    Where the distance goes beyond the grid, the grid's edge counts.
 
     Args:
         ground: The ground.
@@ -79,11 +66,10 @@ def highest_near(ground: Ground, x: float, y: float, far: float) -> float:
     j = (np.array([y - far, y + far]) - ground.y) / ground.step
     i0, i1 = np.clip([np.floor(i[0]), np.ceil(i[1])], 0, m - 1).astype(int)
     j0, j1 = np.clip([np.floor(j[0]), np.ceil(j[1])], 0, n - 1).astype(int)
-    near = ground.height if ground.repeats else ground.height[i0 : i1 + 1, j0 : j1 + 1]
-    over = np.cumsum(np.where(ground.edge - FACE < x + far, ground.rise, 0.0))
+    near = ground.height[i0 : i1 + 1, j0 : j1 + 1]
     plane = ground.slope_x * x + ground.slope_y * y
     plane += far * (abs(ground.slope_x) + abs(ground.slope_y))
-    return float(near.max()) + float(over.max(initial=0.0)) + plane
+    return float(near.max()) + plane
 
 
 def sample_ground(
@@ -148,22 +134,8 @@ def with_slope(ground: Ground, angle_x: float, angle_y: float) -> Ground:
     return ground._replace(slope_x=float(np.tan(angle_x)), slope_y=float(np.tan(angle_y)))
 
 
-def with_steps(ground: Ground, edge: Array, rise: Array) -> Ground:
-    """Return the ground with steps across x added to its grid and plane.
-
-    Args:
-        ground: The ground, without steps.
-        edge: x from which on the ground is higher by `rise`, shape (k,) [m].
-        rise: Height of each step, negative for one down, shape (k,) [m].
-    """
-    order = np.argsort(edge, kind="stable")
-    edge, rise = (np.ascontiguousarray(each, dtype=float)[order] for each in (edge, rise))
-    top = max(0.0, float(np.cumsum(rise).max(initial=0.0)))
-    return ground._replace(edge=edge, rise=rise, highest=float(ground.height.max()) + top)
-
-
 def beyond_grid(ground: Ground, x: Array, y: Array) -> Array:
-    """Return whether places lie beyond a grid that does not repeat itself, shape as x.
+    """Return whether places lie beyond the grid, shape as x.
 
     Args:
         ground: The ground; on one without a grid no place lies beyond.
@@ -171,7 +143,7 @@ def beyond_grid(ground: Ground, x: Array, y: Array) -> Array:
         y: y of the places [m].
     """
     m, n = ground.height.shape
-    if ground.repeats or ground.height.size == 1:
+    if ground.height.size == 1:
         return np.zeros(np.shape(x), dtype=bool)
     at_x, at_y = (x - ground.x) / ground.step, (y - ground.y) / ground.step
     return (at_x < 0) | (at_x > m - 1) | (at_y < 0) | (at_y > n - 1)
@@ -200,15 +172,14 @@ def is_even(ground):
     Args:
         ground: The ground.
     """
-    return ground.height.size == 1 and ground.edge.size == 0
+    return ground.height.size == 1
 
 
 @inlined
 def ground_at(ground, x, y):
     """Compute height and unit normal of the ground at a place.
 
-    Beyond a grid that does not repeat itself height is that of the edge, and slope across the edge
-    that of the plane alone.
+    Beyond the grid height is that of the edge, and slope across the edge that of the plane alone.
 
     Args:
         ground: The ground.
@@ -236,13 +207,6 @@ def height_and_slopes(ground, x, y):
         Height [m], slope along x and slope along y [-].
     """
     h, sx, sy = _on_grid(ground, x, y)
-    for k in range(ground.edge.size):
-        rise = ground.rise[k]
-        before = ground.edge[k] - x if rise >= 0 else x - ground.edge[k]  # from the upper edge
-        part = min(max(1.0 - before / FACE, 0.0), 1.0)
-        h += rise * part if rise >= 0 else rise * (1.0 - part)
-        if 0.0 < part < 1.0:
-            sx += rise / FACE
     return h + ground.slope_x * x + ground.slope_y * y, sx + ground.slope_x, sy + ground.slope_y
 
 
@@ -254,9 +218,6 @@ def _on_grid(ground, x, y):
         return height[0, 0], 0.0, 0.0
     m, n = height.shape
     at_x, at_y = (x - ground.x) / ground.step, (y - ground.y) / ground.step
-    if ground.repeats:
-        at_x -= np.floor(at_x / (m - 1)) * (m - 1)
-        at_y -= np.floor(at_y / (n - 1)) * (n - 1)
     fx = min(max(at_x, 0.0), m - 1.000001)  # within the last cell, for its far neighbours
     fy = min(max(at_y, 0.0), n - 1.000001)
     i, j = int(fx), int(fy)

@@ -10,7 +10,6 @@ from model.arrays import Array
 from model.gait.program import ProgramLegs
 from model.gait.reference import SampledReference
 from model.robot import Robot
-from model.walk.areas import AreaTractions
 from model.walk.arrays import State
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.bent_walk import integrate_bent
@@ -54,7 +53,7 @@ class GrowingWalk:
     def __init__(
         self,
         robot: Robot,
-        table: TractionTable | AreaTractions,
+        table: TractionTable,
         options: DynamicsOptions,
         *,
         ground: Ground = FLAT,

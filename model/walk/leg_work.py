@@ -27,7 +27,6 @@ from model.compiled import inlined
 from model.walk.anisotropy import sideways
 from model.walk.contact_points import point_velocity
 from model.walk.path import WalkPath
-from model.walk.step import BRISTLE_STIFFNESS
 
 
 @dataclass(frozen=True)
@@ -59,21 +58,19 @@ def leg_work(path: WalkPath) -> LegWork:
 
 
 @inlined
-def add_work(contacts, state, work, dt, out):
+def add_work(state, work, dt, out):
     """Add the energies of a step that has been taken to those before.
 
     Forces and velocities are those of the step's end, as in the step itself, which is implicit:
     the sum of all energies is balanced to first order in the step.
 
     Args:
-        contacts: Stiffness and damping of contacts.
         state: State at the step's end.
         work: Contacts of the step, with their loads.
         dt: Length of the step [s].
         out: Work done and taken back, energy to slip and to contacts, shape (4,), added to [J].
     """
     point = work.point
-    bristle = BRISTLE_STIFFNESS * contacts.stiffness
     for i in range(len(work.load)):
         if work.load[i] == 0.0:
             continue
@@ -84,28 +81,13 @@ def add_work(contacts, state, work, dt, out):
             point[a] -= rise * m[a]
         lateral, across = work.lateral[i], work.across[i]
         more = work.secant[i] * sideways(lateral, across, point)
-        more += bristle * sideways(lateral, across, state.stretch[i])
         power, slip = 0.0, 0.0
         for a in range(3):
             along = point[a]
-            traction = -work.secant[i] * along - bristle * state.stretch[i, a] - more * across[a]
+            traction = -work.secant[i] * along - more * across[a]
             power -= (work.load[i] * m[a] + traction) * u[a]
             slip -= traction * along
-        add_powers(out, power, slip, -work.load[i] * rise, dt)
-
-
-@inlined
-def add_powers(out, power, slip, contact, dt):
-    """Add the energies of one contact in a step to those before.
-
-    Args:
-        out: Work done and taken back, energy to slip and to contacts, shape (4,), added to [J].
-        power: Power of the contact's motor; zero for a corner of the body [W].
-        slip: Power that slip takes [W].
-        contact: Power that the contact takes along its normal [W].
-        dt: Length of the step [s].
-    """
-    out[0] += max(power, 0.0) * dt
-    out[1] += max(-power, 0.0) * dt
-    out[2] += slip * dt
-    out[3] += contact * dt
+        out[0] += max(power, 0.0) * dt
+        out[1] += max(-power, 0.0) * dt
+        out[2] += slip * dt
+        out[3] -= work.load[i] * rise * dt

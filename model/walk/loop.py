@@ -10,7 +10,6 @@ from model.compiled import borrowing, compiled, inlined
 from model.leg import ROLLING
 from model.robot import N_LEGS
 from model.walk.anisotropy import sideways
-from model.walk.areas import AreaTractions
 from model.walk.arrays import (
     N_CONTACTS,
     Body,
@@ -24,7 +23,7 @@ from model.walk.arrays import (
 from model.walk.contact_points import point_velocity
 from model.walk.ground import Ground
 from model.walk.leg_work import add_work
-from model.walk.step import BRISTLE_STIFFNESS, leg_turn, one_step
+from model.walk.step import leg_turn, one_step
 from model.walk.traction import TractionTable
 
 FINE_STEP = 0.0005  # s, where contacts change: both tripods are on the ground only for a short time
@@ -56,7 +55,7 @@ class Spare(NamedTuple):
 @compiled
 def run_steps(
     body: Body,
-    table: TractionTable | AreaTractions,
+    table: TractionTable,
     ground: Ground,
     contacts: Contacts,
     state: State,
@@ -72,7 +71,7 @@ def run_steps(
 
     Args:
         body: The robot.
-        table: The slip law, or those of several areas.
+        table: The slip law.
         ground: The ground.
         contacts: Stiffness and damping of contacts.
         state: Initial state, overwritten with the final one.
@@ -118,20 +117,20 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
                 _copy(gain, work.gain)
                 fine_left = fine_steps
             elif keep:
-                add_work(contacts, state, work, dt, energy)
+                add_work(state, work, dt, energy)
         if fine_left > 0 and parts > 1:
             for part in range(parts):
                 for i in range(N_LEGS):
                     angles[i] = theta[step, i] + (part + 1) / parts * dt * speed[i]
                 one_step(body, table, ground, contacts, state, work, angles, speed, dt / parts)
                 if keep:
-                    add_work(contacts, state, work, dt / parts, energy)
+                    add_work(state, work, dt / parts, energy)
             fine_left = fine_steps if _contacts_changed(work.load, loaded) else fine_left - 1
         if not np.isfinite(state.p.sum() + state.w.sum()):
             return step
         _keep_pose(pose[step], state)
         if keep:
-            _keep_legs(legs[step], contacts, state, work, speed, energy)
+            _keep_legs(legs[step], state, work, speed, energy)
     return theta.shape[0] - 1
 
 
@@ -161,7 +160,7 @@ def _keep_pose(out, state):
 
 
 @inlined
-def _keep_legs(out, contacts, state, work, speed, energy):
+def _keep_legs(out, state, work, speed, energy):
     """Fill rows, shape (7, 6), of `run_steps`; a leg in the air has 0 and slip ratio NaN."""
     R, point = work.R, work.point
     out[N_LEGS, :] = 0.0
@@ -169,7 +168,6 @@ def _keep_legs(out, contacts, state, work, speed, energy):
         out[N_LEGS, 0] += work.load[i]
     for i in range(4):
         out[N_LEGS, 1 + i] = energy[i]
-    bristle = BRISTLE_STIFFNESS * contacts.stiffness
     for i in range(N_LEGS):
         out[i, :] = 0.0
         out[i, 5] = np.nan
@@ -183,10 +181,8 @@ def _keep_legs(out, contacts, state, work, speed, energy):
             point[a] -= rise * m[a]
         lateral, across = work.lateral[i], work.across[i]
         more = work.secant[i] * sideways(lateral, across, point)
-        more += bristle * sideways(lateral, across, state.stretch[i])
         for a in range(2):
-            out[i, 1 + a] = -work.secant[i] * point[a] - bristle * state.stretch[i, a]
-            out[i, 1 + a] -= more * across[a]
+            out[i, 1 + a] = -work.secant[i] * point[a] - more * across[a]
             out[i, 3 + a] = point[a]
         if work.kind[i] == ROLLING:
             tilt = R[0, 0] * m[0] + R[1, 0] * m[1] + R[2, 0] * m[2]  # of the body over the ground

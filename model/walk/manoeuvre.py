@@ -13,7 +13,6 @@ from model.gait.notation import TRIPOD, Gait
 from model.gait.program import CycleGait, ProgramLegs, cycle_gait, scaled_stance
 from model.gait.steering import ideal_liftoff
 from model.robot import Robot
-from model.walk.areas import AreaTractions
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.goal import Goal
@@ -110,7 +109,7 @@ class Surroundings:
     """
 
     robot: Robot
-    table: TractionTable | AreaTractions | None
+    table: TractionTable | None
     options: DynamicsOptions
     ground: Ground = FLAT
     bend: Bend = STRAIGHT

@@ -9,7 +9,6 @@ import numpy as np
 from model.errors import DomainError
 from model.gait.program import CycleGait, ProgramLegs
 from model.robot import Robot
-from model.walk.areas import AreaTractions
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ground import FLAT, Ground
@@ -99,7 +98,7 @@ class SegmentEnd:
 def lay_out(
     segments: Sequence[Segment],
     robot: Robot,
-    table: TractionTable | AreaTractions | None,
+    table: TractionTable | None,
     *,
     options: DynamicsOptions,
     ground: Ground = FLAT,

@@ -2,17 +2,12 @@
 """Slip law of a walk: a calibrated slip curve, or Coulomb friction."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from model.slip.curve import SlipCurve
-from model.slip.definition import SlipDefinition, require_definition
 from model.walk.path import WalkPath
-from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, curve_table
-
-if TYPE_CHECKING:
-    from model.walk.thesis import Traction
+from model.walk.traction import TractionTable, VelocityCoulomb, curve_table
 
 
 @dataclass(frozen=True)
@@ -29,36 +24,18 @@ class Slip:
     law: SlipCurve | VelocityCoulomb
     source: str
 
-    def traction_table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
+    def traction_table(self, *, weight: float) -> TractionTable:
         """Tabulate traction over load for the compiled loop, by `curve_table` or Coulomb friction.
 
         Args:
             weight: Weight of the robot [N].
-            toe: Traction of a leg on its toe, see `law_table`.
 
         Raises:
-            DomainError: The curve loses its law's shape at these loads, or `toe` is unknown.
+            DomainError: The curve loses its law's shape at these loads.
         """
         if isinstance(self.law, VelocityCoulomb):
-            return self.law.table(weight=weight, toe=toe)
-        return curve_table(self.law, weight=weight, toe=toe)
-
-    def thesis_traction(self, *, weight: float) -> "Traction":
-        """Convert the law to the form that the thesis's walking model takes, see `law_traction`.
-
-        Args:
-            weight: Weight of the robot [N].
-
-        Raises:
-            DefinitionMismatch: The curve's slip definition is not `material`.
-            DomainError: The law loses its shape at these loads.
-        """
-        from model.walk.thesis import law_traction, table_traction
-
-        if isinstance(self.law, VelocityCoulomb):
-            return table_traction(self.law.table(weight=weight))
-        require_definition(self.law.definition, SlipDefinition.MATERIAL)
-        return law_traction(self.law.law, self.law.values, weight=weight)
+            return self.law.table(weight=weight)
+        return curve_table(self.law, weight=weight)
 
     @property
     def tested_loads(self) -> tuple[float, float] | None:

@@ -26,31 +26,26 @@ unlike the explicit step of the thesis.
 import numpy as np
 
 from model.compiled import inlined
-from model.leg import ROLLING
 from model.robot import N_LEGS
 from model.walk.anisotropy import effective_size, find_across, sideways
-from model.walk.areas import law_at
 from model.walk.arrays import N_CONTACTS
 from model.walk.contact_points import find_contacts, point_velocity
 from model.walk.linear_system import add_contact, solve_positive, start_system
 from model.walk.quaternion import rotate, rotation_matrix
-from model.walk.traction_lookup import toe_traction, traction_secant
+from model.walk.traction_lookup import traction_secant
 
 MOST_ROUNDS = 20  # largest number of solves until contacts press as assumed and velocities settle
 SETTLED = 3e-4  # m/s; the last guess of the velocities was no further from where they settle
 FOOT = 0.15  # m, distance of the feet from the body's centre, to compare its turning with that
-BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of a millimetre
 
 
 @inlined
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     """Advance the body's state by one linearly implicit step.
 
-    A contact without load in the step before, or of a leg that rolls, starts with a slack bristle.
-
     Args:
         body: The robot.
-        table: The slip law, or the laws of several areas.
+        table: The slip law.
         ground: The ground.
         contacts: Stiffness and damping of contacts.
         state: State at the start, overwritten with the state at the end.
@@ -67,9 +62,6 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     )  # fmt: skip
     for i in range(n, N_CONTACTS):
         work.load[i] = 0.0
-    for i in range(n):
-        if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # no bristle there
-            state.stretch[i, 0] = state.stretch[i, 1] = state.stretch[i, 2] = 0.0
     for i in range(3):
         work.b[i] = state.v[i] + dt * work.gain[i]
         work.b[3 + i] = state.w[i] + dt * work.gain[3 + i]
@@ -80,7 +72,7 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
         for i in range(3):
             v[i], w[i] = work.b[i], work.b[3 + i]
         start_system(body.mass, inertia, gyro, state, dt, work.A, work.b)
-        held = add_contact_forces(table, contacts, state, work, n, speed, dt)
+        held = add_contact_forces(table, contacts, work, n, speed, dt)
         solve_positive(work.A, work.b, 6)
         agree = contacts_agree(contacts, work, n, dt)
         if agree and settling_error(velocity_change(work), held, body.mass, dt) < SETTLED:
@@ -91,9 +83,6 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
         state.v[i], state.w[i] = work.b[i], work.b[3 + i]
         state.p[i] += dt * state.v[i]
     rotate(state.q, state.w, dt)
-    if table.bristle:
-        for i in range(n):
-            _stretch_bristle(table, contacts, state, work, i, dt)
 
 
 @inlined
@@ -144,13 +133,12 @@ def contact_damping(contacts, dt):
 
 
 @inlined
-def add_contact_forces(table, contacts, state, work, n, speed, dt):
+def add_contact_forces(table, contacts, work, n, speed, dt):
     """Add the contact forces, linearised in the final velocities about a guess, to a step's system.
 
     Args:
-        table: The slip law, or the laws of several areas.
+        table: The slip law.
         contacts: Stiffness and damping of contacts.
-        state: State at the step's start.
         work: The contacts and the guess of velocities; `A` and `b` are updated, `load` and
             `secant` of each contact filled.
         n: Number of contacts.
@@ -158,7 +146,7 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         dt: Length of the step [s].
 
     Returns:
-        Sum over contacts of traction over slip velocity, bristles included [N s/m].
+        Sum over contacts of traction over slip velocity [N s/m].
     """
     k, c, held = contacts.stiffness, contact_damping(contacts, dt), 0.0
     v, w, P, force, point = work.v, work.w, work.P, work.force, work.point
@@ -173,65 +161,29 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         work.secant[i] = 0.0
         if load <= 0.0:
             continue
-        law = law_at(table, state.p, work.place[i])
-        find_across(law, work, i)
+        find_across(table, work, i)
         lateral, across = work.lateral[i], work.across[i]
         x, y, z = point[0] - rise * m0, point[1] - rise * m1, point[2] - rise * m2
-        if table.bristle and work.kind[i] != ROLLING:
-            pull = bristle_pull(
-                law, contacts, state.stretch[i], load, dt * x, dt * y, dt * z, lateral, across
-            )
-            G = pull * dt
-        else:
-            slip = effective_size(lateral, across, x, y, z)
-            flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
-            G, pull = traction_secant(law, work.kind[i], load, slip, flow), 0.0
-            work.secant[i] = G
+        slip = effective_size(lateral, across, x, y, z)
+        flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
+        G = traction_secant(table, work.kind[i], load, slip, flow)
+        work.secant[i] = G
         held += G * (1.0 + max(lateral[0], 0.0))
         push = -k * work.gap[i] - c * u_n
         for a in range(3):
             m_a = work.normal[i, a]
             force[a] = push * m_a - G * (work.velocity[i, a] - u_n * m_a)
-            force[a] -= pull * state.stretch[i, a]
             for d in range(3):
                 P[a, d] = (k * dt + c - G) * m_a * work.normal[i, d]
             P[a, a] += G
         if lateral[0] != 0.0:
             more = G * sideways(lateral, across, work.velocity[i])
-            more += pull * sideways(lateral, across, state.stretch[i])
             for a in range(3):
                 force[a] -= more * across[a]
                 for d in range(3):
                     P[a, d] += G * lateral[0] * across[a] * across[d]
         add_contact(work.A, work.b, dt, work.place[i], P, force)
     return held
-
-
-@inlined
-def bristle_pull(table, contacts, stretch, load, x, y, z, lateral, across):
-    """Compute the force over stretch of a toe's bristle after a further slip of (x, y, z).
-
-    It is the bristle's stiffness, 0.1 of the contact's, or less where the force would exceed the
-    largest traction, `toe_traction` times load: the bristle then slides at that limit.
-
-    Args:
-        table: The slip law.
-        contacts: Stiffness and damping of contacts.
-        stretch: Stretch of the bristle before the slip, shape (3,) [m].
-        load: Normal force of the contact [N].
-        x: Further slip along x [m].
-        y: Further slip along y [m].
-        z: Further slip along z [m].
-        lateral: By how much traction differs by direction, see `find_across`, shape (2,) [-].
-        across: Direction across the leg's rolling direction, shape (3,) [-].
-
-    Returns:
-        Force over stretch along the rolling direction [N/m].
-    """
-    stiffness = BRISTLE_STIFFNESS * contacts.stiffness
-    size = effective_size(lateral, across, stretch[0] + x, stretch[1] + y, stretch[2] + z)
-    most = load * toe_traction(table, load)
-    return most / size if stiffness * size > most else stiffness
 
 
 @inlined
@@ -275,30 +227,6 @@ def leg_turn(R, speed, w, i):
         Leg speed plus the body's angular velocity about its own y axis [rad/s].
     """
     return speed[i] + R[0, 1] * w[0] + R[1, 1] * w[1] + R[2, 1] * w[2]
-
-
-@inlined
-def _stretch_bristle(table, contacts, state, work, i, dt):
-    """Add the step's slip to contact i's bristle; cut the stretch off at that of full traction.
-
-    Nothing is done for a contact without load or a leg that rolls.
-    """
-    if work.load[i] == 0.0 or work.kind[i] == ROLLING:
-        return
-    point, m = work.point, work.normal[i]
-    point_velocity(state.v, state.w, work.place[i], work.velocity[i], point)
-    rise = point[0] * m[0] + point[1] * m[1] + point[2] * m[2]
-    stretch = state.stretch[i]
-    for a in range(3):
-        stretch[a] += dt * (point[a] - rise * m[a])
-    lateral, across = work.lateral[i], work.across[i]
-    stretched = effective_size(lateral, across, stretch[0], stretch[1], stretch[2])
-    law = law_at(table, state.p, work.place[i])
-    longest = work.load[i] * toe_traction(law, work.load[i])
-    longest /= BRISTLE_STIFFNESS * contacts.stiffness
-    if stretched > longest:
-        for a in range(3):
-            stretch[a] *= longest / stretched
 
 
 @inlined

@@ -2,7 +2,7 @@
 """Traction over load for the walking models: any slip law, tabulated for a compiled loop."""
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_banded
@@ -13,9 +13,6 @@ from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition, convert_slip
 from model.slip.law import SlipLaw, Values
 from model.slip.sided import middle_curve
-
-ToeLaw = Literal["saturated", "peak", "bristle"]
-TOE_LAWS: tuple[ToeLaw, ...] = ("saturated", "peak", "bristle")
 
 N_LOADS = 41  # rows 12 % of load apart: a table within a hundredth of its law's peak
 LOAD_RANGE = (0.02, 2.0)  # of the robot's weight; loads outside take the nearest row
@@ -41,7 +38,6 @@ class TractionTable(NamedTuple):
         by_velocity: Whether x is slip velocity over `speed_scale` instead of a slip ratio.
         speed_scale: Slip velocity over which traction on a toe (or a velocity law) sets in, and
             least speed of the arc that a slip velocity is divided by [m/s].
-        bristle: Whether a toe sticks like a spring until its force reaches `toe` times load.
         lateral_grip: Grip across the rolling direction of a leg over that along it [-].
         lateral_stiffness: Slip stiffness across the rolling direction over that along it [-].
     """
@@ -54,14 +50,8 @@ class TractionTable(NamedTuple):
     toe: Array
     by_velocity: bool
     speed_scale: float
-    bristle: bool
     lateral_grip: float = 1.0
     lateral_stiffness: float = 1.0
-
-    @property
-    def is_directed(self) -> bool:
-        """Whether traction differs along and across a leg's rolling direction."""
-        return not self.lateral_grip == self.lateral_stiffness == 1.0
 
 
 @dataclass(frozen=True)
@@ -90,26 +80,20 @@ class VelocityCoulomb:
                 "expected both above zero"
             )
 
-    def table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
+    def table(self, *, weight: float) -> TractionTable:
         """Tabulate traction over load by slip velocity over v_0, for the compiled loop.
 
         Args:
             weight: Weight of the robot; the load of the table's only row, without effect on the
                 traction over load [N].
-            toe: "bristle" for a toe that sticks like a spring up to mu N; with "saturated" and
-                "peak" a toe follows the law.
-
-        Raises:
-            DomainError: The toe law is not one of `TOE_LAWS`.
         """
-        _require_toe(toe)
         scale, w = _grid(1.0)
         x = scale * np.sinh(w)
         phi = self.friction * x / np.sqrt(1 + x**2)
         slope = self.friction / (1 + x**2) ** 1.5 * scale * np.cosh(w)
         return TractionTable(
             np.log([weight]), scale, float(w[1]), phi[None], slope[None],
-            np.array([self.friction]), True, self.speed_scale, toe == "bristle",
+            np.array([self.friction]), True, self.speed_scale,
         )  # fmt: skip
 
 
@@ -119,7 +103,6 @@ def law_table(
     *,
     weight: float,
     definition: SlipDefinition | str = SlipDefinition.MATERIAL,
-    toe: ToeLaw = "saturated",
     speed_scale: float = 0.001,
 ) -> TractionTable:
     """Tabulate a slip law's traction over load by slip ratio and load, for the compiled loop.
@@ -127,25 +110,22 @@ def law_table(
     Loads are from 0.02 to 2 times the weight, one alone if traction is proportional to load. Slip
     ratios of the table are material ones from 0 to 10 000, |slip velocity| over the speed at which
     the leg's arc passes the contact; a law of another definition is evaluated at converted slip.
-    The table is odd: a law with driving and braking apart is tabulated by its middle curve.
+    The table is odd: a law with driving and braking apart is tabulated by its middle curve. A leg
+    on its toe, which no rig has measured, has the law's traction at infinite slip.
 
     Args:
         law: The slip law.
         values: Parameter values of the law, shape (k,).
         weight: Weight of the robot, which sets the range of loads [N].
         definition: Slip definition that the values were fitted in.
-        toe: Largest traction of a leg on its toe, which does not roll and no rig has measured: the
-            law's at infinite slip ("saturated"), its peak ("peak"), or its peak with a spring that
-            holds the toe up to it ("bristle").
         speed_scale: Slip velocity over which traction on a toe sets in, and least speed of the
             arc that a slip velocity is divided by [m/s].
 
     Raises:
         DomainError: The law loses its shape at a load from 0.02 to 2 times the weight, even if it
-            is proportional to load (`SlipLaw.valid`), or the toe law is not one of `TOE_LAWS`.
+            is proportional to load (`SlipLaw.valid`).
         ValueError: The slip definition is unknown.
     """
-    _require_toe(toe)
     law, values = middle_curve(law, values)
     loads = weight * np.geomspace(*LOAD_RANGE, N_LOADS)
     valid = np.broadcast_to(law.valid(loads, values), loads.shape)
@@ -161,7 +141,7 @@ def law_table(
     x = scale * np.sinh(w)
     definition = SlipDefinition(definition)
     if _proportional_to_load(law, values, loads):
-        loads, peak = loads[:1], peak[:1]
+        loads = loads[:1]
     kappa = x if definition is SlipDefinition.MATERIAL else _converted(x, definition)
     phi = law.force(kappa, loads[:, None], values) / loads[:, None]
     slope = _column_slopes(phi, float(w[1]))
@@ -169,22 +149,21 @@ def law_table(
     saturated = law.force(FAR_OUT, loads, values) / loads
     return TractionTable(
         np.log(loads), scale, float(w[1]), phi, slope,
-        saturated if toe == "saturated" else peak, False, speed_scale, toe == "bristle",
+        saturated, False, speed_scale,
     )  # fmt: skip
 
 
-def curve_table(curve: SlipCurve, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
+def curve_table(curve: SlipCurve, *, weight: float) -> TractionTable:
     """Tabulate traction over load of a calibrated slip curve at its posterior mean by `law_table`.
 
     Args:
         curve: The slip curve.
         weight: Weight of the robot, which sets the range of loads [N].
-        toe: Traction of a leg on its toe.
 
     Raises:
         DomainError: As for `law_table`.
     """
-    return law_table(curve.law, curve.values, weight=weight, definition=curve.definition, toe=toe)
+    return law_table(curve.law, curve.values, weight=weight, definition=curve.definition)
 
 
 def _proportional_to_load(law: SlipLaw, values: Values, loads: Array) -> bool:
@@ -243,9 +222,3 @@ def _column_slopes(phi: Array, step: float) -> Array:
     bands[1, 1:-1] = 4.0
     bands[0, 1] = bands[2, -2] = 2.0
     return np.ascontiguousarray(solve_banded((1, 1), bands, right.T).T)
-
-
-def _require_toe(toe: str) -> None:
-    """Raise `DomainError` unless a toe law is one of `TOE_LAWS`."""
-    if toe not in TOE_LAWS:
-        raise DomainError(f"'{toe}' is not a toe law; expected one of {', '.join(TOE_LAWS)}")

@@ -21,9 +21,9 @@ from zebro_lab.tables.disc_angles import DISAGREEMENT
 from zebro_lab.tables.mapped_columns import INTERVALS
 from zebro_lab.track.photo_sequence import MOST_APART
 from zebro_lab.track.trajectory.table import FASTEST
-from zebro_lab.walk.output_request import MOST_ANISOTROPY
 from zebro_lab.walk.request import LONGEST_SLIPPING_STEP, LONGEST_STEP
 from zebro_lab.walk.walking import MOST_STEPS
+from zebro_lab.walk_fit.request import MOST_ANISOTROPY
 
 FORMATS = Path(__file__).parents[2] / "docs" / "formats.md"
 LIMITS = {

@@ -16,7 +16,6 @@ from model.predict import (
     STEPS,
     ModelSpread,
     ensemble_step,
-    on_terrain,
     predict_paths,
     walk_draws,
     with_contacts,
@@ -28,7 +27,6 @@ from model.walk.bend import Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.ground import FLAT, with_slope
-from model.walk.terrain import Terrain
 from model.walk.traction import VelocityCoulomb, law_table
 
 T = np.linspace(0.0, 4.0, 41)
@@ -129,8 +127,8 @@ def test_on_a_slope_a_path_is_bent_while_it_is_walked_and_not_afterwards():
     ground = with_slope(FLAT, np.radians(6.0), 0.0)
     state = LegState.of_prior(2, offset_sd=0.0, rng=np.random.default_rng(1))
     state = replace(state, steering=np.array([0.0, 1.5]))
-    draws = walk_draws(Robot(), GAIT, [TABLE], state, rng=np.random.default_rng(1))
-    placed = on_terrain(draws, Terrain(ground), (), np.zeros((2, 3)))
+    rng = np.random.default_rng(1)
+    placed = walk_draws(Robot(), GAIT, [TABLE], state, rng=rng, ground=ground)
     paths = predict_paths(placed, T, state=state, error=EXACT, rng=np.random.default_rng(1),
                           options=DynamicsOptions())  # fmt: skip
     one = planar_walk(replace(placed[1], bend=Bend(0.0, 1.5)), duration=4.0).poses

@@ -19,7 +19,6 @@ from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip.thesis import thesis_curve
-from model.walk.areas import Area, with_areas
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.ground import FLAT, with_slope
@@ -45,13 +44,11 @@ def compile_simple_models() -> None:
 
 
 def compile_dynamics() -> None:
-    """Walk by the project's model: alone and side by side, on a slope, over areas."""
+    """Walk by the project's model: draws, a gait, and one on a slope."""
     log = SampledReference(TIMES, GAIT.angles(TIMES))
     walk_ensemble([WalkDraw(Robot(), log, TABLE)] * 2, TIMES, options=OPTIONS)
-    square = Area(np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]), TABLE)
-    slope = with_slope(FLAT, 0.05, 0.0)
-    for law, ground in ((TABLE, FLAT), (TABLE, slope), (with_areas(TABLE, (square,)), slope)):
-        walk(Robot(), GAIT, law, duration=TIMES[-1], ground=ground, options=OPTIONS)
+    for ground in (FLAT, with_slope(FLAT, 0.05, 0.0)):
+        walk(Robot(), GAIT, TABLE, duration=TIMES[-1], ground=ground, options=OPTIONS)
 
 
 SHARES = {"simple models": compile_simple_models, "dynamics": compile_dynamics}

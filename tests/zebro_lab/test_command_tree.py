@@ -177,7 +177,7 @@ def test_a_wrong_value_of_an_option_is_wrong_usage_and_names_the_option(
 def test_wrong_values_are_derived_for_the_options_with_limits_choices_and_forms():
     names = {(named(found), param.name) for found, param, texts in VALUES if texts}
     for expected in (
-        ("zebro-lab walk", "arc_deg"), ("zebro-lab walk", "start_sd"), ("zebro-lab walk", "slip"),
+        ("zebro-lab walk", "arc_deg"), ("zebro-lab walk", "slip"),
         ("zebro-lab calibrate", "law"), ("calibrate-slip", "curvature"),
         ("zebro-lab sim zebro", "flip"),
     ):  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 from model.arrays import Array
 from model.errors import DomainError
 from model.slip.curve import SlipCurve
-from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
+from model.walk.traction import TractionTable, VelocityCoulomb, law_table
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import POSTERIOR
 from zebro_lab.calibration.slip_argument import NamedSlip
@@ -19,7 +19,7 @@ MOST_TABLES = 200  # a table costs as much as 1 s of simulated walk, and paths h
 
 
 def slip_tables(
-    slip: NamedSlip, n: int, *, weight: float, toe: ToeLaw = "saturated", rng: np.random.Generator
+    slip: NamedSlip, n: int, *, weight: float, rng: np.random.Generator
 ) -> list[TractionTable]:
     """Compute interpolation tables of traction, one for each draw of a slip law.
 
@@ -30,25 +30,22 @@ def slip_tables(
         slip: Slip law named by `--slip`.
         n: Number of draws; at most `MOST_TABLES` are made, one for an assumed law.
         weight: Weight of the robot [N].
-        toe: Traction law of a leg that stands on its toe: "saturated", "peak" or "bristle".
         rng: Random number generator.
 
     Raises:
         DataError: The posterior beside the slip.toml is damaged or of another law.
-        DomainError: All draws and the mean are invalid at the robot's loads, or `toe` is unknown.
+        DomainError: All draws and the mean are invalid at the robot's loads.
     """
     law = slip.law
     if isinstance(law, VelocityCoulomb):
-        return [law.table(weight=weight, toe=toe)]
+        return [law.table(weight=weight)]
     tables = []
     for values in law_draws(slip, law, min(n, MOST_TABLES), rng=rng):
         try:
-            tables.append(
-                law_table(law.law, values, weight=weight, definition=law.definition, toe=toe)
-            )
+            tables.append(law_table(law.law, values, weight=weight, definition=law.definition))
         except DomainError:  # a draw from the tail that is invalid at this robot's loads
             continue
-    return tables or [slip.traction_table(weight=weight, toe=toe)]
+    return tables or [slip.traction_table(weight=weight)]
 
 
 def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Generator) -> Array:

@@ -48,8 +48,7 @@ from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.validation.shared_clock import shared_time
-from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk, read_walk_manifest
-from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.folder import DRAWS, PREDICTION, read_draws, read_walk, read_walk_manifest
 from zebro_lab.walk.prediction_file import robot_of_walk
 
 FLOOR, BODY, TRACKED = "floor", "body", "tracked"

@@ -14,12 +14,11 @@ from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, option
 from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.walk.folder import read_draws
 from zebro_lab.walk.output_request import BandRequest
-from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import ModelName, ModelRequest, PredictRequest, WalkRequest
+from zebro_lab.walk.request import ModelName, ModelRequest, PredictRequest, RuleName, WalkRequest
 from zebro_lab.walk.stage import walk
-from zebro_lab.walk.thesis_argument import parse_thesis
 from zebro_lab.walk.walking import Walked
 
 
@@ -66,7 +65,7 @@ def walk_gait(
     model: ModelName = "dynamics",
     steering: float | None = None,
     direction: Direction | None = None,
-    thesis: str | None = None,
+    thesis: RuleName = "listing",
     ground: PathLike | None = None,
     robot: PathLike | None = None,
     draws: int = 0,
@@ -86,8 +85,7 @@ def walk_gait(
             1, straight [-].
         direction: Side to turn to, "left" or "right", of tripod, suriana and maxplus; None for
             left.
-        thesis: Switches of the model "thesis" as `--thesis` takes them, such as
-            "no-height-reset,heading=90"; None for none.
+        thesis: What the model "thesis" follows where its "listing" and its "text" differ.
         ground: A `ground.toml` for the model "dynamics"; None for level ground of one slip law.
         robot: A `robot.toml`; None for the thesis's robot.
         draws: Number of draws for a band, at least two, with the model "dynamics"; 0 for the single
@@ -114,7 +112,7 @@ def predict_walk(
     *,
     slip: str | None,
     model: ModelName = "dynamics",
-    thesis: str | None = None,
+    thesis: RuleName = "listing",
     ground: PathLike | None = None,
     robot: PathLike | None = None,
     columns: PathLike | None = None,
@@ -153,16 +151,15 @@ def predict_walk(
 def _model_request(
     slip: str | None,
     model: ModelName,
-    thesis: str | None,
+    thesis: RuleName,
     ground: PathLike | None,
     robot: PathLike | None,
     band: BandRequest,
 ) -> ModelRequest:
     """Return the options of the model; raise `SettingsError` for invalid ones."""
     try:
-        switches = None if thesis is None else parse_thesis(thesis)
         return ModelRequest(
-            slip, model, thesis=switches, ground=optional(ground), robot=optional(robot), band=band
+            slip, model, thesis=thesis, ground=optional(ground), robot=optional(robot), band=band
         )
     except BadParameter as error:
         raise SettingsError(error.message, key="thesis") from error

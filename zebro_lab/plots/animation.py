@@ -11,8 +11,8 @@ from mpl_toolkits.mplot3d import Axes3D
 
 from model.arrays import Array
 from model.robot import Robot
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
-from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.sheet import new_figure, styled
 from zebro_lab.plots.walk_scene import Scene
 
@@ -28,7 +28,7 @@ def animate(
     *,
     title: str,
     progress: Callable[[float], None] = lambda _: None,
-    terrain: Terrain = LEVEL,
+    ground: Ground = FLAT,
 ) -> Path:
     """Write an animation of the walking robot; the camera follows the body over a fixed grid.
 
@@ -39,7 +39,7 @@ def animate(
             `animation.gif` into.
         title: Title of the animation, which names the model; "(simulated)" is appended.
         progress: Called with the fraction drawn, 0 to 1 [-].
-        terrain: The ground, on which the grid lies; its areas are hatched.
+        ground: The ground, on which the grid lies.
 
     Returns:
         The file written. In contact a leg is orange, in the air grey. A walk longer than 20 s, 400
@@ -54,7 +54,7 @@ def animate(
     figure.texts[0].set_y(0.96)
     beyond = (0.0, -0.2, 1.0, 1.35)  # 3-D axes leave much of their square empty
     axes = cast("Axes3D", figure.add_axes(beyond, projection="3d", computed_zorder=False))
-    scene = Scene(axes, path, robot, terrain=terrain)
+    scene = Scene(axes, path, robot, ground=ground)
     pace = "" if speed_up == 1 else f"   {speed_up:.2g}× real time"
     clock = figure.text(0.03, 0.04, "")
     with writer.saving(figure, str(folder / name), dpi=100):

@@ -1,42 +1,32 @@
 # SPDX-License-Identifier: MIT
-"""Draw the ground of a walk on a map: heights shaded, with contours, and areas hatched."""
-
-from collections.abc import Sequence
+"""Draw the ground of a walk on a map: heights shaded, with contours."""
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
-from matplotlib.patches import Polygon
 
 from model.arrays import Array
 from model.walk.ground import Ground, heights_on, is_level
-from model.walk.terrain import SlipArea, Terrain
 
 _SAMPLES = 400  # along the longer side
 _LEVELS = 8
 _SHADES = LinearSegmentedColormap.from_list("ground", ["#f7f3ea", "#d9c39a", "#9c7b48"])
-_HATCHES = ("///", "\\\\\\", "xxx", "...", "+++")
 
 
-def draw_ground(axes: Axes, terrain: Terrain, low: Array, high: Array) -> None:
-    """Draw heights and areas of the ground on a map, below all else; nothing of level ground.
+def draw_ground(axes: Axes, ground: Ground, low: Array, high: Array) -> None:
+    """Draw heights of the ground on a map, below all else; nothing of level ground.
 
     Limits of the axes are kept. Heights have a colour bar in millimetres.
 
     Args:
         axes: The map, x to the right and y up [m].
-        terrain: The ground and its areas.
+        ground: The ground.
         low: Smallest x and y to draw, shape (2,) [m].
         high: Largest x and y to draw, shape (2,) [m].
     """
+    if is_level(ground):
+        return
     limits = axes.get_xlim(), axes.get_ylim()
-    if not is_level(terrain.ground):
-        _draw_heights(axes, terrain.ground, low, high)
-    _draw_areas(axes, terrain.areas)
-    axes.set(xlim=limits[0], ylim=limits[1])
-
-
-def _draw_heights(axes: Axes, ground: Ground, low: Array, high: Array) -> None:
     step = float(max(high - low)) / _SAMPLES
     x, y = (np.arange(first, last + step, step) for first, last in zip(low, high, strict=True))
     height = 1000 * heights_on(ground, x, y).T
@@ -49,21 +39,4 @@ def _draw_heights(axes: Axes, ground: Ground, low: Array, high: Array) -> None:
         axes.contour(x, y, height, levels=_LEVELS, colors="0.45", linewidths=0.4, zorder=-1)
     bar = axes.figure.colorbar(shading, ax=axes, fraction=0.03, pad=0.02, aspect=25)
     bar.set_label("height of the ground [mm]")
-
-
-def _draw_areas(axes: Axes, areas: Sequence[SlipArea]) -> None:
-    names = list(dict.fromkeys(area.name for area in areas))
-    for area in areas:
-        hatch = _HATCHES[names.index(area.name) % len(_HATCHES)]
-        axes.add_patch(
-            Polygon(
-                area.polygon,
-                closed=True,
-                facecolor="none",
-                edgecolor="0.35",
-                lw=0.8,
-                hatch=hatch,
-                zorder=0.5,
-                label=f"area of slip {area.name}",
-            )
-        )
+    axes.set(xlim=limits[0], ylim=limits[1])

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from model.path_draws import quantiles
 from model.poses import Poses
-from model.walk.terrain import LEVEL, Terrain
+from model.walk.ground import FLAT, Ground, is_level
 from zebro_lab.plots.ground import draw_ground
 from zebro_lab.plots.sheet import BLUE, draw_band, legend_below, map_and_panels, styled, tint
 
@@ -14,13 +14,13 @@ _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
 @styled
-def path_band(paths: Poses, *, title: str, terrain: Terrain = LEVEL) -> Figure:
+def path_band(paths: Poses, *, title: str, ground: Ground = FLAT) -> Figure:
     """Draw a predicted path's band from above, and quantiles of x, y and yaw over time.
 
     Args:
         paths: Draws of the predicted path.
         title: Title of the figure; "(simulated)" is appended.
-        terrain: The ground, drawn below the paths as `draw_ground` does.
+        ground: The ground, drawn below the paths as `draw_ground` does.
 
     Returns:
         The figure: the first 60 draws and the median of all from above; over time the median and
@@ -31,10 +31,10 @@ def path_band(paths: Poses, *, title: str, terrain: Terrain = LEVEL) -> Figure:
     draw_band(above, paths, label="draws", color=BLUE, lw=0.6, alpha=0.2)
     bands = quantiles(paths, _LEVELS) * [1.0, 1.0, 180 / np.pi]
     above.plot(*bands[2, :, :2].T, color="black", lw=1.2)
-    if not terrain.is_alike_everywhere:
+    if not is_level(ground):
         low, high = paths.position.min(axis=(0, 1)), paths.position.max(axis=(0, 1))
         beyond = 0.6 * float(max(high - low))  # axes of one scale show more than the paths
-        draw_ground(above, terrain, low - beyond, high + beyond)
+        draw_ground(above, ground, low - beyond, high + beyond)
     for axes, (low, lower, median, upper, high) in zip(
         panels, bands.transpose(2, 0, 1), strict=True
     ):

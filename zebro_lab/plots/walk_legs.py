@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.robot import LEFT, N_LEGS
 from model.walk.path import WalkPath
-from model.walk.thesis.traction import paired_sum
 from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
 from zebro_lab.plots.sheet import (
     BLUE,
@@ -81,29 +80,7 @@ def traction_forces(path: WalkPath, *, title: str) -> Figure:
         to the left of the heading; contact is shaded. 1 % at either end may exceed the limits,
         which is marked.
     """
-    return _draw_traction(path.t, path.traction_force, path.contact, title, label="traction force")
-
-
-@styled
-def paired_traction(path: WalkPath, *, title: str) -> Figure:
-    """Draw the sum of traction force over pairs of time steps, of each leg over time (Fig. 5-19).
-
-    In the thesis's model the traction changes sign from time step to time step; the thesis calls
-    this sum the net force. It is a sum, not a mean: where the traction is steady, twice the force.
-
-    Args:
-        path: Part of a walk to draw.
-        title: Title of the figure, which names the model; "(simulated)" is appended.
-
-    Returns:
-        The figure, as `traction_forces` draws it; time and contact are those of a pair's first
-        step.
-    """
-    net = paired_sum(path.traction_force)
-    first = slice(1, 2 * len(net), 2)
-    return _draw_traction(
-        path.t[first], net, path.contact[first], title, label="sum of two steps' traction force"
-    )
+    return draw_traction(path.t, path.traction_force, path.contact, title, label="traction force")
 
 
 @styled
@@ -201,9 +178,18 @@ def _turning(t: Array, theta: Array) -> NDArray[np.bool_]:
     return turns
 
 
-def _draw_traction(
+def draw_traction(
     t: Array, force: Array, contact: NDArray[np.bool_], title: str, *, label: str
 ) -> Figure:
+    """Draw traction of each leg forward and to the left over time.
+
+    Args:
+        t: Times, shape (n,) [s].
+        force: Traction forces, shape (n, 6, 2) [N].
+        contact: Which legs are on the ground, shape (n, 6).
+        title: Title of the figure; "(simulated)" is appended.
+        label: What the force is, without its unit.
+    """
     lines = {"forward": force[..., 0], "to the left": force[..., 1]}
     limits = leg_limits(force[contact], least=0.5)
     return leg_panels(t, contact, lines, limits, label=label, unit="N", title=title)

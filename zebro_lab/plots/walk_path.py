@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from model.arrays import Array
 from model.robot import Robot
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
-from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.beyond import limits_without_tips
 from zebro_lab.plots.ground import draw_ground
 from zebro_lab.plots.sheet import (
@@ -40,7 +40,7 @@ def path_with_snapshots(
     *,
     title: str,
     at: Sequence[float] = (),
-    terrain: Terrain = LEVEL,
+    ground: Ground = FLAT,
 ) -> Figure:
     """Draw the path of the body's centre from above, with the body at some times (Fig. 5-11).
 
@@ -49,7 +49,7 @@ def path_with_snapshots(
         robot: The robot, for the size of its body.
         title: Title of the figure, which names the model; "(simulated)" is appended.
         at: Times at which the body is drawn [s]; empty for six, evenly spaced from start to end.
-        terrain: The ground, whose heights are shaded, and its areas, which are hatched.
+        ground: The ground, whose heights are shaded.
 
     Returns:
         The figure, x to the right and y up, both to one scale. Dots along the path are at whole
@@ -77,7 +77,7 @@ def path_with_snapshots(
         xlabel="x [m]", ylabel="y [m]", aspect="equal",
         xlim=(low[0], high[0]), ylim=(low[1], high[1]),
     )  # fmt: skip
-    draw_ground(axes, terrain, low, high)
+    draw_ground(axes, ground, low, high)
     axes.grid(color="0.92", lw=0.6)
     axes.set_axisbelow(True)
     legend_below(figure, columns=8)

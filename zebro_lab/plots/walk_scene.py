@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.robot import N_LEGS, Robot
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
-from model.walk.terrain import LEVEL, Terrain
-from zebro_lab.plots.scene_ground import AREA, area_lines, ground_lines, heights_along
+from zebro_lab.plots.scene_ground import ground_lines, heights_along
 from zebro_lab.plots.sheet import BLUE, RED
 from zebro_lab.plots.walk_robot import FACES, body_corners, leg_arcs, to_world
 
@@ -29,7 +29,7 @@ class Scene:
     """
 
     def __init__(
-        self, axes: Axes3D, path: WalkPath, robot: Robot, *, terrain: Terrain = LEVEL
+        self, axes: Axes3D, path: WalkPath, robot: Robot, *, ground: Ground = FLAT
     ) -> None:
         """Create the artists in 3-D axes, which must not compute the order of drawing themselves.
 
@@ -37,10 +37,10 @@ class Scene:
             axes: Axes to draw in.
             path: The walk.
             robot: The robot, for the size of body and legs.
-            terrain: The ground, on which the grid lies; its areas are hatched.
+            ground: The ground, on which the grid lies.
         """
-        self._path, self._robot, self._terrain = path, robot, terrain
-        self._walked = heights_along(terrain.ground, path.position[:, :2])
+        self._path, self._robot, self._ground = path, robot, ground
+        self._walked = heights_along(ground, path.position[:, :2])
         self._axes = axes
         self._axes.set_axis_off()
         self._axes.view_init(elev=22, azim=-60)
@@ -48,7 +48,6 @@ class Scene:
         self._axes.set_box_aspect((1, 1, _ABOVE), zoom=1.45)  # pyright: ignore[reportArgumentType]
         no_lines = np.zeros((1, 2, 3))
         self._grid = Line3DCollection(no_lines, colors="0.85", lw=0.7, zorder=0)
-        self._areas = Line3DCollection(no_lines, colors=AREA, lw=0.9, zorder=0.5)
         self._trace = self._line(color=BLUE, lw=1.2, zorder=1)
         self._body = Poly3DCollection(
             np.zeros((len(FACES), 4, 3)), facecolors=(0.75, 0.8, 0.85, 0.55), edgecolors="0.2",
@@ -58,7 +57,7 @@ class Scene:
         self._far, self._near = (
             Line3DCollection(no_lines, lw=3.2, capstyle="round", zorder=z) for z in (2, 4)
         )
-        for collection in (self._grid, self._areas, self._far, self._body, self._near):
+        for collection in (self._grid, self._far, self._body, self._near):
             collection.set_clip_on(False)
             self._axes.add_collection3d(collection, autolim=False)
         self._head = self._line(color=RED, lw=2.5, zorder=5)
@@ -69,7 +68,7 @@ class Scene:
         Args:
             panel: The panel in pixels; it may be transformed.
         """
-        for artist in (self._grid, self._areas, self._trace):
+        for artist in (self._grid, self._trace):
             artist.set_clip_on(True)
             artist.set_clip_box(panel)
 
@@ -105,10 +104,8 @@ class Scene:
 
     def _show_ground(self, position: Array) -> None:
         low, high = position[:2] - _VIEW / 2, position[:2] + _VIEW / 2
-        ground = self._terrain.ground
-        self._grid.set_segments(ground_lines(ground, low, high))
-        self._areas.set_segments(area_lines(self._terrain, low, high))
-        base = float(heights_along(ground, position[None, :2])[0, 2])
+        self._grid.set_segments(ground_lines(self._ground, low, high))
+        base = float(heights_along(self._ground, position[None, :2])[0, 2])
         self._axes.set(
             xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(base, base + _ABOVE * _VIEW)
         )  # fmt: skip

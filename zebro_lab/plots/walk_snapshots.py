@@ -10,8 +10,8 @@ from matplotlib.transforms import Bbox, TransformedBbox
 from mpl_toolkits.mplot3d import Axes3D
 
 from model.robot import Robot
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
-from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.sheet import new_figure, styled, time_texts
 from zebro_lab.plots.walk_path import snapshot_times
 from zebro_lab.plots.walk_scene import Scene
@@ -29,7 +29,7 @@ def snapshots(
     *,
     title: str,
     at: Sequence[float] = (),
-    terrain: Terrain = LEVEL,
+    ground: Ground = FLAT,
 ) -> Figure:
     """Draw the robot in 3-D at some times (Fig. 2-1 above, 5-20 to 5-22, 5-24 and 5-25).
 
@@ -38,7 +38,7 @@ def snapshots(
         robot: The robot, for the size of body and legs.
         title: Title of the figure, which names the model; "(simulated)" is appended.
         at: Times [s]; empty for six, evenly spaced from start to end.
-        terrain: The ground.
+        ground: The ground.
 
     Returns:
         The figure: a panel for each time, with the legs in contact named in its title and drawn in
@@ -62,7 +62,7 @@ def snapshots(
         axes = cast("Axes3D", figure.add_axes(box, projection="3d", computed_zorder=False))
         axes.patch.set_visible(False)
         sample = int(np.abs(path.t - t).argmin())
-        scene = Scene(axes, path, robot, terrain=terrain)
+        scene = Scene(axes, path, robot, ground=ground)
         panel = Bbox.from_bounds(left, bottom, width, height)
         scene.clip_ground(TransformedBbox(panel, figure.transFigure))
         scene.show(sample)

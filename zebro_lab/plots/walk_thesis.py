@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 
 from model.arrays import Array
 from model.robot import LEFT, RIGHT
-from model.walk.thesis.path import ThesisPath
+from model.thesis.path import ThesisPath
+from model.thesis.traction import paired_sum
 from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
 from zebro_lab.plots.sheet import (
     BLUE,
@@ -18,7 +19,13 @@ from zebro_lab.plots.sheet import (
     styled,
     time_axis,
 )
-from zebro_lab.plots.walk_legs import leg_limits, leg_panels, load_panels, turn_panels
+from zebro_lab.plots.walk_legs import (
+    draw_traction,
+    leg_limits,
+    leg_panels,
+    load_panels,
+    turn_panels,
+)
 
 _COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 _LEAST = np.array([[0.002, 0.01, 0.1], [0.1, 1.0, 10.0]])  # range of an axis: m, deg; rates of it
@@ -147,6 +154,28 @@ def static_loads(path: ThesisPath, *, title: str) -> Figure:
         "in static equilibrium, Eq. (4-18)": path.static_load,
     }
     return load_panels(path, lines, title=title)
+
+
+@styled
+def paired_traction(path: ThesisPath, *, title: str) -> Figure:
+    """Draw the sum of traction force over pairs of time steps, of each leg over time (Fig. 5-19).
+
+    In the thesis's model the traction changes sign from time step to time step; the thesis calls
+    this sum the net force. It is a sum, not a mean: where the traction is steady, twice the force.
+
+    Args:
+        path: Part of a walk to draw.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+
+    Returns:
+        The figure, as `traction_forces` draws it; time and contact are those of a pair's first
+        step.
+    """
+    net = paired_sum(path.traction_force)
+    first = slice(1, 2 * len(net), 2)
+    return draw_traction(
+        path.t[first], net, path.contact[first], title, label="sum of two steps' traction force"
+    )
 
 
 def _draw_line(axes: Axes, t: Array, values: Array, *, least: float, cut: float) -> None:

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from model.arrays import Array
 from model.robot import Robot
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
-from model.walk.terrain import LEVEL, Terrain
 from zebro_lab.plots.ground import draw_ground
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
 from zebro_lab.plots.walk_robot import outline, to_world
@@ -42,7 +42,7 @@ class DrawnGoal:
 
 @styled
 def ways_to_goals(
-    goals: Sequence[DrawnGoal], robot: Robot, *, title: str, terrain: Terrain = LEVEL
+    goals: Sequence[DrawnGoal], robot: Robot, *, title: str, ground: Ground = FLAT
 ) -> Figure:
     """Draw the paths of the body's centre, with the body at the start and at each end.
 
@@ -50,7 +50,7 @@ def ways_to_goals(
         goals: The goals, a panel each.
         robot: The robot, for the size of its body.
         title: Title of the figure, which names the model; "(simulated)" is appended.
-        terrain: The ground, whose heights are shaded, and its areas, which are hatched.
+        ground: The ground, whose heights are shaded.
 
     Returns:
         The figure, x to the right and y up, both to one scale in each panel.
@@ -62,14 +62,14 @@ def ways_to_goals(
     )
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for panel, goal in zip(axes, goals, strict=False):
-        _draw_goal(panel, goal, robot, terrain)
+        _draw_goal(panel, goal, robot, ground)
     for panel in axes[len(goals) :]:
         panel.set_axis_off()
     legend_below(figure, columns=5)
     return figure
 
 
-def _draw_goal(axes: Axes, goal: DrawnGoal, robot: Robot, terrain: Terrain) -> None:
+def _draw_goal(axes: Axes, goal: DrawnGoal, robot: Robot, ground: Ground) -> None:
     """Draw a goal and the ways to it; they are told apart by colour and by dashes."""
     corners = [np.array(goal.place)[None]]
     for (name, path), colour, dashes in zip(
@@ -89,7 +89,7 @@ def _draw_goal(axes: Axes, goal: DrawnGoal, robot: Robot, terrain: Terrain) -> N
         xlim=(low[0], high[0]), ylim=(low[1], high[1]),
     )  # fmt: skip
     axes.set_title(goal.title, loc="left")
-    draw_ground(axes, terrain, low, high)
+    draw_ground(axes, ground, low, high)
     axes.grid(color="0.92", lw=0.6)
     axes.set_axisbelow(True)
 

@@ -30,5 +30,5 @@ def draw_ways(file: Path, ways: Sequence[Way], robot: Robot, *, title: str) -> N
         for number in numbers
         if (mine := [way for way in ways if way.number == number])
     ]  # fmt: skip
-    terrain = ways[0].walked.terrain
-    save(ways_to_goals(goals, robot, title=title, terrain=terrain), file)
+    ground = ways[0].walked.heights
+    save(ways_to_goals(goals, robot, title=title, ground=ground), file)

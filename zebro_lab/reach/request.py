@@ -18,7 +18,6 @@ from zebro_lab.walk.request import (
     RobotOption,
     SlipOption,
     StepOption,
-    ToeOption,
 )
 
 _GOAL = "'--goal'"
@@ -137,7 +136,6 @@ class ReachRequest:
     ] = ()
     slip: SlipOption = None
     stepping: SteppingRequest = field(default_factory=SteppingRequest)
-    toe: ToeOption = "saturated"
     robot: RobotOption = None
     arc_deg: ArcOption = None
     dt: StepOption = None
@@ -160,6 +158,6 @@ class ReachRequest:
     def model(self) -> ModelRequest:
         """The model "dynamics" with its options."""
         return ModelRequest(
-            slip=self.slip, toe=self.toe, robot=self.robot, arc_deg=self.arc_deg, dt=self.dt,
+            slip=self.slip, robot=self.robot, arc_deg=self.arc_deg, dt=self.dt,
             ground=self.ground,
         )  # fmt: skip

@@ -183,8 +183,7 @@ def _walked(
 def _options(request: ReachRequest) -> str:
     """Return the options with which `walk` walks a program as it was planned."""
     given = {"--slip": request.slip, "--robot": request.robot, "--arc-deg": request.arc_deg,
-             "--dt": request.dt, "--ground": request.ground,
-             "--toe": None if request.toe == "saturated" else request.toe}  # fmt: skip
+             "--dt": request.dt, "--ground": request.ground}  # fmt: skip
     return shlex.join(
         word for name, value in given.items() if value is not None for word in (name, str(value))
     )
@@ -211,7 +210,6 @@ def _content(
         "gait": asdict(request.stepping),
         "model": walked.model,
         "dt": walked.dt,
-        "toe": request.toe,
         "slip": None if slip is None else {"named": slip.text, "source": slip.source},
         "doubts": list(walked.doubts),
         **({} if ground is None else {"ground": ground.settings}),

@@ -4,12 +4,23 @@
 from typing import Final
 
 REMOVED: Final[dict[str, str]] = {
+    "--automaton": "The model thesis takes the rule of its listing for tripods, and contact "
+    "detection for other gaits; --thesis text takes Table 3-1's rule.",
+    "--contacts-least": "States shorter than 10 ms are joined to the next; path.csv has them.",
+    "--start-sd": "Paths of draws.npz start at the origin; validate starts each from the first "
+    "tracked pose, with its covariance.",
+    "--switch-at": "Legs of the model thesis change speed at touchdown and lift-off angle, as its "
+    "listing has it.",
+    "--thesis-every": "thesis.csv has a row every 0.01 s; a longer --dt gives fewer.",
+    "--toe": "A leg on its toe has its slip law's traction at infinite slip.",
     "annotate --order": "State the times of photographs in a table: track --times CSV.",
     "calibrate --discrepancy": "No departure from the law is fitted: --law compare finds the law "
     "that predicts best, and mean residuals say where it does not hold.",
     "calibrate --noise": "Noise is Gaussian: leave out rows with faults by [rows] keep in "
     "columns.toml, or runs by `zebro-lab exclude`.",
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
+    "predict --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
+    "--walks fits them to tracked walks.",
     "rig run --adaptive": "Measure in rounds by rig run, calibrate-slip and rig suggest in turn, "
     "as the shell loop in docs/experiments.md does.",
     "rig run --budget": "State the time of each round by --time of rig suggest "
@@ -21,6 +32,8 @@ REMOVED: Final[dict[str, str]] = {
     "track --merged": "One picture is read as exposures that were cut out and pasted; leave the "
     "option out, and of an average or of darkest values give the photographs themselves.",
     "track --workers": "Photographs are spread over two processes; leave the option out.",
+    "walk --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
+    "--walks fits them to tracked walks.",
 }
 """What to use instead, a sentence, by "COMMAND", "COMMAND --option", or "--option" of any command.
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from model.contact.sequence import ContactState, named_legs
 from model.contact.touchdown import Touchdown
-from zebro_lab.walk.contacts import ContactTrace, WalkContacts
+from zebro_lab.walk.contacts import WalkContacts
 
 CONTACT_COLUMNS = ("by", "contact", "start", "end", "duration", "cycle", "joined")
 """Columns of `contacts.csv`, in order."""
@@ -27,23 +27,22 @@ def write_contacts(file: Path, contacts: WalkContacts) -> None:
 
     Args:
         file: File to write; an existing one is overwritten.
-        contacts: Contacts of the walk, of which each trace is written after the other.
+        contacts: Contacts of the walk.
     """
     rows = (
-        (trace.by, f'"{named_legs(state.legs)}"', _number(state.start), _number(state.end),
-         _number(state.duration), cycle_number(trace, state), str(state.joined))
-        for trace in contacts.traces
-        for state in trace.sequence.states
+        (contacts.by, f'"{named_legs(state.legs)}"', _number(state.start), _number(state.end),
+         _number(state.duration), _cycle_number(contacts, state), str(state.joined))
+        for state in contacts.sequence.states
     )  # fmt: skip
     _write(file, CONTACT_COLUMNS, rows)
 
 
-def cycle_number(trace: ContactTrace, state: ContactState) -> str:
+def _cycle_number(contacts: WalkContacts, state: ContactState) -> str:
     """Return the number of the repeating cycle that a state begins in, "" for the transient.
 
     Cycles begin with the gait's, and are counted from the one in which the walk begins to repeat.
     """
-    cycle = trace.cycle
+    cycle = contacts.cycle
     if cycle is None or state.start < cycle.settled:
         return ""
     return str(1 + int((state.start - cycle.settled) / cycle.period + 1e-6))

@@ -7,30 +7,20 @@ from itertools import islice
 import numpy as np
 from rich.table import Table
 
-from model.contact.sequence import ContactState, named_legs
+from model.contact.sequence import ContactCycle, ContactState, named_legs
 from model.contact.touchdown import Touchdown
 from model.counted import counted
 from model.robot import N_LEGS
 from zebro_lab.terminal.tables import plain_table
-from zebro_lab.walk.contacts import ContactTrace, WalkContacts
+from zebro_lab.walk.contacts import WalkContacts
 
 _SHOWN = 12  # states of a walk that does not repeat; `contacts.csv` has all
 
 
 def contact_lines(contacts: WalkContacts) -> list[str]:
-    """Say the sequence of contact states by each rule, and how far the rules agree."""
-    lines = [line for trace in contacts.traces for line in _trace_lines(trace, contacts)]
-    if contacts.same is not None and contacts.same_legs is not None:
-        lines.append(
-            f"both have the same legs on the ground in {contacts.same:.1%} of the time, and agree "
-            f"on a leg in {contacts.same_legs.mean():.1%}"
-        )
-    return [*lines, *contacts.notes]
-
-
-def _trace_lines(trace: ContactTrace, contacts: WalkContacts) -> list[str]:
-    sequence, cycle = trace.sequence, trace.cycle
-    lines = [f"contact states by {trace.rule}:"]
+    """Say the sequence of contact states, and what decides contact."""
+    sequence, cycle = contacts.sequence, contacts.cycle
+    lines = [f"contact states by {contacts.rule}:"]
     if cycle is not None:
         lines.append(f"  {cycle}")
         lines.append(
@@ -41,7 +31,7 @@ def _trace_lines(trace: ContactTrace, contacts: WalkContacts) -> list[str]:
         shown = " → ".join(_with_start(state) for state in islice(sequence.states, _SHOWN))
         more = len(sequence.states) - _SHOWN
         lines.append(f"  {shown}" + (f" → … ({counted(more, 'more state')})" if more > 0 else ""))
-        lines.append(f"  {_why_no_cycle(trace, contacts)}")
+        lines.append(f"  {_why_no_cycle(contacts)}")
     if sequence.joined:
         lines.append(
             f"  states shorter than {1000 * sequence.least:g} ms are joined to the next: "
@@ -54,17 +44,14 @@ def _with_start(state: ContactState) -> str:
     return f"{named_legs(state.legs)} ({state.start:.2f} s)"
 
 
-def _why_no_cycle(trace: ContactTrace, contacts: WalkContacts) -> str:
+def _why_no_cycle(contacts: WalkContacts) -> str:
     if contacts.period is None:
         return "these leg angles have no cycle that repeats"
-    if len(trace.sequence.states) == 1:
+    if len(contacts.sequence.states) == 1:
         return "the legs on the ground never change"
-    uneven = any(each.on_ground for each in contacts.traces)
-    advice = "; on uneven ground they may never" if uneven else ""
     return (
         f"the last two cycles of {contacts.period:.4g} s do not repeat within "
-        f"{1000 * contacts.tolerance:.0f} ms; walk longer, or join longer states by "
-        f"--contacts-least{advice}"
+        f"{1000 * contacts.tolerance:.0f} ms; walk longer; on uneven ground they may never"
     )
 
 
@@ -72,7 +59,7 @@ def touchdown_table(contacts: WalkContacts) -> Table:
     """Return a table of touchdowns, a row per leg: means and standard deviations."""
     numbers = ("touchdowns", "missed", "angle\n[deg]", "sd\n[deg]", "asked\n[deg]", "late\n[ms]",
                "sd\n[ms]", "lift-off\n[deg]", "again\ndown")  # fmt: skip
-    title = f"touchdowns by {contacts.own.rule}"
+    title = f"touchdowns by {contacts.rule}"
     table = plain_table(title, ("leg",), numbers)
     for leg in range(N_LEGS):
         row = touchdown_summary([each for each in contacts.touchdowns if each.leg == leg])
@@ -127,11 +114,15 @@ def touchdown_summary(downs: Sequence[Touchdown]) -> dict[str, float | None]:
 def contact_document(contacts: WalkContacts) -> dict[str, object]:
     """Return contacts and touchdowns for `--json`; keys end in the unit."""
     return {
-        "least_s": contacts.own.sequence.least,
+        "least_s": contacts.sequence.least,
         "tolerance_s": contacts.tolerance,
-        "rules": [_trace_document(trace) for trace in contacts.traces],
-        "same_legs_share": contacts.same,
-        "same_leg_shares": contacts.same_legs,
+        "rules": [{
+            "by": contacts.by,
+            "states": len(contacts.sequence.states),
+            "joined": contacts.sequence.joined,
+            "joined_s": contacts.sequence.joined_time,
+            "cycle": None if contacts.cycle is None else _cycle_document(contacts.cycle),
+        }],
         "touchdowns": [
             {"leg": leg + 1,
              **touchdown_summary([each for each in contacts.touchdowns if each.leg == leg])}
@@ -140,20 +131,12 @@ def contact_document(contacts: WalkContacts) -> dict[str, object]:
     }  # fmt: skip
 
 
-def _trace_document(trace: ContactTrace) -> dict[str, object]:
-    cycle = trace.cycle
+def _cycle_document(cycle: ContactCycle) -> dict[str, object]:
     return {
-        "by": trace.by,
-        "on_ground": trace.on_ground,
-        "states": len(trace.sequence.states),
-        "joined": trace.sequence.joined,
-        "joined_s": trace.sequence.joined_time,
-        "cycle": None if cycle is None else {
-            "period_s": cycle.period,
-            "contacts": [named_legs(legs) for legs in cycle.states],
-            "begins_s": cycle.begins,
-            "spread_s": cycle.spread,
-            "settled_s": cycle.settled,
-            "cycles": cycle.cycles,
-        },
-    }  # fmt: skip
+        "period_s": cycle.period,
+        "contacts": [named_legs(legs) for legs in cycle.states],
+        "begins_s": cycle.begins,
+        "spread_s": cycle.spread,
+        "settled_s": cycle.settled,
+        "cycles": cycle.cycles,
+    }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read and write a walk folder: `path.csv` and `manifest.json`.
+"""Read and write a walk folder: `path.csv`, `draws.npz`, `band.csv` and `manifest.json`.
 
 Only this module depends on the format of these files.
 """
@@ -13,11 +13,15 @@ from typing import Any
 import numpy as np
 
 from model.arrays import Array
+from model.path_draws import LEVELS, STATES, quantiles
+from model.poses import Poses
 from model.robot import N_LEGS
 from model.walk.path import WalkPath
-from zebro_lab.files.errors import NotFound
+from zebro_lab.files.arrays import read_arrays
+from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.opening import parsing
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
@@ -30,13 +34,14 @@ KINDS = ("walk", "predict")
 THESIS_CSV = "thesis.csv"
 THESIS_PICTURES = (
     "coordinates", "lowest_angle", "hip_height", "contact_velocity", "static_load",
+    "paired_traction",
 )  # fmt: skip
 """Pictures of walks by the thesis's model alone."""
 _NOT_MEASURED = ("assumed", "thesis")  # sources of slip laws without data
 INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 PICTURES = (
     "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
-    "paired_traction", "leg_angles", "gantt", "snapshots",
+    "leg_angles", "gantt", "snapshots",
 )  # fmt: skip
 SOME_PICTURES = ("stances", "slip_law")
 """Pictures of walks by a gait, and with a slip curve."""
@@ -44,6 +49,7 @@ CONTACTS_CSV, TOUCHDOWNS_CSV, CONTACTS_PICTURE = "contacts.csv", "touchdowns.csv
 CONTACTS = (CONTACTS_CSV, TOUCHDOWNS_CSV, *in_every_format(CONTACTS_PICTURE))
 ANIMATIONS = ("animation.mp4", "animation.gif")
 DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band"
+_DRAWS_ADVICE = f"delete {DRAWS} if it is there, and run walk or predict again with --draws 500"
 BAND = (DRAWS, BAND_CSV, *in_every_format(BAND_PICTURE))
 FILES = (
     PATH_CSV,
@@ -223,6 +229,43 @@ def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
     """
     recover(folder)
     return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)
+
+
+def write_draws(folder: Path, paths: Poses) -> None:
+    """Write the paths of a band, `draws.npz`, and their quantiles, `band.csv`, into a walk folder.
+
+    Args:
+        folder: Folder to write into.
+        paths: The paths, in the time base of the walk folder.
+    """
+    np.savez_compressed(folder / DRAWS, t=paths.t, poses=paths.states.astype(np.float32))
+    columns = ("t", *(f"{state}_q{1000 * level:03.0f}" for state in STATES for level in LEVELS))
+    band = np.moveaxis(quantiles(paths), 1, 0).swapaxes(1, 2).reshape(len(paths.t), -1)
+    rows = np.column_stack([paths.t, band])
+    write_rows(folder / BAND_CSV, columns, (rows,), ["%.8g"] * len(columns))
+
+
+def read_draws(folder: Path) -> Poses:
+    """Read the paths of a walk folder's band from `draws.npz`.
+
+    Raises:
+        NotFound: The folder has no `draws.npz`.
+        DataError: The file is damaged or too large, there are no poses, shapes do not match, or
+            times do not increase.
+    """
+    file = folder / DRAWS
+    arrays = read_arrays(file, ("t", "poses"), advice=_DRAWS_ADVICE)
+    t, poses = arrays["t"], arrays["poses"]
+    if t.ndim != 1 or poses.ndim != 3 or poses.shape[1:] != (len(t), 3) or 0 in poses.shape:
+        raise DataError(
+            f"holds poses of shape {poses.shape} at times of shape {t.shape}; {_DRAWS_ADVICE}",
+            file=file,
+        )
+    with parsing(file, "cannot be read as poses", advice=_DRAWS_ADVICE):
+        t, poses = t.astype(float), poses.astype(float)
+    if not np.all(np.diff(t) > 0):
+        raise DataError(f"holds times that do not increase; {_DRAWS_ADVICE}", file=file)
+    return Poses.of_states(t, poses)
 
 
 def measured_sources(manifest: Mapping[str, Any]) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 """Write a finished walk: the walk folder with path, band and the requested pictures."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 from model.gait.cyclic import CyclicReference
@@ -11,12 +11,18 @@ from model.robot import Robot
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.terminal.picture_options import Window
+from zebro_lab.walk.band import band_settings
 from zebro_lab.walk.contact_files import write_contacts, write_touchdowns
 from zebro_lab.walk.contacts import WalkContacts
-from zebro_lab.walk.folder import CONTACTS_CSV, THESIS_CSV, TOUCHDOWNS_CSV, walk_folder
+from zebro_lab.walk.folder import (
+    CONTACTS_CSV,
+    THESIS_CSV,
+    TOUCHDOWNS_CSV,
+    walk_folder,
+    write_draws,
+)
 from zebro_lab.walk.output_request import PictureRequest
-from zebro_lab.walk.path_band import band_settings, write_band
-from zebro_lab.walk.pictures import draw_contacts, draw_walk
+from zebro_lab.walk.pictures import draw_band, draw_contacts, draw_walk
 from zebro_lab.walk.request import ModelRequest
 from zebro_lab.walk.walking import Walked
 
@@ -61,10 +67,7 @@ def write_walk(
     everything = {
         "model": walked.model,
         "dt": walked.dt,
-        "toe": request.toe,
-        **({} if request.thesis is None else {"thesis": asdict(request.thesis)}),
         "contact_by": walked.contact_by,
-        **({} if walked.contacts is None else {"contacts_least": request.contact.least}),
         "slip": None if slip is None else {"named": slip.text, "source": slip.source},
         "robot": _robot_settings(described.robot),
         "doubts": list(walked.doubts),
@@ -77,25 +80,26 @@ def write_walk(
     with walk_folder(
         out, walked.path, kind=kind, source=source, settings=everything, inputs=inputs
     ) as folder:
-        _write_thesis(folder, walked, request.rows_every)
+        _write_thesis(folder, walked)
         _draw(request, walked, folder, watcher)
         if walked.contacts is not None:
             _write_contacts(folder, walked, walked.contacts, _asked(request, walked))
         if walked.band is not None:
-            write_band(
+            write_draws(folder, walked.band)
+            draw_band(
                 folder, walked.band, title=walked.title, form=request.pictures.form,
-                terrain=walked.terrain,
+                ground=walked.heights,
             )  # fmt: skip
 
 
-def _write_thesis(folder: Path, walked: Walked, every: float) -> None:
+def _write_thesis(folder: Path, walked: Walked) -> None:
     """Write the quantities of the thesis's model, if it walked."""
-    from model.walk.thesis.path import ThesisPath  # its package takes most of a second
+    from model.thesis.path import ThesisPath  # its package takes most of a second
 
     if isinstance(walked.path, ThesisPath):
         from zebro_lab.walk.thesis_file import write_thesis
 
-        write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot, every=every)
+        write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot)
 
 
 def _write_contacts(
@@ -115,7 +119,7 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
         gait = walked.reference if isinstance(walked.reference, CyclicReference) else None
         draw_walk(
             folder, walked.path, robot, title=title, asked=_asked(request, walked), gait=gait,
-            slip=walked.slip, terrain=walked.terrain,
+            slip=walked.slip, ground=walked.heights,
         )  # fmt: skip
     if request.pictures.animate:
         from zebro_lab.plots.animation import animate  # matplotlib takes most of a second
@@ -125,7 +129,7 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
             _raise_if_stopped(watcher)
 
         animate(
-            walked.path, robot, folder, title=title, progress=follow, terrain=walked.terrain
+            walked.path, robot, folder, title=title, progress=follow, ground=walked.heights
         )  # fmt: skip
 
 

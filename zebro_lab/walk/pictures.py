@@ -6,14 +6,16 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from model.gait.cyclic import CyclicReference
+from model.poses import Poses
 from model.robot import Robot
 from model.slip.curve import SlipCurve
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
-from model.walk.terrain import LEVEL, Terrain
+from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.walk.contacts import WalkContacts
-from zebro_lab.walk.folder import CONTACTS_PICTURE
+from zebro_lab.walk.folder import BAND_PICTURE, CONTACTS_PICTURE
 from zebro_lab.walk.output_request import PictureRequest
 from zebro_lab.walk.shown_time import part_in
 
@@ -30,7 +32,7 @@ def draw_walk(
     asked: PictureRequest,
     gait: CyclicReference | None = None,
     slip: Slip | None = None,
-    terrain: Terrain = LEVEL,
+    ground: Ground = FLAT,
 ) -> None:
     """Draw path, motion, orientation, slip ratios, forces, leg angles and contacts of a walk.
 
@@ -45,12 +47,12 @@ def draw_walk(
         asked: Format, times of snapshots and window of time.
         gait: The gait, whose touchdown and lift-off are drawn; None for a log or a program.
         slip: The slip law, which is drawn if it is a curve; None for a model without.
-        terrain: The ground, drawn below the path and the snapshots.
+        ground: The ground, drawn below the path and the snapshots.
 
     Raises:
         SettingsError: The window is not in the walk.
     """
-    from model.walk.thesis.path import ThesisPath
+    from model.thesis.path import ThesisPath
     from zebro_lab.plots import (  # matplotlib takes most of a second
         save,
         slip_law,
@@ -67,10 +69,10 @@ def draw_walk(
         name: draw(part, title=f"{what}: {title}") for name, (what, draw, part) in drawers.items()
     }
     figures["path"] = walk_path.path_with_snapshots(
-        path, robot, title=f"Path: {title}", at=asked.snapshots, terrain=terrain
+        path, robot, title=f"Path: {title}", at=asked.snapshots, ground=ground
     )
     figures["snapshots"] = walk_snapshots.snapshots(
-        path, robot, title=f"Snapshots: {title}", at=asked.snapshots, terrain=terrain
+        path, robot, title=f"Snapshots: {title}", at=asked.snapshots, ground=ground
     )
     if gait is not None:
         figures["stances"] = walk_stance.stances(gait, robot, title=f"Stances: {title}")
@@ -92,11 +94,6 @@ def _over_time(end: WalkPath, whole: WalkPath) -> _Drawers:
         "slip_ratio": ("Slip ratios", walk_legs.slip_ratios, end),
         "normal_force": ("Normal forces", walk_legs.normal_forces, end),
         "traction_force": ("Traction forces", walk_legs.traction_forces, end),
-        "paired_traction": (
-            "Sums of traction over pairs of time steps",
-            walk_legs.paired_traction,
-            end,
-        ),
         "leg_angles": ("Leg angles", walk_legs.leg_angles, end),
         "gantt": ("Contact", walk_legs.gantt, end),
     }
@@ -112,6 +109,9 @@ def _of_the_thesis(part: WalkPath, *, kinematic: bool) -> _Drawers:
     dynamics = {} if kinematic else {
         "hip_height": ("Hip heights", walk_thesis.hip_heights, part),
         "static_load": ("Normal forces and static loads", walk_thesis.static_loads, part),
+        "paired_traction": (
+            "Sums of traction over pairs of time steps", walk_thesis.paired_traction, part
+        ),
     }  # fmt: skip
     return {
         "coordinates": ("Coordinates of the model", walk_thesis.coordinates, part),
@@ -129,7 +129,7 @@ def draw_contacts(
     Args:
         folder: Folder to write the picture into.
         path: The walk.
-        contacts: Its contact states by each rule.
+        contacts: Its contact states.
         title: Gait and model.
         asked: Format, and window of time.
 
@@ -137,14 +137,29 @@ def draw_contacts(
         SettingsError: The window is not in the walk.
     """
     from zebro_lab.plots import save  # matplotlib takes most of a second
-    from zebro_lab.plots.walk_contacts import DrawnContacts, contact_states_chart
+    from zebro_lab.plots.walk_contacts import contact_states_chart
 
     shown = part_in(path, asked.window)
-    drawn = [
-        DrawnContacts(trace.rule, trace.t, trace.contact, trace.sequence.states)
-        for trace in contacts.traces
-    ]
     figure = contact_states_chart(
-        drawn, (float(shown.t[0]), float(shown.t[-1])), title=f"Contact states: {title}"
-    )
+        path, contacts.sequence.states, (float(shown.t[0]), float(shown.t[-1])),
+        title=f"Contact states: {title}",
+    )  # fmt: skip
     save(figure, folder / f"{CONTACTS_PICTURE}.{asked.form}")
+
+
+def draw_band(
+    folder: Path, paths: Poses, *, title: str, form: PictureFormat, ground: Ground = FLAT
+) -> None:
+    """Draw the band of a predicted path.
+
+    Args:
+        folder: Folder to write the picture into.
+        paths: Draws of the path.
+        title: Gait and model.
+        form: Format of the picture.
+        ground: The ground, which is drawn below the paths.
+    """
+    from zebro_lab.plots import path_band, save  # matplotlib takes most of a second
+
+    figure = path_band.path_band(paths, title=f"Predicted path: {title}", ground=ground)
+    save(figure, folder / f"{BAND_PICTURE}.{form}")

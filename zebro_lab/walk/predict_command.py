@@ -24,7 +24,7 @@ Draws are the same on this machine's cores and on a Dask cluster. --scheduler ne
 """
 
 
-@request_command(first=("log", "out", "slip", "model", "toe", "robot", "arc_deg"))
+@request_command(first=("log", "out", "slip", "model", "robot", "arc_deg"))
 def predict(request: PredictRequest, output: Output = TEXT) -> None:
     """Predict the path from leg angles: FOLDER/path.csv, a band, pictures and an animation."""
     from zebro_lab.walk import predict_stage

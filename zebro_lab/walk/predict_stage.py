@@ -20,10 +20,10 @@ from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import LegNames, read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.terminal.leg_options import joint_names
+from zebro_lab.walk.band import predict_band
 from zebro_lab.walk.folder import PREDICTION, WALKED
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk.output import write_walk
-from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.request import PredictRequest
 from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
@@ -97,7 +97,7 @@ def _predict(request: PredictRequest, watcher: Watcher, executor: Executor | Non
     if request.model.band.draws:
         band = predict_band(
             request.model.band, walked, legs,
-            duration=end - start, toe=request.model.toe, watcher=watcher, executor=executor,
+            duration=end - start, watcher=watcher, executor=executor,
         )  # fmt: skip
         walked = replace(walked, band=band)
     walked = with_contacts(walked.delayed(start), request.model.contact, watcher)

@@ -24,10 +24,10 @@ from zebro_lab.walk.folder import (
     MANIFEST,
     doubts,
     measured_sources,
+    read_draws,
     read_walk,
     read_walk_manifest,
 )
-from zebro_lab.walk.path_band import read_draws
 
 NOT_SAID = "not said"  # by the manifest of an earlier version
 

@@ -9,12 +9,11 @@ import numpy as np
 from model.leg_state import bend_in, law_in, robot_in
 from model.progress import Watcher
 from model.robot import GRAVITY
-from model.walk.areas import with_areas
 from model.walk.bend import STRAIGHT
 from model.walk.dynamics import DynamicsOptions
+from model.walk.ground import FLAT, Ground
 from model.walk.manoeuvre import Surroundings
 from model.walk.program import lay_out
-from model.walk.terrain import LEVEL
 from model.walk_models import MODELS
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
@@ -43,11 +42,11 @@ def laid_out(
 
     Args:
         file: The `program.toml`.
-        request: Model, slip law with what fitted walks say of legs and floor, toe law and time
-            step, with which headings and places are found.
+        request: Model, slip law with what fitted walks say of legs and floor, and time step,
+            with which headings and places are found.
         described: The robot.
         watcher: Receives progress.
-        ground: The ground and its areas; None for level ground of one slip law.
+        ground: The ground; None for level ground.
 
     Raises:
         NotFound: There is no such file.
@@ -121,31 +120,32 @@ def surroundings_of(
 
     Args:
         slip: The slip law.
-        request: Toe law and time step.
+        request: The time step.
         described: The robot.
-        ground: The ground and its areas; None for level ground of one slip law.
+        ground: The ground; None for level ground.
 
     Raises:
         ModelError: The slip law loses its shape at the robot's loads.
     """
-    terrain = LEVEL if ground is None else ground.terrain
     informed = None if slip.walks is None else informed_legs(slip.walks, described)
     options = DynamicsOptions(dt=time_step(request, MODELS[_WALKS], informed))
     weight = described.robot.mass * GRAVITY
-    law = slip.traction_table(weight=weight, toe=request.toe)
+    law = slip.traction_table(weight=weight)
     robot, bend = described.robot, STRAIGHT
     if informed is not None:
         corrections = informed.middle
         robot, law = robot_in(robot, corrections, 0), law_in(law, corrections, 0)
         bend = bend_in(corrections, 0)
-    table = with_areas(law, terrain.tabulated(weight=weight, toe=request.toe))
-    return Surroundings(robot, table, options, terrain.ground, bend)
+    return Surroundings(robot, law, options, _heights(ground), bend)
 
 
 def _unwalked(
     request: ModelRequest, described: RobotFile, ground: GroundFile | None
 ) -> Surroundings:
     """Return what programs are laid out with of which no segment needs walking."""
-    terrain = LEVEL if ground is None else ground.terrain
     options = DynamicsOptions(dt=time_step(request, MODELS[request.model], None))
-    return Surroundings(described.robot, None, options, terrain.ground)
+    return Surroundings(described.robot, None, options, _heights(ground))
+
+
+def _heights(ground: GroundFile | None) -> Ground:
+    return FLAT if ground is None else ground.ground

@@ -8,29 +8,21 @@ from typing import Annotated, Final, Literal, TypeAlias
 from typer import Argument, BadParameter, Option
 
 from model.walk.slipping import SLIPPING
-from model.walk.thesis_switches import ThesisSwitches
 from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
 from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.walk.output_request import BandRequest, ContactRequest, PictureRequest
-from zebro_lab.walk.thesis_argument import THESIS_HELP, parse_thesis
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
-AutomatonName: TypeAlias = Literal["listing", "table", "events", "balanced"]
-SwitchName: TypeAlias = Literal["angle", "contact"]
-ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
+RuleName: TypeAlias = Literal["listing", "text"]
 
 
 LONGEST_STEP: Final = 0.02
 """Longest time step [s], for models without slip: with it, paths of cycles of 0.5 s hold to 1 %."""
 LONGEST_SLIPPING_STEP: Final = 0.005
 """The same for models with slip; longer steps leave the path, and give false slip."""
-THESIS_ROWS: Final = 0.01
-"""Time between the rows of `thesis.csv`, 1 kB each [s]."""
-DETECTED: Final = ("events", "balanced")
-"""Automata of the model thesis that are kinematics, and so without slip."""
 
 
 SlipOption: TypeAlias = Annotated[
@@ -40,9 +32,6 @@ SlipOption: TypeAlias = Annotated[
         "of it at slip velocity V (0.001 m/s). Required by dynamics and thesis.",
         metavar="SLIP",
     ),
-]
-ToeOption: TypeAlias = Annotated[
-    ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
 ]
 RobotOption: TypeAlias = Annotated[
     Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
@@ -65,8 +54,7 @@ GroundOption: TypeAlias = Annotated[
     Path | None,
     Option(
         metavar="FILE",
-        help="ground.toml: slope, steps, roughness, heights and areas of other slip, for "
-        "dynamics; default: flat.",
+        help="ground.toml: slope and map of heights, for dynamics; default: flat.",
     ),
 ]
 
@@ -83,29 +71,13 @@ class ModelRequest:
             "with its errors; no-slip: exact kinematics; no-slip-simple: wheels."
         ),
     ] = "dynamics"
-    automaton: Annotated[
-        AutomatonName | None,
-        Option(
-            help="What decides contact in the model thesis. listing (A.32) or table (3-1): its "
-            "dynamics of tripods; events or balanced: contact detection of 3-5-2 for any gait, "
-            "kinematics without slip, the centre of mass tested at touchdowns or at every step. "
-            "Default: listing for tripods, events for other gaits."
-        ),
-    ] = None
-    toe: ToeOption = "saturated"
     thesis: Annotated[
-        ThesisSwitches | None,
-        Option(parser=parse_thesis, metavar="SWITCH,…", help=THESIS_HELP),
-    ] = None
-    thesis_every: Annotated[
-        float | None,
+        RuleName,
         Option(
-            metavar="SECONDS",
-            help="With --model thesis: time between the rows of thesis.csv [s], 0 for a row each "
-            f"step; default: {THESIS_ROWS:g}.",
+            help="What --model thesis follows where they differ. listing: contacts by A.32, and "
+            "each change sets the body's height; text: contacts by Table 3-1, and the body sinks."
         ),
-        Limits(least=0),
-    ] = None
+    ] = "listing"
     robot: RobotOption = None
     arc_deg: ArcOption = None
     dt: StepOption = None
@@ -113,11 +85,6 @@ class ModelRequest:
     band: BandRequest = field(default_factory=BandRequest)
     pictures: PictureRequest = field(default_factory=PictureRequest)
     contact: ContactRequest = field(default_factory=ContactRequest)
-
-    @property
-    def rows_every(self) -> float:
-        """Time between the rows of `thesis.csv`, 0 for every step [s]."""
-        return THESIS_ROWS if self.thesis_every is None else self.thesis_every
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -131,7 +98,7 @@ class ModelRequest:
         Raises:
             SettingsError: A `coulomb:…` is no friction law, the step is too long, or a ground is
                 given for a model that walks on level ground only.
-            BadParameter: Switches of the thesis's model are given for another one, or a window of
+            BadParameter: What the thesis's model follows is given for another one, or a window of
                 time without figures to draw.
         """
         pictures = self.pictures
@@ -139,29 +106,16 @@ class ModelRequest:
             raise BadParameter(
                 "says what figures show; give --figures or --contacts too", param_hint="'--window'"
             )
-        if self.thesis is not None and self.model != "thesis":
+        if self.thesis != "listing" and self.model != "thesis":
             raise BadParameter(
-                f"switches the thesis's model; the model '{self.model}' has none of it: give "
-                "--model thesis too",
+                f"is of the thesis's model, not of '{self.model}': give --model thesis too",
                 param_hint="'--thesis'",
-            )
-        if self.thesis_every is not None and self.model != "thesis":
-            raise BadParameter(
-                f"is for thesis.csv, which the model '{self.model}' does not write; give --model "
-                "thesis too",
-                param_hint="'--thesis-every'",
             )
         if self.slip is not None:
             coulomb_numbers(self.slip)
-        if self.automaton is not None and self.model != "thesis":
-            raise SettingsError(
-                f"found '{self.automaton}' with the model '{self.model}', which has a contact "
-                "rule of its own; give --model thesis with it",
-                key="--automaton",
-            )
         if self.ground is not None and self.model != "dynamics":
             raise SettingsError(
-                f"the model '{self.model}' walks on level ground of one slip law only; expected "
+                f"the model '{self.model}' walks on level ground only; expected "
                 "--model dynamics with it",
                 key="--ground",
             )
@@ -179,7 +133,7 @@ class ModelRequest:
         Raises:
             BadParameter: The model has slipping legs and `--slip` is missing.
         """
-        if self.slip is None and self.model in SLIPPING and self.automaton not in DETECTED:
+        if self.slip is None and self.model in SLIPPING:
             raise BadParameter(
                 f"missing: legs slip in the model '{self.model}'; name a slip.toml, the folder "
                 "that holds it, coulomb:MU[:V] or thesis",
@@ -199,14 +153,6 @@ class WalkRequest:
     ] = None
     out: Annotated[Path, Option(metavar="DIR", help="Walk folder to write.")] = Path("walk")
     model: ModelRequest = field(default_factory=ModelRequest)
-    switch_at: Annotated[
-        SwitchName | None,
-        Option(
-            help="Where the legs of a tripod change between ground and flight speed, for the model "
-            "thesis: at touchdown and lift-off angle (A.33) or at contact (text of 5-2-1); "
-            "default: angle."
-        ),
-    ] = None
     program: Annotated[
         Path | None,
         Argument(
@@ -216,19 +162,12 @@ class WalkRequest:
     ] = None  # fmt: skip
 
     def __post_init__(self) -> None:
-        """Raise `BadParameter` for options of a gait beside a program, or of another model."""
-        if self.switch_at is not None and self.model.model != "thesis":
-            raise BadParameter(
-                f"the legs of the model '{self.model.model}' follow the gait's angles over time; "
-                "give --model thesis with it",
-                param_hint="'--switch-at'",
-            )
+        """Raise `BadParameter` for options of a gait beside a program."""
         if self.program is None:
             return
         given = self.gait.given()
-        own = [name for name in ("duration", "switch_at") if getattr(self, name) is not None]
-        if own or given or self.gait.name != GaitRequest().name:
-            options = [*own, *given]
+        options = [*(("duration",) if self.duration is not None else ()), *given]
+        if options or self.gait.name != GaitRequest().name:
             name = options[0].replace("_", "-") if options else "gait"
             raise BadParameter("is for one gait; the program says it", param_hint=f"'--{name}'")
 
@@ -241,10 +180,9 @@ class WalkRequest:
         Raises:
             BadParameter: The walk has slipping legs and `--slip` is missing.
         """
-        model, name = self.model, self.gait.name
-        may_be_kinematic = name == "tetrapod" or "{" in name
-        if model.model != "thesis" or model.automaton is not None or not may_be_kinematic:
-            model.require_slip()
+        may_be_kinematic = self.gait.name == "tetrapod" or "{" in self.gait.name
+        if self.model.model != "thesis" or not may_be_kinematic:
+            self.model.require_slip()
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.robot.gait_argument import make_gait
 from zebro_lab.robot.robot_file import RobotFile, render_robot_file
 from zebro_lab.walk.asked import AskedWalk
+from zebro_lab.walk.band import predict_band
 from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.leg_speeds import speed_warnings
 from zebro_lab.walk.output import write_walk
-from zebro_lab.walk.path_band import predict_band
 from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
@@ -56,13 +56,13 @@ def _walk(request: WalkRequest, watcher: Watcher, executor: Executor | None) -> 
     require_shown_times(pictures.snapshots, pictures.window, 0.0, duration)
     walked = walk_with(
         request.model, described, asked.reference, duration=duration, what=asked.what,
-        direction=asked.direction, switch=request.switch_at or "angle", ground=ground,
+        direction=asked.direction, ground=ground,
         notes=(*asked.notes, *speed_warnings(asked.reference, described.leg_speed_limit)),
     )  # fmt: skip
     if request.model.band.draws:
         band = predict_band(
             request.model.band, walked, asked.reference,
-            duration=duration, toe=request.model.toe, watcher=watcher, executor=executor,
+            duration=duration, watcher=watcher, executor=executor,
         )  # fmt: skip
         walked = replace(walked, band=band)
     walked = replace(
@@ -84,7 +84,6 @@ def _gait(request: WalkRequest, described: RobotFile) -> AskedWalk:
         "gait": {"name": request.gait.name, **request.gait.given()},
         "duration": request.duration,
         "direction": gait.direction,
-        "switch_at": request.switch_at,
     }
     return AskedWalk(
         gait.reference, request.duration, gait.what, settings, direction=gait.direction,

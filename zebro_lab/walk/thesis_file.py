@@ -8,11 +8,12 @@ import numpy as np
 from model.arrays import Array
 from model.leg import wrap_angle
 from model.robot import N_LEGS, Robot
-from model.walk.thesis.frames import contact_forces, contact_frames, hip_frames
-from model.walk.thesis.path import ThesisPath
+from model.thesis.frames import contact_forces, contact_frames, hip_frames
+from model.thesis.path import ThesisPath
 from zebro_lab.walk.folder import write_rows
 
 _DIGITS = "%.8g"  # to 1e-7 m in a walk of 10 m
+_EVERY = 0.01  # s between two rows, of 1 kB each
 _PART = 10_000  # samples
 _COORDINATES = ("x", "y", "z", "theta_r", "theta_p", "theta_y")
 
@@ -32,7 +33,7 @@ COLUMNS = (
 """The columns of `thesis.csv`, in order."""
 
 
-def write_thesis(file: Path, path: ThesisPath, robot: Robot, *, every: float = 0.0) -> None:
+def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
     """Write the quantities of the thesis's model as CSV in SI with the columns `COLUMNS`.
 
     Frames and forces are computed and written part by part, since all at once of a long walk they
@@ -42,11 +43,9 @@ def write_thesis(file: Path, path: ThesisPath, robot: Robot, *, every: float = 0
         file: File to write; an existing one is overwritten.
         path: The walk; NaN, for what a leg in the air does not have, becomes an empty cell.
         robot: The robot that walked.
-        every: Time between two rows, rounded to whole steps; 0 for every step [s].
     """
-    if every > 0 and len(path.t) > 1:
-        steps = max(round(every / float(path.t[1] - path.t[0])), 1)
-        path = path.part(slice(None, None, steps))
+    steps = max(round(_EVERY / float(path.t[1] - path.t[0])), 1)
+    path = path.part(slice(None, None, steps))
     parts = (path.part(slice(first, first + _PART)) for first in range(0, len(path.t), _PART))
     values = (_values(part, robot) for part in parts)
     write_rows(file, COLUMNS, values, [_DIGITS] * len(COLUMNS))

@@ -15,11 +15,9 @@ from model.gait.stance import Intervals
 from model.poses import Poses
 from model.predict import FINE
 from model.progress import Watcher
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
-from model.walk.terrain import LEVEL, Terrain
-from model.walk.thesis.legs import Switch
-from model.walk.thesis_switches import AS_LISTED
-from model.walk_models import MODELS, ModelRun, WalkModel, decides_contact, thesis_automaton
+from model.walk_models import MODELS, ModelRun, WalkModel, decides_contact, is_kinematic
 from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.ground.ground_file import GroundFile, read_ground
@@ -30,8 +28,7 @@ from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.ground_notes import ground_notes
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.output_request import ContactRequest
-from zebro_lab.walk.request import DETECTED, ModelRequest
-from zebro_lab.walk.thesis_argument import named_switches
+from zebro_lab.walk.request import ModelRequest
 
 MOST_STEPS: Final = 500_000
 """Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""
@@ -58,7 +55,7 @@ class Walked:
         title: Gait or log, model and slip law, for titles.
         notes: Notes, one line each.
         informed: Posterior of legs and floor that was used; None without fitted walks.
-        ground: The ground and its areas, as read; None for level ground of one slip law.
+        ground: The ground as read; None for level ground.
         contact_by: What decides contact in the model: "force", "rest" (legs on which the robot
             rests), or the rule of the thesis's model.
         band: Paths with slip law, legs, floor and start drawn; None unless requested.
@@ -86,16 +83,14 @@ class Walked:
     contacts: WalkContacts | None = None
 
     @property
-    def terrain(self) -> Terrain:
-        """The ground, level without a file of it."""
-        return LEVEL if self.ground is None else self.ground.terrain
+    def heights(self) -> Ground:
+        """Heights of the ground, level without a file of it."""
+        return FLAT if self.ground is None else self.ground.ground
 
     @property
     def doubts(self) -> tuple[str, ...]:
         """Why the slip law or the fitted walks cannot be trusted, a warning for each."""
-        areas = () if self.ground is None else self.ground.slips
-        parts = (self.slip, self.informed, *areas)
-        return tuple(dict.fromkeys(line for part in parts if part for line in part.doubts))
+        return tuple(line for part in (self.slip, self.informed) if part for line in part.doubts)
 
     def delayed(self, delay: float) -> "Walked":
         """Return a copy with `delay` [s] added to times of path and band, not of `reference`."""
@@ -108,15 +103,14 @@ def with_contacts(walked: Walked, request: ContactRequest, watcher: Watcher) -> 
 
     Args:
         walked: The walk, with the times that its files have.
-        request: Whether contact states are requested, and how short they may be.
+        request: Whether contact states are requested.
         watcher: Receives progress.
     """
     if not request.contacts:
         return walked
     watcher.step("finding contacts", None)
     found = contacts_of(
-        walked.path, walked.reference, walked.described.robot, by=walked.contact_by,
-        request=request, ground=walked.terrain.ground, stances=walked.stances,
+        walked.path, walked.reference, by=walked.contact_by, stances=walked.stances
     )  # fmt: skip
     return replace(walked, contacts=found)
 
@@ -139,7 +133,7 @@ def robot_of(request: ModelRequest) -> RobotFile:
 
 
 def ground_of(request: ModelRequest) -> GroundFile | None:
-    """Return the ground of `--ground`; None for level ground of one slip law.
+    """Return the ground of `--ground`; None for level ground.
 
     Raises:
         ZebroLabError: As `read_ground`.
@@ -155,7 +149,6 @@ def walk_with(
     duration: float,
     what: str,
     direction: Direction = "left",
-    switch: Switch = "angle",
     logs: tuple[Path, ...] = (),
     angles_are_true: bool = False,
     ground: GroundFile | None = None,
@@ -164,17 +157,16 @@ def walk_with(
     """Compute the path of a robot from its leg angles, from time zero on.
 
     Args:
-        request: Model, slip law, toe law and time step.
+        request: Model, slip law and time step.
         described: Parameters of the robot.
         reference: Leg angles over time, from time zero on.
         duration: Duration of the walk [s].
         what: Name of the gait or log, for titles.
         direction: Side the gait turns to.
-        switch: Where the legs of a gait change speed, for the thesis's model.
         logs: Files of the leg log, by whose hash a walk that was fitted is recognised.
         angles_are_true: Whether the angles are exact, as in a walk folder: then only the floor of
             fitted walks applies, not their leg offsets.
-        ground: The ground and its areas; None for level ground of one slip law.
+        ground: The ground; None for level ground.
         notes: Notes to begin with, one line each.
 
     Raises:
@@ -184,8 +176,8 @@ def walk_with(
         ModelError: The walk cannot be computed.
     """
     model = MODELS[request.model]
-    rule = _thesis_rule(request, reference)
-    slip, unused = _slip_for(model, request.slip, kinematic=rule in DETECTED)
+    kinematic = is_kinematic(request.model, reference)
+    slip, unused = _slip_for(model, request.slip, kinematic=kinematic)
     informed = None
     if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
         same_legs = False if angles_are_true else None
@@ -193,9 +185,8 @@ def walk_with(
     dt = time_step(request, model, informed)
     _require_steps(duration, dt)
     run = ModelRun(
-        described.robot, reference, slip, duration, dt, request.toe, direction, request.automaton,
-        switch, None if informed is None else informed.middle, request.thesis or AS_LISTED,
-        LEVEL if ground is None else ground.terrain,
+        described.robot, reference, slip, duration, dt, direction, request.thesis,
+        None if informed is None else informed.middle, FLAT if ground is None else ground.ground,
     )  # fmt: skip
     path = _run(run, model, slip)
     if slip is not None and dt > model.dt:
@@ -203,34 +194,17 @@ def walk_with(
     if ground is not None:
         notes = (*notes, *ground_notes(ground, path, described.robot))
     grip = "" if slip is None else f", slip {slip.title}"
-    own = _named_rule(rule, request, switch)
+    how = " (kinematics by contact detection)" if kinematic else (
+        " (by the thesis's text)" if request.thesis == "text" else ""
+    )  # fmt: skip
     on = "" if request.ground is None else f", on {request.ground.name}"
-    title = f"{what}, model '{model.name}'{own}{grip}{on}"
+    title = f"{what}, model '{model.name}'{how}{grip}{on}"
     found = (part.notes for part in (informed, slip) if part is not None)
     notes = (*notes, *unused, *(note for part in found for note in part))
     return Walked(
         path, reference, described, slip, model.name, dt, title, notes, informed,
         decides_contact(run, model.name), ground,
     )  # fmt: skip
-
-
-def _thesis_rule(request: ModelRequest, reference: LegReference) -> str | None:
-    """Return what decides contact in the thesis's model; None for other models."""
-    if request.model != "thesis":
-        return None
-    return thesis_automaton(request.automaton, reference)
-
-
-def _named_rule(rule: str | None, request: ModelRequest, switch: Switch) -> str:
-    """Return a title's words on how the thesis's model was walked, if not as it walks by itself."""
-    if rule in DETECTED:
-        return f" (kinematics by contact detection, '{rule}')"
-    said = [f"automaton '{rule}'"] if request.automaton is not None else []
-    if switch == "contact":
-        said.append("legs switched at contact")
-    if request.thesis is not None:
-        said.extend(named_switches(request.thesis))
-    return f" ({', '.join(said)})" if said else ""
 
 
 def _slip_for(

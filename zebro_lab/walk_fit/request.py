@@ -3,12 +3,15 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 from typer import Option
 
 from model.lateral_spread import ANISOTROPY
-from zebro_lab.walk.output_request import ANISOTROPY_LIMITS
+from zebro_lab.terminal.limits import Limits
+
+MOST_ANISOTROPY: Final = 3.0
+"""Largest factor by which lateral traction may be said to differ from longitudinal [-]."""
 
 
 @dataclass(frozen=True)
@@ -41,5 +44,5 @@ class WalksRequest:
             help="Prior of lateral over longitudinal grip, and of lateral over longitudinal slip "
             "stiffness of the legs: 1 ×/÷ this factor each, one standard deviation; 1 for alike.",
         ),
-        ANISOTROPY_LIMITS,
+        Limits(least=1, most=MOST_ANISOTROPY),
     ] = ANISOTROPY

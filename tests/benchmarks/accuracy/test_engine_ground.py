@@ -11,9 +11,9 @@ from benchmarks.accuracy.engine_ground import (
     CORRELATION,
     GRID,
     ROUGHNESS,
+    rough,
     rough_heights,
-    slopes_and_patches,
-    steps_and_roughness,
+    slopes,
     walk_by_model,
     write_ground,
 )
@@ -36,14 +36,12 @@ def test_rough_ground_has_the_spread_and_correlation_asked_for():
 
 
 def test_the_file_and_the_engine_have_the_same_ground(tmp_path):
-    for case in [*slopes_and_patches(), *steps_and_roughness(1)]:
+    for case in [*slopes(), *rough(1)]:
         folder = tmp_path / f"{case.kind} {case.name}"
         written = tomllib.loads(write_ground(case, folder).read_text())
-        heights, friction = ground_of(case)
+        heights, _ = ground_of(case)
         slope = np.tan(np.radians(written.get("slope_deg", [0, 0])))
         assert (heights.rise_x, heights.rise_y) == pytest.approx(tuple(slope))
-        assert [each["x"] for each in written.get("step", [])] == heights.edge.tolist()
-        assert len(written.get("area", [])) == len(friction.areas)
         if "heights" in written:
             seen_from_above = np.loadtxt(folder / written["heights"]["file"], delimiter=",")
             x, y = written["heights"]["origin"]
@@ -54,7 +52,7 @@ def test_the_file_and_the_engine_have_the_same_ground(tmp_path):
 @pytest.mark.long
 def test_a_walk_on_a_slope_is_the_engine_s(rows, monkeypatch):
     monkeypatch.setattr(engine_ground, "DURATION", 3.0)
-    monkeypatch.setattr(engine_ground, "slopes_and_patches", lambda: slopes_and_patches()[:1])
+    monkeypatch.setattr(engine_ground, "slopes", lambda: slopes()[:1])
     engine_ground.main(["--only", "slope"])
     ((kind, _, _, path, contacts),) = rows()
     assert kind == "slope"
@@ -62,28 +60,14 @@ def test_a_walk_on_a_slope_is_the_engine_s(rows, monkeypatch):
     assert float(contacts.split()[0]) > 95.0
 
 
-CASES = {
-    f"{case.kind} {case.name}": case for case in [*slopes_and_patches(), *steps_and_roughness(2)]
-}
+CASES = {f"{case.kind} {case.name}": case for case in [*slopes(), *rough(2)]}
 FAULTS = {
     "up is down": ("slope up 5°, turning left", lambda case: replace(case, slope=(-5.0, 0.0))),
     "x is y": ("slope up 5°, turning left", lambda case: replace(case, slope=(0.0, 5.0))),
-    "areas beside": ("patches 0.12 under the left legs", lambda case: moved(case, y=0.12)),
-    "areas ahead": ("patches stripes of 0.15 and 0.7, turning", lambda case: moved(case, x=0.03)),
-    "steps down": ("steps seed 1", lambda case: replace(case, edges=case.edges * [1, -1])),
-    "steps ahead": (
-        "steps seed 1",
-        lambda case: replace(case, edges=np.add(case.edges, [0.02, 0])),
-    ),
     "map transposed": ("rough seed 1", np.transpose),
     "map upside down": ("rough seed 1", np.flipud),
     "map a cell aside": ("rough seed 1", lambda heights: np.roll(heights, 1, axis=1)),
 }
-
-
-def moved(case, *, x=0.0, y=0.0):
-    """Return a case with its patches moved along x and y [m]."""
-    return replace(case, patches=np.add(case.patches, [x, x, y, y, 0.0]))
 
 
 @pytest.fixture(scope="module")

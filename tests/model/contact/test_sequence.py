@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model.contact.detection import detect_contacts
-from model.contact.sequence import agreement, contact_cycle, contact_states, named_legs
+from model.contact.sequence import contact_cycle, contact_states, named_legs
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import Robot
+from model.thesis.detection import detect_contacts
 
 GAIT = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
 PATTERNS = [{0, 3, 4}, {1, 2, 5}, set(), {0, 1, 2, 3, 4, 5}]
@@ -90,11 +90,3 @@ def test_legs_that_never_leave_the_ground_have_no_cycle():
 
 def test_flight_is_the_empty_set():
     assert named_legs(frozenset()) == "{}"
-
-
-def test_agreement_counts_whole_sets_and_single_legs():
-    _, one = contacts(({0, 3, 4}, 3), ({1, 2, 5}, 1))
-    _, other = contacts(({0, 3, 4}, 4))
-    whole, legs = agreement(one, other)
-    assert whole == 0.75
-    np.testing.assert_array_equal(legs, 0.75)

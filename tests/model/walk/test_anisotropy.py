@@ -94,9 +94,8 @@ def test_factors_of_one_leave_a_walk_as_it_is_bit_for_bit():
     np.testing.assert_array_equal(one.traction_force, other.traction_force)
 
 
-@pytest.mark.parametrize("bristle", [False, True])
-def test_a_turn_to_the_left_is_the_mirror_image_of_one_to_the_right(bristle):
-    law = directed(0.7, 1.4)._replace(bristle=bristle)
+def test_a_turn_to_the_left_is_the_mirror_image_of_one_to_the_right():
+    law = directed(0.7, 1.4)
     other = [
         int(np.argmin(np.linalg.norm(ROBOT.hips - hip * [1, -1, 1], axis=1))) for hip in ROBOT.hips
     ]
@@ -112,9 +111,8 @@ def test_a_turn_to_the_left_is_the_mirror_image_of_one_to_the_right(bristle):
     np.testing.assert_allclose(left, right * [1.0, -1.0, -1.0], atol=1e-6)
 
 
-@pytest.mark.parametrize("bristle", [False, True])
-def test_directions_are_those_of_the_leg_wherever_the_body_heads(bristle):
-    law, options = directed(0.6, 1.5)._replace(bristle=bristle), DynamicsOptions(dt=0.002)
+def test_directions_are_those_of_the_leg_wherever_the_body_heads():
+    law, options = directed(0.6, 1.5), DynamicsOptions(dt=0.002)
     ahead, turned = (
         planar_walk(
             WalkDraw(ROBOT, gait(), law, start=Start(yaw=yaw)), duration=1.5, options=options

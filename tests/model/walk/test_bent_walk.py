@@ -7,7 +7,6 @@ import pytest
 from model.gait.steering import tripod_angles, tripod_reference
 from model.path_draws import bent_walk
 from model.robot import GRAVITY, Robot
-from model.walk.areas import Area, with_areas
 from model.walk.bend import Bend
 from model.walk.bent_walk import walk_bent
 from model.walk.dynamics import DynamicsOptions, walk
@@ -47,19 +46,6 @@ def test_a_path_bent_on_a_slope_stays_on_it():
     level = walked(Bend(0.05, 1.0)).position[:, 2]
     assert np.ptp(over) < 1.2 * np.ptp(level) + 1e-3
     assert path.yaw[-1] > 0.4
-
-
-def test_legs_slip_where_the_bent_path_is_not_where_the_straight_one_was():
-    ice = VelocityCoulomb(0.02).table(weight=ROBOT.mass * GRAVITY)
-    left = np.array([[0.2, 0.19], [1.0, 0.19], [1.0, 1.0], [0.2, 1.0]])
-    law = with_areas(LAW, (Area(left, ice),))
-    bend = Bend(0.0, 2.0)
-    before, on_ice = walked(bend), walked(bend, law=law)
-    straight = walk(ROBOT, GAIT, law, duration=6.0)
-    np.testing.assert_allclose(
-        straight.position, walk(ROBOT, GAIT, LAW, duration=6.0).position, atol=1e-9
-    )  # it never comes there
-    assert np.hypot(*(on_ice.position - before.position)[-1, :2]) > 1e-3
 
 
 def test_a_draw_is_bent_as_a_walk_is():

@@ -5,12 +5,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model.frames import attitude
-from model.leg import HIP, ROLLING, TOE
+from model.leg import HIP, TOE
 from model.robot import Robot
 from model.walk.arrays import body_arrays
 from model.walk.contact_points import lowest_point
 from model.walk.deepest_point import deepest_point
-from model.walk.ground import FACE, FLAT, ground_at, sample_ground, with_slope, with_steps
+from model.walk.ground import ground_at, sample_ground, with_slope
 
 ROBOT = Robot()
 BODY = body_arrays(ROBOT)
@@ -18,7 +18,6 @@ HIP_AT = ROBOT.hips[0]
 ROUGH = sample_ground(
     lambda x, y: 0.006 * np.sin(31 * x + 1) * np.cos(23 * y), x=(-0.5, 0.5), y=(-0.5, 0.5)
 )
-STEP = with_steps(FLAT, np.array([HIP_AT[0] + 0.02]), np.array([0.01]))
 THETA = st.floats(-3.0, 9.0)
 SMALL = st.floats(-0.3, 0.3)
 
@@ -40,7 +39,7 @@ def arc(p, R, theta, n=401):
     return p + (HIP_AT + np.column_stack([x, np.zeros(n), z])) @ R.T
 
 
-@pytest.mark.parametrize("ground", [ROUGH, STEP, with_slope(ROUGH, 0.08, -0.1)])
+@pytest.mark.parametrize("ground", [ROUGH, with_slope(ROUGH, 0.08, -0.1)])
 @given(theta=THETA, roll=SMALL, pitch=SMALL, yaw=st.floats(-3.0, 3.0), x=SMALL)
 def test_no_point_of_the_arc_is_deeper(ground, theta, roll, pitch, yaw, x):
     p, R = np.array([x, 0.1, 0.06]), attitude(roll, pitch, yaw)
@@ -69,33 +68,9 @@ def test_on_a_plane_of_heights_it_is_the_lowest_point(theta, pitch, slope):
         assert kind == state or np.linalg.norm(point - expected) < 1e-3
 
 
-def test_at_the_edge_of_a_step_the_normal_points_to_the_arcs_centre():
-    # The leg's centre is 20 mm before the edge, and its lowest point just over the lower ground.
-    theta = np.pi / 2 - 0.9
-    centre = HIP_AT + ROBOT.leg_radius * np.array([np.cos(theta), 0.0, -np.sin(theta)])
-    edge = centre[0] + 0.02
-    step = with_steps(FLAT, np.array([edge]), np.array([0.01]))
-    p = np.array([0.0, 0.0, ROBOT.leg_radius - centre[2] + 1e-4])
-    point, state, gap, normal = found(step, p, np.eye(3), theta)
-    assert state == ROLLING
-    np.testing.assert_allclose(point[0], edge)
-    across = p + centre - point
-    np.testing.assert_allclose(normal, across / np.linalg.norm(across), atol=1e-9)
-    assert gap < 0
-
-
 @pytest.mark.parametrize(("theta", "state"), [(2.0, TOE), (4.5, HIP)])
 def test_an_end_of_the_arc_has_the_normal_of_the_ground(theta, state):
     p = np.array([0.0, 0.0, 0.03])
     point, kind, _, normal = found(ROUGH, p, np.eye(3), theta)
     assert kind == state
     np.testing.assert_allclose(normal, ground_at(ROUGH, *point[:2])[1:], atol=1e-9)
-
-
-def test_a_toe_on_the_face_of_a_step_is_pushed_back():
-    theta = 2.0
-    toe = arc(np.zeros(3), np.eye(3), theta)[0]
-    step = with_steps(FLAT, np.array([toe[0] + FACE / 2]), np.array([0.01]))
-    _, kind, _, normal = found(step, np.array([0.0, 0.0, -toe[2] + 0.004]), np.eye(3), theta)
-    assert kind == TOE
-    assert normal[0] < -0.9

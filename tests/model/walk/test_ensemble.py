@@ -11,7 +11,6 @@ from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import MagicFormula
-from model.walk.areas import Area
 from model.walk.dynamics import DynamicsOptions, Start, walk
 from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
 from model.walk.ground import FLAT, with_slope
@@ -117,12 +116,3 @@ def test_on_a_slope_a_draw_walks_step_by_step_from_its_start():
     )  # fmt: skip
     np.testing.assert_allclose(found.position, path.position[:, :2], atol=1e-12)
     np.testing.assert_allclose(found.yaw, path.yaw, atol=1e-12)
-
-
-def test_an_area_with_the_same_law_changes_no_draw():
-    everywhere = Area(np.array([[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]]), SLIP)
-    one, other = (
-        planar_walk(WalkDraw(ROBOT, TURN, SLIP, areas=areas), duration=4.0, options=OPTIONS).poses
-        for areas in ((), (everywhere,))
-    )
-    np.testing.assert_allclose(one.position, other.position, atol=1e-6)  # by strides, by steps

@@ -6,6 +6,7 @@ from model.errors import DefinitionMismatch
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES, thesis_curve
+from model.thesis import slip_traction
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb
@@ -49,6 +50,6 @@ def test_contacts_below_the_tested_loads_are_counted():
 def test_the_thesis_s_model_takes_its_own_slip_definition_only():
     other = SlipCurve(**{**vars(thesis_curve()), "definition": SlipDefinition.TRAVEL})
     with pytest.raises(DefinitionMismatch):
-        Slip(other, "real").thesis_traction(weight=WEIGHT)
-    THESIS.thesis_traction(weight=WEIGHT)
-    COULOMB.thesis_traction(weight=WEIGHT)
+        slip_traction(Slip(other, "real"), weight=WEIGHT)
+    slip_traction(THESIS, weight=WEIGHT)
+    slip_traction(COULOMB, weight=WEIGHT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Forces of one step: bristles that hold or slide, and contacts that press or do not."""
+"""Forces of one step: contacts that press or do not, and slide."""
 
 import numpy as np
 import pytest
@@ -9,9 +9,7 @@ from model.walk.arrays import Contacts, body_arrays, new_work
 from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.ground import FLAT
 from model.walk.step import (
-    BRISTLE_STIFFNESS,
     SETTLED,
-    bristle_pull,
     contact_damping,
     leg_turn,
     one_step,
@@ -25,8 +23,8 @@ CONTACTS = Contacts(DEFAULT_OPTIONS.stiffness, DEFAULT_OPTIONS.damping)
 STANDING = np.full(6, np.pi / 2)
 
 
-def stepped(state, *, speed=0.0, toe="bristle", dt=0.001):
-    table = VelocityCoulomb(0.4).table(weight=WEIGHT, toe=toe)
+def stepped(state, *, speed=0.0, dt=0.001):
+    table = VelocityCoulomb(0.4).table(weight=WEIGHT)
     work = new_work()
     one_step(
         body_arrays(ROBOT), table, FLAT, CONTACTS, state, work, STANDING, np.full(6, speed), dt
@@ -43,7 +41,7 @@ def test_legs_of_a_standing_robot_carry_its_weight():
 def test_traction_is_that_of_the_final_slip_where_sliding_feet_almost_take_hold():
     state, dt = start_state(ROBOT, STANDING, DEFAULT_OPTIONS), 0.004
     state.v[0] = 0.02
-    work = stepped(state, toe="peak", dt=dt)
+    work = stepped(state, dt=dt)
     slip = [state.v[0] + state.w[1] * place[2] - state.w[2] * place[1] for place in work.place[:6]]
     traction = 0.4 * work.load[:6] * slip / np.hypot(slip, 1e-3)
     by_traction = 0.02 - dt * traction.sum() / ROBOT.mass
@@ -56,18 +54,6 @@ def test_a_body_in_the_air_has_no_contact_and_falls():
     work = stepped(state)
     assert not work.load.any()
     np.testing.assert_allclose(state.v, [0.0, 0.0, -0.001 * GRAVITY], atol=1e-12)
-
-
-def test_a_bristle_holds_like_a_spring_and_slides_at_the_largest_traction():
-    table = VelocityCoulomb(0.4).table(weight=WEIGHT, toe="bristle")
-    spring = BRISTLE_STIFFNESS * CONTACTS.stiffness
-    none, alike, across = np.zeros(3), np.zeros(2), np.array([0.0, 1.0, 0.0])
-    assert bristle_pull(table, CONTACTS, none, 5.0, 1e-6, 0.0, 0.0, alike, across) == spring
-    pull = bristle_pull(table, CONTACTS, none, 5.0, 0.03, 0.04, 0.0, alike, across)
-    assert pull * 0.05 == pytest.approx(0.4 * 5.0)
-    half = np.array([0.0, 0.5**2 - 1])  # twice the grip across, at the same stiffness
-    pull = bristle_pull(table, CONTACTS, none, 5.0, 0.0, 0.04, 0.0, half, across)
-    assert pull * 0.04 == pytest.approx(2 * 0.4 * 5.0)
 
 
 def test_a_legs_turn_over_the_ground_includes_the_pitch_rate_of_the_body():

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from model.bayes.verdict import State
 from model.errors import DefinitionMismatch
 from model.slip import SlipDefinition
+from model.thesis import slip_traction
 from model.walk.path import WalkPath
 from model.walk.traction import VelocityCoulomb
 from support.bounded_reading import refusal
@@ -146,13 +147,13 @@ def test_other_definition_is_converted_or_refused(calibration):
     assert "converted" in slip.notes[0]
     assert np.isfinite(slip.traction_table(weight=21.0).phi).all()
     with pytest.raises(DefinitionMismatch):
-        slip.thesis_traction(weight=21.0)
+        slip_traction(slip, weight=21.0)
 
 
 def test_sources_model_takes_the_sources_curve_exactly_and_any_other_as_a_table(calibration):
-    assert parse_slip("thesis").thesis_traction(weight=21.0).exact
+    assert slip_traction(parse_slip("thesis"), weight=21.0).exact
     for text in ("coulomb:0.4", str(calibration)):
-        assert not parse_slip(text).thesis_traction(weight=21.0).exact
+        assert not slip_traction(parse_slip(text), weight=21.0).exact
 
 
 def test_loads_below_the_tested_are_counted_in_contact_alone(calibration, walked):

@@ -26,9 +26,8 @@ from zebro_lab.calibration.walks_folder import FOLDER, read_stored_walks
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
-from zebro_lab.walk.folder import read_walk, read_walk_manifest
+from zebro_lab.walk.folder import read_draws, read_walk, read_walk_manifest
 from zebro_lab.walk.output_request import BandRequest
-from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.prediction_file import read_prediction
 from zebro_lab.walk.request import ModelRequest, PredictRequest
@@ -126,14 +125,8 @@ def test_offsets_that_walks_told_are_not_asked_for_again(calibration, legs, tmp_
         predict(request, Nobody())
 
 
-def test_lateral_traction_that_walks_told_is_not_asked_for_again(calibration, legs, tmp_path):
+def test_lateral_traction_of_a_band_is_what_walks_told(calibration, legs, tmp_path):
     stored(calibration, legs, posterior_of(None))
-    band = BandRequest(5, anisotropy=1.2)
-    request = PredictRequest(
-        legs[0], tmp_path / "out", model=ModelRequest(slip=str(calibration), band=band)
-    )
-    with pytest.raises(SettingsError, match="--anisotropy"):
-        predict(request, Nobody())
     predict_log(tmp_path, legs[0], str(calibration), draws=3)
     settings = read_walk_manifest(tmp_path / "prediction")["settings"]
     assert settings["band"]["anisotropy"] is None

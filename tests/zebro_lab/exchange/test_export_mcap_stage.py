@@ -15,8 +15,7 @@ from model.robot import Robot
 from support.written_runs import make_run
 from zebro_lab.exchange.export_mcap_stage import export_mcap
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
-from zebro_lab.walk.folder import walk_folder
-from zebro_lab.walk.path_band import write_band
+from zebro_lab.walk.folder import walk_folder, write_draws
 
 YAW0, START = 0.7, np.array([1.0, -0.5])
 
@@ -39,7 +38,7 @@ def run(walked, tmp_path_factory):
         folder / "prediction", walked, kind="predict", source="sim:dynamics",
         settings={"robot": described}, inputs={},
     ) as draft:  # fmt: skip
-        write_band(draft, paths, title="w")
+        write_draws(draft, paths)
     at = np.array([0.5, 1.5, 2.5, 3.5])
     seen = np.column_stack([np.interp(at, walked.t, a) for a in walked.position[:, :2].T])
     c, s = np.cos(YAW0), np.sin(YAW0)

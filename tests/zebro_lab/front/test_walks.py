@@ -60,21 +60,16 @@ def test_a_walk_on_a_ground_is_that_of_the_command(run_command, tmp_path):
     assert any(note.startswith("ground: slope of 4 deg") for note in result.notes)
 
 
-def test_switches_of_the_thesis_are_those_of_the_command(run_command, tmp_path):
+def test_the_thesis_s_text_is_walked_as_by_the_command(run_command, tmp_path):
     given = {"slip": "thesis", "model": "thesis", "steering": 1.2, "duration": 1.0}
-    switches = "no-height-reset,heading=30"
-    result = zl.walk_gait("tripod", thesis=switches, **given)
+    result = zl.walk_gait("tripod", thesis="text", **given)
     words = ("walk", "--slip", "thesis", "--model", "thesis", "--steering", 1.2, "--duration", 1)
-    assert run_command(*words, "--thesis", switches, "--out", tmp_path / "w").code == 0
+    assert run_command(*words, "--thesis", "text", "--out", tmp_path / "w").code == 0
     np.testing.assert_allclose(result.walk.position, read_walk(tmp_path / "w").position, atol=1e-9)
     plain = zl.walk_gait("tripod", **given)
     assert np.abs(result.walk.position - plain.walk.position).max() > 1e-3
 
 
-@pytest.mark.parametrize(("model", "thesis", "message"), [
-    ("thesis", "mend-rol", "'mend-rol' is no switch; 'mend-roll'?"),
-    ("dynamics", "mend-roll", "switches the thesis's model; the model 'dynamics' has none"),
-])  # fmt: skip
-def test_wrong_switches_are_errors_of_the_library(model, thesis, message):
-    with pytest.raises(SettingsError, match=message):
-        zl.walk_gait("tripod", slip="thesis", model=model, thesis=thesis, duration=1.0)
+def test_the_thesis_s_text_with_another_model_is_an_error_of_the_library():
+    with pytest.raises(SettingsError, match="of the thesis's model, not of 'dynamics'"):
+        zl.walk_gait("tripod", slip="thesis", model="dynamics", thesis="text", duration=1.0)

@@ -14,7 +14,6 @@ from zebro_lab.plots.walk_legs import (
     gantt,
     leg_angles,
     normal_forces,
-    paired_traction,
     slip_ratios,
     traction_forces,
 )
@@ -27,7 +26,6 @@ FIGURES = {
     "slip_ratio": slip_ratios,
     "normal_force": normal_forces,
     "traction_force": traction_forces,
-    "paired_traction": paired_traction,
     "leg_angles": leg_angles,
     "gantt": gantt,
 }
@@ -55,12 +53,6 @@ def test_nothing_of_a_walk_is_drawn_beyond_the_page(draw, walked):
     assert overhang(draw(walked, title="A walk")) <= 0
 
 
-def test_sums_of_two_steps_are_called_sums(walked):
-    assert paired_traction(walked, title="").get_supylabel() == (
-        "sum of two steps' traction force [N]"
-    )
-
-
 @draws_all
 def test_same_walk_is_drawn_to_the_same_bytes(draw, walked, tmp_path):
     for name in ("a.png", "b.png"):
@@ -78,7 +70,7 @@ def test_model_without_forces_and_slip_is_drawn_all_the_same(draw, walked):
     )
     figure = draw(bare, title="A walk")
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]
-    empty = draw in (slip_ratios, normal_forces, traction_forces, paired_traction)
+    empty = draw in (slip_ratios, normal_forces, traction_forces)
     assert ("this model computes none" in texts) == empty
 
 

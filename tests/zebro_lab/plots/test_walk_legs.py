@@ -12,9 +12,9 @@ from zebro_lab.plots.walk_legs import (
     gantt,
     leg_angles,
     normal_forces,
-    paired_traction,
     slip_ratios,
     stances,
+    traction_forces,
 )
 
 
@@ -34,15 +34,6 @@ def test_stances_are_where_the_contact_is(contact):
     for start, end in stances(t, contact):
         found[(t >= start) & ((t < end) | ((t == t[-1]) & (end == t[-1]) & contact[-1]))] = True
     np.testing.assert_array_equal(found, contact)
-
-
-def test_paired_traction_leaves_nothing_of_what_alternates(walked):
-    sign = np.where(np.arange(len(walked.t)) % 2 == 0, 5.0, -5.0)[:, None, None]
-    chatter = replace(walked, traction_force=walked.traction_force + sign)
-    for axes, noisy in zip(
-        *(paired_traction(p, title="").axes for p in (walked, chatter)), strict=True
-    ):
-        np.testing.assert_allclose(axes.lines[1].get_ydata(), noisy.lines[1].get_ydata(), atol=1e-9)
 
 
 def test_leg_angles_are_drawn_modulo_a_turn_without_a_line_across(walked):
@@ -96,7 +87,7 @@ def test_an_impact_beyond_the_axes_is_marked(walked):
 
 
 def test_what_is_shaded_and_drawn_has_a_key(walked):
-    texts = [text.get_text() for text in paired_traction(walked, title="").legends[0].get_texts()]
+    texts = [text.get_text() for text in traction_forces(walked, title="").legends[0].get_texts()]
     assert texts[:3] == ["leg on the ground", "forward", "to the left"]
 
 

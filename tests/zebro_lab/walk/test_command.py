@@ -56,7 +56,6 @@ ERRORS = {
     "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is no friction law"),
     "friction in percent": (("--slip", "coulomb:38"), "did you mean coulomb:0.38?"),
     "short time": (("--duration", 1e-5), "finite duration longer than one step"),
-    "automaton of another model": (("--automaton", "table"), "give --model thesis with it"),
     "milliseconds as step": (("--dt", 1), "--dt: found 1 s; expected at most 0.005 s"),
 }  # fmt: skip
 
@@ -81,25 +80,7 @@ USAGE = {
     "no such gait": ("walk", "--gait", "trot", "--duration", "3"),
     "no such model": ("predict", "legs.csv", "--model", "ours"),
     "no log": ("predict", "--slip", "thesis"),
-    "switch of another model": (
-        "walk",
-        "--duration",
-        "3",
-        "--slip",
-        "thesis",
-        "--switch-at",
-        "contact",
-    ),
-    "switch beside a program": (
-        "walk",
-        "p.toml",
-        "--model",
-        "thesis",
-        "--slip",
-        "thesis",
-        "--switch-at",
-        "contact",
-    ),
+    "rule of another model": ("walk", "--duration", "3", "--slip", "thesis", "--thesis", "text"),
     "negative step": ("walk", "--duration", "3", "--slip", "thesis", "--dt", "-1"),
 }
 

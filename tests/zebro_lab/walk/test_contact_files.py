@@ -11,24 +11,22 @@ from zebro_lab.walk.contact_files import (
     write_contacts,
     write_touchdowns,
 )
-from zebro_lab.walk.contacts import ContactTrace, WalkContacts
+from zebro_lab.walk.contacts import WalkContacts
 
 T = np.arange(600, dtype=float) * 0.01
 
 
-def test_states_are_written_by_rule_with_the_cycle_that_they_begin_in(tmp_path):
+def test_states_are_written_with_the_cycle_that_they_begin_in(tmp_path):
     contact = (T % 2 < 1)[:, None] == np.isin(np.arange(6), (0, 3, 4))
     sequence = contact_states(T, contact)
     cycle = contact_cycle(sequence, 2.0, tolerance=0.02)
-    traces = tuple(ContactTrace(by, T, contact, sequence, cycle) for by in ("events", "force"))
-    write_contacts(tmp_path / "c.csv", WalkContacts(traces, 2.0, 0.02, 1.0, np.ones(6), ()))
+    write_contacts(tmp_path / "c.csv", WalkContacts("force", sequence, cycle, 2.0, 0.02, ()))
     with (tmp_path / "c.csv").open(newline="") as text:
         rows = list(csv.reader(text))
     assert tuple(rows[0]) == CONTACT_COLUMNS
-    assert rows[1] == ["events", "{1,4,5}", "0", "1", "1", "", "0"]
-    assert rows[2] == ["events", "{2,3,6}", "1", "2", "1", "1", "0"]
-    assert [row[5] for row in rows[1:]] == ["", "1", "1", "2", "2", "3"] * 2
-    assert [row[0] for row in rows[1:]] == ["events"] * 6 + ["force"] * 6
+    assert rows[1] == ["force", "{1,4,5}", "0", "1", "1", "", "0"]
+    assert rows[2] == ["force", "{2,3,6}", "1", "2", "1", "1", "0"]
+    assert [row[5] for row in rows[1:]] == ["", "1", "1", "2", "2", "3"]
 
 
 def test_a_touchdown_that_there_was_not_is_empty(tmp_path):

@@ -10,20 +10,16 @@ from zebro_lab.walk.contact_screen import (
     touchdown_summary,
     touchdown_table,
 )
-from zebro_lab.walk.contacts import ContactTrace, WalkContacts
+from zebro_lab.walk.contacts import WalkContacts
 
 T = np.arange(600, dtype=float) * 0.01
 TRIPOD = np.isin(np.arange(6), (0, 3, 4))
 
 
-def trace(contact, *, period: float | None = 2.0, least=0.03):
-    sequence = contact_states(T, contact, least=least)
+def contacts_of(contact, *, period: float | None = 2.0, downs=()):
+    sequence = contact_states(T, contact, least=0.03)
     cycle = None if period is None else contact_cycle(sequence, period, tolerance=0.02)
-    return ContactTrace("force", T, contact, sequence, cycle)
-
-
-def contacts_of(one, *, period: float | None = 2.0, downs=()):
-    return WalkContacts((one,), period, 0.02, None, None, tuple(downs), ("a note",))
+    return WalkContacts("force", sequence, cycle, period, 0.02, tuple(downs))
 
 
 def stepping(seconds=1.0):
@@ -38,12 +34,11 @@ def down(leg, t, angle, asked=1.0, *, contacts=1):
 def test_the_sequence_of_a_cycle_is_said_with_its_times_and_what_was_joined():
     contact = stepping()
     contact[150, 0] ^= True
-    lines = contact_lines(contacts_of(trace(contact)))
-    assert lines[0] == "contact states by force on the legs in the walked model:"
+    lines = contact_lines(contacts_of(contact))
+    assert lines[0] == "contact states by force on the legs:"
     assert lines[1] == "  {2,3,6} → {1,4,5} (0.00 s) → {2,3,6} (1.00 s)"
     assert "a cycle of 2 s, which repeats from 1.00 s on, times within 0 ms in 2" in lines[2]
     assert lines[3] == "  states shorter than 30 ms are joined to the next: 1, 0.010 s in all"
-    assert lines[-1] == "a note"
 
 
 @pytest.mark.parametrize(
@@ -55,22 +50,14 @@ def test_the_sequence_of_a_cycle_is_said_with_its_times_and_what_was_joined():
     ],
 )
 def test_where_nothing_repeats_the_states_are_listed_and_it_is_said_why(contact, period, why):
-    lines = contact_lines(contacts_of(trace(contact, period=period), period=period))
+    lines = contact_lines(contacts_of(contact, period=period))
     assert lines[1].startswith("  {1,")
     assert why in lines[2]
 
 
 def test_a_long_sequence_is_cut_and_says_how_much_is_left():
-    lines = contact_lines(contacts_of(trace(stepping(0.1), period=None), period=None))
+    lines = contact_lines(contacts_of(stepping(0.1), period=None))
     assert lines[1].endswith("→ … (48 more states)")
-
-
-def test_agreement_is_said_of_sets_and_of_single_legs():
-    one = trace(stepping())
-    both = WalkContacts((one, one), 2.0, 0.02, 0.8, np.full(6, 0.95), ())
-    assert contact_lines(both)[-1] == (
-        "both have the same legs on the ground in 80.0% of the time, and agree on a leg in 95.0%"
-    )
 
 
 def test_touchdowns_are_summarised_by_mean_and_spread():
@@ -86,7 +73,7 @@ def test_touchdowns_are_summarised_by_mean_and_spread():
 
 
 def test_the_table_has_a_row_per_leg_and_the_document_every_leg():
-    contacts = contacts_of(trace(stepping()), downs=[down(2, 1.1, np.radians(60.0))])
+    contacts = contacts_of(stepping(), downs=[down(2, 1.1, np.radians(60.0))])
     table = touchdown_table(contacts)
     angles = list(table.columns[3].cells)
     assert angles == ["-", "-", "60.00", "-", "-", "-"]
@@ -94,7 +81,7 @@ def test_the_table_has_a_row_per_leg_and_the_document_every_leg():
     assert document["least_s"] == 0.03
     assert document["rules"] == [
         {
-            "by": "force", "on_ground": False, "states": 6, "joined": 0, "joined_s": 0.0,
+            "by": "force", "states": 6, "joined": 0, "joined_s": 0.0,
             "cycle": {
                 "period_s": 2.0, "contacts": ["{1,4,5}", "{2,3,6}"],
                 "begins_s": pytest.approx([0.0, 1.0]), "spread_s": pytest.approx([0.0, 0.0]),

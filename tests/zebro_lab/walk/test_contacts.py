@@ -5,30 +5,23 @@ import csv
 import io
 import json
 from contextlib import redirect_stdout
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from model.contact.detection import Detection, detect_contacts
-from model.contact.sequence import named_legs
-from model.errors import DomainError
 from model.frames import attitude
 from model.gait import tetrapod_reference, tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
 from model.robot import Robot
-from model.walk.detected import walk_detected
-from model.walk.footing import GroundFooting
+from model.thesis.detected import walk_detected
 from model.walk.ground import heights_on
 from zebro_lab.ground.ground_file import read_ground
 from zebro_lab.main import app
 from zebro_lab.terminal import ending
 from zebro_lab.walk.contacts import RULES, contacts_of
 from zebro_lab.walk.folder import CONTACTS, read_walk
-from zebro_lab.walk.output_request import ContactRequest
 
 TETRAPOD = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
-ASKED = ContactRequest(contacts=True)
 EQ_3_33 = (
     "{2,5,6} → {2,3,6} (0.41 s) → {1,3,4,6} (0.95 s) → {1,4,5} (1.93 s) → {2,4,5} (2.41 s)"
     " → {2,5,6} (2.93 s)"
@@ -40,34 +33,22 @@ def rows_of(file):
         return list(csv.DictReader(text))
 
 
-def found(reference, *, by="rest", detection: Detection = "balanced", duration=6.1):
-    path = walk_detected(Robot(), reference, duration=duration, dt=0.002, detection=detection)
-    return contacts_of(path, reference, Robot(), by=by, request=ASKED)
+def found(reference, *, duration=6.1):
+    path = walk_detected(Robot(), reference, duration=duration, dt=0.002)
+    return contacts_of(path, reference, by="events")
 
 
-def test_detection_stands_beside_the_models_own_contacts():
-    contacts = found(TETRAPOD)
-    assert [trace.by for trace in contacts.traces] == ["events", "rest"]
-    assert contacts.same is not None
-    assert 0.85 < contacts.same < 0.95  # {2,3,5} for 0.3 s of 3 s
-    assert contacts.same_legs is not None
-    assert contacts.same < contacts.same_legs.mean() < 1
-
-
-def test_a_model_that_walks_by_this_detection_has_no_other_beside_it():
-    contacts = found(TETRAPOD, by="events", detection="events")
-    assert [trace.by for trace in contacts.traces] == ["events"]
-    assert str(contacts.own.cycle) == EQ_3_33
-    assert (contacts.same, contacts.same_legs) == (None, None)
+def test_the_tetrapod_s_cycle_is_that_of_the_thesis():
+    assert str(found(TETRAPOD).cycle) == EQ_3_33
 
 
 def test_the_cycle_of_a_log_is_the_time_its_legs_take_for_a_turn():
     t = np.arange(3051, dtype=float) * 0.002
     log = SampledReference(t, TETRAPOD.angles(t))
-    contacts = found(log, by="events", detection="events")
+    contacts = found(log)
     assert contacts.period == pytest.approx(3.0, abs=0.005)
-    assert contacts.own.cycle is not None
-    assert len(contacts.own.cycle.states) == 5
+    assert contacts.cycle is not None
+    assert len(contacts.cycle.states) == 5
     assert all(np.isnan(each.asked_t) for each in contacts.touchdowns)
 
 
@@ -76,33 +57,9 @@ def test_a_log_whose_gait_changes_has_no_cycle():
     t = np.arange(4000, dtype=float) * 0.002
     later = tripod.angles(t - 4.0) + TETRAPOD.angles(4.0) - tripod.angles(0.0)
     theta = np.where(t[:, None] < 4.0, TETRAPOD.angles(t), later)
-    contacts = found(SampledReference(t, theta), by="events", detection="events", duration=7.9)
+    contacts = found(SampledReference(t, theta), duration=7.9)
     assert contacts.period is None
-    assert contacts.own.cycle is None
-
-
-def test_where_no_legs_hold_the_robot_there_is_a_note_and_no_detection(walked, monkeypatch):
-    def none(*_, **__):
-        raise DomainError("no three legs hold the robot")
-
-    monkeypatch.setattr("zebro_lab.walk.contacts.detect_contacts", none)
-    contacts = contacts_of(walked, TETRAPOD, Robot(), by="force", request=ASKED)
-    assert [trace.by for trace in contacts.traces] == ["force"]
-    assert contacts.notes == (
-        "no contacts are detected on rigid legs: no three legs hold the robot",
-    )
-
-
-def test_a_detection_that_ends_early_is_compared_as_far_as_it_goes(walked, monkeypatch):
-    def ends(robot, theta, **options):
-        return replace(detect_contacts(robot, theta[:100], **options), ended="no legs fit")
-
-    monkeypatch.setattr("zebro_lab.walk.contacts.detect_contacts", ends)
-    contacts = contacts_of(walked, TETRAPOD, Robot(), by="force", request=ASKED)
-    assert [len(trace.t) for trace in contacts.traces] == [100, len(walked.t)]
-    assert contacts.notes == (
-        f"contact detection on rigid legs ends at {walked.t[100]:.3f} s: no legs fit",
-    )
+    assert contacts.cycle is None
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +89,6 @@ def test_the_folder_has_the_tables_and_the_figure_in_the_format(folder):
     manifest = json.loads((out / "manifest.json").read_text())
     assert {"contacts.csv", "touchdowns.csv", "contacts.svg"} <= set(manifest["outputs"])
     assert manifest["settings"]["contact_by"] == "events"
-    assert manifest["settings"]["contacts_least"] == 0.01
 
 
 def test_contacts_csv_says_what_path_csv_does(folder):
@@ -174,9 +130,8 @@ def test_a_program_and_a_log_have_contacts_too(run_command, tmp_path):
     for ended, folder in ((walk, "w"), (log, "p")):
         assert ended.code == 0, ended.err
         document = json.loads(ended.out)["contacts"]
-        assert [rule["by"] for rule in document["rules"]] == ["events", "force"]
+        assert [rule["by"] for rule in document["rules"]] == ["force"]
         assert [each["leg"] for each in document["touchdowns"]] == [1, 2, 3, 4, 5, 6]
-        assert 0.5 < document["same_legs_share"] <= 1
         assert rows_of(tmp_path / folder / "contacts.csv")[-1]["by"] == "force"
 
 
@@ -203,10 +158,7 @@ def test_a_program_asks_for_the_touchdowns_of_its_schedule(run_command, tmp_path
 
 GROUND = """
 slope_deg = [3.0, -1.0]
-roughness = { sd = 0.003, correlation = 0.06, seed = 4 }
-[[step]]
-x = 0.3
-height = 0.008
+heights = { file = "h.csv", step = 0.02, origin = [-0.3, -0.6] }
 """
 
 
@@ -215,35 +167,15 @@ def on_ground(tmp_path_factory):
     """Return a walk folder on uneven ground, what the command printed, and the ground."""
     folder, printed = tmp_path_factory.mktemp("ground"), io.StringIO()
     (folder / "ground.toml").write_text(GROUND)
+    bumps = 0.005 * np.random.default_rng(4).standard_normal((61, 91))
+    np.savetxt(folder / "h.csv", bumps, delimiter=",")
     words = "walk --gait tripod --slip coulomb:0.6 --duration 6 --contacts --window 1:3 --ground"
     with redirect_stdout(printed), pytest.raises(SystemExit) as ended:
         ending.run(lambda: app([*words.split(), str(folder / "ground.toml"), "--out",
                                 str(folder / "walk")], prog_name="zebro-lab"))  # fmt: skip
     assert not ended.value.code
-    ground = read_ground(folder / "ground.toml").terrain.ground
+    ground = read_ground(folder / "ground.toml").ground
     return folder / "walk", " ".join(printed.getvalue().split()), ground
-
-
-def test_legs_are_detected_on_the_ground_of_the_walk_and_that_is_said(on_ground):
-    out, printed, ground = on_ground
-    assert f"contact states by {RULES['events']}, on the walk's ground" in printed
-    assert f"contact states by {RULES['force']}:" in printed
-    share = float(printed.split("both have the same legs on the ground in ")[1].split("%")[0])
-    assert share > 85.0
-    assert (out / "contacts.png").is_file()
-    path = read_walk(out)
-    pose = np.column_stack([path.position, path.orientation])
-    footing = GroundFooting(Robot(), path.theta, pose, ground)
-    own, flat = (detect_contacts(Robot(), path.theta, footing=each) for each in (footing, None))
-    rows = [row for row in rows_of(out / "contacts.csv") if row["by"] == "events"]
-    middles = [(float(row["start"]) + float(row["end"])) / 2 for row in rows]
-    samples = np.searchsorted(path.t, middles)
-    written = [row["contact"] for row in rows]
-    on_legs = [[named_legs(frozenset(np.flatnonzero(found.contact[k]).tolist())) for k in samples]
-               for found in (own, flat)]  # fmt: skip
-    same, same_flat = (np.mean(np.array(written) == np.array(each)) for each in on_legs)
-    assert same > 0.9
-    assert same_flat < 0.8
 
 
 def over(ground, path, robot, leg, k):
@@ -278,9 +210,3 @@ def test_a_window_without_anything_to_draw_is_refused(run_command):
     code, _, err = run_command("walk", "--slip", "thesis", "--duration", 1, "--window", "0:1")
     assert code == 2
     assert "give --figures or --contacts too" in err
-
-
-def test_a_shortest_state_without_contacts_is_refused(run_command):
-    code, _, err = run_command("walk", "--slip", "thesis", "--duration", 1, "--contacts-least", 0.1)
-    assert code == 2
-    assert "give --contacts too" in err

@@ -8,21 +8,12 @@ import numpy as np
 import pytest
 
 from model.robot import Robot
-from zebro_lab.walk.folder import read_walk
-from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.folder import read_draws, read_walk
 
 GAIT = ("--steering", 1.0, "--slip", "coulomb:0.38", "--dt", 0.004)
 GROUND = """
 slope_deg = [4, 0]
-roughness = { sd = 0.002, correlation = 0.05 }
-
-[[step]]
-x = 0.1
-height = 0.005
-
-[[area]]
-polygon = [[0.15, -1], [0.4, -1], [0.4, 1], [0.15, 1]]
-slip = "coulomb:0.1"
+heights = { file = "h.csv", step = 0.05, origin = [-0.5, -1] }
 """
 SMALL_MAP = """
 heights = "h.csv"
@@ -48,12 +39,13 @@ def ground(tmp_path):
     return write
 
 
-def test_a_walk_over_slope_step_roughness_and_ice_says_so(run_command, ground, tmp_path):
+def test_a_walk_up_a_slope_and_a_step_says_so(run_command, ground, tmp_path):
     file, out = ground(GROUND), tmp_path / "out"
+    step = np.where(np.arange(61) > 12, 0.005, 0.0)  # 5 mm higher from x = 0.15 m on
+    np.savetxt(tmp_path / "h.csv", np.tile(step, (41, 1)), delimiter=",")
     code, text, error = run_command("walk", *GAIT, "--duration", 5, "--ground", file, "--out", out)
     assert code == 0, error
-    for part in ("on ground.toml", "slope of 4 deg along x", "1 step: 5 mm at x 0.1 m",
-                 "roughness of 2 mm", "area 1: slip coulomb:0.1"):  # fmt: skip
+    for part in ("on ground.toml", "slope of 4 deg along x", "heights of h.csv"):
         assert part in text
     manifest = json.loads((out / "manifest.json").read_text())
     assert manifest["inputs"][str(file)] == hashlib.sha256(file.read_bytes()).hexdigest()
@@ -62,24 +54,16 @@ def test_a_walk_over_slope_step_roughness_and_ice_says_so(run_command, ground, t
     climbed = np.tan(np.radians(4)) * path.position[-1, 0] + 0.005
     raised = path.position[-1, 2] - path.position[0, 2]
     assert raised == pytest.approx(climbed, abs=0.012)
-    used = np.linalg.norm(path.traction_force, axis=2)
-    x = path.position[:, :1] + Robot().hips[:, 0]
-    on_ice = (x > 0.2) & (x < 0.35) & path.contact
-    assert on_ice.any()
-    held = used[on_ice] < 0.13 * path.normal_force[on_ice] + 0.01
-    assert held.mean() > 0.95  # in the steps of an impact traction is that of a load before it
     code, predicted, error = run_command(
         "predict", out, "--slip", "coulomb:0.38", "--dt", 0.004, "--ground", file, "--draws", 3,
-        "--start-sd", 0.01, 0.01, 1, "--out", tmp_path / "again",
+        "--out", tmp_path / "again",
     )  # fmt: skip
     assert code == 0, error
-    assert "area 1" in predicted
+    assert "heights of h.csv" in predicted
     again = read_walk(tmp_path / "again")
     np.testing.assert_allclose(again.position[-1], path.position[-1], atol=0.01)
     draws = read_draws(tmp_path / "again")
-    assert 0.001 < np.std(draws.position[:, 0, 0]) < 0.03
-    away = np.abs(draws.position[:, -1] - path.position[-1, :2]).max()
-    assert away < 0.1
+    assert np.abs(draws.position[:, -1] - path.position[-1, :2]).max() < 0.1
 
 
 def test_a_robot_that_walks_off_its_map_is_told_when(run_command, ground, tmp_path):
@@ -93,14 +77,6 @@ def test_a_robot_that_walks_off_its_map_is_told_when(run_command, ground, tmp_pa
     path = read_walk(tmp_path / "out")
     left = path.t[(path.position[:, 0] + hip > 0.2).argmax()]
     assert f"first {left:.2f} s after the start" in text.replace("\n", " ")
-
-
-def test_a_step_higher_than_a_leg_is_warned_of(run_command, ground, tmp_path):
-    high = ground("[[step]]\nx = 9\nheight = 0.05\n")
-    _, text, _ = run_command(
-        "walk", *GAIT, "--duration", 1, "--ground", high, "--out", tmp_path / "out"
-    )
-    assert "WARNING: a step of 50 mm is higher than the legs' radius" in text
 
 
 def test_a_program_finds_its_places_on_the_ground(run_command, ground, tmp_path):
@@ -122,7 +98,7 @@ def test_models_of_level_ground_refuse_another(run_command, ground, tmp_path, mo
         "--ground", ground("slope_deg = [1, 0]"), "--out", tmp_path / "out",
     )  # fmt: skip
     assert code in (1, 2)
-    assert f"the model '{model}' walks on level ground of one slip law only" in error
+    assert f"the model '{model}' walks on level ground only" in error
     assert not (tmp_path / "out").exists()
 
 

@@ -14,10 +14,9 @@ from support.watchers import Impatient, Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
-from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
+from zebro_lab.walk.folder import PICTURES, read_draws, read_walk, read_walk_manifest
 from zebro_lab.walk.output import WalkStopped, write_walk
 from zebro_lab.walk.output_request import BandRequest, PictureRequest
-from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.request import ModelRequest
 from zebro_lab.walk.walking import Walked
 
@@ -35,7 +34,7 @@ def finished(walked, tmp_path) -> Walked:
 
 
 def write(out, walk, watcher=None, **options):
-    request = ModelRequest(slip="coulomb:0.4", toe="peak", **options)
+    request = ModelRequest(slip="coulomb:0.4", **options)
     write_walk(out, request, walk, watcher or Nobody(), kind="predict", settings={"log": "a"})
     return read_walk_manifest(out)
 
@@ -44,7 +43,7 @@ def test_how_a_walk_was_made_is_in_its_manifest(finished, tmp_path):
     manifest = write(tmp_path / "out", finished)
     assert (manifest["kind"], manifest["source"]) == ("predict", "sim:dynamics")
     settings = manifest["settings"]
-    expected = {"model": "dynamics", "dt": 0.01, "toe": "peak", "log": "a", "walks": None}
+    expected = {"model": "dynamics", "dt": 0.01, "log": "a", "walks": None}
     assert {name: settings[name] for name in expected} == expected
     assert settings["slip"] == {"named": "coulomb:0.4", "source": finished.slip.source}
     assert settings["robot"]["mass"] == 2.0
@@ -80,7 +79,7 @@ def test_pictures_and_film_come_only_when_asked_for(finished, tmp_path, monkeypa
     saved = figures_saved(monkeypatch)
     filmed = []
 
-    def animate(path, robot, folder, *, title, progress, terrain):
+    def animate(path, robot, folder, *, title, progress, ground):
         filmed.append(title)
         progress(0.5)
 

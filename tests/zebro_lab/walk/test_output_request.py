@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Options of bands, pictures and contacts: a band that can be drawn, and no option in vain."""
 
-from typing import Any
-
 import pytest
 import typer
 
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.picture_options import parse_instants
-from zebro_lab.walk.output_request import BandRequest, ContactRequest, PictureRequest
+from zebro_lab.walk.output_request import BandRequest, PictureRequest
 from zebro_lab.workers import WorkersRequest
 
 
@@ -16,13 +14,8 @@ def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
     assert BandRequest().draws == 0
     with pytest.raises(SettingsError, match="expected 2 or more, or 0"):
         BandRequest(1)
-    negative: tuple[dict[str, Any], ...] = (
-        {"offset_sd_deg": -1.0},
-        {"start_sd": (0.0, -1.0, 0.0)},
-    )
-    for options in negative:
-        with pytest.raises(SettingsError, match="deviations of 0 or more"):
-            BandRequest(2, **options)
+    with pytest.raises(SettingsError, match="--offset-sd-deg: expected 0 or more"):
+        BandRequest(2, offset_sd_deg=-1.0)
 
 
 def test_a_scheduler_without_draws_to_share_is_wrong_usage():
@@ -32,10 +25,7 @@ def test_a_scheduler_without_draws_to_share_is_wrong_usage():
         BandRequest(workers=workers)
 
 
-def test_times_of_snapshots_without_figures_and_a_least_state_without_contacts_are_refused():
+def test_times_of_snapshots_without_figures_are_refused():
     with pytest.raises(typer.BadParameter, match="--figures too"):
         PictureRequest(at=parse_instants("1,2"))
-    with pytest.raises(typer.BadParameter, match="--contacts too"):
-        ContactRequest(contacts_least=0.05)
     assert PictureRequest(True, parse_instants("1,2")).snapshots == (1.0, 2.0)
-    assert ContactRequest(True, 0.05).least == 0.05

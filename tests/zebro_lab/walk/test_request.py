@@ -6,53 +6,38 @@ from typing import get_args
 import pytest
 import typer
 
-from model.contact.detection import DETECTIONS
-from model.contact.tripod import AUTOMATA
-from model.walk.thesis import SWITCHES
-from model.walk.traction import TOE_LAWS
+from model.thesis.tripod import RULES
 from model.walk_models import MODELS
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.walk.request import (
-    DETECTED,
     LONGEST_SLIPPING_STEP,
     LONGEST_STEP,
-    AutomatonName,
     ModelName,
     ModelRequest,
-    SwitchName,
-    ToeName,
+    RuleName,
     WalkRequest,
 )
 
 
-def test_options_offer_the_models_and_toe_laws_that_there_are():
+def test_options_offer_the_models_that_there_are():
     assert set(get_args(ModelName)) == set(MODELS)
-    assert get_args(ToeName) == TOE_LAWS
 
 
-def test_options_offer_the_thesis_automata_and_switches():
-    assert get_args(AutomatonName) == (*AUTOMATA, *DETECTIONS)
-    assert get_args(SwitchName) == SWITCHES
-    assert DETECTED == DETECTIONS
-
-
-@pytest.mark.parametrize("model", [name for name in MODELS if name != "thesis"])
-def test_options_of_the_thesis_model_are_refused_with_others(model):
-    with pytest.raises(SettingsError, match=f"--automaton: found 'table' .*'{model}'"):
-        ModelRequest("thesis", model, automaton="table")
-    with pytest.raises(typer.BadParameter, match=f"'{model}' follow the gait's angles"):
-        WalkRequest(duration=1.0, model=ModelRequest("thesis", model), switch_at="angle")
+def test_what_the_thesis_model_follows_is_refused_with_other_models():
+    assert get_args(RuleName) == RULES
+    for model in MODELS:
+        if model != "thesis":
+            with pytest.raises(typer.BadParameter, match="give --model thesis too"):
+                ModelRequest("thesis", model, thesis="text")
 
 
 @pytest.mark.parametrize(
-    ("gait", "automaton", "needed"),
-    [("tripod", None, True), ("tetrapod", None, False), ("{1,4} < {2,5} < {3,6}", None, False),
-     ("tripod", "events", False), ("tetrapod", "table", True)],
-)  # fmt: skip
-def test_the_thesis_model_needs_a_slip_law_for_its_dynamics_only(gait, automaton, needed):
-    model = ModelRequest(model="thesis", automaton=automaton)
-    request = WalkRequest(GaitRequest(gait), 1.0, model=model)
+    ("gait", "needed"),
+    [("tripod", True), ("tetrapod", False), ("{1,4} < {2,5} < {3,6}", False)],
+)
+def test_the_thesis_model_needs_a_slip_law_for_its_dynamics_only(gait, needed):
+    request = WalkRequest(GaitRequest(gait), 1.0, model=ModelRequest(model="thesis"))
     if needed:
         with pytest.raises(typer.BadParameter, match="'thesis'"):
             request.require_slip()

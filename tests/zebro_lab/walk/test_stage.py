@@ -12,10 +12,9 @@ from support.walk_requests import request
 from support.watchers import Impatient, Nobody
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.robot.robot_file import read_robot_file
-from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
+from zebro_lab.walk.folder import PICTURES, read_draws, read_walk, read_walk_manifest
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.output_request import BandRequest, PictureRequest
-from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.request import ModelRequest
 from zebro_lab.walk.stage import walk, write_robot
 from zebro_lab.walk.summary import summarise

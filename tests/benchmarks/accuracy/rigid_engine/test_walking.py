@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.accuracy.engine_ground import engine_ground, steps_and_roughness
+from benchmarks.accuracy.engine_ground import engine_ground, rough
 from benchmarks.accuracy.rigid_engine.stepping import Friction
 from benchmarks.accuracy.rigid_engine.walking import EVERY, walk
 from model.robot import GRAVITY, N_LEGS, Robot
@@ -43,7 +43,7 @@ def test_a_patch_has_its_own_friction():
 
 
 def test_a_robot_put_on_rough_ground_rests_there_before_it_walks():
-    case = next(each for each in steps_and_roughness(10) if (each.kind, each.seed) == ("rough", 10))
+    case = rough(10)[-1]
     heights, _ = engine_ground(case)
     path = stand(Friction(3.0, 1e-3, NO_AREAS), heights=heights)
     np.testing.assert_allclose(path.position[0, :2], 0.0, atol=1e-9)

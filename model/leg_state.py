@@ -116,14 +116,18 @@ def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
     )
 
 
-def bend_in(state: LegState, i: int) -> Bend:
-    """Return how the path of one draw is stretched and bent.
+def corrected(
+    robot: Robot, table: TractionTable, state: LegState
+) -> tuple[Robot, TractionTable, Bend]:
+    """Correct a robot and its slip law by the first draw, and return how its path is bent.
 
     Args:
-        state: Draws of the legs' state.
-        i: Index of the draw.
+        robot: The robot as described.
+        table: The slip law as calibrated.
+        state: Draws of the legs' state, such as the most probable one.
     """
-    return Bend(float(state.stride[i]), float(state.steering[i]))
+    bend = Bend(float(state.stride[0]), float(state.steering[0]))
+    return robot_in(robot, state, 0), law_in(table, state, 0), bend
 
 
 def scaled_table(

@@ -11,6 +11,7 @@ from model.errors import DomainError
 from model.format_distinct import format_distinct
 from model.poses import Poses, moved_onto
 from model.walk.bend import Bend, bent_states
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
 
 LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
@@ -32,18 +33,21 @@ def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
     return Poses.of_states(paths.t, states)
 
 
-def bent_walk(path: WalkPath, bend: Bend) -> WalkPath:
-    """Stretch and bend x, y and yaw of one walk as `bent` does; all else of the walk stays.
+def bent_walk(path: WalkPath, bend: Bend, ground: Ground = FLAT) -> WalkPath:
+    """Stretch and bend one walk as `bent` does; its body rises with the ground's plane.
 
     Args:
         path: The walk.
         bend: How the path is stretched and bent.
+        ground: The ground, of which the slope of the plane counts.
     """
     one = path.poses.draws()
     moved = bent(one, distance=np.array([bend.distance]), curvature=np.array([bend.curvature]))
+    away = moved.position[0] - path.position[:, :2]
+    z = path.position[:, 2] + away @ [ground.slope_x, ground.slope_y]
     return replace(
         path,
-        position=np.column_stack([moved.position[0], path.position[:, 2]]),
+        position=np.column_stack([moved.position[0], z]),
         orientation=np.column_stack([path.orientation[:, :2], moved.yaw[0]]),
     )
 

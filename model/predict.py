@@ -10,7 +10,6 @@ distance and one of curvature.
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -22,7 +21,6 @@ from model.leg_state import LegState, law_in, robot_in
 from model.path_draws import bent
 from model.poses import Poses
 from model.robot import Robot
-from model.walk.bend import Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.ground import FLAT, Ground
@@ -161,8 +159,6 @@ def predict_paths(
 ) -> Poses:
     """Compute the path of every draw, bent by its steering, its stride and a drawn model error.
 
-    Where the ground is not level each draw walks on the ground under its bent path.
-
     Args:
         draws: Inputs of m walks; `with_contacts` draws stiffness and damping of the contacts.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
@@ -183,11 +179,8 @@ def predict_paths(
     n = len(draws)
     distance = state.stride + error.distance * rng.standard_normal(n)
     curvature = state.steering + error.curvature * rng.standard_normal(n)
-    walk = partial(walk_ensemble, t=t, options=options, executor=executor, progress=progress)
-    if all(draw.is_alike_everywhere for draw in draws):
-        return bent(walk(draws).poses, distance=distance, curvature=curvature)
-    bends = map(Bend, distance.tolist(), curvature.tolist())
-    return walk([replace(draw, bend=bend) for draw, bend in zip(draws, bends, strict=True)]).poses
+    walked = walk_ensemble(draws, t, options=options, executor=executor, progress=progress)
+    return bent(walked.poses, distance=distance, curvature=curvature)
 
 
 def with_contacts(

@@ -9,12 +9,13 @@ from typing import Literal
 from model.errors import DomainError, WalkError
 from model.gait.direction import Direction
 from model.gait.reference import LegReference, SampledReference
-from model.leg_state import LegState, bend_in, law_in, robot_in
+from model.leg_state import LegState, corrected
 from model.path_draws import bent_walk
 from model.poses import Poses
 from model.robot import GRAVITY, Robot
 from model.slip.thesis import thesis_curve
-from model.walk.ground import FLAT, Ground, is_level
+from model.walk.bend import STRAIGHT
+from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.slipping import SLIPPING
@@ -105,23 +106,17 @@ def baseline_paths(
 
 def _dynamics(run: ModelRun) -> WalkPath:
     """Walk by the project's model; with `legs`, correct robot, law and path by their draw 0."""
-    from model.walk.bent_walk import walk_bent
     from model.walk.dynamics import DynamicsOptions, walk
 
-    options = DynamicsOptions(dt=run.dt)
     robot, law = run.robot, _slip_of(run).traction_table(weight=run.robot.mass * GRAVITY)
-    if run.legs is None:
-        return walk(
-            robot, run.reference, law, duration=run.duration, options=options, ground=run.ground
-        )
-    robot, law, bend = robot_in(robot, run.legs, 0), law_in(law, run.legs, 0), bend_in(run.legs, 0)
-    if is_level(run.ground):
-        path = walk(robot, run.reference, law, duration=run.duration, options=options)
-        return bent_walk(path, bend)
-    return walk_bent(
-        robot, run.reference, law, bend=bend, duration=run.duration, options=options,
+    bend = STRAIGHT
+    if run.legs is not None:
+        robot, law, bend = corrected(robot, law, run.legs)
+    path = walk(
+        robot, run.reference, law, duration=run.duration, options=DynamicsOptions(dt=run.dt),
         ground=run.ground,
     )  # fmt: skip
+    return bent_walk(path, bend, run.ground)
 
 
 def _thesis(run: ModelRun) -> WalkPath:

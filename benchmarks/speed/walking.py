@@ -254,9 +254,9 @@ def time_ensembles() -> None:
     constant = gait()
     t = np.arange(0.0, DURATION + 1 / LOG_RATE, 1 / LOG_RATE)
     log = SampledReference(t, constant.angles(t))
-    by_strides = "constant gait, by strides"
-    plans = [(by_strides, n, DURATION, constant) for n in DRAWS]
-    plans += [(by_strides, DRAWS[-1], d, constant) for d in DURATIONS if d != DURATION]
+    constant_gait = "constant gait"
+    plans = [(constant_gait, n, DURATION, constant) for n in DRAWS]
+    plans += [(constant_gait, DRAWS[-1], d, constant) for d in DURATIONS if d != DURATION]
     plans += [("log of leg angles, 100 Hz, every step", DRAWS[-1], DURATION, log)]
     head = (
         "ensemble, 2 threads, steps of 5 ms", "draws", "walk (s)", "tables (s)", "walks (s)",

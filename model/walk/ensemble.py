@@ -14,8 +14,6 @@ from model.gait.reference import LegReference
 from model.poses import Poses
 from model.robot import Robot
 from model.tasks import compute_tasks
-from model.walk.bend import STRAIGHT, Bend
-from model.walk.bent_walk import integrate_bent
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
     ORIGIN,
@@ -25,9 +23,8 @@ from model.walk.dynamics import (
     start_state,
     step_times,
 )
-from model.walk.ground import FLAT, Ground, is_level
+from model.walk.ground import FLAT, Ground
 from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
-from model.walk.stride import walk_by_strides
 from model.walk.traction import TractionTable
 
 
@@ -43,8 +40,6 @@ class WalkDraw:
         damping: Factor on the contact damping of an ensemble's options [-].
         ground: The ground.
         start: Initial pose.
-        bend: How the path is stretched and bent while it is walked; on level ground it
-            can as well be bent afterwards.
     """
 
     robot: Robot
@@ -54,13 +49,6 @@ class WalkDraw:
     damping: float = 1.0
     ground: Ground = FLAT
     start: Start = ORIGIN
-    bend: Bend = STRAIGHT
-
-    @property
-    def is_alike_everywhere(self) -> bool:
-        """Whether the walk depends on no place or heading: level ground, from zero."""
-        from_zero = self.start == ORIGIN and self.bend == STRAIGHT
-        return is_level(self.ground) and from_zero
 
     def options(self, common: DynamicsOptions) -> DynamicsOptions:
         """Return the common options, contact stiffness and damping times this draw's factors."""
@@ -114,14 +102,14 @@ def walk_ensemble(
     tilt: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PlanarWalk:
-    """Compute the path of every draw; periodic gaits on level ground by `walk_by_strides`.
+    """Compute the path of every draw.
 
     Args:
         draws: The draws to walk.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
         options: Step length and contacts, the same for all draws but for the draws' factors.
         executor: Where draws are walked; a task is one draw; None for here.
-        tilt: Return roll and pitch too; not available where strides are repeated.
+        tilt: Return roll and pitch too.
         progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
     Returns:
@@ -131,7 +119,7 @@ def walk_ensemble(
     Raises:
         DomainError: There is no draw or no time, or times are negative, not finite or do not
             increase.
-        WalkError: A walk failed (the message says of which draw), or `tilt` with a periodic gait.
+        WalkError: A walk failed; the message says of which draw.
     """
     _require_draws(draws, t)
     times = WalkedTimes(t, options, tilt)
@@ -173,18 +161,10 @@ def walk_draw(times: WalkedTimes, draw: WalkDraw) -> Array:
     Raises:
         WalkError: The walk failed.
     """
-    path = planar_walk(draw, duration=times.duration, options=times.options, tilt=times.tilt)
-    columns = [*path.poses.states.T, *(_tilt_of(path) if times.tilt else ())]
+    path = planar_walk(draw, duration=times.duration, options=times.options)
+    tilt = path.tilt.T if times.tilt and path.tilt is not None else ()
+    columns = [*path.poses.states.T, *tilt]
     return np.stack([np.interp(times.t, path.poses.t, a) for a in columns], axis=-1)
-
-
-def _tilt_of(path: PlanarWalk) -> Array:
-    """Return roll and pitch as rows, shape (2, n) [rad]; raise `WalkError` if the path has none."""
-    if path.tilt is None:
-        raise WalkError(
-            "roll and pitch of periodic gaits are not kept; sample its leg angles: SampledReference"
-        )
-    return path.tilt.T
 
 
 def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
@@ -199,11 +179,7 @@ def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
 
 
 def planar_walk(
-    draw: WalkDraw,
-    *,
-    duration: float,
-    options: DynamicsOptions = DEFAULT_OPTIONS,
-    tilt: bool = False,
+    draw: WalkDraw, *, duration: float, options: DynamicsOptions = DEFAULT_OPTIONS
 ) -> PlanarWalk:
     """Compute the planar path of one draw from its start, at every step.
 
@@ -211,29 +187,15 @@ def planar_walk(
         draw: The draw to walk.
         duration: Time walked [s].
         options: Step length and contacts, before the draw's factors.
-        tilt: Return roll and pitch too; ignored for periodic gaits on level ground, which are
-            walked by strides.
 
     Raises:
         DomainError: The duration is not finite or rounds to no step.
         WalkError: The robot cannot stand at the start, or a step diverged.
     """
     options = draw.options(options)
-    if draw.reference.period is not None and draw.is_alike_everywhere:
-        return PlanarWalk(
-            walk_by_strides(
-                draw.robot, draw.reference, draw.table, duration=duration, options=options
-            )
-        )
     t = step_times(duration, options.dt)
     theta = draw.reference.angles(t) + draw.robot.leg_offset
     state = start_state(draw.robot, theta[0], options, ground=draw.ground, start=draw.start)
-    if draw.bend == STRAIGHT:
-        pose, _ = integrate(draw.robot, draw.table, state, theta, options, ground=draw.ground)
-    else:
-        pose, _ = integrate_bent(
-            draw.robot, draw.table, state, theta, options, bend=draw.bend, ground=draw.ground
-        )
+    pose, _ = integrate(draw.robot, draw.table, state, theta, options, ground=draw.ground)
     q = pose[:, 3:]
-    poses = Poses(t, pose[:, :2], unwrapped_yaw(q))
-    return PlanarWalk(poses, roll_pitch_yaw(q)[:, :2] if tilt else None)
+    return PlanarWalk(Poses(t, pose[:, :2], unwrapped_yaw(q)), roll_pitch_yaw(q)[:, :2])

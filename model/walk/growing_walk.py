@@ -2,17 +2,16 @@
 """Walk a program that grows, cycle by cycle, and tell the pose at its end."""
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from model.arrays import Array
 from model.gait.program import ProgramLegs
 from model.gait.reference import SampledReference
+from model.poses import compose, relative
 from model.robot import Robot
 from model.walk.arrays import State
-from model.walk.bend import STRAIGHT, Bend
-from model.walk.bent_walk import integrate_bent
+from model.walk.bend import STRAIGHT, Bend, bent_states
 from model.walk.dynamics import DynamicsOptions, integrate, start_state
 from model.walk.ground import FLAT, Ground
 from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
@@ -43,7 +42,7 @@ class GrowingWalk:
         table: The slip law, as fitted walks correct it.
         options: Step length and contacts.
         ground: The ground.
-        bend: How the path is stretched and bent while it is walked.
+        bend: How the path is stretched and bent.
 
     Attributes:
         reached: What was walked last; None before the first walk. To take back the last cycles of a
@@ -89,15 +88,16 @@ class GrowingWalk:
         return Reached(0, state, np.array([state.p[0], state.p[1], yaw]))
 
     def _advanced(self, reference: SampledReference, last: Reached, end: int) -> Reached:
-        """Integrate a copy of the last state to the step `end`, and bend the new part's path."""
+        """Integrate a copy of the last state to the step `end`, and append its move, bent."""
         dt = self._options.dt
         theta = reference.angles(dt * np.arange(last.step, end + 1)) + self._robot.leg_offset
         state = State(*(each.copy() for each in last.state))
-        began = last.step * dt
-        walk = integrate if self._bend == STRAIGHT else partial(integrate_bent, bend=self._bend)
-        pose, _ = walk(
-            self._robot, self._table, state, theta, self._options, ground=self._ground, began=began
-        )
-        turned = unwrapped_yaw(pose[:, 3:])
-        yaw = last.pose[2] + turned[-1] - turned[0]
-        return Reached(end, state, np.array([pose[-1, 0], pose[-1, 1], yaw]))
+        pose, _ = integrate(
+            self._robot, self._table, state, theta, self._options, ground=self._ground,
+            began=last.step * dt,
+        )  # fmt: skip
+        states = np.column_stack([pose[:, :2], unwrapped_yaw(pose[:, 3:])])
+        distance, curvature = np.array([self._bend.distance]), np.array([self._bend.curvature])
+        bent = bent_states(states[None], distance=distance, curvature=curvature)[0]
+        move = relative(bent[-1:], bent[0])
+        return Reached(end, state, compose(last.pose, move)[0])

@@ -54,8 +54,7 @@ def fit_walks(
 
     Raises:
         InsufficientData: There is no walk, or IMU and walk share less than a second.
-        WalkError: A walk diverged, the robot cannot stand at its start, or there is an IMU and the
-            leg angles are a periodic gait.
+        WalkError: A walk diverged, or the robot cannot stand at its start.
     """
     if not walks:
         raise InsufficientData("no walk was given; expected one or more with a track")

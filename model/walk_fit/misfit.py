@@ -129,8 +129,7 @@ class WalkMisfit:
             executor: Where walks are computed; None for here.
 
         Raises:
-            WalkError: A walk diverged, the robot cannot stand at its start, or there is an IMU and
-                the leg angles are a periodic gait.
+            WalkError: A walk diverged, or the robot cannot stand at its start.
             InsufficientData: IMU and walk share less than a second.
         """
         plain = WalkDraw(robot, middle(walk.legs), table)

@@ -5,8 +5,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model.errors import DomainError
-from model.path_draws import anchored, bent, quantiles, states_at
+from model.gait.steering import tripod_angles, tripod_reference
+from model.path_draws import anchored, bent, bent_walk, quantiles, states_at
 from model.poses import Poses
+from model.robot import GRAVITY, Robot
+from model.walk.bend import Bend
+from model.walk.dynamics import walk
+from model.walk.ground import FLAT, with_slope
+from model.walk.traction import VelocityCoulomb
 
 T = np.linspace(0.0, 4.0, 41)
 
@@ -61,3 +67,17 @@ def test_quantiles_are_ordered_and_hold_the_share_they_say():
         paths.position[:, -1, 1] <= band[2, -1, 1]
     )
     assert inside.mean() == pytest.approx(0.9, abs=0.01)
+
+
+def test_a_walk_bent_on_a_slope_stays_on_it():
+    robot, slope = Robot(), with_slope(FLAT, np.radians(5.0), np.radians(-3.0))
+    law = VelocityCoulomb(0.5).table(weight=robot.mass * GRAVITY)
+    gait = tripod_reference(tripod_angles(np.radians(50.0), 1.0), 2.0)
+    path = walk(robot, gait, law, duration=3.0, ground=slope)
+    moved = bent_walk(path, Bend(0.05, 1.0), slope)
+    assert moved.yaw[-1] - path.yaw[-1] > 0.1
+
+    def over(one):
+        return one.position @ [-slope.slope_x, -slope.slope_y, 1.0]
+
+    np.testing.assert_allclose(over(moved), over(path), atol=1e-12)

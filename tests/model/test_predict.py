@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: MIT
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +9,7 @@ from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.leg_state import LegState
-from model.path_draws import bent, mean_path
-from model.poses import Poses
+from model.path_draws import mean_path
 from model.predict import (
     STEPS,
     ModelSpread,
@@ -23,10 +21,8 @@ from model.predict import (
 from model.robot import Robot
 from model.slip import MagicFormula
 from model.travel import path_length
-from model.walk.bend import Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, planar_walk
-from model.walk.ground import FLAT, with_slope
 from model.walk.traction import VelocityCoulomb, law_table
 
 T = np.linspace(0.0, 4.0, 41)
@@ -121,21 +117,6 @@ def error_of_step(draw, options):
     fine = planar_walk(draw, duration=12.0, options=DynamicsOptions(dt=0.0005)).poses
     path = planar_walk(draw, duration=12.0, options=options).poses
     return np.linalg.norm(path.position[-1] - fine.position[-1]) / path_length(fine)
-
-
-def test_on_a_slope_a_path_is_bent_while_it_is_walked_and_not_afterwards():
-    ground = with_slope(FLAT, np.radians(6.0), 0.0)
-    state = LegState.of_prior(2, offset_sd=0.0, rng=np.random.default_rng(1))
-    state = replace(state, steering=np.array([0.0, 1.5]))
-    rng = np.random.default_rng(1)
-    placed = walk_draws(Robot(), GAIT, [TABLE], state, rng=rng, ground=ground)
-    paths = predict_paths(placed, T, state=state, error=EXACT, rng=np.random.default_rng(1),
-                          options=DynamicsOptions())  # fmt: skip
-    one = planar_walk(replace(placed[1], bend=Bend(0.0, 1.5)), duration=4.0).poses
-    np.testing.assert_allclose(paths.position[1, -1], one.position[-1], atol=1e-9)
-    straight = Poses.of_states(T, paths.states[:1])
-    after = bent(straight, distance=np.zeros(1), curvature=np.full(1, 1.5))
-    assert np.linalg.norm(after.position[0, -1] - paths.position[1, -1]) > 1e-3
 
 
 def test_lateral_traction_widens_the_band_of_a_turn_and_hardly_that_of_a_straight_walk():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.leg_state import bend_in, law_in, robot_in
+from model.leg_state import corrected
 from model.progress import Watcher
 from model.robot import GRAVITY
 from model.walk.bend import STRAIGHT
@@ -133,9 +133,7 @@ def surroundings_of(
     law = slip.traction_table(weight=weight)
     robot, bend = described.robot, STRAIGHT
     if informed is not None:
-        corrections = informed.middle
-        robot, law = robot_in(robot, corrections, 0), law_in(law, corrections, 0)
-        bend = bend_in(corrections, 0)
+        robot, law, bend = corrected(robot, law, informed.middle)
     return Surroundings(robot, law, options, _heights(ground), bend)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from model.gait.notation import TRIPOD
 from model.gait.program import ProgramLegs, cycle_gait
-from model.leg_state import LegState, bend_in, law_in, robot_in
+from model.leg_state import LegState, corrected
 from model.path_draws import bent_walk
 from model.robot import GRAVITY, Robot
 from model.walk.bend import STRAIGHT
@@ -34,17 +34,15 @@ FITTED = LegState(
 
 @pytest.mark.parametrize("corrections", [None, FITTED])
 def test_poses_of_a_growing_program_are_those_of_its_walk(corrections):
-    law = TABLE if corrections is None else law_in(TABLE, corrections, 0)
-    robot = ROBOT if corrections is None else robot_in(ROBOT, corrections, 0)
-    bend = STRAIGHT if corrections is None else bend_in(corrections, 0)
+    robot, law, bend = ROBOT, TABLE, STRAIGHT
+    if corrections is not None:
+        robot, law, bend = corrected(ROBOT, TABLE, corrections)
     growing = GrowingWalk(robot, law, OPTIONS, bend=bend)
     legs, found = ProgramLegs.beginning_with(CURVE), []
     for _ in range(4):
         legs = legs.with_cycle(CURVE)
         found.append(growing.pose(legs))
-    path = walk(robot, legs.reference(), law, duration=legs.end, options=OPTIONS)
-    if corrections is not None:
-        path = bent_walk(path, bend)
+    path = bent_walk(walk(robot, legs.reference(), law, duration=legs.end, options=OPTIONS), bend)
     at = [round(t / OPTIONS.dt) for t in (1.0, 2.0, 3.0, 4.0)]
     expected = np.column_stack([path.position[at, :2], path.yaw[at]])
     np.testing.assert_allclose(found, expected, atol=2e-3)

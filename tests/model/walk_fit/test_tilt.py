@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.errors import InsufficientData, WalkError
+from model.errors import InsufficientData
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
 from model.robot import Robot
@@ -46,11 +46,6 @@ def test_an_ensemble_tilts_as_its_walk_does():
     )
     alone = np.column_stack([np.interp(t, path.t, a) for a in path.orientation[:, :2].T])
     np.testing.assert_allclose(tilt[0], alone, atol=1e-12)
-
-
-def test_a_gait_that_is_walked_by_strides_keeps_no_tilt():
-    with pytest.raises(WalkError, match="sample its leg angles"):
-        walk_ensemble([WalkDraw(Robot(), GAIT, TABLE)], np.array([0.0, 4.0]), tilt=True)
 
 
 def test_the_leg_that_is_off_is_told_from_one_that_bends_the_path_alike():

@@ -20,7 +20,6 @@ from zebro_lab.track.camera import command as camera
 from zebro_lab.validation import command as validate
 from zebro_lab.validation.compare import command as compare
 from zebro_lab.walk import command as walk
-from zebro_lab.walk import predict_command
 from zebro_lab.walk_fit import command as calibrate
 
 app = Application(no_args_is_help=True)
@@ -29,7 +28,7 @@ app.command("read-off", epilog=read_off.EPILOG)(read_off.read_off)
 app.command()(init_command.init)
 app.command(epilog=walk.EPILOG)(walk.walk)
 app.command(epilog=reach.EPILOG)(reach.reach)
-app.command(epilog=predict_command.EPILOG)(predict_command.predict)
+app.command(epilog=walk.PREDICT_EPILOG)(walk.predict)
 app.command(epilog=validate.EPILOG)(validate.validate)
 app.command(epilog=compare.EPILOG)(compare.compare)
 app.command(epilog=report.EPILOG)(report.report)

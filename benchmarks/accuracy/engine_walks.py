@@ -21,7 +21,8 @@ from model.errors import DomainError
 from model.gait.reference import SampledReference
 from model.predict import FINE
 from model.robot import GRAVITY, Robot
-from model.thesis import ThesisOptions, table_traction, walk_thesis
+from model.thesis.traction import table_traction
+from model.thesis.walk import ThesisOptions, walk_thesis
 from model.walk.dynamics import DEFAULT_OPTIONS, DynamicsOptions, walk
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import WalkPath, turning_radius

@@ -18,7 +18,7 @@ from model.gait.steering import TripodAngles, tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
 from model.robot import Robot
 from model.slip import MagicFormula
-from model.thesis import walk_thesis
+from model.thesis.walk import walk_thesis
 from model.walk.dynamics import walk
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import WalkPath, turning_radius

@@ -77,22 +77,3 @@ def contains(point: Array, triangle: Array) -> bool:
     (True, False)
     """
     return bool(np.all(side_products(point, triangle) >= 0))
-
-
-def lifting_corner(point: Array, triangle: Array) -> int | None:
-    """Find the leg that lifts when the centre of mass is outside the contact triangle.
-
-    The leg is the one at the corner opposite the side that the centre of mass lies beyond; beyond
-    two sides, opposite the one with the more negative product of `side_products`.
-
-    Args:
-        point: Centre of mass seen from above, shape (2,) [m].
-        triangle: Contact points seen from above, shape (3, 2) [m].
-
-    Returns:
-        Row of the leg in `triangle`; None when the point is inside the triangle or on its edge, or
-        when the corners lie on a line.
-    """
-    products = side_products(point, triangle)
-    worst = int(np.argmin(products))
-    return worst if products[worst] < 0 else None

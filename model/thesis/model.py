@@ -6,8 +6,7 @@ from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import LegReference
 from model.robot import GRAVITY, Robot
-from model.thesis.detected import walk_detected
-from model.thesis.kinematic import kinematic_path
+from model.thesis.detected import kinematic_path, walk_detected
 from model.thesis.legs import SwitchedLegs
 from model.thesis.path import ThesisPath
 from model.thesis.traction import slip_traction

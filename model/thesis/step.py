@@ -243,6 +243,9 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         became NaN.
     """
     spare = _new_spare(machine, q)
+    three_legs(
+        sides, spare.legs, q, spare.three
+    )  # by Table 3-1 two may stand after the first switch
     for step in range(len(motion.theta)):
         if not _one_step(machine, manner, traction, motion, step, q, v, sides, spare, record):
             return step

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The ground under a walk: a plane, and heights on a grid, which add up."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -70,49 +69,6 @@ def highest_near(ground: Ground, x: float, y: float, far: float) -> float:
     plane = ground.slope_x * x + ground.slope_y * y
     plane += far * (abs(ground.slope_x) + abs(ground.slope_y))
     return float(near.max()) + plane
-
-
-def sample_ground(
-    height: Callable[[Array, Array], Array],
-    *,
-    x: tuple[float, float],
-    y: tuple[float, float],
-    step: float = 0.005,
-) -> Ground:
-    """Sample a height function on a grid; beyond the area the height of its edge continues.
-
-    Args:
-        height: Function from arrays x and y [m] of one shape to heights of that shape [m].
-        x: First and last x; the last sample lies there, or less than a step beyond [m].
-        y: First and last y, likewise [m].
-        step: Distance between samples, well below a leg's radius [m].
-
-    Raises:
-        DomainError: The area is no wider than a step, the step is not positive, or the heights have
-            another shape than the positions or are not finite.
-    """
-    if not (x[1] - x[0] > step > 0 and y[1] - y[0] > step):
-        raise DomainError(f"ground x {x}, y {y} is not wider than a positive step, {step:g} m")
-    grid = np.meshgrid(_samples(x, step), _samples(y, step), indexing="ij")
-    heights = np.asarray(height(*grid), dtype=float)
-    if heights.shape != grid[0].shape:
-        raise DomainError(
-            f"the height function gave shape {heights.shape} for positions of shape "
-            f"{grid[0].shape}; expected one height for each position"
-        )
-    if not np.isfinite(heights).all():
-        i, j = np.argwhere(~np.isfinite(heights))[0]
-        raise DomainError(
-            f"the ground's height is {heights[i, j]:g} m at x {grid[0][i, j]:g}, "
-            f"y {grid[1][i, j]:g} m; expected a finite one"
-        )
-    return Ground(float(x[0]), float(y[0]), step, heights, float(heights.max()))
-
-
-def _samples(ends: tuple[float, float], step: float) -> Array:
-    """Return positions from the first end in equal steps to the last end or just beyond [m]."""
-    first, last = ends
-    return first + step * np.arange(np.ceil((last - first) / step - 1e-9) + 1)
 
 
 def with_slope(ground: Ground, angle_x: float, angle_y: float) -> Ground:

@@ -57,18 +57,18 @@ def read_ground(file: Path) -> GroundFile:
         DataError: A map of heights cannot be read.
     """
     table = read_settings(file, advice="expected a ground.toml with slope_deg or heights")
+    beside = {key: table.value(key) for key in _MAP_KEYS if key in table}
     gone = [key for key in _GONE if key in table]
-    if gone or ("step" in table and isinstance(table.value("step"), list)):
+    if gone or isinstance(beside.get("step"), list):
         key = gone[0] if gone else "step"
         raise table.fault("is no part of a ground; write its shape into a map of heights", key)
     ground, what, files, settings = FLAT, [], [file], {}
     if "heights" in table:
-        ground, map_file, said = _heights(table, settings)
+        ground, map_file, said = _heights(table, beside, settings)
         what.append(said)
         files.append(map_file)
-    else:
-        for key in (each for each in _MAP_KEYS if each in table):
-            raise table.fault("found without heights, which it belongs to", key)
+    elif beside:
+        raise table.fault("found without heights, which it belongs to", next(iter(beside)))
     if "slope_deg" in table:
         along_x, along_y = table.numbers("slope_deg", 2)
         try:
@@ -83,7 +83,9 @@ def read_ground(file: Path) -> GroundFile:
     return GroundFile(ground, tuple(what), settings, tuple(files))
 
 
-def _heights(table: SettingsTable, settings: dict[str, object]) -> tuple[Ground, Path, str]:
+def _heights(
+    table: SettingsTable, beside: Mapping[str, object], settings: dict[str, object]
+) -> tuple[Ground, Path, str]:
     """Read a map of heights, given by `heights = "FILE"` and keys beside it, or as a table.
 
     Returns:
@@ -91,7 +93,7 @@ def _heights(table: SettingsTable, settings: dict[str, object]) -> tuple[Ground,
     """
     found = table.value("heights")
     if isinstance(found, str):
-        found = {"file": found, **{key: table.value(key) for key in _MAP_KEYS if key in table}}
+        found = {"file": found, **beside}
     spec = table.as_table("heights", found, expected='a file such as "heights.csv"')
     name = spec.text("file", least=1)
     file = Path(table.file).parent / name

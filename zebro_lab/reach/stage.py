@@ -17,18 +17,16 @@ from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable, result_folder
-from zebro_lab.reach.folder import PICTURE, REACH, TABLE, program_name, write_table
-from zebro_lab.reach.pictures import draw_ways
+from zebro_lab.reach.folder import PICTURE, REACH, TABLE, draw_ways, program_name, write_table
 from zebro_lab.reach.program_text import program_text
 from zebro_lab.reach.request import ReachRequest, SteppingRequest, parse_goal
 from zebro_lab.reach.way import CURVE, STOP_TURN_WALK, Way, named
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.walk.leg_speeds import speed_warnings
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.program_file import CYCLE, even_times, groups_of
 from zebro_lab.walk.program_stage import laid_out, surroundings_of
 from zebro_lab.walk.request import ModelRequest
-from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with
+from zebro_lab.walk.walking import Walked, ground_of, robot_of, speed_warnings, walk_with
 
 
 @dataclass(frozen=True)

@@ -14,12 +14,18 @@ from zebro_lab.robot.robot_file import RobotFile, render_robot_file
 from zebro_lab.walk.asked import AskedWalk
 from zebro_lab.walk.band import predict_band
 from zebro_lab.walk.folder import WALKED
-from zebro_lab.walk.leg_speeds import speed_warnings
 from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
-from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with, with_contacts
+from zebro_lab.walk.walking import (
+    Walked,
+    ground_of,
+    robot_of,
+    speed_warnings,
+    walk_with,
+    with_contacts,
+)
 from zebro_lab.workers import open_executor
 
 

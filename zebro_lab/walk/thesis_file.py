@@ -44,8 +44,9 @@ def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
         path: The walk; NaN, for what a leg in the air does not have, becomes an empty cell.
         robot: The robot that walked.
     """
-    steps = max(round(_EVERY / float(path.t[1] - path.t[0])), 1)
-    path = path.part(slice(None, None, steps))
+    if len(path.t) > 1:
+        steps = max(round(_EVERY / float(path.t[1] - path.t[0])), 1)
+        path = path.part(slice(None, None, steps))
     parts = (path.part(slice(first, first + _PART)) for first in range(0, len(path.t), _PART))
     values = (_values(part, robot) for part in parts)
     write_rows(file, COLUMNS, values, [_DIGITS] * len(COLUMNS))

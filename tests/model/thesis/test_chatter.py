@@ -6,12 +6,9 @@ from hypothesis import strategies as st
 
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
-from model.thesis import (
-    SwitchedLegs,
-    ThesisOptions,
-    paired_sum,
-    walk_thesis,
-)
+from model.thesis.legs import SwitchedLegs
+from model.thesis.traction import paired_sum
+from model.thesis.walk import ThesisOptions, walk_thesis
 from support.chatter import largest_stable_step, sign_changes_per_second
 
 STIFFNESS = 34.34 * 1.564 * 0.3798 * GRAVITY

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: MIT
-from dataclasses import replace
+from dataclasses import fields, replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 from model.errors import DomainError, WalkError
+from model.frames import thesis_attitude
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import Robot
 from model.thesis import detected
-from model.thesis.detected import walk_detected
+from model.thesis.detected import kinematic_path, thesis_angles, walk_detected
 from model.thesis.detection import detect_contacts
+from model.thesis.legs import SwitchedLegs
+from model.thesis.walk import walk_thesis
 from model.walk.no_slip import walk_no_slip
+from model.walk.path import WalkPath
 
 ROBOT = Robot()
 TETRAPOD = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
@@ -49,3 +54,43 @@ def test_where_no_contact_state_fits_the_time_is_said(monkeypatch):
     monkeypatch.setattr(detected, "detect_contacts", ends)
     with pytest.raises(WalkError, match=r"at t = 0\.1 s contact detection ends: no legs fit"):
         walk_detected(ROBOT, TETRAPOD, duration=1.0, dt=0.002)
+
+
+# --- kinematic quantities
+
+
+GAIT = tripod_reference(tripod_angles(np.radians(45.0), 1.2), 1.0)
+
+
+@cache
+def both():
+    """Return a walk by the dynamics, and the quantities found again from its path alone."""
+    path = walk_thesis(ROBOT, SwitchedLegs.of(GAIT), duration=1.5)
+    bare = WalkPath(**{each.name: getattr(path, each.name) for each in fields(WalkPath)})
+    return path, kinematic_path(ROBOT, bare)
+
+
+def test_angles_phi_and_hip_heights_are_found_again():
+    path, found = both()
+    for name in ("angles", "phi", "hip_height"):
+        np.testing.assert_allclose(getattr(found, name), getattr(path, name), atol=1e-9)
+    R = thesis_attitude(*found.angles.T)
+    np.testing.assert_allclose(thesis_angles(found.orientation), found.angles)
+    assert R.shape == (len(path.t), 3, 3)
+
+
+def test_speeds_are_those_of_the_dynamics_but_where_contacts_change():
+    path, found = both()
+    for name in ("leg_speed", "contact_speed", "hip_speed"):
+        ours, theirs = getattr(found, name), getattr(path, name)
+        np.testing.assert_array_equal(np.isnan(ours), ~path.contact)
+        apart = np.abs(ours - theirs)[path.contact]
+        assert np.median(apart) < 2e-3  # m/s, of some 0.2
+        assert np.median(theirs[path.contact]) > 0.1
+
+
+def test_what_needs_forces_is_not_known():
+    path, found = both()
+    assert found.is_kinematic
+    assert not path.is_kinematic
+    np.testing.assert_array_equal(np.isnan(found.static_load), path.contact)

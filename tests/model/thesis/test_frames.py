@@ -8,8 +8,9 @@ from model.frames import body_from_hip, hip_from_contact, thesis_attitude, trans
 from model.gait.steering import tripod_angles, tripod_reference
 from model.leg import contact_angle
 from model.robot import Robot
-from model.thesis import SwitchedLegs, ThesisOptions, walk_thesis
 from model.thesis.frames import contact_forces, contact_frames, hip_frames
+from model.thesis.legs import SwitchedLegs
+from model.thesis.walk import ThesisOptions, walk_thesis
 
 ROBOT = Robot()
 LEGS = SwitchedLegs.of(tripod_reference(tripod_angles(np.radians(45.0), 1.25), 1.0))

@@ -6,8 +6,7 @@ import pytest
 
 from model.errors import DomainError
 from model.gait.steering import tripod_angles, tripod_reference
-from model.thesis import SwitchedLegs
-from model.thesis.legs import leg_motion
+from model.thesis.legs import SwitchedLegs, leg_motion
 
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.2), 2.0)
 LEGS = SwitchedLegs.of(GAIT)

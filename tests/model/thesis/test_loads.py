@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from model.thesis import THESIS_TRACTION
 from model.thesis.loads import Balance, accelerations, normal_forces, static_loads
+from model.thesis.traction import THESIS_TRACTION
 
 WEIGHT = 2.17 * 9.81
 INERTIA = np.array([0.01227, 0.00767])

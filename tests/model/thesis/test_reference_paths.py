@@ -8,11 +8,8 @@ import pytest
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
 from model.robot import Robot
-from model.thesis import (
-    SwitchedLegs,
-    ThesisOptions,
-    walk_thesis,
-)
+from model.thesis.legs import SwitchedLegs
+from model.thesis.walk import ThesisOptions, walk_thesis
 from support.chatter import sign_changes_per_second
 
 pytestmark = pytest.mark.reference

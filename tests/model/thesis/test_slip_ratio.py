@@ -4,11 +4,12 @@ import pytest
 
 from model.robot import Robot
 from model.slip.thesis import thesis_curve
-from model.thesis import ThesisOptions, slip_traction
 from model.thesis.kinematics import Legs
 from model.thesis.loads import Balance
 from model.thesis.slip_ratio import along, find_slip, lateral_walk_slip, walk_slip
 from model.thesis.step import Machine
+from model.thesis.traction import slip_traction
+from model.thesis.walk import ThesisOptions
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb
 

@@ -7,9 +7,10 @@ import pytest
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip.thesis import thesis_curve
-from model.thesis import ThesisOptions, slip_traction, walk_thesis
 from model.thesis.legs import SwitchedLegs
 from model.thesis.step import contact_axes
+from model.thesis.traction import slip_traction
+from model.thesis.walk import ThesisOptions, walk_thesis
 from model.walk.slip import Slip
 
 

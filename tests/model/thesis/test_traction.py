@@ -5,8 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model.slip import CoulombStribeck, MagicFormula
-from model.thesis import THESIS_TRACTION, law_traction, table_traction
-from model.thesis.traction import load_derivative, traction_force
+from model.thesis.traction import (
+    THESIS_TRACTION,
+    law_traction,
+    load_derivative,
+    table_traction,
+    traction_force,
+)
 from model.walk.traction import VelocityCoulomb
 
 WEIGHT = 2.17 * 9.81

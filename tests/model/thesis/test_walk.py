@@ -12,14 +12,9 @@ from model.gait.suriana import suriana_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import CoulombStribeck
-from model.thesis import (
-    THESIS_TRACTION,
-    SwitchedLegs,
-    ThesisOptions,
-    law_traction,
-    table_traction,
-    walk_thesis,
-)
+from model.thesis.legs import SwitchedLegs
+from model.thesis.traction import THESIS_TRACTION, law_traction, table_traction
+from model.thesis.walk import ThesisOptions, walk_thesis
 from model.walk.no_slip import walk_no_slip
 from model.walk.path import turning_radius
 from model.walk.traction import VelocityCoulomb

@@ -10,7 +10,8 @@ from model.robot import Robot
 from model.walk.arrays import body_arrays
 from model.walk.contact_points import lowest_point
 from model.walk.deepest_point import deepest_point
-from model.walk.ground import ground_at, sample_ground, with_slope
+from model.walk.ground import ground_at, with_slope
+from support.grounds import sample_ground
 
 ROBOT = Robot()
 BODY = body_arrays(ROBOT)

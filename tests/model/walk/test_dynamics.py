@@ -10,10 +10,11 @@ from model.gait.reference import SampledReference
 from model.robot import Robot
 from model.slip import MagicFormula
 from model.walk.dynamics import DynamicsOptions, Start, walk
-from model.walk.ground import Ground, sample_ground
+from model.walk.ground import Ground
 from model.walk.no_slip import walk_no_slip
 from model.walk.path import turning_radius
 from model.walk.traction import VelocityCoulomb, law_table
+from support.grounds import sample_ground
 
 ROBOT = Robot()
 WEIGHT = ROBOT.mass * 9.81

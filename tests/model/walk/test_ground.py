@@ -1,28 +1,18 @@
 # SPDX-License-Identifier: MIT
-from collections.abc import Callable
-from typing import cast
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model.arrays import Array
 from model.errors import DomainError
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.walk.dynamics import Start, walk
-from model.walk.ground import (
-    FLAT,
-    beyond_grid,
-    ground_at,
-    height_and_slopes,
-    is_level,
-    sample_ground,
-    with_slope,
-)
+from model.walk.ground import FLAT, beyond_grid, ground_at, height_and_slopes, is_level, with_slope
 from model.walk.traction import VelocityCoulomb
+from support.grounds import sample_ground
 
 ROBOT = Robot()
 WEIGHT = ROBOT.mass * GRAVITY
@@ -55,12 +45,6 @@ def test_the_normal_is_square_to_the_surface(x, y):
         for dx, dy in ((h, 0), (0, h)):
             along = np.array([dx, dy, ground_at(HILLS, x + dx, y + dy)[0] - height])
             assert abs(along @ normal) < 1e-6 * h + 1e-14
-
-
-def test_the_area_reaches_from_first_to_last():
-    ground = sample_ground(lambda x, y: x + 10 * y, x=(-0.5, 2.0), y=(0.0, 0.1), step=0.02)
-    assert ground_at(ground, 2.0, 0.1)[0] == pytest.approx(3.0, abs=1e-5)
-    assert ground.highest == pytest.approx(ground.height[-1, -1])
 
 
 @pytest.mark.parametrize(("x", "y"), [(5.0, 0.0), (-5.0, 0.0)])
@@ -182,23 +166,3 @@ def test_a_robot_climbs_a_step_and_stands_higher_by_it():
 def test_a_slope_too_steep_to_find_contacts_from_above_is_refused():
     with pytest.raises(DomainError, match="slope along y is 46 degrees; expected -45 to 45"):
         with_slope(FLAT, 0.0, np.radians(46.0))
-
-
-@pytest.mark.parametrize(
-    "area",
-    [{"x": (0, 0), "y": (0, 1)}, {"x": (0, 1), "y": (1, 0)}, {"x": (0, 1), "y": (0, np.nan)}],
-)
-def test_an_area_that_is_none_is_refused(area):
-    with pytest.raises(DomainError, match="is not wider than a positive step"):
-        sample_ground(lambda x, y: 0 * x, **area)
-
-
-def test_a_height_that_is_no_number_is_refused_with_its_place():
-    with pytest.raises(DomainError, match=r"height is nan m at x 0\.5, y 0 m"):
-        sample_ground(lambda x, y: np.where(x < 0.499, 0, np.nan), x=(0, 1), y=(0, 1), step=0.1)
-
-
-def test_a_function_that_gives_one_height_for_all_is_refused():
-    one_for_all = cast("Callable[[Array, Array], Array]", lambda x, y: 0.0)
-    with pytest.raises(DomainError, match=r"gave shape \(\) for positions of shape \(11, 11\)"):
-        sample_ground(one_for_all, x=(0, 1), y=(0, 1), step=0.1)

@@ -11,7 +11,7 @@ from model.gait.notation import TRIPOD
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
-from model.thesis import SwitchedLegs
+from model.thesis.legs import SwitchedLegs
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import turning_radius
 

@@ -6,7 +6,7 @@ from model.errors import DefinitionMismatch
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES, thesis_curve
-from model.thesis import slip_traction
+from model.thesis.traction import slip_traction
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb

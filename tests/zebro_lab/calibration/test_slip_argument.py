@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from model.bayes.verdict import State
 from model.errors import DefinitionMismatch
 from model.slip import SlipDefinition
-from model.thesis import slip_traction
+from model.thesis.traction import slip_traction
 from model.walk.path import WalkPath
 from model.walk.traction import VelocityCoulomb
 from support.bounded_reading import refusal

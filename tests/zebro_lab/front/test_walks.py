@@ -50,7 +50,7 @@ def test_files_of_others_are_kept(tmp_path):
 
 def test_a_walk_on_a_ground_is_that_of_the_command(run_command, tmp_path):
     ground = tmp_path / "ground.toml"
-    ground.write_text("slope_deg = [4.0, 1.0]\n[[step]]\nx = 0.1\nheight = 0.005\n")
+    ground.write_text("slope_deg = [4.0, 1.0]\n")
     result = zl.walk_gait("tripod", slip="coulomb:0.5", duration=2.0, ground=str(ground))
     words = ("walk", "--slip", "coulomb:0.5", "--duration", 2, "--ground", ground, "--out")
     assert run_command(*words, tmp_path / "w").code == 0
@@ -61,13 +61,13 @@ def test_a_walk_on_a_ground_is_that_of_the_command(run_command, tmp_path):
 
 
 def test_the_thesis_s_text_is_walked_as_by_the_command(run_command, tmp_path):
-    given = {"slip": "thesis", "model": "thesis", "steering": 1.2, "duration": 1.0}
+    given = {"slip": "thesis", "model": "thesis", "steering": 1.2, "duration": 4.0}
     result = zl.walk_gait("tripod", thesis="text", **given)
-    words = ("walk", "--slip", "thesis", "--model", "thesis", "--steering", 1.2, "--duration", 1)
+    words = ("walk", "--slip", "thesis", "--model", "thesis", "--steering", 1.2, "--duration", 4)
     assert run_command(*words, "--thesis", "text", "--out", tmp_path / "w").code == 0
     np.testing.assert_allclose(result.walk.position, read_walk(tmp_path / "w").position, atol=1e-9)
     plain = zl.walk_gait("tripod", **given)
-    assert np.abs(result.walk.position - plain.walk.position).max() > 1e-3
+    assert np.abs(result.walk.position - plain.walk.position).max() > 1e-4
 
 
 def test_the_thesis_s_text_with_another_model_is_an_error_of_the_library():

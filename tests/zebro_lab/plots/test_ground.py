@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from model.walk.ground import FLAT, sample_ground, with_slope
+from model.walk.ground import FLAT, with_slope
+from support.grounds import sample_ground
 from zebro_lab.plots.ground import draw_ground
 
 LOW, HIGH = np.array([-0.5, -0.2]), np.array([1.0, 0.3])

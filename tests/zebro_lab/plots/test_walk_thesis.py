@@ -8,7 +8,8 @@ import pytest
 
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
-from model.thesis import SwitchedLegs, walk_thesis
+from model.thesis.legs import SwitchedLegs
+from model.thesis.walk import walk_thesis
 from support.figure_extents import overhang
 from zebro_lab.plots.walk_thesis import (
     contact_velocities,

@@ -191,7 +191,7 @@ def over(ground, path, robot, leg, k):
 def test_touchdowns_are_where_the_leg_comes_down_to_the_ground(on_ground):
     out, _, ground = on_ground
     path, robot = read_walk(out), Robot()
-    rows = rows_of(out / "touchdowns.csv")
+    rows = [row for row in rows_of(out / "touchdowns.csv") if row["t"]]
     assert len(rows) >= 15
     late = []
     for row in rows:

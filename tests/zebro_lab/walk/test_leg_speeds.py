@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.gait import SampledReference, tripod_angles, tripod_reference
-from zebro_lab.walk.leg_speeds import largest_speeds, speed_warnings
+from zebro_lab.walk.walking import largest_speeds, speed_warnings
 
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0)
 

@@ -9,7 +9,8 @@ import pandas as pd
 from model.frames import attitude, rotation_y
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
-from model.thesis import SwitchedLegs, walk_thesis
+from model.thesis.legs import SwitchedLegs
+from model.thesis.walk import walk_thesis
 from support.watchers import Nobody
 from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.walk.folder import read_walk

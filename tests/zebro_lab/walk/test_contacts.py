@@ -202,7 +202,8 @@ def test_touchdowns_are_where_the_leg_comes_down_to_the_ground(on_ground):
         own = float(row["angle"])
         in_a_step = float(path.theta[k + 1, leg] - path.theta[k, leg])
         assert own == pytest.approx(angle - 2 * np.pi * int(row["turn"]), abs=in_a_step)
-        late.append(own - float(row["asked_angle"]))
+        if row["asked_angle"]:  # else it came down twice in a turn without a touchdown asked for
+            late.append(own - float(row["asked_angle"]))
     assert np.ptp(late) > np.radians(5.0)  # the ground decides
 
 

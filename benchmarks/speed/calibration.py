@@ -36,7 +36,9 @@ from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.bayes.weighted import importance_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, draw_imperfections, simulate_sweep
+from rig.slip_rig.imperfections import draw_imperfections
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import SimulatedSweep, simulate_sweep
 from zebro_lab.calibration.rig_data import read_rig_data
 
 SEED = 2020

@@ -6,6 +6,7 @@ Everything follows from `SEED`: the load cell's errors are drawn first, the swee
 
 import hashlib
 import os
+import sys
 import tempfile
 from dataclasses import asdict
 from pathlib import Path
@@ -15,13 +16,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.sweep import (
-    RigImperfections,
-    SimulatedSweep,
-    SweepPlan,
-    draw_imperfections,
-    simulate_sweep,
-)
+from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
+from rig.slip_rig.sweep import SweepPlan
+
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+from support.simulated_sweep import SimulatedSweep, simulate_sweep
 
 SEED = 2020
 PLAN = SweepPlan()

@@ -7,7 +7,6 @@ from typing import Final
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.rig_errors import RigErrors
 from model.errors import DomainError
 
 GAIN_SD: Final = 0.005
@@ -104,9 +103,7 @@ TYPICAL_RIG = RigImperfections(
 """A rig like that of the Thesis with a perfectly calibrated load cell."""
 
 
-def draw_imperfections(
-    rng: np.random.Generator, errors: RigErrors | None = None
-) -> RigImperfections:
+def draw_imperfections(rng: np.random.Generator) -> RigImperfections:
     """Draw gain errors, normal bias and crosstalk from Gaussians around 0; rest as `TYPICAL_RIG`.
 
     A calibration has priors on these errors. It can only cover the truth at its nominal rate, seed
@@ -114,25 +111,16 @@ def draw_imperfections(
 
     Args:
         rng: Random generator.
-        errors: Spreads of the error of the radii and of rolling resistance; None where the radii
-            are right and the discs roll freely.
 
     Returns:
         The imperfections of one rig.
     """
-    rig = replace(
+    return replace(
         TYPICAL_RIG,
         gain_traction=rng.normal(0.0, GAIN_SD),
         gain_normal=rng.normal(0.0, GAIN_SD),
         bias_normal=rng.normal(0.0, BIAS_SD),
         crosstalk=rng.normal(0.0, CROSSTALK_SD),
-    )
-    if errors is None:
-        return rig
-    return replace(
-        rig,
-        radius_error=rng.normal(0.0, errors.radius_ratio),
-        rolling_resistance=rng.normal(0.0, errors.rolling_resistance),
     )
 
 

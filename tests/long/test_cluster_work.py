@@ -15,8 +15,9 @@ from model.bayes.law_scores import score_laws, weigh_law
 from model.bayes.posterior import LoadCell
 from model.slip import Brush, CoulombStribeck
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
 from support.commands import started
+from support.simulated_sweep import simulate_sweep
 from support.tracked_walks import write_walk
 from support.walk_posteriors import write_calibration
 from zebro_lab.workers import WorkersRequest, open_executor

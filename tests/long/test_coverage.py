@@ -38,7 +38,8 @@ from model.bayes.samples import SlipSamples
 from model.bayes.tails import approximate
 from model.bayes.weighted import weighted_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import draw_rig, simulate_sweep
 
 pytestmark = pytest.mark.long
 
@@ -161,7 +162,7 @@ def replicate(seed: int) -> dict[str, Fit]:
     """Simulate a sweep and fit it in every way, by arm."""
     rng = np.random.default_rng([N_REPLICATES, seed])
     truth = replace(
-        draw_imperfections(rng, USUAL), offset_sd=0.1, noise_correlation_time=-0.001 / np.log(RHO)
+        draw_rig(rng, USUAL), offset_sd=0.1, noise_correlation_time=-0.001 / np.log(RHO)
     )
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=PLAN, imperfections=truth, rng=rng)
     posterior, calibration = calibrate(sweep.samples, rng)

@@ -26,7 +26,8 @@ from model.errors import ModelError
 from model.slip.magic_formula import MagicFormula
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import draw_imperfections
-from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import SimulatedSweep, simulate_sweep
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import ZebroLabError
 

@@ -30,7 +30,8 @@ from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.weighted import WeightedDraws, weighted_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import draw_rig, simulate_sweep
 
 pytestmark = pytest.mark.long
 
@@ -128,7 +129,7 @@ def walk(
 
 def recover(seed: int, errors: RigErrors) -> Recovery:
     rng = np.random.default_rng(seed)
-    rig = draw_imperfections(rng, errors)
+    rig = draw_rig(rng, errors)
     sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=SweepPlan(), imperfections=rig, rng=rng)
     began = time.perf_counter()
     fit = prepare_fit(

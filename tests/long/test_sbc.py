@@ -31,8 +31,9 @@ from model.bayes.weighted import weighted_draws
 from model.errors import FitError
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
 from support.simulated_blocks import simulate_blocks
+from support.simulated_sweep import simulate_sweep
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(5400)]
 

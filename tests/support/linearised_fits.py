@@ -14,7 +14,8 @@ from model.bayes.preliminary import BlockChoice
 from model.bayes.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import SimulatedSweep, simulate_sweep
 
 HALF = (0.01, 0.02, 0.035, 0.06, 0.15, 0.4)
 SLIPS = (*(-s for s in HALF[::-1]), *HALF)

@@ -8,8 +8,9 @@ import pandas as pd
 
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
 from support.bundled_walk import WALK
+from support.simulated_sweep import simulate_sweep
 
 SECONDS = 13.0  # of the bundled walk: seven strides
 RIG_COLUMNS = """

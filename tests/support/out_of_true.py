@@ -8,7 +8,8 @@ import numpy as np
 from model.bayes.rig_errors import RUN_OUT, RigErrors, radius_ratio_sd, run_out_scatter
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import SimulatedSweep, simulate_sweep
 
 STEEP = SweepPlan(
     slips=tuple(np.linspace(-0.03, 0.06, 10).tolist()), loads=(6.63, 12.75), duration=2.0

@@ -17,7 +17,8 @@ from model.bayes.sampler import Jumps, advance, start_chains
 from model.bayes.weighted import importance_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 from zebro_lab.calibration.folder import write_tables
 
 

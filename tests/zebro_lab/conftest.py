@@ -11,8 +11,9 @@ import pytest
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from model.walk.path import WalkPath
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
 from support.commands import Ended, within_process
+from support.simulated_sweep import simulate_sweep
 
 COLUMNS = """
 source = "sim:rig-sweep"

@@ -14,7 +14,8 @@ from model.bayes.tails import approximate
 from model.bayes.weighted import importance_draws
 from model.slip import MagicFormula
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 LAW, TRUTH = MagicFormula("constant"), (20.4, 1.56, 0.38, 0.0)
 

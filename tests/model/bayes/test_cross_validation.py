@@ -21,7 +21,8 @@ from model.bayes.likelihood import NUISANCE, predict_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula, SlipDefinition
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 LAW = MagicFormula(curvature=0.0)
 LAW_VALUES = (20.0, 1.5, 0.38)

@@ -11,7 +11,8 @@ from model.bayes.checks.raw import raw_residuals
 from model.bayes.fast_wander import FastWander, fast_wander
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 SLIP = 0.01
 PLAN = SweepPlan(slips=tuple(np.linspace(-0.3, 0.3, 31).tolist()), loads=(6.0, 12.0))

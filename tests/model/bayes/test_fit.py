@@ -14,7 +14,8 @@ from model.errors import DomainError, InsufficientData
 from model.slip import Brush, MagicFormula, SidedLaw
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 STIFFNESS = THESIS_VALUES[0]
 SMALL = SweepPlan(slips=(0.01, 0.03, 0.06, 0.12, 0.3, 0.7), loads=(2.13, 12.75), duration=0.4)

@@ -14,7 +14,8 @@ from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.errors import InsufficientData
 from model.slip import Brush, CoulombStribeck, MagicFormula
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 LOADS = np.array([4.0, 8.0, 12.0])
 SIMPLE, MIDDLE, RICH = Brush(), Brush(kinetic=True), CoulombStribeck()

@@ -13,7 +13,8 @@ from model.bayes.rig_errors import RigErrors
 from model.bayes.weighted import importance_draws
 from model.slip import Brush
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 LAW, TRUTH = Brush(), (20.0, 0.4)
 PERFECT = RigErrors(1e-4, 1e-3, 1e-4)  # so that no run decides alone

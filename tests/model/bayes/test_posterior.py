@@ -14,7 +14,8 @@ from model.slip import Brush, CoulombStribeck, MagicFormula
 from model.slip.law import Parameter
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 PLAN = SweepPlan(slips=(0.0, 0.05, 0.2, 0.6), loads=(2.13, 12.75), duration=0.4)
 BLOCKS = block_means(

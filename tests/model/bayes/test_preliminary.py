@@ -21,7 +21,8 @@ from model.bayes.samples import SlipSamples
 from model.slip import SlipDefinition
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 PERFECT = RigImperfections()
 PLAN = SweepPlan(slips=tuple(np.linspace(0, 0.8, 20)), loads=(2.13, 12.75), duration=0.8)

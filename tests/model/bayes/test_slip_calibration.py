@@ -9,7 +9,8 @@ from model.bayes.rig_errors import RUN_OUT, run_out_scatter
 from model.bayes.slip_noise import slip_noise_variance
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 from support.slip_runs import mean_of_blocks, samples, wander, white
 
 NOISE = 0.01

@@ -26,7 +26,8 @@ from model.bayes.stated_priors import (
 from model.errors import DomainError
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
+from support.simulated_sweep import simulate_sweep
 
 PERFECT = RigErrors(1e-4, 1e-3)  # so that one side of zero slip is nearly Gaussian
 BASE = {"a": Normal(1.0, 2.0), "b": LogNormal(0.4, 0.5), "c": Uniform(0.0, 1.0)}

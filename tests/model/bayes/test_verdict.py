@@ -27,7 +27,7 @@ from model.bayes.weighted import importance_draws
 from model.slip import Brush
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan
 from support.judged_fits import (
     AGREED,
     CONVERGED,
@@ -42,6 +42,7 @@ from support.judged_fits import (
     verdict_on,
 )
 from support.linearised_fits import CHOICE, linearised
+from support.simulated_sweep import simulate_sweep
 
 TYRE_VALUES = (20.0, 1.4, 1.2, 0.2)  # its peak lies at slip 0.16
 EVENLY = np.linspace(0.09, 1.0, 6)

@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model.bayes.rig_errors import RigErrors
 from model.errors import DomainError
 from rig.slip_rig.imperfections import (
     TYPICAL_RIG,
@@ -48,20 +47,14 @@ def test_measured_load_and_true_load_are_inverse(load, traction, gain, bias, cro
 
 def test_drawn_errors_have_the_spread_that_priors_state():
     rng = np.random.default_rng(11)
-    rigs = [draw_imperfections(rng, RigErrors(0.003, 0.02)) for _ in range(4000)]
+    rigs = [draw_imperfections(rng) for _ in range(4000)]
     spreads = {"gain_traction": 0.005, "gain_normal": 0.005, "bias_normal": 0.05,
-               "crosstalk": 0.005, "radius_error": 0.003, "rolling_resistance": 0.02}  # fmt: skip
+               "crosstalk": 0.005}  # fmt: skip
     for name, sd in spreads.items():
         drawn = np.array([getattr(rig, name) for rig in rigs])
         assert drawn.std() == pytest.approx(sd, rel=0.05)
         assert abs(drawn.mean()) < 4 * sd / np.sqrt(len(rigs))
     assert replace(rigs[0], **dict.fromkeys(spreads, 0.0)) == TYPICAL_RIG
-
-
-def test_a_rig_has_right_radii_and_rolls_freely_where_no_spreads_are_given():
-    rig = draw_imperfections(np.random.default_rng(12))
-    assert rig.gain_traction != 0
-    assert (rig.radius_error, rig.rolling_resistance) == (0.0, 0.0)
 
 
 @given(angle=st.floats(-50, 50), width=st.floats(0.05, 2 * np.pi))

@@ -191,19 +191,13 @@ def check(
     slip: Annotated[Path, typer.Option(help="The calibration: slip.toml or its folder.")] = Path(
         "calibration"
     ),
-    zero_sd: Annotated[
-        float,
-        typer.Option(
-            min=0.0, metavar="NEWTON", help="Sd of the load cell's zero between runs [N]."
-        ),
-    ] = 0.1,
     output: Output = TEXT,
 ) -> None:
     """Compare the traction of new runs with a calibration to detect drift of the rig."""
     from zebro_lab.experiment.check_stage import SUSPICIOUS, check_runs
     from zebro_lab.experiment.documents import checked_in_numbers
 
-    done = check_runs(data, slip, zero_sd=zero_sd)
+    done = check_runs(data, slip)
     runs = done.runs
     for found in runs:
         output.say(

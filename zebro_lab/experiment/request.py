@@ -70,9 +70,6 @@ class WeighRequest:
     data: Annotated[
         Path | None, Option(metavar="DIR", help="Folder for columns.toml with gain_sd and bias_sd.")
     ] = None
-    weight_sd: Annotated[
-        float, Option(min=0.0, max=1.0, help="Sd of the relative error common to all masses [-].")
-    ] = 1e-3
     gravity: Annotated[
         float, Option(help="Gravity at the rig [m/s²]."), Limits(above=0.0, most=30.0)
     ] = STANDARD_GRAVITY

@@ -16,10 +16,7 @@ from zebro_lab.tables.columns import COLUMNS_FILE
 
 
 def _require_finite(request: WeighRequest) -> None:
-    given = {
-        "--masses": request.masses, "--weight-sd": [request.weight_sd],
-        "--gravity": [request.gravity],
-    }  # fmt: skip
+    given = {"--masses": request.masses, "--gravity": [request.gravity]}
     for option, numbers in given.items():
         for number in numbers:
             if not math.isfinite(number):
@@ -62,7 +59,7 @@ def weigh_masses(
             weighing = weigh(
                 rig.bench, forces, load=load, prompt=prompt, clock=rig.clock, period=rig.period
             )
-    check = check_gain(weighing, weight_sd=request.weight_sd)
+    check = check_gain(weighing)
     if target is not None:
         target.parent.mkdir(parents=True, exist_ok=True)
         atomic_write_text(target, render_load_cell(check))

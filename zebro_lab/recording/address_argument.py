@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Check the form of an address of a device, and of a CAN bus, given as an option."""
+"""Check the form of an address of a device that is given as an option."""
 
 from zebro_lab.files.errors import SettingsError
 
@@ -28,15 +28,3 @@ def require_address(address: str, *, key: str, replay: bool = False) -> None:
     except ProfileError as error:
         others = "sim or replay:RUN" if replay else "sim"
         raise SettingsError(f"{error}, or {others}", key=key) from error
-
-
-def require_can(bus: str | None) -> None:
-    """Check that a CAN bus is INTERFACE:CHANNEL; None is no bus and passes.
-
-    Raises:
-        SettingsError: A part or the colon is missing.
-    """
-    if bus is not None and not all(bus.partition(":")):
-        raise SettingsError(
-            f"found '{bus}'; expected INTERFACE:CHANNEL such as socketcan:vcan0", key="--can"
-        )

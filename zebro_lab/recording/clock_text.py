@@ -30,15 +30,6 @@ def with_uncertainty(value: float, half_width: float) -> str:
     return f"{round(value, digits):.{shown}f} ± {round(half_width, digits):.{shown}f}"
 
 
-def short_drift(clock: Mapping[str, float]) -> str:
-    """Return the pace of a clock in few words.
-
-    Args:
-        clock: Attributes of `ClockFit`.
-    """
-    return f"clock {_pace(clock)}" if _tells_drift(clock) else "clock not testable yet"
-
-
 def clock_in_words(name: str, clock: Mapping[str, float]) -> str:
     """Return a sentence on the clock of a stream: pace, offset and delay.
 

@@ -7,7 +7,7 @@ from typing import Annotated, TypeAlias
 
 from typer import Argument, Option
 
-from zebro_lab.recording.address_argument import require_address, require_can
+from zebro_lab.recording.address_argument import require_address
 from zebro_lab.terminal.limits import Limits
 
 _ADDRESS = "PROFILE@PORT|sim|replay:RUN"
@@ -81,25 +81,12 @@ class CheckRequest:
 Profile: TypeAlias = Annotated[
     str, Argument(metavar="PROFILE", help="Name of a shipped profile, or a profile file.")
 ]
-Can: TypeAlias = Annotated[
-    str | None,
-    Option(
-        metavar="INTERFACE:CHANNEL",
-        help="CAN bus of the system to use, such as socketcan:vcan0; default: a simulated SLCAN "
-        "adapter at a new port. Without effect if the profile is of a device that is not on CAN.",
-    ),
-]
 Socket: TypeAlias = Annotated[
     bool, Option("--socket", help="Listen at a TCP port (socket://) instead of a pseudo-terminal.")
 ]
-Flip: TypeAlias = Annotated[float, Option(min=0.0, max=1.0, help="Probability that a bit flips.")]
 Drop: TypeAlias = Annotated[
     float, Option(min=0.0, max=1.0, help="Probability that a frame is lost.")
 ]
-Garbage: TypeAlias = Annotated[
-    float, Option(min=0.0, max=1.0, help="Probability of random bytes before a frame.")
-]
-Seed: TypeAlias = Annotated[int, Option(min=0, help="Seed of all random numbers.")]
 
 
 @dataclass(frozen=True)
@@ -110,22 +97,8 @@ class ZebroTwinRequest:
     play: Annotated[
         Path | None, Option(metavar="FILE", help="Leg angles to walk: walk folder, table or run.")
     ] = None
-    can: Can = None
     as_socket: Socket = False
-    flip: Flip = 0.0
     drop: Drop = 0.0
-    garbage: Garbage = 0.0
-    jitter: Annotated[
-        float, Option(min=0.0, metavar="SECONDS", help="Spread (sd) of the sampling times [s].")
-    ] = 0.0
-    pause: Annotated[
-        float, Option(min=0.0, max=1.0, help="Probability that a leg pauses before its flight.")
-    ] = 0.0
-    seed: Seed = 0
-
-    def __post_init__(self) -> None:
-        """Raise `SettingsError` for a CAN bus of another form."""
-        require_can(self.can)
 
 
 @dataclass(frozen=True)
@@ -141,10 +114,7 @@ class ImuTwinRequest:
         ),
     ] = None
     as_socket: Socket = False
-    flip: Flip = 0.0
     drop: Drop = 0.0
-    garbage: Garbage = 0.0
-    seed: Seed = 0
 
 
 @dataclass(frozen=True)
@@ -152,11 +122,5 @@ class RigTwinRequest:
     """Options of `zebro-lab sim rig`."""
 
     profile: Profile = "rig-board-serial"
-    can: Can = None
     as_socket: Socket = False
     drop: Drop = 0.0
-    seed: Seed = 0
-
-    def __post_init__(self) -> None:
-        """Raise `SettingsError` for a CAN bus of another form."""
-        require_can(self.can)

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from zebro_lab.recording.drawing import draw_status, glyphs_of, stream_in_words, time_left
+from zebro_lab.recording.drawing import draw_status, stream_in_words, time_left
 from zebro_lab.recording.live_values import LiveValues
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.timely_output import in_time
@@ -129,8 +129,7 @@ class RecordScreen:
         elif size.width != self._width:
             self._console.clear()  # lines that the terminal has wrapped anew cannot be overwritten
         self._width = size.width
-        glyphs = glyphs_of(self._console.encoding)
-        drawn = draw_status(status, values, width=size.width, height=size.height, glyphs=glyphs)
+        drawn = draw_status(status, values, width=size.width, height=size.height)
         live.update(drawn, refresh=True)
 
     def _typed(self) -> bytes:
@@ -213,7 +212,5 @@ def _single_keys() -> Iterator[Any]:
 
 def _line(status: "RecordStatus") -> Text:
     """Return the status in one line, without values."""
-    streams = (
-        ", ".join(stream_in_words(name, each).values()) for name, each in status.streams.items()
-    )
+    streams = (stream_in_words(name, each) for name, each in status.streams.items())
     return Text("; ".join((time_left(status), *streams)))

@@ -29,7 +29,7 @@ from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.simulated import CanRobot
 from rig.zebro.simulated_body import SimulatedBody
-from rig.zebro.simulated_legs import RobotImperfections, SimulatedLegs
+from rig.zebro.simulated_legs import SimulatedLegs
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.devices import default_gait, profile_text, twin_rig
@@ -63,23 +63,21 @@ def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
     It walks the requested leg angles, or the default gait.
 
     Raises:
-        SettingsError: The named CAN bus cannot be opened.
         RigError: The profile or the port is invalid.
         ZebroLabError: The leg angles to walk cannot be read.
     """
     profile = load_leg_profile(request.profile)
-    rng = np.random.default_rng(request.seed)
+    rng = np.random.default_rng(0)
     gait = _gait(request.play)
-    imperfections = RobotImperfections(jitter=request.jitter, pause_probability=request.pause)
-    faults = Faults(flip=request.flip, drop=request.drop, garbage=request.garbage)
+    faults = Faults(drop=request.drop)
     if profile.layout == "can":
-        legs = SimulatedLegs(gait, profile=profile, imperfections=imperfections, rng=rng)
+        legs = SimulatedLegs(gait, profile=profile, rng=rng)
         with _bus(request, "sim:zebro") as (bus, place):
             robot = CanRobot(legs, bus, faults=faults, rng=rng)
             with Ticker(robot.poll):
                 yield Served(robot.source, {"robot": place}, f"{request.profile}@{place}")
         return
-    twin = robot_twin(profile, gait, imperfections=imperfections, faults=faults, rng=rng)
+    twin = robot_twin(profile, gait, faults=faults, rng=rng)
     with _port(twin, request) as port:
         yield Served(twin.source, {"robot": port}, f"{request.profile}@{port}")
 
@@ -94,9 +92,9 @@ def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
         RigError: The profile or the port is invalid.
         ZebroLabError: The leg angles to walk cannot be read.
     """
-    rng = np.random.default_rng(request.seed)
+    rng = np.random.default_rng(0)
     legs = SimulatedLegs(_gait(request.play), profile=load_leg_profile(LEGS_PROFILE), rng=rng)
-    faults = Faults(flip=request.flip, drop=request.drop, garbage=request.garbage)
+    faults = Faults(drop=request.drop)
     twin = SimulatedImu(
         profile=load_imu_profile(request.profile), attitude=SimulatedBody(legs), faults=faults,
         rng=rng,
@@ -112,12 +110,11 @@ def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
     The address of the latter names a temporary profile, with the port of the load cell.
 
     Raises:
-        SettingsError: The profile has neither a board nor drives with a load cell, or the named
-            CAN bus cannot be opened.
+        SettingsError: The profile has neither a board nor drives with a load cell.
         RigError: The profile or the port is invalid.
     """
     profile = load_rig_profile(request.profile)
-    rng = np.random.default_rng(request.seed)
+    rng = np.random.default_rng(0)
     rig, faults = twin_rig(rng), Faults(drop=request.drop)
     if profile.board is not None:
         board = SimulatedBoard(
@@ -169,39 +166,26 @@ def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
 
 
 @contextmanager
-def _bus(
-    request: ZebroTwinRequest | RigTwinRequest, source: str
-) -> Iterator[tuple[can.BusABC, str]]:
-    """Open the named CAN bus, or a virtual one behind a simulated SLCAN adapter.
+def _bus(request: TwinRequest, source: str) -> Iterator[tuple[can.BusABC, str]]:
+    """Open a virtual CAN bus behind a simulated SLCAN adapter.
 
     Args:
-        request: Options, with the name of the bus or None.
+        request: Options.
         source: Origin of the data that the adapter passes on, "sim:WHAT".
 
     Yields:
-        The bus, and the name by which a driver opens it: as given, or "slcan:PORT".
+        The bus, and the name by which a driver opens it, "slcan:PORT".
 
     Raises:
-        SettingsError: The named bus cannot be opened.
         LinkError: The system provides no port for the adapter.
     """
-    if request.can is None:
-        with (
-            can.Bus(
-                interface="virtual", channel=(channel := f"zebro-lab-adapter-{id(request)}")
-            ) as bus,
-            can.Bus(interface="virtual", channel=channel) as far,
-            _port(SlcanAdapter(far, source=source), request) as port,
-        ):
-            yield bus, f"slcan:{port}"
-        return
-    interface, _, channel = request.can.partition(":")
-    try:
-        bus = can.Bus(interface=interface, channel=channel)
-    except (can.CanError, OSError, ValueError, ImportError) as error:
-        raise SettingsError(f"cannot open bus {request.can}: {error}", key="--can") from error
-    with bus:
-        yield bus, request.can
+    channel = f"zebro-lab-adapter-{id(request)}"
+    with (
+        can.Bus(interface="virtual", channel=channel) as bus,
+        can.Bus(interface="virtual", channel=channel) as far,
+        _port(SlcanAdapter(far, source=source), request) as port,
+    ):
+        yield bus, f"slcan:{port}"
 
 
 def wait_until(

@@ -2,20 +2,16 @@
 """Status of a recording: first samples, rates and counters of its streams, remaining duration."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from rig.acquisition import Acquisition, Device
 from rig.device import Counters, Sample
-from rig.errors import RigError
 from zebro_lab.recording.recorder import RunRecorder
 
 COUNT_EVERY: Final = 1.0
 """Interval at which counters are logged and rates computed [s]."""
-COMPARE_STEP: Final = 1.1
-"""Factor of the elapsed time after which clocks are fitted anew [-]."""
 FIRST_SAMPLE: Final = 10.0
 """Timeout for the first sample of every stream, if a duration is set; it counts from then [s]."""
 
@@ -29,7 +25,6 @@ class StreamStatus:
         rate: Sample rate over about the last second; 0 in the first one [Hz].
         counters: Counters of the stream so far.
         dropped: Number of samples dropped because the recorder's queue was full.
-        clock: Attributes of `ClockFit` of the device's clock; empty until it can be fitted.
         newest: Takes the newest samples since its last call.
     """
 
@@ -37,7 +32,6 @@ class StreamStatus:
     rate: float
     counters: Counters
     dropped: int
-    clock: Mapping[str, float] = field(default_factory=dict)
     newest: Callable[[], Sequence[Sample]] = tuple
 
 
@@ -81,8 +75,6 @@ class StreamWatch:
         self._duration = duration
         self._rates = dict.fromkeys(readers, 0.0)
         self._before = (recorder.start, dict.fromkeys(readers, 0))
-        self._clocks: dict[str, Mapping[str, float]] = {}
-        self._compare_at = 0.0
         self._began: float | None = None
 
     def left(self, now: float) -> float:
@@ -126,26 +118,16 @@ class StreamWatch:
             self._rates = {name: (current[name] - received[name]) / (now - began)
                            for name in current}  # fmt: skip
             self._before = (now, current)
-        self._compare_clocks(now - self._recorder.start)
         streams = {
             name: StreamStatus(
                 self._sources[name], self._rates[name], reader.counters,
-                self._recorder.dropped(name), self._clocks.get(name, {}), reader.tap.take,
+                self._recorder.dropped(name), reader.tap.take,
             )
             for name, reader in self._readers.items()
         }  # fmt: skip
         first = self._first_samples()
         elapsed = 0.0 if first is None else now - first
         return RecordStatus(self._recorder.folder, elapsed, self._duration, streams)
-
-    def _compare_clocks(self, elapsed: float) -> None:
-        """Fit the devices' clocks anew, ever more rarely: a fit takes the longer the run is."""
-        if elapsed < self._compare_at:
-            return
-        self._compare_at = max(elapsed + COUNT_EVERY, COMPARE_STEP * elapsed)
-        for name, reader in self._readers.items():
-            with suppress(RigError):  # told at the end of the run
-                self._clocks[name] = reader.clock_watch.result() or {}
 
     def _first_samples(self) -> float | None:
         """Return the host time of the last stream's first sample, from which `duration` counts.

@@ -21,10 +21,30 @@ REMOVED: Final[dict[str, str]] = {
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "predict --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
     "--walks fits them to tracked walks.",
+    "rig check --zero-sd": "The zero of the load cell counts with 0.1 N; leave the option out.",
     "rig run --adaptive": "Measure in rounds by rig run, calibrate-slip and rig suggest in turn, "
     "as the shell loop in docs/experiments.md does.",
     "rig run --budget": "State the time of each round by --time of rig suggest "
     "(docs/experiments.md).",
+    "rig weigh --weight-sd": "The masses count as known to a thousandth; leave the option out.",
+    "sim imu --flip": "Use --drop, which loses frames; "
+    "other faults of a line are tested by the tests of rig.",
+    "sim imu --garbage": "Use --drop, which loses frames; "
+    "other faults of a line are tested by the tests of rig.",
+    "sim imu --seed": "A simulated device draws the same random numbers each time; "
+    "leave the option out.",
+    "sim rig --can": "Open the printed port of the simulated adapter, as PROFILE@slcan:PORT.",
+    "sim rig --seed": "A simulated device draws the same random numbers each time; "
+    "leave the option out.",
+    "sim zebro --can": "Open the printed port of the simulated adapter, as PROFILE@slcan:PORT.",
+    "sim zebro --flip": "Use --drop, which loses frames; "
+    "other faults of a line are tested by the tests of rig.",
+    "sim zebro --garbage": "Use --drop, which loses frames; "
+    "other faults of a line are tested by the tests of rig.",
+    "sim zebro --jitter": "Record a robot for its jitter; a simulated one samples evenly.",
+    "sim zebro --pause": "Give the pauses in the leg angles of --play.",
+    "sim zebro --seed": "A simulated device draws the same random numbers each time; "
+    "leave the option out.",
     "study": "The fit is tested on simulated experiments by `make test-long` of a checkout "
     "(docs/coverage.md); rig suggest says how narrow further points make an interval.",
     "track --marker": "State the robot's marker as dictionary, id and side in [marker] of "

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Addresses and CAN buses of another form name the option."""
+"""Addresses of another form name the option."""
 
 import pytest
 
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.recording.address_argument import require_address, require_can
+from zebro_lab.recording.address_argument import require_address
 
 
 @pytest.mark.parametrize("address", ["sim", "zebro-100-serial@sim", "a@socket://b:1@c"])
@@ -22,11 +22,3 @@ def test_a_replay_passes_only_where_it_can_be_used_and_names_a_run():
     require_address("replay:data/RUN", key="--imu", replay=True)
     with pytest.raises(SettingsError, match="or sim or replay:RUN"):
         require_address("replay:", key="--imu", replay=True)
-
-
-def test_a_can_bus_has_interface_and_channel():
-    require_can(None)
-    require_can("socketcan:vcan0")
-    for bus in ("socketcan", ":vcan0", "socketcan:", ""):
-        with pytest.raises(SettingsError, match="--can: found"):
-            require_can(bus)

@@ -8,7 +8,7 @@ from support.commands import started
 
 
 def test_a_twin_prints_its_port_and_any_program_can_record_it(run_command, tmp_path):
-    with started("sim", "zebro", "--socket", "--drop", "0.1", "--seed", "3") as twin:
+    with started("sim", "zebro", "--socket", "--drop", "0.1") as twin:
         line = twin.stdout.readline()
         assert line.startswith("SIMULATED robot (sim:zebro), profile zebro-100-serial: socket://")
         port = line.split()[-1]

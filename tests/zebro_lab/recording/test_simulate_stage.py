@@ -7,7 +7,6 @@ import pytest
 from rig.backends import open_imu, open_rig
 from rig.clock import ManualClock
 from rig.openers import legs_at
-from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.devices import default_gait
 from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
 from zebro_lab.recording.simulate_stage import serve_imu, serve_rig, serve_zebro, wait_until
@@ -42,12 +41,6 @@ def test_every_device_of_a_rig_is_read_at_its_address(profile):
         assert served.source == "sim:rig"
         for stream in open_rig(served.address).streams:
             assert first(stream)
-
-
-def test_a_bus_that_cannot_be_opened_is_named():
-    request = ZebroTwinRequest("zebro-100-can", can="nosuch:bus")
-    with pytest.raises(SettingsError, match="cannot open bus nosuch:bus"), serve_zebro(request):
-        pass
 
 
 @pytest.mark.parametrize(("looks", "duration", "expected"), [(3, None, 0.15), (99, 0.5, 0.5)])

@@ -3,7 +3,6 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from rig.clock_watch import ClockWatch
@@ -69,18 +68,6 @@ def test_rates_are_samples_a_second():
 def test_what_could_not_be_read_on_is_named():
     assert reading_failure({"legs": Reader()}) is None
     assert reading_failure({"imu": Reader(failure=OSError("gone"))}) == "imu: OSError: gone"
-
-
-def test_clocks_are_compared_again_ever_more_rarely(monkeypatch):
-    readers = {"legs": Reader(0.0)}
-    streams, _ = watch(readers)
-    fits, fit = [], readers["legs"].clock_watch.result
-    monkeypatch.setattr(readers["legs"].clock_watch, "result", lambda: fits.append(1) or fit())
-    for now in np.arange(0.0, 100.0, 0.05):
-        readers["legs"].clock_watch.add([Sample(now, 1.5 * now, None, ())])
-        status = streams.status(now)
-    assert 10 < len(fits) < 50
-    assert status.streams["legs"].clock["drift"] == pytest.approx(1 / 1.5 - 1, abs=1e-3)
 
 
 def test_the_newest_samples_are_handed_on_once():

@@ -63,6 +63,14 @@ class GainCheck:
         """Root of (slope - 1)² + slope_sd²: spread of the gain's prior without correction [-]."""
         return float(np.hypot(self.slope - 1, self.slope_sd))
 
+    @property
+    def bias_sd(self) -> float:
+        """Spread of the bias's prior: largest of zero's error, misfit and 0.001 N [N].
+
+        Each run is tared, so that only the zero's error stays.
+        """
+        return max(self.zero_sd, self.misfit, 1e-3)
+
 
 def weigh(
     bench: Bench,

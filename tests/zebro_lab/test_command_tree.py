@@ -179,7 +179,7 @@ def test_wrong_values_are_derived_for_the_options_with_limits_choices_and_forms(
     for expected in (
         ("zebro-lab walk", "arc_deg"), ("zebro-lab walk", "slip"),
         ("zebro-lab calibrate", "law"), ("calibrate-slip", "curvature"),
-        ("zebro-lab sim zebro", "flip"),
+        ("zebro-lab sim zebro", "drop"),
     ):  # fmt: skip
         assert expected in names
     (texts, *_) = (texts for _, param, texts in VALUES if param.name == "arc_deg")

@@ -6,18 +6,24 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from model.counted import counted
+from zebro_lab.experiment.documents import (
+    checked_in_numbers,
+    experiment_in_numbers,
+    weighing_in_numbers,
+)
+from zebro_lab.experiment.journal import read_journal
 from zebro_lab.experiment.request import Data, RigRunRequest, WeighRequest
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.stopping import STOPPED
+from zebro_lab.terminal.timely_output import leave_at_once, say_in_time
 
 if TYPE_CHECKING:
     from rig.experiment.control import Control
     from rig.experiment.run import Outcome
-    from rig.experiment.weigh import GainCheck, Weighing
-    from zebro_lab.experiment.plan_stage import Foreseen
 
 REFUSED = 3
 
@@ -53,10 +59,11 @@ def plan(
     output: Output = TEXT,
 ) -> None:
     """Check a plan by its own limits and the rig's; print duration and number of points."""
-    from zebro_lab.experiment.plan_stage import foresee
+    from zebro_lab.experiment.plan_stage import foresee, in_words
 
     foreseen = foresee(file, rig)
-    _print_plan(foreseen, output, steps=steps)
+    for line in in_words(foreseen, steps=steps):
+        output.say(line)
     plan, estimate = foreseen.plan, foreseen.estimate
     content = {"plan": plan.name, "material": plan.material, "profile": foreseen.profile.name}
     numbers = {"points": estimate.points, "loads": estimate.loads, "duration_s": estimate.seconds}
@@ -86,8 +93,6 @@ def run(request: RigRunRequest, output: Output = TEXT) -> None:
 
 
 def _say_latched(data: Path) -> None:
-    from zebro_lab.terminal.timely_output import say_in_time
-
     say_in_time(
         f"an emergency stop is latched in {data}; inspect the rig, then repeat the command with "
         "--resume --reset-emergency",
@@ -97,11 +102,6 @@ def _say_latched(data: Path) -> None:
 
 def _end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
     """Print how an experiment ended, and exit with 0, `REFUSED` or `STOPPED`."""
-    from model.counted import counted
-    from zebro_lab.experiment.documents import experiment_in_numbers
-    from zebro_lab.experiment.journal import read_journal
-    from zebro_lab.terminal.timely_output import leave_at_once
-
     words = (
         f"{outcome.reason}: {counted(outcome.finished, 'point')} finished, "
         f"{counted(len(outcome.refused), 'point')} failed all attempts, "
@@ -146,40 +146,13 @@ def command(
 def weigh(request: WeighRequest, output: Output = TEXT) -> None:
     """Check the load cell with known weights; the result is the gain's prior in a calibration."""
     from rig.experiment.control import Control
-    from zebro_lab.experiment.documents import weighing_in_numbers
-    from zebro_lab.experiment.weigh_stage import weigh_masses
+    from zebro_lab.experiment.weigh_stage import in_words, weigh_masses
 
     control = Control()
     weighing, check, written = weigh_masses(request, _Asker(control, output), control)
-    _print_weighing(weighing, check, written, output)
-    output.document("rig weigh", weighing_in_numbers(weighing, check, written))
-
-
-def _print_weighing(
-    weighing: "Weighing", check: "GainCheck", written: Path | None, output: Output
-) -> None:
-    from zebro_lab.experiment.weigh_stage import render_load_cell
-
-    for force, reading, error in zip(
-        weighing.forces, weighing.readings, weighing.errors, strict=True
-    ):
-        output.say(
-            f"weight of {force:8.3f} N: the load cell reads {reading:8.4f} +/- {error:.4f} N"
-        )
-    output.say(
-        f"reading per force {check.slope:.5f} +/- {check.slope_sd:.5f} (expected 1), unloaded "
-        f"{check.zero:.4f} +/- {check.zero_sd:.4f} N, largest residual {check.misfit:.4f} N"
-    )
-    if abs(check.slope - 1) > 2 * check.slope_sd:
-        output.say(
-            "the gain is wrong: in the rig's profile (a copy, if it is a shipped one) multiply "
-            f"counts_per_force by {abs(check.slope):.5f}"
-            f"{', reverse the sign of the normal force' if check.slope < 0 else ''}, then run "
-            "`zebro-lab rig weigh` again with it"
-        )
-    lines = render_load_cell(check).splitlines() if written is None else [f"wrote {written}"]
-    for line in lines:
+    for line in in_words(weighing, check, written):
         output.say(line)
+    output.document("rig weigh", weighing_in_numbers(weighing, check, written))
 
 
 @app.command()
@@ -195,7 +168,6 @@ def check(
 ) -> None:
     """Compare the traction of new runs with a calibration to detect drift of the rig."""
     from zebro_lab.experiment.check_stage import SUSPICIOUS, check_runs
-    from zebro_lab.experiment.documents import checked_in_numbers
 
     done = check_runs(data, slip)
     runs = done.runs
@@ -232,34 +204,3 @@ class _Asker:
             with self._output.asking():
                 typer.prompt(question, default="", show_default=False)
             self._control.confirm()
-
-
-def _print_plan(foreseen: "Foreseen", output: Output, *, steps: bool) -> None:
-    from model.counted import counted
-    from rig.experiment.plan import LIMIT_UNITS
-    from rig.experiment.steps import Point
-
-    plan, points = foreseen.plan, foreseen.plan.points
-    minutes, seconds = divmod(round(foreseen.estimate.seconds), 60)
-    output.say(f"plan '{plan.name}', material {plan.material}, rig profile {foreseen.profile.name}")
-    output.say(
-        f"{counted(foreseen.estimate.points, 'point')} in all, check points included: "
-        f"{counted(len(points.loads), 'load')} x {counted(len(points.slips), 'slip ratio')}, "
-        f"gone through {counted(points.repeats, 'time')}, "
-        f"order {points.order}{', slip ratios as one sweep' if points.sweep else ''}"
-    )
-    output.say(
-        f"the load is set {counted(foreseen.estimate.loads, 'time')}, 0 N included, by "
-        f"{plan.load.set_by}"
-    )
-    output.say(f"the plan takes about {minutes} min {seconds} s if every point is good at once")
-    output.say("limits of the plan, which all set-points keep, as those of the profile:")
-    for name, unit in LIMIT_UNITS.items():
-        value = getattr(plan.limits, name)
-        limit = "the profile's, if any" if value is None else f"{value:g} {unit}"
-        output.say(f"  {name:<20}{limit:>24}")
-    if plan.limits.guards_off:
-        output.say(f"guards switched off by the plan: {plan.limits.guards_off_text}")
-    if steps:
-        for step in foreseen.steps:
-            output.say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

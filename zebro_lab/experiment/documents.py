@@ -53,8 +53,6 @@ def weighing_in_numbers(
     weighing: "Weighing", check: "GainCheck", written: Path | None
 ) -> dict[str, Any]:
     """Return the readings of a load cell under known weights, and the line through them."""
-    from zebro_lab.experiment.weigh_stage import bias_sd
-
     columns = zip(weighing.forces, weighing.readings, weighing.errors, strict=True)
     return {
         "simulated": is_simulated(weighing.source),
@@ -69,7 +67,7 @@ def weighing_in_numbers(
         "zero_sd_N": check.zero_sd,
         "largest_residual_N": check.misfit,
         "gain_sd": check.gain_sd,
-        "bias_sd_N": bias_sd(check),
+        "bias_sd_N": check.bias_sd,
     }
 
 

@@ -4,8 +4,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from rig.experiment.plan import Plan
-from rig.experiment.steps import DurationEstimate, Step, estimate, spell_out
+from model.counted import counted
+from rig.experiment.plan import LIMIT_UNITS, Plan
+from rig.experiment.steps import DurationEstimate, Point, Step, estimate, spell_out
 from rig.openers import resolve
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from zebro_lab.experiment.plan_file import read_plan, require_plan_allowed
@@ -47,3 +48,41 @@ def foresee(file: Path, rig: str) -> Foreseen:
     require_plan_allowed(file, plan, profile)
     steps = spell_out(plan)
     return Foreseen(plan, profile, steps, estimate(plan, steps))
+
+
+def in_words(foreseen: Foreseen, *, steps: bool) -> list[str]:
+    """Return lines with points, duration and limits of a plan.
+
+    Args:
+        foreseen: The plan with its steps and duration.
+        steps: Whether to list every step.
+    """
+    plan, points, lines = foreseen.plan, foreseen.plan.points, []
+    minutes, seconds = divmod(round(foreseen.estimate.seconds), 60)
+    lines.append(
+        f"plan '{plan.name}', material {plan.material}, rig profile {foreseen.profile.name}"
+    )
+    lines.append(
+        f"{counted(foreseen.estimate.points, 'point')} in all, check points included: "
+        f"{counted(len(points.loads), 'load')} x {counted(len(points.slips), 'slip ratio')}, "
+        f"gone through {counted(points.repeats, 'time')}, "
+        f"order {points.order}{', slip ratios as one sweep' if points.sweep else ''}"
+    )
+    lines.append(
+        f"the load is set {counted(foreseen.estimate.loads, 'time')}, 0 N included, by "
+        f"{plan.load.set_by}"
+    )
+    lines.append(f"the plan takes about {minutes} min {seconds} s if every point is good at once")
+    lines.append("limits of the plan, which all set-points keep, as those of the profile:")
+    for name, unit in LIMIT_UNITS.items():
+        value = getattr(plan.limits, name)
+        limit = "the profile's, if any" if value is None else f"{value:g} {unit}"
+        lines.append(f"  {name:<20}{limit:>24}")
+    if plan.limits.guards_off:
+        lines.append(f"guards switched off by the plan: {plan.limits.guards_off_text}")
+    if steps:
+        lines += [
+            step.label if isinstance(step, Point) else f"zero-{step.number:04d}"
+            for step in foreseen.steps
+        ]
+    return lines

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Terminal display of an experiment: state, progress, prompts, slip curve; keyboard commands.
+"""Terminal display of an experiment: state, progress, prompts, verdicts; keyboard commands.
 
 The acquiring thread only stores values here. A separate thread draws, so that a stopped or slow
 terminal does not delay the guards.
@@ -28,8 +28,7 @@ from zebro_lab.experiment.keyboard import Keyboard
 from zebro_lab.files.shown_text import shown
 from zebro_lab.terminal.messages import plain
 
-WIDTH, HEIGHT = 64, 14
-MARKS = "ox+*#@%&"
+WIDTH = 64
 PERIOD: Final = 0.125
 """Refresh interval of the display [s]."""
 LAST_PICTURE: Final = 1.0
@@ -50,7 +49,6 @@ class ScreenPicture:
         done: Number of finished points.
         of: Number of all points, at least 1.
         prompt: Instruction to the operator; empty without one.
-        points: Load [N], slip ratio [-] and friction [-] of each accepted point.
     """
 
     condition: Condition | None = None
@@ -58,10 +56,9 @@ class ScreenPicture:
     done: int = 0
     of: int = 1
     prompt: str = ""
-    points: tuple[tuple[float, float, float], ...] = ()
 
     def render(self) -> RenderableType:
-        """Return the content as Rich text: state, keys, `head`, bar, slip chart, prompt.
+        """Return the content as Rich text: state, keys, `head`, bar, prompt.
 
         `head`, with step, finished points and time left, is left out while the run holds, stops
         or is latched; state and keys before it begins.
@@ -75,8 +72,7 @@ class ScreenPicture:
         if self.condition is None or self.condition.state is RigState.RUNNING:
             parts.append(plain(self.head))
         parts.append(ProgressBar(total=self.of, completed=self.done, width=WIDTH))
-        chart = Text("\n" + slip_chart(list(self.points)))  # a bar ends no line
-        return Group(*parts, chart, Text(shown(self.prompt), style="bold"))
+        return Group(*parts, Text("\n" + shown(self.prompt), style="bold"))  # a bar ends no line
 
 
 class ExperimentScreen(ExperimentWatcher):
@@ -135,9 +131,7 @@ class ExperimentScreen(ExperimentWatcher):
             self._picture = replace(self._picture, prompt=text)
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Add an accepted point to the chart; print a rejected one; see `ExperimentWatcher.judged`.
-
-        Without a terminal, the verdict on every point is printed.
+        """Print the verdict on a point; see `ExperimentWatcher.judged`.
 
         Args:
             point: The point.
@@ -145,15 +139,11 @@ class ExperimentScreen(ExperimentWatcher):
             attempt: Number of the attempt, from 1.
         """
         result = "; ".join(verdict.problems) or "good"
-        if verdict.accepted:
-            good = (point.load, verdict.slip, verdict.friction)
-            self._picture = replace(self._picture, points=(*self._picture.points, good))
-        if self._live is None or not verdict.accepted:
-            self._lines.append(
-                f"{point.label} (attempt {attempt}): {result}; slip ratio {verdict.slip:.4f}, "
-                f"friction coefficient {verdict.friction:.3f}, normal force "
-                f"{verdict.normal_force:.2f} N"
-            )
+        self._lines.append(
+            f"{point.label} (attempt {attempt}): {result}; slip ratio {verdict.slip:.4f}, "
+            f"friction coefficient {verdict.friction:.3f}, normal force "
+            f"{verdict.normal_force:.2f} N"
+        )
 
     def draw_on(self) -> None:
         """Draw changes every `PERIOD` until `close`, then a last time.
@@ -203,31 +193,6 @@ class QuietScreen(ExperimentScreen):
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
         """Print nothing."""
-
-
-def slip_chart(points: list[tuple[float, float, float]]) -> str:
-    """Plot friction over slip ratio as text, one mark per load, below a line with the ranges.
-
-    Args:
-        points: Load [N], slip ratio [-] and friction [-] of each point; none give an empty text.
-
-    >>> slip_chart([])
-    ''
-    """
-    if not points:
-        return ""
-    low, high = min(p[1] for p in points), max(p[1] for p in points)
-    bottom, top = min(0.0, *(p[2] for p in points)), max(p[2] for p in points)
-    rows = [[" "] * WIDTH for _ in range(HEIGHT)]
-    loads = sorted({load for load, _, _ in points})
-    for load, slip, friction in points:
-        column = round((slip - low) / max(high - low, 1e-9) * (WIDTH - 1))
-        row = round((friction - bottom) / max(top - bottom, 1e-9) * (HEIGHT - 1))
-        rows[HEIGHT - 1 - row][column] = MARKS[loads.index(load) % len(MARKS)]
-    legend = ", ".join(f"{MARKS[k % len(MARKS)]} {load:g} N" for k, load in enumerate(loads))
-    body = "\n".join("".join(row).rstrip() for row in rows)
-    axes = f"friction (up) {bottom:.2f} to {top:.2f}, slip ratio (right) {low:.2f} to {high:.2f}"
-    return f"{axes}; loads {legend}\n{body}"
 
 
 @contextmanager

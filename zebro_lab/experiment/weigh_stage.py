@@ -78,19 +78,42 @@ def _require_hangable(request: WeighRequest, limit: float) -> None:
             )
 
 
-def bias_sd(check: GainCheck) -> float:
-    """Return the largest of the zero's standard deviation, the misfit and 0.001 N [N].
-
-    Each run is tared, so that only the zero's error stays.
-    """
-    return max(check.zero_sd, check.misfit, 1e-3)
-
-
 def render_load_cell(check: GainCheck) -> str:
     """Format a load cell check as the text of `columns.toml`: `[load_cell]` gain_sd, bias_sd."""
     return (
         "# From a check of the load cell with known weights.\n"
         "[load_cell]\n"
         f"gain_sd = {check.gain_sd:.3g}\n"
-        f'bias_sd = "{bias_sd(check):.3g} N"\n'
+        f'bias_sd = "{check.bias_sd:.3g} N"\n'
+    )
+
+
+def in_words(weighing: Weighing, check: GainCheck, written: Path | None) -> list[str]:
+    """Return lines with the readings, the line through them, and the prior or where it is written.
+
+    Args:
+        weighing: The readings.
+        check: The line through them.
+        written: The written file; None where there is none.
+    """
+    lines = []
+    for force, reading, error in zip(
+        weighing.forces, weighing.readings, weighing.errors, strict=True
+    ):
+        lines.append(
+            f"weight of {force:8.3f} N: the load cell reads {reading:8.4f} +/- {error:.4f} N"
+        )
+    lines.append(
+        f"reading per force {check.slope:.5f} +/- {check.slope_sd:.5f} (expected 1), unloaded "
+        f"{check.zero:.4f} +/- {check.zero_sd:.4f} N, largest residual {check.misfit:.4f} N"
+    )
+    if abs(check.slope - 1) > 2 * check.slope_sd:
+        lines.append(
+            "the gain is wrong: in the rig's profile (a copy, if it is a shipped one) multiply "
+            f"counts_per_force by {abs(check.slope):.5f}"
+            f"{', reverse the sign of the normal force' if check.slope < 0 else ''}, then run "
+            "`zebro-lab rig weigh` again with it"
+        )
+    return lines + (
+        render_load_cell(check).splitlines() if written is None else [f"wrote {written}"]
     )

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Check the form of an address of a device that is given as an option."""
 
+from rig.errors import ProfileError
+from rig.profile import split_address
 from zebro_lab.files.errors import SettingsError
 
 _REPLAY = "replay:"
@@ -17,9 +19,6 @@ def require_address(address: str, *, key: str, replay: bool = False) -> None:
     Raises:
         SettingsError: The address has another form.
     """
-    from rig.errors import ProfileError
-    from rig.profile import split_address
-
     is_replay = replay and address.startswith(_REPLAY) and address != _REPLAY
     if address == "sim" or is_replay:
         return

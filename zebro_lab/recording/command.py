@@ -9,9 +9,11 @@ import typer
 
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.recording.request import RecordRequest
+from zebro_lab.terminal.compiling import announcing_compilation
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.stopping import STOPPED
+from zebro_lab.terminal.timely_output import leave_at_once
 
 if TYPE_CHECKING:
     from zebro_lab.recording.stage import Recorded
@@ -36,8 +38,6 @@ def record(request: RecordRequest, output: Output = TEXT) -> None:
 
     from zebro_lab.recording import stage
     from zebro_lab.recording.screen import record_screen
-    from zebro_lab.terminal.compiling import announcing_compilation
-    from zebro_lab.terminal.timely_output import leave_at_once
 
     announcing = nullcontext() if output.quiet else announcing_compilation()
     with record_screen(Console(stderr=True, quiet=output.quiet)) as screen, announcing:

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab sim`: a simulated device at a port that any program can open."""
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rig.clock import SYSTEM_CLOCK, Clock
 from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
@@ -58,8 +60,6 @@ def _serve(
     duration: float | None,
     output: Output,
 ) -> None:
-    from zebro_lab.recording.simulate_stage import wait_until
-
     with output.progress() as watcher, serving as served:
         for what, place in served.places.items():
             output.say(f"SIMULATED {what} ({served.source}), profile {profile}: {place}")
@@ -67,3 +67,18 @@ def _serve(
         content = {"simulated": True, "source": served.source, "profile": profile}
         output.document(command, {**content, "ports": served.places, "address": served.address})
         wait_until(watcher.stop_requested, duration=duration)
+
+
+def wait_until(
+    stop_requested: Callable[[], bool], *, duration: float | None, clock: Clock = SYSTEM_CLOCK
+) -> None:
+    """Wait until a stop is requested or a duration has passed, polling every 50 ms.
+
+    Args:
+        stop_requested: Returns whether a stop is requested.
+        duration: Longest wait [s]; None for no limit.
+        clock: Clock of host time, which also sleeps.
+    """
+    end = clock.now() + (float("inf") if duration is None else duration)
+    while not stop_requested() and clock.now() < end:
+        clock.sleep(0.05)

@@ -2,7 +2,7 @@
 """Serve simulated devices at ports that any program can open."""
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,6 @@ import numpy as np
 import tomlkit
 
 from model.gait.reference import LegReference
-from rig.clock import SYSTEM_CLOCK, Clock
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import SimulatedImu
 from rig.links.byte_link import ByteTwin
@@ -186,18 +185,3 @@ def _bus(request: TwinRequest, source: str) -> Iterator[tuple[can.BusABC, str]]:
         _port(SlcanAdapter(far, source=source), request) as port,
     ):
         yield bus, f"slcan:{port}"
-
-
-def wait_until(
-    stop_requested: Callable[[], bool], *, duration: float | None, clock: Clock = SYSTEM_CLOCK
-) -> None:
-    """Wait until a stop is requested or a duration has passed, polling every 50 ms.
-
-    Args:
-        stop_requested: Returns whether a stop is requested.
-        duration: Longest wait [s]; None for no limit.
-        clock: Clock of host time, which also sleeps.
-    """
-    end = clock.now() + (float("inf") if duration is None else duration)
-    while not stop_requested() and clock.now() < end:
-        clock.sleep(0.05)

@@ -15,7 +15,7 @@ from rig.experiment.verdict import PointVerdict
 from rig.safety import StopCategory
 from support.experiment_plans import short_plan
 from zebro_lab.experiment.request import RigRunRequest
-from zebro_lab.experiment.screen import ExperimentScreen, experiment_screen, slip_chart
+from zebro_lab.experiment.screen import ExperimentScreen, experiment_screen
 from zebro_lab.experiment.stage import run_experiment
 
 
@@ -24,15 +24,7 @@ def _plan(tmp_path):
     return short_plan(tmp_path)
 
 
-def test_the_chart_puts_the_largest_friction_on_top():
-    chart = slip_chart([(4.0, 0.0, 0.0), (4.0, 0.5, 0.4), (8.0, 1.0, 0.3)])
-    rows = chart.splitlines()
-    assert rows[0].endswith("o 4 N, x 8 N")
-    assert "o" in rows[1]
-    assert rows[-1].startswith("o")
-
-
-def test_a_terminal_sees_progress_prompt_and_curve():
+def test_a_terminal_sees_progress_prompt_and_verdict():
     console = Console(file=io.StringIO(), force_terminal=True, width=100)
     with experiment_screen(console, Control()) as screen:
         screen.doing("point-0001", done=1, of=4, left=75.0)
@@ -42,7 +34,7 @@ def test_a_terminal_sees_progress_prompt_and_curve():
     shown = console.file.getvalue()
     assert "1 of 4 points finished, 1 min 15 s left" in shown
     assert "set it; it is 3.20 N now" in shown
-    assert "friction (up) 0.00 to 0.30" in shown
+    assert "friction coefficient 0.300" in shown
 
 
 def test_without_a_terminal_a_prompt_is_one_line():

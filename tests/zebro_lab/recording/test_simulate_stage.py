@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 
 from rig.backends import open_imu, open_rig
-from rig.clock import ManualClock
 from rig.openers import legs_at
 from zebro_lab.recording.devices import default_gait
 from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
-from zebro_lab.recording.simulate_stage import serve_imu, serve_rig, serve_zebro, wait_until
+from zebro_lab.recording.simulate_stage import serve_imu, serve_rig, serve_zebro
 
 
 def first(stream):
@@ -41,15 +40,3 @@ def test_every_device_of_a_rig_is_read_at_its_address(profile):
         assert served.source == "sim:rig"
         for stream in open_rig(served.address).streams:
             assert first(stream)
-
-
-@pytest.mark.parametrize(("looks", "duration", "expected"), [(3, None, 0.15), (99, 0.5, 0.5)])
-def test_a_twin_runs_until_it_is_stopped_or_its_time_is_up(looks, duration, expected):
-    clock, asked = ManualClock(), []
-
-    def stop_requested():
-        asked.append(None)
-        return len(asked) > looks
-
-    wait_until(stop_requested, duration=duration, clock=clock)
-    assert clock.now() == pytest.approx(expected, abs=0.051)

@@ -3,6 +3,7 @@
 
 import time
 from contextlib import contextmanager
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,13 +13,17 @@ from rig.backends import leg_driver
 from rig.clock import SYSTEM_CLOCK, ManualClock
 from rig.device import iterate
 from rig.imu.profile import load_imu_profile
+from rig.imu.simulated import SimulatedImu
+from rig.imu.stream import ImuStream
 from rig.links.memory import MemoryLink
 from rig.replay import ReplayStream
+from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
+from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
-from rig.twins import robot_twin, simulated_imu, simulated_legs, simulated_rig_devices
+from rig.twins import robot_twin, simulated_legs, simulated_rig_devices
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.simulated_legs import SimulatedLegs
 
@@ -36,34 +41,52 @@ def rig():
     )
 
 
-def legs(name):
-    return lambda: simulated_legs(
-        SimulatedLegs(GAIT, profile=load_leg_profile(name), rng=rng()), rng=rng()
-    )
+def in_memory(twin, driver):
+    """Serve a twin of bytes without port or thread, on a clock turned by hand."""
 
-
-def imu():
-    return simulated_imu(load_imu_profile("imu-quaternion-serial"), rng=rng())
-
-
-def rig_stream(profile, stream):
     @contextmanager
     def serve():
-        with simulated_rig_devices(load_rig_profile(profile), rig(), rng=rng()) as devices:
+        clock = ManualClock()
+        yield driver(MemoryLink(twin(), clock=clock), clock=clock)
+
+    return serve
+
+
+def legs(name):
+    profile = load_leg_profile(name)
+    return in_memory(lambda: robot_twin(profile, GAIT, rng=rng()), partial(leg_driver, profile))
+
+
+def can_legs():
+    profile = load_leg_profile("zebro-100-can")
+    return simulated_legs(SimulatedLegs(GAIT, profile=profile, rng=rng()), rng=rng())
+
+
+def rig_stream(stream):
+    @contextmanager
+    def serve():
+        with simulated_rig_devices(
+            load_rig_profile("rig-odrive-netft"), rig(), rng=rng()
+        ) as devices:
             yield getattr(devices, stream)
 
     return serve
 
 
+IMU = load_imu_profile("imu-quaternion-serial")
+BOARD = load_rig_profile("rig-board-serial")
 LIVE = {
     "legs on serial packets": legs("zebro-100-serial"),
-    "legs on CAN": legs("zebro-100-can"),
+    "legs on CAN": can_legs,
     "legs from a dump": legs("vregs-dump"),
     "legs polled": legs("zebrobus-uart"),
-    "imu": imu,
-    "drives": rig_stream("rig-odrive-netft", "drives"),
-    "load cell": rig_stream("rig-odrive-netft", "load_cell"),
-    "board": rig_stream("rig-board-serial", "board"),
+    "imu": in_memory(lambda: SimulatedImu(profile=IMU, rng=rng()), partial(ImuStream, profile=IMU)),
+    "drives": rig_stream("drives"),
+    "load cell": rig_stream("load_cell"),
+    "board": in_memory(
+        lambda: SimulatedBoard(rig(), profile=BOARD.board, rng=rng()),
+        partial(RigBoard, profile=BOARD.board, limits=BOARD.limits),
+    ),
 }
 NUMBERED = {"legs on serial packets", "legs on CAN", "imu", "load cell", "board"}
 

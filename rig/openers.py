@@ -70,7 +70,7 @@ def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> It
     """
     name, port = resolve(address, default=LEGS_PROFILE)
     if port == SIMULATED:
-        twin = SimulatedLegs(gait, profile=load_leg_profile(name), rng=rng)
+        twin = SimulatedLegs(gait, profile=load_leg_profile(name))
         with simulated_legs(twin, rng=rng) as legs:
             yield legs
     else:

@@ -41,7 +41,7 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.zebro.profile import LegProfile
-from rig.zebro.simulated_legs import EXACT_ROBOT, RobotImperfections, SimulatedLegs
+from rig.zebro.simulated_legs import SimulatedLegs
 
 _channels = itertools.count()
 
@@ -69,7 +69,6 @@ def robot_twin(
     profile: LegProfile,
     reference: LegReference,
     *,
-    imperfections: RobotImperfections = EXACT_ROBOT,
     faults: Faults = PERFECT_LINE,
     rng: np.random.Generator,
 ) -> ByteTwin:
@@ -78,9 +77,8 @@ def robot_twin(
     Args:
         profile: Counts, layout and rate of the robot.
         reference: Gait that the robot walks until it is commanded.
-        imperfections: Deviations of the robot from the gait.
         faults: Transmission errors of the line.
-        rng: Random generator of imperfections and transmission errors.
+        rng: Random generator of the transmission errors.
 
     Returns:
         The twin.
@@ -88,7 +86,7 @@ def robot_twin(
     Raises:
         ProfileError: The profile's layout is `can` or `table`, which no serial line carries.
     """
-    legs = SimulatedLegs(reference, profile=profile, imperfections=imperfections, rng=rng)
+    legs = SimulatedLegs(reference, profile=profile)
     return byte_robot(legs, faults=faults, rng=rng)
 
 

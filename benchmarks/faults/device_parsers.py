@@ -146,7 +146,7 @@ def twin(robot: Any, profile: LegProfile) -> Make:
 
     def make() -> Take:
         rng = np.random.default_rng(0)
-        device = robot(SimulatedLegs(GAIT, profile=profile, rng=rng), rng=rng)
+        device = robot(SimulatedLegs(GAIT, profile=profile), rng=rng)
         return lambda data: bool(device.poll(0.0, data))
 
     return make
@@ -156,7 +156,7 @@ def can_twin() -> Take:
     """Make what feeds a robot's twin on CAN; a stop or set-points are an acceptance."""
     rng = np.random.default_rng(0)
     bus: Any = NoBus()
-    robot = CanRobot(SimulatedLegs(GAIT, profile=CAN_LEGS, rng=rng), bus, rng=rng)
+    robot = CanRobot(SimulatedLegs(GAIT, profile=CAN_LEGS), bus, rng=rng)
 
     def take(data: bytes) -> bool:
         message = frame_of(data)

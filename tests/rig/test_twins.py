@@ -59,7 +59,7 @@ def legs(name):
 
 def can_legs():
     profile = load_leg_profile("zebro-100-can")
-    return simulated_legs(SimulatedLegs(GAIT, profile=profile, rng=rng()), rng=rng())
+    return simulated_legs(SimulatedLegs(GAIT, profile=profile), rng=rng())
 
 
 def rig_stream(stream):

@@ -219,7 +219,7 @@ def test_a_weighing_is_told_in_numbers(run_command, tmp_path):
 def test_a_simulated_device_tells_its_port_while_it_is_served(run_command, monkeypatch, capsys):
     told = []
     monkeypatch.setattr(
-        "zebro_lab.recording.simulate_stage.wait_until",
+        "zebro_lab.recording.simulate_command.wait_until",
         lambda *_, **__: told.append(capsys.readouterr().out),
     )
     assert run_command("sim", "zebro", "--json", "--quiet") == (0, "", "")

@@ -157,7 +157,7 @@ def _simulated_robot(request: DevicesRequest, rng: np.random.Generator) -> Simul
         return None
     gait = request.play or default_gait()
     gait.angles(0.0)  # compiles, see `open_devices`
-    return SimulatedLegs(gait, profile=load_leg_profile(name), rng=rng)
+    return SimulatedLegs(gait, profile=load_leg_profile(name))
 
 
 def _add_legs(

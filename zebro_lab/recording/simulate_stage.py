@@ -70,7 +70,7 @@ def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
     gait = _gait(request.play)
     faults = Faults(drop=request.drop)
     if profile.layout == "can":
-        legs = SimulatedLegs(gait, profile=profile, rng=rng)
+        legs = SimulatedLegs(gait, profile=profile)
         with _bus(request, "sim:zebro") as (bus, place):
             robot = CanRobot(legs, bus, faults=faults, rng=rng)
             with Ticker(robot.poll):
@@ -92,7 +92,7 @@ def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
         ZebroLabError: The leg angles to walk cannot be read.
     """
     rng = np.random.default_rng(0)
-    legs = SimulatedLegs(_gait(request.play), profile=load_leg_profile(LEGS_PROFILE), rng=rng)
+    legs = SimulatedLegs(_gait(request.play), profile=load_leg_profile(LEGS_PROFILE))
     faults = Faults(drop=request.drop)
     twin = SimulatedImu(
         profile=load_imu_profile(request.profile), attitude=SimulatedBody(legs), faults=faults,

@@ -138,7 +138,7 @@ def test_a_robot_behind_an_adapter_is_read_and_commanded_by_python_cans_own_slca
     profile = load_leg_profile("zebro-100-can")
     times = np.linspace(0, 60, 601)
     gait = SampledReference(times, np.outer(times, np.full(6, 4.0)))
-    legs = SimulatedLegs(gait, profile=profile, rng=np.random.default_rng(0))
+    legs = SimulatedLegs(gait, profile=profile)
     with (
         can.Bus(interface="virtual", channel="slcan-legs") as near,
         can.Bus(interface="virtual", channel="slcan-legs") as far,

@@ -20,7 +20,7 @@ STANDING = SampledReference(np.array([0.0, 1.0]), np.tile(np.linspace(0.2, 1.2, 
 def test_legs_on_can_go_to_their_set_points_and_stop(take):
     profile = load_leg_profile("zebro-100-can")
     rng = np.random.default_rng(0)
-    twin = SimulatedLegs(STANDING, profile=profile, rng=rng)
+    twin = SimulatedLegs(STANDING, profile=profile)
     with simulated_legs(twin, rng=rng) as stream, stream:
         targets = (10, 20, 30, 40, 50, 60)
         assert stream.set_points(targets, 0.1)

@@ -17,7 +17,7 @@ STANDING = SampledReference(np.array([0.0, 1.0]), np.full((2, 6), np.pi / 2))
 
 
 def walked(gait, times, *, began=100.0):
-    legs = SimulatedLegs(gait, profile=PROFILE, rng=np.random.default_rng(0))
+    legs = SimulatedLegs(gait, profile=PROFILE)
     body = SimulatedBody(legs)
     return legs, np.array([body(began + t) for t in times])
 
@@ -43,7 +43,7 @@ def test_a_body_on_legs_that_stand_is_still():
 
 def test_a_body_stops_where_its_legs_are_stopped():
     gait = turning(1.2, "left")
-    legs = SimulatedLegs(gait, profile=PROFILE, rng=np.random.default_rng(0))
+    legs = SimulatedLegs(gait, profile=PROFILE)
     body = SimulatedBody(legs)
     walking = [body(t) for t in np.arange(0, 2, 0.01)]
     legs.stop(2.0)

@@ -21,7 +21,6 @@ from zebro_lab.tables.text_layout import (
     BLANKS,
     SEPARATORS,
     Layout,
-    LayoutError,
     Line,
     find_layout,
 )
@@ -121,8 +120,8 @@ def _is_open(text: str) -> bool:
 def _layout(path: Path, lines: list[Line]) -> Layout:
     try:
         layout = find_layout(lines)
-    except LayoutError as error:
-        raise DataError(str(error), file=path, row=error.row, line=error.line) from error
+    except DataError as error:
+        raise DataError(error.problem, file=path, row=error.row, line=error.line) from error
     if len(layout.header.names) > MOST_COLUMNS:
         raise DataError(
             f"has {len(layout.header.names)} columns; expected at most {MOST_COLUMNS}", file=path

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.units import is_unit_of, is_unit_text
 
 _BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)|\{([^{}]*)\}|<([^<>]*)>")
@@ -128,10 +129,6 @@ def _is_name(text: str, *, in_round: bool) -> bool:
     )
 
 
-class SeveralSegments(ValueError):
-    """A LabVIEW measurement file has several segments; the text says what to do."""
-
-
 def after_lvm_header(lines: Sequence[tuple[int, str]]) -> Sequence[tuple[int, str]]:
     """Return the lines below the last header of a LabVIEW measurement file; others as they are.
 
@@ -139,11 +136,11 @@ def after_lvm_header(lines: Sequence[tuple[int, str]]) -> Sequence[tuple[int, st
         lines: Number and text of each line.
 
     Raises:
-        SeveralSegments: There is more than one segment, each with a header of its own.
+        DataError: There is more than one segment, each with a header of its own.
     """
     ends = [i for i, (_, line) in enumerate(lines) if line.strip().startswith(_LVM_END)]
     if len(ends) > _LVM_HEADERS:
-        raise SeveralSegments(
+        raise DataError(
             "has several segments of measurement, each with a header; that of the second ends in "
             f"line {lines[ends[_LVM_HEADERS]][0]}: make a file of each"
         )

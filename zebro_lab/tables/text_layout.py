@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from model.counted import counted
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.units import is_unit_text
 from zebro_lab.tables.cells import decimal_sign, kind_of
 from zebro_lab.tables.header_rows import (
@@ -18,7 +19,7 @@ from zebro_lab.tables.header_rows import (
     find_header,
     made_header,
 )
-from zebro_lab.tables.header_units import SeveralSegments, after_lvm_header, stated_units
+from zebro_lab.tables.header_units import after_lvm_header, stated_units
 
 BLANKS: Final = r"\s+"
 SEPARATORS: Final[Mapping[str, str]] = {
@@ -47,20 +48,6 @@ class Layout:
     last_line: int
     decimal: str | None
     width: int
-
-
-class LayoutError(ValueError):
-    """The layout is unclear; the text says what was found and what to do.
-
-    Attributes:
-        row: Row of data that is irregular, counted from 1; None for the whole file.
-        line: Its line.
-    """
-
-    def __init__(self, problem: str, row: int | None = None, line: int | None = None) -> None:
-        super().__init__(problem)
-        self.row = row
-        self.line = line
 
 
 @dataclass(frozen=True)
@@ -97,16 +84,13 @@ def find_layout(lines: Sequence[Line]) -> Layout:
         lines: Number and text of each line that is not blank.
 
     Raises:
-        LayoutError: There is no header, or several layouts fit.
+        DataError: There is no header, or several layouts fit.
     """
     _require_no_receipt(lines)
-    try:
-        below = after_lvm_header(lines)
-    except SeveralSegments as error:
-        raise LayoutError(str(error)) from error
+    below = after_lvm_header(lines)
     body, comments = _without_comments(below)
     if not body:
-        raise LayoutError("is empty or all comments (#); expected a header and rows")
+        raise DataError("is empty or all comments (#); expected a header and rows")
     tried = [_candidate(separator, body, comments) for separator in SEPARATORS]
     with_data = [candidate for candidate in tried if candidate.data]
     if not with_data:
@@ -146,7 +130,7 @@ def _require_no_receipt(lines: Sequence[Line]) -> None:
     found = [match[0] for _, line in lines if (match := _RECEIPT.match(line))]
     if len(found) <= len(lines) // 2:
         return
-    raise LayoutError(
+    raise DataError(
         f"lines begin with the time at which a serial monitor received them, '{found[0]}', which "
         "is no column; delete each line up to '->', or record with its timestamps switched off"
     )
@@ -212,35 +196,35 @@ def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
         same = [each for each in same if each.separator != BLANKS]
         if same:
             names = " or by ".join(SEPARATORS[each.separator] for each in (best, *same))
-            raise LayoutError(
+            raise DataError(
                 f"cells may be separated by {names}; save the file with one of these only"
             )
     return best
 
 
-def _no_header(best: _Candidate, body: Sequence[Line]) -> LayoutError:
+def _no_header(best: _Candidate, body: Sequence[Line]) -> DataError:
     data = best.data
     if data is not None and data.first == 0 and _is_transposed(best.rows):
-        return LayoutError(
+        return DataError(
             f"has a name at the start of each line, '{best.rows[0][0][:40]}' first, and is "
             "transposed; expected a column of each quantity: exchange rows and columns (in a "
             "spreadsheet copy, then paste special, transposed)"
         )
     if data is None or data.first == 0 or "two rows" in best.problem:
         if "two rows" in best.problem:
-            return LayoutError(f"{best.problem}; delete one of them, or put # before it")
-        return LayoutError(
+            return DataError(f"{best.problem}; delete one of them, or put # before it")
+        return DataError(
             f"has no header: the first line is '{body[0][1][:60]}'; add a line with column names"
         )
     above = best.rows[data.first - 1]
     if len(above) == data.width:
         number, line = body[data.first - 1]
-        return LayoutError(
+        return DataError(
             f"line {number}, '{line[:60]}', stands between names and numbers and has no cell of "
             "its own for each column; delete it, or fill its cells"
         )
     advice = "write decimals with a point" if best.separator == "," else "correct it"
-    return LayoutError(
+    return DataError(
         f"the row has {data.width} cells, the header has {len(above)}; {advice}",
         row=1, line=body[data.first][0],
     )  # fmt: skip
@@ -273,14 +257,14 @@ def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequenc
     names = header.names
     units = [name.split(" (")[0] for name in names[1::2]]  # repeated ones are numbered
     if len(names) == 2 * data.width and all(map(is_unit_text, units)):
-        raise LayoutError(
+        raise DataError(
             f"the header has {len(names)} names, '{names[0]}', '{names[1]}', …, for "
             f"{counted(data.width, 'column')}; write units in brackets: '{names[0]} [{names[1]}]'"
         )
     for row, cells in enumerate(best.rows[data.first : data.stop], start=1):
         if any(cells[len(header.names) :]) or len(cells) > len(header.names) + 1:
             advice = "; write decimals with a point" if best.separator == "," else "; correct it"
-            raise LayoutError(
+            raise DataError(
                 f"the row has {counted(len(cells), 'cell')}, the header has "
                 f"{len(header.names)}{advice}",
                 row=row, line=body[data.first + row - 1][0],
@@ -292,7 +276,7 @@ def _without_numbers(body: Sequence[Line]) -> Layout:
     split = {s: [split_line(line, s) for _, line in body] for s in SEPARATORS if s != BLANKS}
     regular = [s for s, rows in split.items() if len(rows[0]) > 1 and len(set(map(len, rows))) == 1]
     if len(regular) > 1:
-        raise LayoutError(
+        raise DataError(
             f"cells may be separated by {' or by '.join(SEPARATORS[s] for s in regular)}; save the "
             "file with one of these only"
         )
@@ -300,10 +284,10 @@ def _without_numbers(body: Sequence[Line]) -> Layout:
     rows = split[separator]
     for row, (cells, (line, _)) in enumerate(zip(rows[1:], body[1:], strict=True), start=1):
         if len(cells) > len(rows[0]):
-            raise LayoutError(
+            raise DataError(
                 f"the row has {counted(len(cells), 'cell')}, the header has "
                 f"{len(rows[0])}; correct it",
-                row, line,
+                row=row, line=line,
             )  # fmt: skip
     names = [name or f"column {i}" for i, name in enumerate(rows[0], start=1)]
     return Layout(separator, made_header(names, 1), body[0][0], None, len(names))

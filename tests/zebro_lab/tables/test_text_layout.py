@@ -3,7 +3,8 @@
 
 import pytest
 
-from zebro_lab.tables.text_layout import BLANKS, LayoutError, find_layout
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.text_layout import BLANKS, find_layout
 
 
 def lines(text: str) -> list[tuple[int, str]]:
@@ -101,5 +102,5 @@ def test_the_settings_of_a_labview_file_are_no_data():
     ],
 )
 def test_an_unclear_layout_is_refused(text, problem):
-    with pytest.raises(LayoutError, match=problem.replace("(", r"\(")):
+    with pytest.raises(DataError, match=problem.replace("(", r"\(")):
         find_layout(lines(text))

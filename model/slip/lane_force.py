@@ -14,7 +14,7 @@ from model.arrays import Array
 from model.compiled import inlined
 from model.elementary import arctan, exp_of, log_of, minus_arctan, sin_half_turn
 from model.lanes import row, select, size
-from model.slip.brush import Brush, static_friction_from_peak
+from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
@@ -40,7 +40,7 @@ class LaneLaw:
         reference: Load at which they have their parameters' values [N].
         sided: Whether driving and braking are apart.
         coefficients: K, and of the Magic Formula C, mu, x_m/Fn or E, tan(pi/2C) and the exponents
-            of mu and K; of the brush model mu_s and q; of Coulomb's friction mu, q and kappa_s.
+            of mu and K; of the brush model mu; of Coulomb's friction mu, q and kappa_s.
             The rest is 0, but the last two: the factors of friction and of slip in driving, 1 over
             those in braking. Shape (`ROWS`, w).
     """
@@ -65,9 +65,7 @@ def lane_law(law: SlipLaw, values: Array) -> LaneLaw | None:
     if isinstance(law, MagicFormula):
         return _magic_formula(law, columns)
     if isinstance(law, Brush):
-        K, mu, *ratio = columns
-        q = ratio[0] if law.kinetic else np.ones_like(K)
-        return _law(BRUSH, K, static_friction_from_peak(mu, q), q)
+        return _law(BRUSH, *columns)
     if isinstance(law, CoulombStribeck):
         K, mu, *fall = columns
         return _law(COULOMB, K, mu, *(fall if law.stribeck else (np.ones_like(K),) * 2))
@@ -141,7 +139,7 @@ def law_at_slip(kind, at_load, slip, load):
         load: Normal force, positive [N].
     """
     if kind == BRUSH:
-        return load * _brush(slip, at_load[0], at_load[1], at_load[2])
+        return load * _brush(slip, at_load[0], at_load[1])
     if kind == COULOMB:
         return load * _coulomb(slip, at_load[0], at_load[1], at_load[2], at_load[3])
     B, C, D, E = at_load
@@ -170,12 +168,11 @@ def side_at_slip(sided, kind, A, at_load, slip, load):
 
 
 @inlined
-def _brush(sigma, K, mu_s, q):
+def _brush(sigma, K, mu):
     """Compute traction over load of the brush model; see `brush` [-]."""
-    psi = K * size(sigma) / (3.0 * mu_s)
+    psi = K * size(sigma) / (3.0 * mu)
     psi = select(psi < 1.0, psi, 1.0)
-    sticking = 3.0 * psi * (1.0 - psi) * (1.0 - psi)
-    force = mu_s * (sticking + q * psi * psi * (3.0 - 2.0 * psi))
+    force = mu * psi * (3.0 - 3.0 * psi + psi * psi)
     return select(sigma + 0.0 * K < 0.0, -force, force)
 
 

@@ -15,6 +15,7 @@ from model.slip.sided import SidedLaw
 
 LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
 """Class of every slip law, by the law's name."""
+KINETIC: Final = "kinetic"
 SIDES: Final = "sides"
 TOGETHER: Final = "together"
 APART: Final = "apart"
@@ -37,10 +38,12 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
     Raises:
         DomainError: No law has this name, or the law has no option of a given name.
 
-    >>> [parameter.name for parameter in slip_law("brush", kinetic=True).parameters]
-    ['slip_stiffness', 'friction', 'kinetic_ratio']
+    >>> [parameter.name for parameter in slip_law("brush").parameters]
+    ['slip_stiffness', 'friction']
     """
     _require_known("slip law", name, tuple(LAWS))
+    if options.get(KINETIC) is False:  # written by versions that had this option of the brush model
+        del options[KINETIC]
     known = (*(field.name for field in fields(LAWS[name])), SIDES)
     for option in options:
         _require_known(f"option of the slip law '{name}'", option, known)

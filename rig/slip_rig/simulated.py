@@ -38,7 +38,7 @@ SLOWEST: Final = 1e-3
 TWIN_LAWS: Final[dict[str, tuple[SlipLaw, Values]]] = {
     "magic-formula": (THESIS_LAW, THESIS_VALUES),
     "coulomb-stribeck": (CoulombStribeck(), (12.0, 0.38, 0.75, 0.15)),
-    "brush": (Brush(kinetic=True), (12.0, 0.38, 0.8)),
+    "brush": (Brush(), (12.0, 0.38)),
 }
 """Slip laws of a twin with their values, by name."""
 

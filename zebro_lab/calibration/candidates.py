@@ -16,7 +16,6 @@ from model.slip.magic_formula import MagicFormula
 from model.slip.sided import SidedLaw
 from zebro_lab.calibration.request import (
     COMPARE,
-    KINETIC_BRUSH,
     CalibrationRequest,
     require_curvature,
 )
@@ -75,26 +74,17 @@ def _has_both_signs(samples: SlipSamples) -> bool:
 def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
     """Return the laws to choose from with driving and braking on one curve."""
     if request.law not in (MagicFormula.name, COMPARE):
-        return {request.law: _named(request.law)}
+        return {request.law: slip_law(request.law)}
     several = len(load_levels(block_means(samples, 10))) > 1
     formulas = _formulas(request, samples, sensitive=request.load_sensitivity, several=several)
     if request.law != COMPARE:
         return formulas if len(formulas) > 1 else {request.law: next(iter(formulas.values()))}
     found: dict[str, SlipLaw] = {_short(name): law for name, law in formulas.items()}
-    found |= {
-        Brush.name: Brush(),
-        KINETIC_BRUSH: _named(KINETIC_BRUSH),
-        CoulombStribeck.name: CoulombStribeck(),
-    }
+    found |= {Brush.name: Brush(), CoulombStribeck.name: CoulombStribeck()}
     if several:  # at one load its exponents are the priors'
         sensitive = _formulas(request, samples, sensitive=True, several=True)
         found |= {f"{_short(name)}, load-sensitive": law for name, law in sensitive.items()}
     return found
-
-
-def _named(name: str) -> SlipLaw:
-    """Return the law that a value of `--law` names."""
-    return Brush(kinetic=True) if name == KINETIC_BRUSH else slip_law(name)
 
 
 def _short(name: str) -> str:

@@ -15,11 +15,7 @@ from zebro_lab.workers import WorkersRequest
 
 COMPARE: Final = "compare"
 """Value of `--law` that compares all laws."""
-KINETIC_BRUSH: Final = "brush-kinetic"
-"""Value of `--law` for the brush model with kinetic friction."""
-LawName: TypeAlias = Literal[
-    "magic-formula", "brush", "brush-kinetic", "coulomb-stribeck", "compare"
-]
+LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck", "compare"]
 SidesName: TypeAlias = Literal["together", "apart", "auto"]
 EngineName: TypeAlias = Literal["auto", "emcee", "laplace"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]

@@ -122,7 +122,7 @@ def _laws_of(
     apart = isinstance(law, SidedLaw)
     asked_default = request.law == MagicFormula.name and request.curvature == "auto"
     curvature = getattr(law.law if isinstance(law, SidedLaw) else law, "curvature", None)
-    fits = request.law.removesuffix("-kinetic") == law.name and request.curvature in (
+    fits = request.law == law.name and request.curvature in (
         "auto",
         str(curvature),
     )

@@ -374,13 +374,13 @@ def test_a_wrong_sign_is_said_before_a_fit_is_wasted():
 @pytest.mark.long
 @pytest.mark.parametrize(("apart", "chosen"), [((0.6, 0.3), 1), ((0.0, 0.0), 0)])
 def test_sides_are_apart_where_left_out_runs_say_so(apart, chosen):
-    law = SidedLaw(Brush(kinetic=True))
+    law = SidedLaw(Brush())
     slips = np.tile(
         [-0.3, -0.1, -0.05, -0.035, -0.02, -0.008, 0.008, 0.02, 0.035, 0.05, 0.1, 0.3], 2
     )
     plan = SweepPlan(slips=tuple(slips), loads=(4.0, 12.0), rate=60.0)
     samples = simulate_sweep(
-        law, (20.0, 0.4, 0.7, *apart), plan=plan, imperfections=TYPICAL_RIG,
+        law, (20.0, 0.4, *apart), plan=plan, imperfections=TYPICAL_RIG,
         rng=np.random.default_rng(1),
     ).samples  # fmt: skip
     fits, choice = [], None

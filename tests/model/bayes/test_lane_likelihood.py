@@ -12,7 +12,7 @@ from model.slip.lane_force import lane_law
 LAWS = [
     MagicFormula(),
     MagicFormula("constant", load_sensitivity=True, reference_load=6.0),
-    Brush(kinetic=True),
+    Brush(),
     CoulombStribeck(),
 ]
 TYPICAL = {

@@ -18,7 +18,7 @@ from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep
 
 LOADS = np.array([4.0, 8.0, 12.0])
-SIMPLE, MIDDLE, RICH = Brush(), Brush(kinetic=True), CoulombStribeck()
+SIMPLE, MIDDLE, RICH = Brush(), MagicFormula(0.0), CoulombStribeck()
 
 
 def left_out(log_density, group) -> LeftOut:
@@ -98,7 +98,6 @@ PLANTED = {
     "magic formula": (MagicFormula("constant"), (20.0, 1.5, 0.4, 0.0)),
     "load-sensitive": (SENSITIVE, (20.0, 1.5, 0.4, 0.0, -0.15, -0.1)),
     "brush": (Brush(), (20.0, 0.4)),
-    "kinetic brush": (Brush(kinetic=True), (20.0, 0.4, 0.6)),
     "coulomb-stribeck": (CoulombStribeck(), (20.0, 0.4, 0.7, 0.1)),
 }
 

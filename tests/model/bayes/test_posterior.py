@@ -32,7 +32,7 @@ LAWS = (
     THESIS_LAW,
     MagicFormula(curvature="constant", load_sensitivity=True, reference_load=6.63),
     CoulombStribeck(),
-    Brush(kinetic=True),
+    Brush(),
 )
 every_law = pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 

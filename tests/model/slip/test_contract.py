@@ -16,7 +16,7 @@ WITH_OPTIONS = (
     MagicFormula(curvature=0.0),
     MagicFormula(load_sensitivity=True, reference_load=6.63),
     CoulombStribeck(stribeck=False),
-    Brush(kinetic=True),
+    Brush(),
 )
 LAWS_UNDER_TEST = (*(law() for law in LAWS.values()), *WITH_OPTIONS)
 PEAKED = tuple(law for law in LAWS_UNDER_TEST if law not in (CoulombStribeck(False), Brush()))
@@ -145,7 +145,7 @@ def test_values_inside_the_support_are_valid(drawn, load):
     assert law.valid(load, values)
 
 
-@given(laws_with_values((CoulombStribeck(), Brush(True), MagicFormula("constant"))), SLIPS, LOADS)
+@given(laws_with_values((CoulombStribeck(), Brush(), MagicFormula("constant"))), SLIPS, LOADS)
 def test_force_is_proportional_to_load_where_the_shape_is_constant(drawn, slip, load):
     law, values = drawn
     assert law.force(slip, 3 * load, values) == pytest.approx(3 * law.force(slip, load, values))
@@ -195,8 +195,3 @@ def test_every_law_is_under_its_own_name():
 def test_unknown_law_is_refused_with_the_nearest_name():
     with pytest.raises(DomainError, match="did you mean 'magic-formula'"):
         slip_law("magic formula")
-
-
-def test_unknown_option_is_refused_with_the_nearest_one():
-    with pytest.raises(DomainError, match="did you mean 'kinetic'"):
-        slip_law("brush", kinetics=True)

@@ -14,11 +14,10 @@ LAWS = [
     MagicFormula("peak", load_sensitivity=True, reference_load=6.0),
     MagicFormula("constant", load_sensitivity=True, reference_load=6.0),
     Brush(),
-    Brush(kinetic=True),
     CoulombStribeck(),
     CoulombStribeck(stribeck=False),
     SidedLaw(MagicFormula("constant", load_sensitivity=True, reference_load=6.0)),
-    SidedLaw(Brush(kinetic=True)),
+    SidedLaw(Brush()),
 ]
 
 

@@ -16,7 +16,10 @@ def test_a_law_comes_back_from_its_name_and_fields(name):
 
 @pytest.mark.parametrize(
     ("name", "options", "nearest"),
-    [("brus", {}, "did you mean 'brush'"), ("brush", {"kinetc": True}, "did you mean 'kinetic'")],
+    [
+        ("brus", {}, "did you mean 'brush'"),
+        ("coulomb-stribeck", {"stribek": True}, "did you mean 'stribeck'"),
+    ],
 )
 def test_an_unknown_name_names_the_nearest(name, options, nearest):
     with pytest.raises(DomainError, match=nearest):

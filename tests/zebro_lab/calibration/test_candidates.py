@@ -25,12 +25,12 @@ def test_all_laws_are_compared_at_several_loads():
     sensitive = [law.load_sensitivity for law in found.values() if isinstance(law, MagicFormula)]
     assert sensitive == [False, False, True, True]
     assert next(iter(found)) == "magic-formula, one E"
-    assert {"brush", "brush-kinetic", "coulomb-stribeck"} < set(found)
+    assert {"brush", "coulomb-stribeck"} < set(found)
 
 
 def test_at_one_load_laws_that_differ_by_load_alone_are_left_out():
     found = candidates(CalibrationRequest(law="compare"), samples(8.0))
-    assert list(found) == ["magic-formula, one E", "brush", "brush-kinetic", "coulomb-stribeck"]
+    assert list(found) == ["magic-formula, one E", "brush", "coulomb-stribeck"]
 
 
 @pytest.mark.parametrize(
@@ -76,8 +76,3 @@ def test_one_sign_of_slip_is_told_before_a_fit_of_both_sides(sweep, run_command,
     ended = run_command("calibrate-slip", sweep, "--sides", "apart", "--out", out)
     assert (ended.code, out.exists()) == (2, False)
     assert "--sides: slip has one sign in these data" in ended.err
-
-
-def test_the_brush_model_with_kinetic_friction_is_asked_for_by_name():
-    found = candidates(CalibrationRequest(law="brush-kinetic"), samples(4.0, 12.0))
-    assert found == {"brush-kinetic": Brush(kinetic=True)}

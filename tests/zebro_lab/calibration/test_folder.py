@@ -58,11 +58,11 @@ def test_curve_is_read_from_the_file_or_its_folder(tmp_path):
 
 def test_every_law_is_read_with_its_options(tmp_path):
     begin, end = GOOD.index("law ="), GOOD.index("[covariance]")
-    kinetic = """law = { name = "brush", kinetic = true }
-parameters = { slip_stiffness.mean = 20.0, friction.mean = 0.4, kinetic_ratio.mean = 0.8 }
+    sensitive = """law = { name = "magic-formula", curvature = 0.0, load_sensitivity = false }
+parameters = { slip_stiffness.mean = 20.0, shape.mean = 1.5, friction.mean = 0.4 }
 """
-    (tmp_path / "slip.toml").write_text(GOOD[:begin] + kinetic + GOOD[end:])
-    assert read_slip(tmp_path).law == Brush(kinetic=True)
+    (tmp_path / "slip.toml").write_text(GOOD[:begin] + sensitive + GOOD[end:])
+    assert read_slip(tmp_path).law == MagicFormula(0.0)
 
 
 @pytest.mark.parametrize("damage", DAMAGE)

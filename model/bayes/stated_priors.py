@@ -25,19 +25,11 @@ class EarlierPosterior:
 
     Attributes:
         draws: Draws of each parameter's value by name, shape (n,) each, row by row of one draw.
-        widen: Factor on the standard deviations; correlations are kept.
         origin: Name of the calibration, for tables.
     """
 
     draws: Mapping[str, Array]
-    widen: float
     origin: str
-
-    @property
-    def title(self) -> str:
-        """The calibration's name and how far its posterior was widened, as text."""
-        widened = "not widened" if self.widen == 1 else f"widened {self.widen:g} times"
-        return f"{self.origin}, {widened}"
 
 
 @dataclass(frozen=True)
@@ -134,7 +126,7 @@ def with_stated(
 
     The earlier posterior is taken as Gaussian in the standard normal coordinates of the default
     priors (Gaussian in the logarithm of a positive parameter), with the mean and covariance of its
-    draws there, the standard deviations times `widen`.
+    draws there.
 
     Args:
         priors: Default prior of each parameter by name.
@@ -161,9 +153,9 @@ def with_stated(
             "them"
         )
     z = _coordinates({name: priors[name] for name in names}, earlier)
-    sd = earlier.widen * z.std(axis=0, ddof=1)
+    sd = z.std(axis=0, ddof=1)
     for name, mean, spread in zip(names, z.mean(axis=0), sd, strict=True):
-        changed[name] = Moved(priors[name], float(mean), float(spread), earlier.title)
+        changed[name] = Moved(priors[name], float(mean), float(spread), earlier.origin)
     return changed, PriorCorrelation(names, np.atleast_2d(np.corrcoef(z.T)))
 
 

@@ -108,7 +108,7 @@ def half_circles(shared, tmp_path_factory) -> list[Scored]:
     command = Path(sys.executable).with_name("calibrate-slip")
     subprocess.run(
         [command, shared / "virtual-world" / "rig", "--columns", place / "columns.toml",
-         "--curvature", "constant", "--out", place / "calibration"],
+         "--out", place / "calibration"],
         check=True, capture_output=True,
     )  # fmt: skip
     slip = parse_slip(str(place / "calibration"))

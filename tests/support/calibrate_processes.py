@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 COMMAND = str(Path(sys.executable).with_name("calibrate-slip"))
-SMALL_FIT = ("--curvature", "peak", "--block-length", "30", "--threads", "1")
-SMALLER_FIT = ("--law", "brush", "--block-length", "30", "--threads", "1")
+SMALL_FIT = ("--threads", "1")
+SMALLER_FIT = ("--law", "brush", "--threads", "1")
 """A fit of a law with two parameters, for claims that hold for all laws."""
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
 FILES = {"slip.toml", "summary.csv", "posterior.nc", "manifest.json"} | PICTURES

@@ -8,7 +8,7 @@ import pandas as pd
 from support.bundled_walk import WALK
 from support.other_labs import RIG_COLUMNS, write_rig_table, write_walk_tables
 
-FEW_STEPS = ("--curvature", "peak", "--block-length", 30, "--max-steps", 100)
+FEW_STEPS = ("--law", "coulomb-stribeck", "--max-steps", 100)
 
 
 def test_tables_of_others_end_in_a_judged_prediction_on_one_page(command, tmp_path, monkeypatch):

@@ -14,7 +14,7 @@ from support.bundled_walk import WALK
 from support.commands import started
 from support.other_labs import RIG_COLUMNS, write_rig_table, write_walk_tables
 
-FEW_STEPS = ("--curvature", "peak", "--block-length", 30, "--max-steps", 100)
+FEW_STEPS = ("--law", "coulomb-stribeck", "--max-steps", 100)
 
 
 def cut_short(data: Path, label: str, *devices: object) -> Path:
@@ -62,7 +62,7 @@ def test_a_mixed_folder_goes_the_whole_way(command, data):
     cut = cut_short(data, "cut", "--rig", "sim")
     cut_walk = cut_short(data, "cut-walk", "--rig", "sim", "--zebro", "sim")
     one, two = (next(data.glob(f"*_walk_{label}")) for label in ("one", "two"))
-    walks = ("--walks", one, "--walks", two, "--anisotropy", 1.2)
+    walks = ("--walks", one, "--walks", two)
     said = command("calibrate", data, *walks, *FEW_STEPS, code=3)
     assert "the belt came off" in said
     assert f"left out, runs of another kind than slip-rig: {one.name} (walk)" in plain(said)

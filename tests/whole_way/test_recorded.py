@@ -18,7 +18,7 @@ from support.commands import COMMAND
 pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
 
 PLAN = Path(__file__).parents[2] / "examples/plan-thesis.toml"
-FEW_STEPS = ("--curvature", "peak", "--block-length", 30, "--max-steps", 400)
+FEW_STEPS = ("--law", "coulomb-stribeck", "--max-steps", 400)
 STOOD = 12.0  # s that the robot stands, until `record` runs
 LASTS = 44.0  # s of the recording: the stand, less what passes before it, and the walk
 

@@ -178,7 +178,7 @@ def test_wrong_values_are_derived_for_the_options_with_limits_choices_and_forms(
     names = {(named(found), param.name) for found, param, texts in VALUES if texts}
     for expected in (
         ("zebro-lab walk", "arc_deg"), ("zebro-lab walk", "slip"),
-        ("zebro-lab calibrate", "law"), ("calibrate-slip", "curvature"),
+        ("zebro-lab calibrate", "law"), ("calibrate-slip", "engine"),
         ("zebro-lab sim zebro", "drop"),
     ):  # fmt: skip
         assert expected in names

@@ -76,7 +76,7 @@ def test_a_fit_of_few_steps_has_its_verdict_and_exit_code_inside(
     monkeypatch.setattr("zebro_lab.calibration.stage.draw_calibration", lambda *_: None)
     ended = run_command(
         "calibrate-slip", sweep, "--out", tmp_path / "out", "--law", "coulomb-stribeck",
-        "--block-length", 150, "--max-steps", 1, "--threads", 1, "--json", "--quiet",
+        "--max-steps", 1, "--threads", 1, "--json", "--quiet",
     )  # fmt: skip
     found = document(ended, "calibrate-slip", {"folder", "calibration"}, code=3)
     assert found["simulated"]

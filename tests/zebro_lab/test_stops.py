@@ -44,7 +44,7 @@ AT_ONCE = (
 )
 RESUMED = "stopped; fit/checkpoint.npz keeps the fit; go on with: .* --resume"
 BENCH = f"--camera {WALK}/camera.toml --floor {WALK}/floor.toml --robot {WALK}/robot.toml"
-FIT = "rig --out fit --law coulomb-stribeck --block-length 150 --max-steps 200 --threads 2"
+FIT = "rig --out fit --law coulomb-stribeck --max-steps 200 --threads 2"
 
 
 def whole_or_nothing(folder: Path, new: set[str], whole: set[str]) -> None:

@@ -44,7 +44,7 @@ def _sample_longer(advice: SampleLonger) -> str:
 
 @advice_text.register
 def _sample_posterior(advice: SamplePosterior) -> str:
-    return f"{advice.reason}: give the same command with --engine emcee"
+    return f"{advice.reason}: give the same command without --engine laplace"
 
 
 @advice_text.register
@@ -89,7 +89,7 @@ def _measure_also(advice: MeasureAlso) -> str:
 @advice_text.register
 def _sample_again(advice: SampleAgain) -> str:
     return (
-        f"{advice.reason}: give the same command with --ensembles 8 --seed 2 and an --out of its "
+        f"{advice.reason}: give the same command with --seed 2 and an --out of its "
         "own; if the differences stay, see corner.png for a second mode or a long tail, and use "
         "the wider interval"
     )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Slip laws that a request names, or leaves to be chosen by the data."""
 
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
@@ -14,11 +14,7 @@ from model.slip.law import SlipLaw
 from model.slip.laws import APART, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import SidedLaw
-from zebro_lab.calibration.request import (
-    COMPARE,
-    CalibrationRequest,
-    require_curvature,
-)
+from zebro_lab.calibration.request import COMPARE, CalibrationRequest
 from zebro_lab.files.errors import SettingsError
 
 ONE_CURVATURE: Final = "one curvature E at every load"
@@ -34,7 +30,7 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
     with `--sides apart` all with their sides apart, with `--sides auto` those behind the others.
 
     Args:
-        request: Options: law, curvature, dependence on load, and sides.
+        request: Options: law, dependence on load, and sides.
         samples: The samples, whose loads and signs of slip decide what can be told apart.
 
     Raises:
@@ -76,13 +72,13 @@ def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, Sl
     if request.law not in (MagicFormula.name, COMPARE):
         return {request.law: slip_law(request.law)}
     several = len(load_levels(block_means(samples, 10))) > 1
-    formulas = _formulas(request, samples, sensitive=request.load_sensitivity, several=several)
+    formulas = _formulas(samples, sensitive=request.load_sensitivity, several=several)
     if request.law != COMPARE:
         return formulas if len(formulas) > 1 else {request.law: next(iter(formulas.values()))}
     found: dict[str, SlipLaw] = {_short(name): law for name, law in formulas.items()}
     found |= {Brush.name: Brush(), CoulombStribeck.name: CoulombStribeck()}
     if several:  # at one load its exponents are the priors'
-        sensitive = _formulas(request, samples, sensitive=True, several=True)
+        sensitive = _formulas(samples, sensitive=True, several=True)
         found |= {f"{_short(name)}, load-sensitive": law for name, law in sensitive.items()}
     return found
 
@@ -90,27 +86,13 @@ def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, Sl
 def _short(name: str) -> str:
     """Return the name in a table of laws of a Magic Formula by that of its curvature."""
     known = {ONE_CURVATURE: "one E", PEAK_WITH_LOAD: "peak by load"}
-    return f"{MagicFormula.name}, {known.get(name, name)}"
+    return f"{MagicFormula.name}, {known[name]}"
 
 
-def _formulas(
-    request: CalibrationRequest, samples: SlipSamples, *, sensitive: bool, several: bool
-) -> dict[str, SlipLaw]:
-    """Return the Magic Formulas by a name of their curvature, the preferred first.
-
-    They are two with `--curvature auto` and data at several loads, else one.
-    """
+def _formulas(samples: SlipSamples, *, sensitive: bool, several: bool) -> dict[str, SlipLaw]:
+    """Return the Magic Formulas by a name of their curvature, the preferred first."""
     middle_load = float(np.median(samples.normal_force))
-
-    def formula(curvature: Literal["peak", "constant"] | float) -> MagicFormula:
-        return MagicFormula(curvature, sensitive, middle_load)
-
-    curvature = require_curvature(request.curvature)
-    if curvature == "peak":
-        return {PEAK_WITH_LOAD: formula("peak")}
-    if curvature not in ("auto", "constant"):
-        return {f"curvature {curvature:g}": formula(curvature)}
-    laws: dict[str, SlipLaw] = {ONE_CURVATURE: formula("constant")}
-    if curvature == "auto" and several:  # at one load the two are the same
-        laws[PEAK_WITH_LOAD] = formula("peak")
+    laws: dict[str, SlipLaw] = {ONE_CURVATURE: MagicFormula("constant", sensitive, middle_load)}
+    if several:  # at one load the two are the same
+        laws[PEAK_WITH_LOAD] = MagicFormula("peak", sensitive, middle_load)
     return laws

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Options of a calibration."""
 
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Final, Literal, TypeAlias
@@ -9,7 +8,6 @@ from typing import Annotated, Final, Literal, TypeAlias
 from typer import Argument, Option
 
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.workers import WorkersRequest
 
@@ -17,7 +15,7 @@ COMPARE: Final = "compare"
 """Value of `--law` that compares all laws."""
 LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck", "compare"]
 SidesName: TypeAlias = Literal["together", "apart", "auto"]
-EngineName: TypeAlias = Literal["auto", "emcee", "laplace"]
+EngineName: TypeAlias = Literal["auto", "laplace"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]
 
 
@@ -47,14 +45,6 @@ class CalibrationRequest:
             "left out no worse than the others."
         ),
     ] = "magic-formula"
-    curvature: Annotated[
-        str,
-        Option(
-            metavar="auto|peak|constant|E",
-            help="Curvature E of the Magic Formula: auto (compares peak and constant); peak (the "
-            "slip of the peak grows with load); constant; or a fixed number below 1.",
-        ),
-    ] = "auto"
     load_sensitivity: Annotated[
         bool, Option("--load-sensitivity", help="Let friction and stiffness vary with load.")
     ] = False
@@ -65,26 +55,6 @@ class CalibrationRequest:
             "(apart); or apart if that predicts left-out runs clearly better (auto)."
         ),
     ] = "together"
-    block_length: Annotated[
-        int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
-    ] = None
-    zero_stability: Annotated[
-        float | None,
-        Option(
-            metavar="NEWTON",
-            help="Prior scale of the zero offsets' spread [N]; default: columns.toml's, else 0.15, "
-            "or 0.5 % of the largest traction if that is more.",
-        ),
-        Limits(above=0.0),
-    ] = None
-    gain_sd: Annotated[
-        float | None,
-        Option(
-            help="Relative gain error (sd) of the load cell [-]; default: columns.toml's, else "
-            "0.01."
-        ),
-        Limits(above=0.0, most=0.2, advice="1 % is 0.01"),
-    ] = None
     prior: Annotated[
         tuple[str, ...],
         Option(
@@ -98,11 +68,6 @@ class CalibrationRequest:
         Path | None,
         Option(metavar="DIR", help="Calibration whose posterior is the prior of this fit."),
     ] = None
-    widen: Annotated[
-        float,
-        Option(metavar="FACTOR", help="Factor on the standard deviations of --prior-from."),
-        Limits(least=1.0),
-    ] = 1.0
     carry: Annotated[
         Literal["all", "law"],
         Option(
@@ -113,11 +78,10 @@ class CalibrationRequest:
         EngineName,
         Option(
             help="auto: a first answer by weighted draws of the Laplace approximation, which emcee "
-            "then confirms; emcee: without the first answer; laplace: the first answer alone, as "
-            "a calibration that was not confirmed.",
+            "then confirms; laplace: the first answer alone, as a calibration that was not "
+            "confirmed.",
         ),
     ] = "auto"
-    ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
     max_steps: Annotated[
         int,
         Option(
@@ -133,7 +97,6 @@ class CalibrationRequest:
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for options that have no meaning or none beside the others."""
-        require_curvature(self.curvature)
         self._require_priors()
         if self.resume and self.engine == "laplace":
             raise SettingsError(
@@ -143,10 +106,10 @@ class CalibrationRequest:
             )
         if self.law == COMPARE:
             self._require_comparable()
-        elif self.law != "magic-formula" and (self.curvature != "auto" or self.load_sensitivity):
+        elif self.law != "magic-formula" and self.load_sensitivity:
             raise SettingsError(
-                f"--curvature and --load-sensitivity belong to the Magic Formula, not to "
-                f"'{self.law}'; leave them out",
+                f"--load-sensitivity belongs to the Magic Formula, not to '{self.law}'; leave it "
+                "out",
                 key="--law",
             )
 
@@ -182,17 +145,11 @@ class CalibrationRequest:
                 "out --sides",
                 key="--sides",
             )
-        if self.prior_from is None and (self.widen != 1 or self.carry != "all"):
+        if self.prior_from is None and self.carry != "all":
             raise SettingsError(
-                "--widen and --carry belong to --prior-from; name a calibration, or leave them out",
-                key="--widen" if self.widen != 1 else "--carry",
+                "--carry belongs to --prior-from; name a calibration, or leave it out",
+                key="--carry",
             )
-
-    @property
-    def load_cell(self) -> dict[str, float]:
-        """Given `zero_stability` [N] and `gain_sd` [-], which override those of `columns.toml`."""
-        given = {"zero_stability": self.zero_stability, "gain_sd": self.gain_sd}
-        return {name: value for name, value in given.items() if value is not None}
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -208,38 +165,11 @@ class CalibrationRequest:
         return {
             "slip_definition": self.slip_definition,
             "law": self.law,
-            "curvature": self.curvature,
             "load_sensitivity": self.load_sensitivity,
             "sides": self.sides,
-            "block_length": self.block_length,
-            "load_cell": self.load_cell,
             "prior": list(self.prior),
             "prior_from": None if self.prior_from is None else str(self.prior_from),
-            "widen": self.widen,
             "carry": self.carry,
             "sampled": self.engine != "laplace",
-            "ensembles": self.ensembles,
             "seed": self.seed,
         }
-
-
-def require_curvature(text: str) -> Literal["auto", "peak", "constant"] | float:
-    """Return the curvature E of the Magic Formula that a text names: a word or a number.
-
-    Raises:
-        SettingsError: It is another word, or a number that is not finite or not below 1.
-
-    >>> require_curvature("peak"), require_curvature("-0.5")
-    ('peak', -0.5)
-    """
-    if text == "auto" or text == "peak" or text == "constant":
-        return text
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not -math.inf < number < 1:  # at 1 and above the curve has no peak, or changes its sign
-        raise SettingsError(
-            f"is '{text}'; expected auto, peak, constant or a number below 1", key="--curvature"
-        )
-    return number

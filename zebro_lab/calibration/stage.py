@@ -100,7 +100,7 @@ def calibrate(
         calibration, chains = fit_slip_law(
             data.samples,
             laws,
-            load_cell=scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell}),
+            load_cell=scaled_load_cell(data.samples, data.load_cell),
             rig_errors=data.rig_errors,
             settings=_sampler(request, stated),
             source=data.source,
@@ -165,7 +165,6 @@ def stated_notes(request: CalibrationRequest, data: RigData) -> tuple[str, ...]:
 
 def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
     return SamplerSettings(
-        ensembles=request.ensembles,
         max_steps=request.max_steps,
         block_length=stated.block_length,
         threads=request.workers.cores,

@@ -75,20 +75,18 @@ def state_priors(
     single = StatedPriors({name: prior for name, (prior, _) in found.items()})
     texts = {name: text for name, (_, text) in found.items()}
     if earlier is None:
-        return Stated(single, texts, block_length=request.block_length), laws
-    length = request.block_length or earlier.block_length
-    carried = _carried(earlier, request, length)
+        return Stated(single, texts), laws
+    carried = _carried(earlier, request)
     posterior = EarlierPosterior(
         {name: draws for name, draws in earlier.draws.items() if name in carried},
-        request.widen,
         earlier.title,
     )
     priors = StatedPriors(single.single, posterior)
     said = (
-        f"prior: the posterior of {posterior.title}, with the correlations of {', '.join(carried)}"
+        f"prior: the posterior of {posterior.origin}, with the correlations of {', '.join(carried)}"
     )
     notes = (*earlier.notes, said)
-    return Stated(priors, texts, earlier, length, notes), laws
+    return Stated(priors, texts, earlier, earlier.block_length, notes), laws
 
 
 def _singles(
@@ -120,12 +118,8 @@ def _laws_of(
     """Return the law of an earlier calibration; raise where the request or the data differ."""
     law, definition = earlier.curve.law, earlier.curve.definition
     apart = isinstance(law, SidedLaw)
-    asked_default = request.law == MagicFormula.name and request.curvature == "auto"
-    curvature = getattr(law.law if isinstance(law, SidedLaw) else law, "curvature", None)
-    fits = request.law == law.name and request.curvature in (
-        "auto",
-        str(curvature),
-    )
+    asked_default = request.law == MagicFormula.name
+    fits = request.law == law.name
     if request.sides != TOGETHER and not apart:
         raise SettingsError(
             f"{earlier.title} was fitted with driving and braking together; leave out --sides",
@@ -133,9 +127,8 @@ def _laws_of(
         )
     if not (fits or (asked_default and not request.load_sensitivity)):
         raise SettingsError(
-            f"{earlier.title} was fitted with the law '{law.name}'"
-            f"{'' if curvature is None else f', curvature {curvature}'}; leave out --law, "
-            "--curvature and --load-sensitivity, which are those of the prior",
+            f"{earlier.title} was fitted with the law '{law.name}'; leave out --law and "
+            "--load-sensitivity, which are those of the prior",
             key="--prior-from",
         )
     if definition is not data.samples.definition:
@@ -147,16 +140,14 @@ def _laws_of(
     return {law.name: law}
 
 
-def _carried(
-    earlier: EarlierCalibration, request: CalibrationRequest, length: int | None
-) -> tuple[str, ...]:
+def _carried(earlier: EarlierCalibration, request: CalibrationRequest) -> tuple[str, ...]:
     """Return the parameters whose posterior is carried over.
 
     With `--carry law` those of the law alone, for another load cell; else also the measurement's,
-    the noise of block means only for blocks of the same length.
+    and the noise of block means if their length is known, which is then the same.
     """
     law = {p.name for p in earlier.curve.law.parameters}
-    same_blocks = length is not None and length == earlier.block_length
+    same_blocks = earlier.block_length is not None
     return tuple(
         name
         for name in earlier.draws
@@ -172,8 +163,8 @@ def priors_content(stated: Stated, calibration: Calibration) -> dict[str, Any]:
         calibration: The finished fit.
 
     Returns:
-        Keys `stated` (texts by parameter) and `from` (earlier calibration, widening and what it
-        carried), those that apply, and `agreement`, one entry each; empty if nothing was stated.
+        Keys `stated` (texts by parameter) and `from` (earlier calibration and what it carried),
+        those that apply, and `agreement`, one entry each; empty if nothing was stated.
     """
     if not calibration.prior_shifts:
         return {}
@@ -184,7 +175,6 @@ def priors_content(stated: Stated, calibration: Calibration) -> dict[str, Any]:
     if posterior is not None:
         content["from"] = {
             "calibration": posterior.origin,
-            "widen": posterior.widen,
             "parameters": list(posterior.draws),
         }
     content["agreement"] = [_agreement(shift) for shift in calibration.prior_shifts]

@@ -99,9 +99,7 @@ def calibrate(
     sides: SidesName = "together",
     prior: Sequence[str] = (),
     prior_from: PathLike | None = None,
-    widen: float = 1.0,
     engine: EngineName = "auto",
-    ensembles: int = 4,
     max_steps: int = 30_000,
     seed: int = 1,
     watcher: Watcher | None = None,
@@ -118,10 +116,8 @@ def calibrate(
         sides: Whether driving and braking follow one curve; "auto" lets left-out runs decide.
         prior: What is known of parameters beforehand, such as "friction = 0.40 ± 0.05".
         prior_from: Calibration whose posterior is the prior; its law is fitted.
-        widen: Factor on the standard deviations of that prior.
-        engine: "auto" or "emcee" to sample the posterior; "laplace" for weighted draws of the
+        engine: "auto" to sample the posterior; "laplace" for weighted draws of the
             Laplace approximation in seconds, which nothing confirms.
-        ensembles: Number of independent ensembles of walkers.
         max_steps: Largest number of sampler moves; a fit that has not converged ends then.
         seed: Seed of all random numbers.
         watcher: Receives progress and may request a stop; None for neither.
@@ -141,9 +137,7 @@ def calibrate(
             sides=sides,
             prior=tuple(prior),
             prior_from=optional(prior_from),
-            widen=widen,
             engine=engine,
-            ensembles=ensembles,
             max_steps=max_steps,
             seed=seed,
         )

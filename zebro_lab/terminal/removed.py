@@ -14,10 +14,21 @@ REMOVED: Final[dict[str, str]] = {
     "--thesis-every": "thesis.csv has a row every 0.01 s; a longer --dt gives fewer.",
     "--toe": "A leg on its toe has its slip law's traction at infinite slip.",
     "annotate --order": "State the times of photographs in a table: track --times CSV.",
+    "calibrate --anisotropy": "Lateral grip and stiffness have a prior of 1 ×/÷ 1.3 each; their "
+    "posterior is in walks.toml.",
+    "calibrate --block-length": "The length of blocks is chosen from the data.",
+    "calibrate --curvature": "One curvature E and a peak that grows with load are compared on "
+    "runs left out, and the better is fitted.",
     "calibrate --discrepancy": "No departure from the law is fitted: --law compare finds the law "
     "that predicts best, and mean residuals say where it does not hold.",
+    "calibrate --ensembles": "Four independent ensembles are sampled; give --seed for others.",
+    "calibrate --gain-sd": "State gain_sd in [load_cell] of columns.toml.",
     "calibrate --noise": "Noise is Gaussian: leave out rows with faults by [rows] keep in "
     "columns.toml, or runs by `zebro-lab exclude`.",
+    "calibrate --robot": "Put robot.toml into the folder of each walk.",
+    "calibrate --widen": "State wider priors of single parameters by --prior, or carry over the "
+    "law alone by --carry law.",
+    "calibrate --zero-stability": "State zero_stability in [load_cell] of columns.toml.",
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "predict --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
     "--walks fits them to tracked walks.",

@@ -29,7 +29,7 @@ calibrate-slip bench.csv --columns bench-columns.toml --load-sensitivity
 
 calibrate-slip data/ --prior "friction = 0.40 ± 0.05"
 
-calibrate-slip data/ --prior-from calibration-last-year --widen 1.5 --out calibration-this-year
+calibrate-slip data/ --prior-from calibration-last-year --carry law --out calibration-this-year
 
 calibrate-slip data/ --walks data/RUN1 --walks data/RUN2
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.lateral_spread import log_spread
+from model.lateral_spread import ANISOTROPY, log_spread
 from model.progress import Watcher
 from model.walk_fit.posterior import WalkPosterior
 from model.walk_fit.prior import WalkPrior
@@ -69,7 +69,7 @@ def require_walks(request: WalksRequest, calibration: CalibrationRequest, watche
         clock = estimated_clock_of(rough)
     else:
         clock = checked_clock(rough, largest=2 * LARGEST_OFFSET)
-    read_walks(request.walks, robot=request.robot, clock=clock)
+    read_walks(request.walks, clock=clock)
 
 
 def calibrate_walks(
@@ -98,8 +98,8 @@ def calibrate_walks(
     slip = parse_slip(str(slip_toml), with_walks=False)
     watcher.step("reading walks", None)
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
-    walks = read_walks(request.walks, robot=request.robot, clock=clock)
-    prior = WalkPrior(lateral_sd=log_spread(request.anisotropy))
+    walks = read_walks(request.walks, clock=clock)
+    prior = WalkPrior(lateral_sd=log_spread(ANISOTROPY))
     posterior, left_out = _fit(calibration, slip, walks, prior, watcher, executor)
     notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
     source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
@@ -115,7 +115,7 @@ def calibrate_walks(
             settings={
                 "seed": calibration.seed,
                 "estimate_offset": request.estimate_offset,
-                "anisotropy": request.anisotropy,
+                "anisotropy": ANISOTROPY,
             },
             source=source,
             notes=notes,

@@ -72,16 +72,13 @@ class WalkOnFile:
         return float(self.legs.t[-1])
 
 
-def read_walks(
-    folders: Sequence[Path], *, robot: Path | None = None, clock: Clock | None = None
-) -> list[WalkOnFile]:
+def read_walks(folders: Sequence[Path], *, clock: Clock | None = None) -> list[WalkOnFile]:
     """Read tracked walks of one robot, copies only once; equal folder names get a number.
 
     Excluded runs are left out, with a note.
 
     Args:
         folders: Folder of each walk, one or more, as for `read_walk_on_file`.
-        robot: A `robot.toml` to use instead of those in the folders.
         clock: Shifts each track to the clock of its leg log; None to keep the track's times.
 
     Raises:
@@ -92,12 +89,12 @@ def read_walks(
     counted = [each for each in folders if each not in excluded]
     if not counted:
         raise DataError(f"no walk to fit: {'; '.join(skipped)}")
-    read = [read_walk_on_file(folder, robot=robot, clock=clock) for folder in counted]
+    read = [read_walk_on_file(folder, clock=clock) for folder in counted]
     for walk in read[1:]:
         if describe_legs(walk.robot) != describe_legs(read[0].robot):
             raise SettingsError(
                 f"{walk.name} was walked by another robot than {read[0].name}; calibrate with the "
-                "walks of one robot at a time, or name a --robot for all",
+                "walks of one robot at a time, or put one robot.toml into all folders",
                 file=walk.robot.file,
             )
     walks, repeated = first_of_each(read, key=_content)
@@ -119,19 +116,16 @@ def _content(walk: WalkOnFile) -> str:
     return array_hash(walk.legs.theta, poses.position, poses.yaw)
 
 
-def read_walk_on_file(
-    folder: Path, *, robot: Path | None = None, clock: Clock | None = None
-) -> WalkOnFile:
+def read_walk_on_file(folder: Path, *, clock: Clock | None = None) -> WalkOnFile:
     """Read leg angles, track, robot and IMU tilt of a tracked walk.
 
     Args:
         folder: A run folder, or one with a leg log such as `legs.csv`; with `track/track.csv` and
             optionally a `robot.toml` (else the thesis's robot) in it.
-        robot: A `robot.toml` to use instead of the folder's.
         clock: Shifts the track to the leg log's clock; None to keep the track's times.
 
     Raises:
-        NotFound: There is no leg log, no track, or no file `robot`.
+        NotFound: There is no leg log, or no track.
         SettingsError: The `robot.toml` or a `columns.toml` is invalid.
         DataError: A file cannot be read, the track has no headings or covariance, too few of its
             poses lie within the log's time range, or `clock` rejects it.
@@ -141,7 +135,7 @@ def read_walk_on_file(
     if not track_file.is_file():
         raise NotFound(f"{folder}: no track; zebro-lab track --out {folder / TRACK} makes one")
     own = folder / ROBOT_FILE
-    described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
+    described = read_robot_file(own) if own.is_file() else RobotFile()
     log = read_leg_log(log_file, leg_sign=described.leg_sign)
     start = float(log.reference.t[0])
     suspected = leg_warnings(

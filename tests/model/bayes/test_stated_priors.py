@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An earlier posterior as a prior gives what all data together give; a widened one less."""
+"""An earlier posterior as a prior gives what all data together give."""
 
 from dataclasses import replace
 from functools import cache
@@ -43,7 +43,7 @@ def correlated(n=4000, seed=0):
 
 def test_an_earlier_posterior_keeps_mean_spread_and_correlation():
     draws = correlated()
-    priors, correlation = with_stated(BASE, StatedPriors(earlier=EarlierPosterior(draws, 1.0, "x")))
+    priors, correlation = with_stated(BASE, StatedPriors(earlier=EarlierPosterior(draws, "x")))
     u = np.random.default_rng(1).standard_normal((200_000, 3))
     y = u @ correlation.root(tuple(BASE))
     again = {name: priors[name].value(y[:, i]) for i, name in enumerate(BASE)}
@@ -54,16 +54,9 @@ def test_an_earlier_posterior_keeps_mean_spread_and_correlation():
     assert one == pytest.approx(other, abs=0.02)
 
 
-def test_widening_multiplies_spreads_and_keeps_means_and_correlations():
-    draws = correlated()
-    plain, narrow = with_stated(BASE, StatedPriors(earlier=EarlierPosterior(draws, 1.0, "x")))
-    wide, same = with_stated(BASE, StatedPriors(earlier=EarlierPosterior(draws, 3.0, "x")))
-    np.testing.assert_allclose(same.matrix, narrow.matrix)
-    for name in BASE:
-        assert wide[name].sd == pytest.approx(3 * plain[name].sd)
-        assert wide[name].mean == plain[name].mean
-    assert "widened 3 times" in wide["a"].describe()
-    assert "not widened" in plain["a"].describe()
+def test_an_earlier_posterior_is_named_in_the_prior():
+    priors, _ = with_stated(BASE, StatedPriors(earlier=EarlierPosterior(correlated(), "2025")))
+    assert "2025" in priors["a"].describe()
 
 
 @pytest.mark.parametrize("base", [Normal(0.3, 2.0), LogNormal(10, 1.5), HalfNormal(0.2)])
@@ -88,13 +81,13 @@ def test_the_root_of_a_correlation_squares_to_it_and_leaves_others_alone():
     ("stated", "message"),
     [
         (
-            StatedPriors({"a": Normal(0, 1)}, EarlierPosterior(correlated(), 1.0, "x")),
+            StatedPriors({"a": Normal(0, 1)}, EarlierPosterior(correlated(), "x")),
             "a: a prior of its own, and one from x",
         ),
-        (StatedPriors(earlier=EarlierPosterior(correlated(50), 1.0, "x")), "50 usable draws"),
+        (StatedPriors(earlier=EarlierPosterior(correlated(50), "x")), "50 usable draws"),
         (
             StatedPriors(earlier=EarlierPosterior(
-                {**correlated(), "c": np.linspace(0.5, 1.2, 4000)}, 1.0, "x"
+                {**correlated(), "c": np.linspace(0.5, 1.2, 4000)}, "x"
             )),
             "lie outside what this fit allows",
         ),
@@ -163,7 +156,7 @@ CARRIED = ("slip_stiffness", "shape", "friction", "peak_slip_per_load", "gain_tr
 
 
 def test_last_year_s_half_as_prior_of_this_year_s_half_is_all_data():
-    earlier = EarlierPosterior(last_year(), 1.0, "last year")
+    earlier = EarlierPosterior(last_year(), "last year")
     halves, whole = drawn(fitted(some_runs(1), StatedPriors(earlier=earlier))), all_runs()
     alone = drawn(fitted(some_runs(1)))
     for name in CARRIED:
@@ -178,20 +171,20 @@ def test_without_the_load_cell_s_correlations_the_halves_would_say_too_much():
     draws = last_year()
     rng = np.random.default_rng(2)
     apart = {name: rng.permutation(values) for name, values in draws.items()}
-    earlier = EarlierPosterior(apart, 1.0, "last year")
+    earlier = EarlierPosterior(apart, "last year")
     halves, whole = drawn(fitted(some_runs(1), StatedPriors(earlier=earlier))), all_runs()
     assert halves["friction"].std() < 0.9 * whole["friction"].std()
 
 
-def test_a_widened_prior_gives_the_product_of_its_density_and_the_likelihood():
-    data, widen = some_runs(1), 2.0
-    earlier = EarlierPosterior(last_year(), widen, "last year")
+def test_an_earlier_posterior_gives_the_product_of_its_density_and_the_likelihood():
+    data = some_runs(1)
+    earlier = EarlierPosterior(last_year(), "last year")
     fit = unsheared(fitted(data, StatedPriors(earlier=earlier)))  # Gaussian in plain coordinates
     posterior = fit.posterior
     base = default_priors(THESIS_LAW, posterior.blocks, LoadCell())
     names = [p.name for p in posterior.free]
     z = np.column_stack([base[name].coordinate(earlier.draws[name]) for name in names])
-    prior = stats.multivariate_normal(z.mean(axis=0), widen**2 * np.cov(z.T))
+    prior = stats.multivariate_normal(z.mean(axis=0), np.cov(z.T))
 
     def product(points):
         """Log density in the coordinates of the default priors."""

@@ -11,11 +11,6 @@ from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.errors import SettingsError
 
 
-def test_only_properties_of_the_load_cell_that_are_given_replace_those_of_the_data():
-    assert CalibrationRequest().load_cell == {}
-    assert CalibrationRequest(gain_sd=0.0).load_cell == {"gain_sd": 0.0}
-
-
 def test_what_is_read_are_the_data_and_the_column_map():
     data, columns = Path("data"), Path("columns.toml")
     assert CalibrationRequest((data,)).inputs == (data,)
@@ -29,9 +24,8 @@ def test_the_help_states_the_fewest_moves_of_a_fit():
 
 def test_the_earlier_calibration_is_read_and_its_options_need_it():
     earlier = Path("last-year")
-    assert CalibrationRequest(prior_from=earlier, widen=2.0).inputs == (earlier,)
-    for wrong in ({"widen": 2.0}, {"carry": "law"}):
-        with pytest.raises(SettingsError, match="belong to --prior-from"):
-            CalibrationRequest(**wrong)
+    assert CalibrationRequest(prior_from=earlier).inputs == (earlier,)
+    with pytest.raises(SettingsError, match="belongs to --prior-from"):
+        CalibrationRequest(carry="law")
     with pytest.raises(SettingsError, match="is no prior"):
         CalibrationRequest(prior=("friction 0.4",))

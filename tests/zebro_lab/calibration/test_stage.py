@@ -15,11 +15,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from model.bayes.calibrate import SamplerSettings
 from model.errors import DefinitionMismatch, DomainError
 from zebro_lab.calibration import stage
 from zebro_lab.calibration.folder import read_slip
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.stage import Stopped, calibrate
+from zebro_lab.calibration.stated import Stated
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.terminal.stopping import StoppedBySignal
 from zebro_lab.workers import WorkersRequest
@@ -59,9 +61,15 @@ class Killed(BaseException):
 
 @pytest.fixture(autouse=True, scope="module")
 def short_fits() -> Iterator[pytest.MonkeyPatch]:
-    """Judge from 40 kept steps on instead of 100: these claims need no converged fit."""
+    """Take blocks of 30, judge from 40 kept steps on: these claims need no converged fit."""
+    sampler = stage._sampler
+
+    def settings(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
+        return replace(sampler(request, stated), block_length=stated.block_length or 30)
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("model.bayes.calibrate.FIRST_LOOK", 40)
+        patch.setattr(stage, "_sampler", settings)
         yield patch
 
 
@@ -71,12 +79,7 @@ def request_for(sweep):
 
     def make(out: Path, **changes) -> CalibrationRequest:
         asked = CalibrationRequest(
-            (sweep,),
-            out,
-            curvature="peak",
-            block_length=30,
-            max_steps=400,
-            workers=WorkersRequest(1),
+            (sweep,), out, law="coulomb-stribeck", max_steps=400, workers=WorkersRequest(1)
         )
         return replace(asked, **changes)
 
@@ -226,7 +229,7 @@ def test_second_fit_replaces_its_forerunner_and_leaves_foreign_files(
     assert (out / "slip.toml").read_text() != before
     assert {path.name for path in out.iterdir()} == TABLES | {"checkpoint.npz"} | foreign
     assert {(out / name).read_text() for name in foreign} == {"not this fit's"}
-    assert read_slip(out).law.name == "magic-formula"
+    assert read_slip(out).law.name == "coulomb-stribeck"
 
 
 def test_semicolons_decimal_commas_and_a_bom_change_no_number(
@@ -279,9 +282,7 @@ def test_posterior_nc_has_an_ensemble_as_a_chain(uninterrupted):
 def test_curve_without_a_peak_is_written_with_its_peak_at_infinity(
     request_for, tmp_path, no_pictures
 ):
-    asked = request_for(tmp_path, law="brush", curvature="auto", block_length=150, max_steps=1)
-    calibration, _ = calibrate(asked, Watcher())
-    assert set(calibration.posterior.fixed) == {"noise_correlation", "offset_spread"}
+    calibration, _ = calibrate(request_for(tmp_path, law="brush", max_steps=1), Watcher())
     content = tomllib.loads((tmp_path / "slip.toml").read_text())
     assert [row["peak_slip"] for row in content["curve"]] == [np.inf, np.inf]
     assert read_slip(tmp_path).law == calibration.posterior.law
@@ -303,8 +304,8 @@ def test_weighted_draws_alone_make_a_calibration_that_says_so(request_for, tmp_p
     assert read_slip(out).covariance.shape == (4, 4)
 
 
-def test_curvature_auto_compares_laws_on_left_out_runs(request_for, tmp_path, no_pictures):
-    asked = request_for(tmp_path, curvature="auto", max_steps=1)
+def test_curvatures_are_compared_on_left_out_runs(request_for, tmp_path, no_pictures):
+    asked = request_for(tmp_path, law="magic-formula", max_steps=1)
     calibration, _ = calibrate(asked, Watcher())
     comparison = calibration.comparison
     assert comparison is not None
@@ -315,11 +316,7 @@ def test_curvature_auto_compares_laws_on_left_out_runs(request_for, tmp_path, no
 @pytest.mark.parametrize(
     ("changes", "problem"),
     [
-        ({"curvature": "sharp"}, "expected auto, peak, constant or a number below 1"),
-        ({"curvature": "nan"}, "expected auto, peak, constant or a number below 1"),
-        ({"curvature": "1.5"}, "expected auto, peak, constant or a number below 1"),
-        ({"law": "brush", "curvature": "peak"}, "belong to the Magic Formula"),
-        ({"law": "brush", "curvature": "auto", "load_sensitivity": True}, "belong to the Magic"),
+        ({"law": "brush", "load_sensitivity": True}, "belongs to the Magic Formula"),
         ({"engine": "laplace", "resume": True}, "leave out --engine laplace"),
     ],
 )
@@ -380,17 +377,16 @@ def test_an_earlier_calibration_is_recorded_with_how_the_data_agree(
     with pytest.raises(SettingsError, match="would count twice"):
         calibrate(request_for(tmp_path / "x", prior_from=uninterrupted), Watcher())
     out = tmp_path / "calibration"
-    request = request_for(out, data=(new,), prior_from=uninterrupted, widen=1.5)
+    request = request_for(out, data=(new,), prior_from=uninterrupted)
     calibration, _ = calibrate(request, Watcher())
     slip = tomllib.loads((out / "slip.toml").read_text())
-    assert slip["priors"]["from"]["widen"] == 1.5
     assert "gain_normal" in slip["priors"]["from"]["parameters"]
     (agreement,) = slip["priors"]["agreement"]
     assert agreement["degrees_of_freedom"] > 0
     assert agreement["conflict"] in (True, False)
     summary = pd.read_csv(out / "summary.csv", index_col="parameter")
-    assert "widened 1.5 times" in summary.loc["friction", "prior"]
+    assert "calibration" in summary.loc["friction", "prior"]
     assert calibration.posterior.correlation is not None
     manifest = json.loads((out / "manifest.json").read_text())
-    assert manifest["settings"]["widen"] == 1.5
+    assert manifest["settings"]["prior_from"] == str(uninterrupted)
     assert str(uninterrupted / "posterior.nc") in manifest["inputs"]

@@ -29,11 +29,6 @@ def walk_without_track(folder):
     return ("--walks", walk), "no track"
 
 
-def missing_robot(folder):
-    walk = write_walk(folder / "walk")
-    return ("--walks", walk, "--robot", folder / "none.toml"), "none.toml: no such file"
-
-
 def somebodys_walks_folder(folder):
     (folder / "calibration/walks").mkdir(parents=True)
     (folder / "calibration/walks/walks.toml").write_text("mine")
@@ -43,7 +38,7 @@ def somebodys_walks_folder(folder):
 @pytest.mark.parametrize(
     "case",
     [
-        missing_walk, walk_without_track, missing_robot, somebodys_walks_folder
+        missing_walk, walk_without_track, somebodys_walks_folder
     ],
 )  # fmt: skip
 def test_walks_that_cannot_be_fitted_are_refused_before_the_fit_of_rig_data(

@@ -66,7 +66,7 @@ def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_
     walks = (write_walk(tmp_path / "one"), write_walk(tmp_path / "two", begin=7.0, every=1.5))
     watcher = Nobody()
     done = calibrate_walks(
-        WalksRequest(walks, anisotropy=1.2),
+        WalksRequest(walks),
         CalibrationRequest(out=calibration, seed=3),
         watcher,
     )
@@ -79,7 +79,7 @@ def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_
     np.testing.assert_array_equal(stored.posterior.values, posterior.values)
     manifest = json.loads((done.folder / "manifest.json").read_text())
     assert manifest["settings"]["seed"] == 3
-    assert manifest["settings"]["anisotropy"] == 1.2
+    assert manifest["settings"]["anisotropy"] == 1.3
     assert priors[0].lateral_sd == pytest.approx(np.log(1.2))
     read = [calibration / "slip.toml", *(walk / "legs.csv" for walk in walks)]
     assert {str(file) for file in read} <= set(manifest["inputs"])

@@ -76,9 +76,6 @@ def test_walks_of_two_robots_are_not_fitted_together(tmp_path):
     other = write_walk(tmp_path / "other", robot="[legs]\narc_deg = 200.0\n")
     with pytest.raises(SettingsError, match="another robot"):
         read_walks([one, other])
-    robot = tmp_path / "robot.toml"
-    robot.write_text("mass = 2.0\n")
-    assert {walk.robot.robot.mass for walk in read_walks([one, other], robot=robot)} == {2.0}
 
 
 def imported_walk(folder):

@@ -33,10 +33,10 @@ from model.bayes.law_scores import choose_law, load_groups, score_laws, weigh_la
 from model.bayes.likelihood import predict_blocks
 from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import load_levels, nearest_level
-from model.bayes.rig_errors import RigErrors
 from model.bayes.weighted import weighted_draws
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula, magic_formula
+from model.slip.rig_errors import RigErrors
 from model.slip.sided import SidedLaw
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.law_table import sentence

@@ -33,8 +33,8 @@ from model.arrays import Array
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.likelihood import log_likelihood
 from model.bayes.posterior import LoadCell, SlipPosterior
-from model.bayes.samples import SlipSamples
 from model.bayes.weighted import importance_draws
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.sweep import SweepPlan

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtri
 
 from model.arrays import Array
-from model.bayes.samples import SlipSamples
+from model.slip.samples import SlipSamples
 
 BY_CHANCE = 1e-6  # probability; one false wander can cost hundreds of nats where the curve is steep
 LEFT_OVER = 0.1  # of the spread beyond noise, behind the best cut; of an even glide it is a quarter

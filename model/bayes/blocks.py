@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.bayes.block_edges import block_starts
-from model.bayes.samples import SlipSamples
 from model.bayes.slip_calibration import calibrate_covariance, calibrate_slip, wander_within
 from model.bayes.slip_noise import noise_and_freedom, slip_noise_variance
 from model.slip.definition import SlipDefinition
+from model.slip.samples import SlipSamples
 
 
 @dataclass(frozen=True)

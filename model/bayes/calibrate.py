@@ -26,15 +26,15 @@ from model.bayes.law_scores import LawScores, choose_law, load_groups, score_law
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.preview import Preview, preview, weighted_posterior
-from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.run_out import RunOut, find_run_out, without_run_out
 from model.bayes.sampler import Chains, Jumps, advance, start_chains
-from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors
 from model.bayes.weighted import weighted_draws
 from model.errors import FitError
 from model.progress import Watcher
 from model.slip.law import SlipLaw
+from model.slip.rig_errors import USUAL, RigErrors
+from model.slip.samples import SlipSamples
 
 THIN = 5  # sampler moves a kept step
 CHUNK = 20  # kept steps between checks for a request to stop

@@ -25,9 +25,9 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.prior_conflict import PriorShift, prior_shifts
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
 from model.bayes.run_out import RunOut
-from model.bayes.samples import SlipSamples
 from model.bayes.verdict import Verdict, judge
 from model.bayes.weighted import WeightedDraws
+from model.slip.samples import SlipSamples
 
 _CHECKED = 400  # about this many draws are used for residuals and verdict
 

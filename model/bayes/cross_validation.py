@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.bayes.laplace import Laplace, climb
 from model.bayes.posterior import SlipPosterior
-from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition, slip_per_radius_error
 from model.slip.law import SlipLaw
+from model.slip.samples import SlipSamples
 from model.tasks import compute_tasks
 
 MAX_SINGLE_FOLDS = 20  # runs up to which each is left out alone

@@ -17,8 +17,8 @@ from itertools import pairwise
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
+from model.slip.samples import SlipSamples
 
 REACH = 2  # samples by which traction may be late or early
 FAR = 6  # lags from there on to this one tell the covariance of slow wander

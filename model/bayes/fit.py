@@ -17,12 +17,12 @@ from model.bayes.laplace import Laplace, LaplaceMixture
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length
 from model.bayes.priors import Prior
-from model.bayes.rig_errors import USUAL, RigErrors
-from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
 from model.bayes.tails import approximate
 from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
+from model.slip.rig_errors import USUAL, RigErrors
+from model.slip.samples import SlipSamples
 
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 UNSTATED_GAIN_SD = 0.01  # of a load cell that nobody has weighed: cells, mounts and wiring differ

@@ -12,10 +12,10 @@ from model.arrays import Array
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import NUISANCE, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
-from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.shear import Shear
 from model.bayes.stated_priors import PriorCorrelation
 from model.slip.law import Parameter, SlipLaw
+from model.slip.rig_errors import USUAL, RigErrors
 
 
 @dataclass(frozen=True)

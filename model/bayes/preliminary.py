@@ -10,10 +10,10 @@ from model.arrays import Array
 from model.bayes.blocks import SlipBlocks, block_means
 from model.bayes.fast_wander import FastWander, fast_wander
 from model.bayes.priors import Prior
-from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.errors import FitError
 from model.slip.law import SlipLaw
+from model.slip.samples import SlipSamples
 
 N_TRIALS = 400  # prior draws that are tried as starts
 N_CLIMBS = 5  # best of them that are optimised

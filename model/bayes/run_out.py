@@ -27,10 +27,10 @@ from model.bayes.checks.raw import raw_residuals
 from model.bayes.fit import CLEAR_WIN, not_identified
 from model.bayes.laplace import Laplace, find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.rig_errors import RigErrors
-from model.bayes.samples import DiscAngles, SlipSamples
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw
+from model.slip.rig_errors import RigErrors
+from model.slip.samples import DiscAngles, SlipSamples
 
 HARMONICS = (1, 2)
 TURN = 0.3  # rad that a disc turns within a mean: 20 means a turn, 10 a period of the second

@@ -5,7 +5,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from model.arrays import Array
-from model.bayes.samples import SlipSamples
+from model.slip.samples import SlipSamples
 
 ENDLESS = 1e9  # degrees of freedom of a variance that is known
 

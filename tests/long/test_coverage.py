@@ -33,10 +33,10 @@ from model.bayes.blocks import block_means
 from model.bayes.fit import prepare_fit
 from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import LoadCell, SlipPosterior
-from model.bayes.rig_errors import USUAL
-from model.bayes.samples import SlipSamples
 from model.bayes.tails import approximate
 from model.bayes.weighted import weighted_draws
+from model.slip.rig_errors import USUAL
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import draw_rig, simulate_sweep

@@ -14,9 +14,9 @@ from scipy.stats import chi2
 
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
-from model.bayes.samples import SlipSamples
 from model.bayes.weighted import importance_draws
 from model.slip.definition import SlipDefinition
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.control import Control
 from rig.experiment.run import run_plan

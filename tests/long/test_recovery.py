@@ -26,9 +26,9 @@ from model.bayes.estimate import Agreement, Estimate, agreement, estimate, thin_
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.jumps import choose_jumps
 from model.bayes.posterior import LoadCell
-from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.weighted import WeightedDraws, weighted_draws
+from model.slip.rig_errors import USUAL, RigErrors
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import draw_rig, simulate_sweep

@@ -25,10 +25,10 @@ from model.bayes.approximation import starting_points, straightened
 from model.bayes.blocks import block_means
 from model.bayes.fit import not_identified
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.rig_errors import USUAL
 from model.bayes.tails import approximate
 from model.bayes.weighted import weighted_draws
 from model.errors import FitError
+from model.slip.rig_errors import USUAL
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan

@@ -11,7 +11,7 @@ from model.bayes.blocks import block_means
 from model.bayes.checks.linear import Linearised, linearise
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice
-from model.bayes.samples import SlipSamples
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan

@@ -4,8 +4,8 @@
 import numpy as np
 from scipy.signal import lfilter
 
-from model.bayes.samples import SlipSamples
 from model.slip import SlipDefinition
+from model.slip.samples import SlipSamples
 
 
 def samples(slip_runs, seed=0):

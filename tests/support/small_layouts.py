@@ -6,9 +6,9 @@ import numpy as np
 from model.bayes.blocks import SlipBlocks
 from model.bayes.fit import not_identified
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.rig_errors import RigErrors
 from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition
+from model.slip.rig_errors import RigErrors
 
 LAW = CoulombStribeck(stribeck=False)
 

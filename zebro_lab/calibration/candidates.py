@@ -7,12 +7,12 @@ import numpy as np
 
 from model.bayes.blocks import block_means
 from model.bayes.residuals import load_levels
-from model.bayes.samples import SlipSamples
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
 from model.slip.laws import APART, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula
+from model.slip.samples import SlipSamples
 from model.slip.sided import SidedLaw
 from zebro_lab.calibration.request import COMPARE, CalibrationRequest
 from zebro_lab.files.errors import SettingsError

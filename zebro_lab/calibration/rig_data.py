@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.rig_errors import USUAL, RigErrors
-from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition
+from model.slip.rig_errors import USUAL, RigErrors
+from model.slip.samples import SlipSamples
 from zebro_lab.calibration.lateral_force import LateralForce, lateral_force, no_sums
 from zebro_lab.calibration.rig_part import RigPart, read_part
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.rig_errors import RigErrors
-from model.bayes.samples import DiscAngles
 from model.slip.definition import SlipDefinition
+from model.slip.rig_errors import RigErrors
+from model.slip.samples import DiscAngles
 from zebro_lab.calibration.lateral_force import lateral_sums
 from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.runs.counted_once import run_keys

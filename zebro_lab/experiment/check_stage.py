@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.samples import SlipSamples
 from model.slip.curve import SlipCurve
+from model.slip.samples import SlipSamples
 from zebro_lab.calibration.folder import read_slip_file
 from zebro_lab.calibration.rig_data import read_rig_data
 

@@ -10,9 +10,9 @@ from model.bayes.fit import not_identified
 from model.bayes.likelihood import NUISANCE
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.priors import Prior
-from model.bayes.rig_errors import USUAL, RigErrors
 from model.slip.definition import SlipDefinition
 from model.slip.law import SlipLaw
+from model.slip.rig_errors import USUAL, RigErrors
 from zebro_lab.calibration.fitted_blocks import read_slip_blocks
 from zebro_lab.calibration.folder import POSTERIOR, SlipFile, read_slip_file
 from zebro_lab.calibration.prior_argument import named_priors, parse_prior

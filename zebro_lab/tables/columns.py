@@ -8,7 +8,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 from model.arrays import Array
-from model.bayes.rig_errors import (
+from model.similar_name import nearest
+from model.slip.definition import SlipDefinition
+from model.slip.rig_errors import (
     RADIUS_TOLERANCE,
     ROLLING_RESISTANCE,
     RUN_OUT,
@@ -18,8 +20,6 @@ from model.bayes.rig_errors import (
     radius_ratio_sd,
     run_out_scatter,
 )
-from model.similar_name import nearest
-from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import SettingsError, UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.samples import DiscAngles
+from model.slip.samples import DiscAngles
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.run_separation import Runs
 

@@ -12,8 +12,8 @@ from model.bayes.fast_wander import FastWander, fast_wander
 from model.bayes.likelihood import predict_blocks
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
-from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
+from model.slip.samples import SlipSamples
 
 NAME = "noise of slip is told from fast wander"
 HARMLESS = 0.5  # posterior standard deviations between both extremes

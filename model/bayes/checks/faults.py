@@ -22,7 +22,7 @@ from model.bayes.checks.raw import (
 from model.bayes.checks.scatter import friction_scatter
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
-from model.bayes.samples import SlipSamples
+from model.slip.samples import SlipSamples
 
 SCATTER_P = 1e-5
 SWING_P = 1e-4

@@ -17,7 +17,7 @@ from model.bayes.checks.terms import LOAD, SIDES, TIME, ZERO, Found, Suspect, fi
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import load_levels
-from model.bayes.samples import SlipSamples
+from model.slip.samples import SlipSamples
 
 TERM_P = 5e-4  # of each of a dozen terms: less than one sound set in 200 fails
 SEEN = 3.5  # standard deviations, from which a term is beyond chance

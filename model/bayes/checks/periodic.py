@@ -9,7 +9,7 @@ from scipy.special import chdtrc
 
 from model.arrays import Array
 from model.bayes.checks.linear import Linearised, whiten
-from model.bayes.samples import SlipSamples
+from model.slip.samples import SlipSamples
 
 FREQUENCIES = 60
 FEWEST_BLOCKS = 4  # a run, to hold a swing

@@ -9,10 +9,10 @@ from scipy.special import stdtr
 
 from model.arrays import Array
 from model.bayes.faulty_samples import Clipped, Outliers
-from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw
+from model.slip.samples import SlipSamples
 
 OUTLYING = 8.0  # robust standard deviations of a run, which no Gaussian sample reaches
 FARTHEST = 4.5  # standard deviations of slip noise: one sample in 150,000 lies beyond

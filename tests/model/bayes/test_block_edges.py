@@ -6,9 +6,9 @@ import pytest
 
 from model.bayes.block_edges import block_starts
 from model.bayes.blocks import block_means
-from model.bayes.samples import SlipSamples
 from model.bayes.slip_noise import slip_noise_variance
 from model.slip import SlipDefinition
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 
 NOISE = 0.002

@@ -9,9 +9,9 @@ from model.bayes.blocks import block_means
 from model.bayes.laplace import LaplaceMixture, find_modes
 from model.bayes.left_out import Refitted, leave_out
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.rig_errors import RigErrors
 from model.bayes.weighted import importance_draws
 from model.slip import Brush
+from model.slip.rig_errors import RigErrors
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

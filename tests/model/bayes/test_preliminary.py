@@ -17,8 +17,8 @@ from model.bayes.preliminary import (
     correlation_time,
     least_squares_values,
 )
-from model.bayes.samples import SlipSamples
 from model.slip import SlipDefinition
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
 from rig.slip_rig.sweep import SweepPlan

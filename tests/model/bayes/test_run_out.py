@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from model.bayes.posterior import LoadCell
-from model.bayes.rig_errors import RUN_OUT
 from model.bayes.run_out import find_run_out, without_run_out
+from model.slip.rig_errors import RUN_OUT
 from model.slip.thesis import THESIS_LAW
 from support.out_of_true import ERRORS, swept
 

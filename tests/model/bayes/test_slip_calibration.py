@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from model.bayes.blocks import block_means
-from model.bayes.rig_errors import RUN_OUT, run_out_scatter
 from model.bayes.slip_noise import slip_noise_variance
+from model.slip.rig_errors import RUN_OUT, run_out_scatter
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan

@@ -14,8 +14,6 @@ from model.bayes.laplace import LaplaceMixture, find_mode, hessian
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import BlockChoice
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Uniform
-from model.bayes.rig_errors import RigErrors
-from model.bayes.samples import SlipSamples
 from model.bayes.stated_priors import (
     EarlierPosterior,
     Moved,
@@ -24,6 +22,8 @@ from model.bayes.stated_priors import (
     with_stated,
 )
 from model.errors import DomainError
+from model.slip.rig_errors import RigErrors
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.bayes.samples import SlipSamples
 from model.slip import Brush, MagicFormula, SidedLaw, SlipDefinition
+from model.slip.samples import SlipSamples
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.errors import SettingsError

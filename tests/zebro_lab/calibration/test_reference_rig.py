@@ -20,10 +20,10 @@ from model.bayes.estimate import Agreement
 from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell
 from model.bayes.laplace import find_mode
 from model.bayes.residuals import Residuals, analyse_residuals
-from model.bayes.rig_errors import USUAL, RigErrors
 from model.bayes.verdict import Verdict, judge
 from model.bayes.weighted import importance_draws
 from model.slip.magic_formula import MagicFormula
+from model.slip.rig_errors import USUAL, RigErrors
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 
 pytestmark = pytest.mark.reference

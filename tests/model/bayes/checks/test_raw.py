@@ -14,8 +14,8 @@ from model.bayes.checks.raw import (
     raw_residuals,
     reach_of_slip_noise,
 )
-from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
+from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from support.linearised_fits import linearised, sound_sweep, with_force
 

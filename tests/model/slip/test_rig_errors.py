@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from model.bayes.rig_errors import radius_ratio_sd
+from model.slip.rig_errors import radius_ratio_sd
 
 
 def test_the_ratio_of_two_radii_is_as_uncertain_as_draws_of_them():

@@ -3,8 +3,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
+from model.slip.samples import SlipSamples
 
 LENGTHS = st.lists(st.integers(1, 20), min_size=1, max_size=6)
 

@@ -47,8 +47,8 @@ def default_priors(
 
     Priors of the law are broad. Only scales come from the data: the median load (for the peak slip)
     and the largest traction (for the noise). Priors of the load cell's errors are as narrow as
-    `load_cell` says, those of the rig's errors as `rig_errors` says. Any other parameter of a law
-    has a broad prior over its support, by `_vague`.
+    `load_cell` says, those of the rig's errors as `rig_errors` says. Any other parameter has that
+    of its bounds and typical values, by `_of_parameter`.
 
     Args:
         law: The slip law.
@@ -59,16 +59,7 @@ def default_priors(
     load_scale = float(np.median(blocks.normal_force))
     force_scale = float(np.abs(blocks.traction_force).max())
     known: dict[str, Prior] = {
-        "slip_stiffness": LogNormal(10.0, 1.5),
-        "shape": Uniform(1.0, 2.0),
-        "friction": LogNormal(0.6, 0.7),
-        "stribeck_slip": LogNormal(0.1, 1.0),
         "peak_slip_per_load": LogNormal(0.1 / load_scale, 1.0),
-        "curvature": Below(1.0, 1.0, 1.0),
-        "friction_load_exponent": Normal(0.0, 0.2),
-        "stiffness_load_exponent": Normal(0.0, 0.3),
-        "side_stiffness": Normal(0.0, 0.2),
-        "side_friction": Normal(0.0, 0.1),
         "gain_traction": Normal(0.0, load_cell.gain_sd),
         "gain_normal": Normal(0.0, load_cell.gain_sd),
         "bias_normal": Normal(0.0, load_cell.bias_sd),
@@ -82,22 +73,20 @@ def default_priors(
         "noise_correlation": Uniform(-0.5, 0.99),
         "offset_spread": HalfNormal(load_cell.zero_stability),
     }
-    return {p.name: known.get(p.name) or _vague(p) for p in (*law.parameters, *NUISANCE)}
+    return {p.name: known.get(p.name) or _of_parameter(p) for p in (*law.parameters, *NUISANCE)}
 
 
-def _vague(parameter: Parameter) -> Prior:
-    """Choose a broad prior by a parameter's bounds: uniform between two finite bounds.
-
-    With one finite bound the distance from it is log-normal (median 1, spread 1.5); standard normal
-    without bounds.
-    """
-    if np.isfinite([parameter.lower, parameter.upper]).all():
+def _of_parameter(parameter: Parameter) -> Prior:
+    """Choose a prior by a parameter's bounds and typical values, broad where it states none."""
+    bounded = np.isfinite([parameter.lower, parameter.upper])
+    if bounded.all():
         return Uniform(parameter.lower, parameter.upper)
-    if np.isfinite(parameter.lower):
-        return LogNormal(1.0, 1.5, parameter.lower)
-    if np.isfinite(parameter.upper):
-        return Below(parameter.upper, 1.0, 1.5)
-    return Normal(0.0, 1.0)
+    if not bounded.any():
+        return Normal(*(parameter.typical or (0.0, 1.0)))
+    median, spread = parameter.typical or (1.0, 1.5)
+    if bounded[0]:
+        return LogNormal(median, spread, parameter.lower)
+    return Below(parameter.upper, median, spread)
 
 
 @dataclass(frozen=True)

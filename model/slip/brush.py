@@ -86,9 +86,9 @@ class Brush(ProportionalLaw):
     slope_over_load = staticmethod(brush_slope)
     parameters = (
         Parameter("slip_stiffness", "K", "dimensionless", 0.0, math.inf,
-                  "slope of traction over load at zero slip"),
+                  "slope of traction over load at zero slip", (10.0, 1.5)),
         Parameter("friction", "mu", "dimensionless", 0.0, math.inf,
-                  "peak traction over load"),
+                  "peak traction over load", (0.6, 0.7)),
     )  # fmt: skip
 
     def coefficients(self, values: Values) -> tuple[Array, Array]:

@@ -180,13 +180,13 @@ class CoulombStribeck(ProportionalLaw):
 
 _COMMON = (
     Parameter("slip_stiffness", "K", "dimensionless", 0.0, math.inf,
-              "slope of traction over load at zero slip"),
+              "slope of traction over load at zero slip", (10.0, 1.5)),
     Parameter("friction", "mu", "dimensionless", 0.0, math.inf,
-              "static friction: peak traction over load"),
+              "static friction: peak traction over load", (0.6, 0.7)),
 )  # fmt: skip
 _STRIBECK = (
     Parameter("kinetic_ratio", "q", "dimensionless", 0.0, 1.0,
               "kinetic over static friction: traction far out over its peak"),
     Parameter("stribeck_slip", "kappa_s", "dimensionless", 0.0, math.inf,
-              "slip past the peak over which 63 % of the fall happens"),
+              "slip past the peak over which 63 % of the fall happens", (0.1, 1.0)),
 )  # fmt: skip

@@ -24,6 +24,9 @@ class Parameter:
         lower: Lower bound of the support (excluded).
         upper: Upper bound of the support (excluded).
         meaning: Explanation in one line.
+        typical: Centre and spread of its default prior, which is log-normal in the distance from
+            the only finite bound (median and standard deviation of the logarithm), or normal
+            without bounds; None for a broad one. Between two finite bounds the prior is uniform.
     """
 
     name: str
@@ -32,6 +35,7 @@ class Parameter:
     lower: float
     upper: float
     meaning: str
+    typical: tuple[float, float] | None = None
 
 
 class SlipLaw(Protocol):

@@ -2,18 +2,24 @@
 """The slip laws by name."""
 
 from dataclasses import asdict, fields
+from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Final
 
 from model.errors import DomainError
 from model.similar_name import similar_name
-from model.slip.brush import Brush
-from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
-from model.slip.magic_formula import MagicFormula
 from model.slip.sided import SidedLaw
+from model.slip_laws import SLIP_LAWS
 
-LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
+
+def _imported(path: str) -> Any:
+    """Import a class by its module and name."""
+    module, _, name = path.rpartition(".")
+    return getattr(import_module(module), name)
+
+
+LAWS = MappingProxyType({name: _imported(path) for name, path in SLIP_LAWS.items()})
 """Class of every slip law, by the law's name."""
 KINETIC: Final = "kinetic"
 SIDES: Final = "sides"

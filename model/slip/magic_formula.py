@@ -236,21 +236,21 @@ def peak_slip(B: ArrayLike, C: ArrayLike, E: ArrayLike) -> Array:
 
 _COMMON = (
     Parameter("slip_stiffness", "K", "dimensionless", 0.0, math.inf,
-              "slope of traction over load at zero slip, B·C·mu"),
+              "slope of traction over load at zero slip, B·C·mu", (10.0, 1.5)),
     Parameter("shape", "C", "dimensionless", 1.0, 2.0,
               "shape factor: how far the curve falls behind its peak"),
     Parameter("friction", "mu", "dimensionless", 0.0, math.inf,
-              "peak traction over load, D / Fn"),
+              "peak traction over load, D / Fn", (0.6, 0.7)),
 )  # fmt: skip
 _CURVATURE = {
     "peak": Parameter("peak_slip_per_load", "x_m/Fn", "1/newton", 0.0, math.inf,
                       "slip ratio of the peak for each newton of load"),
     "constant": Parameter("curvature", "E", "dimensionless", -math.inf, 1.0,
-                          "curvature factor: how sharp the peak is"),
+                          "curvature factor: how sharp the peak is", (1.0, 1.0)),
 }  # fmt: skip
 _SENSITIVITY = (
     Parameter("friction_load_exponent", "a_mu", "dimensionless", -math.inf, math.inf,
-              "friction grows with load to this power"),
+              "friction grows with load to this power", (0.0, 0.2)),
     Parameter("stiffness_load_exponent", "a_K", "dimensionless", -math.inf, math.inf,
-              "slip stiffness grows with load to this power"),
+              "slip stiffness grows with load to this power", (0.0, 0.3)),
 )  # fmt: skip

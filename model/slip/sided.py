@@ -142,7 +142,7 @@ def middle_curve(law: SlipLaw, values: Values) -> tuple[SlipLaw, Values]:
 
 _SIDES = (
     Parameter("side_stiffness", "d_K", "dimensionless", -math.inf, math.inf,
-              "logarithm of slip stiffness in driving over that in braking"),
+              "logarithm of slip stiffness in driving over that in braking", (0.0, 0.2)),
     Parameter("side_friction", "d_mu", "dimensionless", -math.inf, math.inf,
-              "logarithm of friction in driving over that in braking"),
+              "logarithm of friction in driving over that in braking", (0.0, 0.1)),
 )  # fmt: skip

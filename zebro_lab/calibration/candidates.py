@@ -7,10 +7,8 @@ import numpy as np
 
 from model.bayes.blocks import block_means
 from model.bayes.residuals import load_levels
-from model.slip.brush import Brush
-from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
-from model.slip.laws import APART, TOGETHER, slip_law
+from model.slip.laws import APART, LAWS, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula
 from model.slip.samples import SlipSamples
 from model.slip.sided import SidedLaw
@@ -76,7 +74,7 @@ def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, Sl
     if request.law != COMPARE:
         return formulas if len(formulas) > 1 else {request.law: next(iter(formulas.values()))}
     found: dict[str, SlipLaw] = {_short(name): law for name, law in formulas.items()}
-    found |= {Brush.name: Brush(), CoulombStribeck.name: CoulombStribeck()}
+    found |= {name: slip_law(name) for name in LAWS if name != MagicFormula.name}
     if several:  # at one load its exponents are the priors'
         sensitive = _formulas(samples, sensitive=True, several=True)
         found |= {f"{_short(name)}, load-sensitive": law for name, law in sensitive.items()}

@@ -3,17 +3,21 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
 from typer import Argument, Option
 
+from model.slip_laws import SLIP_LAWS
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.workers import WorkersRequest
 
 COMPARE: Final = "compare"
 """Value of `--law` that compares all laws."""
-LawName: TypeAlias = Literal["magic-formula", "brush", "coulomb-stribeck", "compare"]
+if TYPE_CHECKING:
+    LawName: TypeAlias = str
+else:
+    LawName = Literal[*SLIP_LAWS, COMPARE]
 SidesName: TypeAlias = Literal["together", "apart", "auto"]
 EngineName: TypeAlias = Literal["auto", "laplace"]
 DefinitionName: TypeAlias = Literal["material", "travel", "larger"]

@@ -111,7 +111,7 @@ def calibrate(
         out: Calibration folder to write; None to keep no files.
         columns: A `columns.toml` for all data, instead of those beside the tables.
         slip_definition: Definition of the slip ratio to fit in; None for that of the data.
-        law: "magic-formula", "brush" or "coulomb-stribeck"; "compare" fits the
+        law: A key of `model.slip.LAWS`, such as "magic-formula"; "compare" fits the
             simplest that predicts left-out runs and loads no worse than the others.
         sides: Whether driving and braking follow one curve; "auto" lets left-out runs decide.
         prior: What is known of parameters beforehand, such as "friction = 0.40 ± 0.05".

@@ -8,15 +8,13 @@ from model.slip.lateral import lateral_slip, slip_angle
 from model.slip.law import Parameter, SlipLaw
 from model.slip.laws import LAWS, law_options, slip_law
 from model.slip.magic_formula import MagicFormula, magic_formula
-from model.slip.read_off import Coefficients, CurveFeatures, ReadOff, curve_features, read_off
+from model.slip.read_off import ReadOff, read_off
 from model.slip.sided import SidedLaw
 
 __all__ = [
     "LAWS",
     "Brush",
-    "Coefficients",
     "CoulombStribeck",
-    "CurveFeatures",
     "MagicFormula",
     "Parameter",
     "ReadOff",
@@ -24,7 +22,6 @@ __all__ = [
     "SlipDefinition",
     "SlipLaw",
     "convert_slip",
-    "curve_features",
     "lateral_slip",
     "law_options",
     "magic_formula",

@@ -1,29 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""Read a table of a slip curve: slip ratio and traction force, or traction over load, at loads.
+"""Read a table of a slip curve: slip ratio and traction force at loads.
 
 The format is described in docs/formats.md under "Table of a curve".
 """
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
-
-import numpy as np
 
 from model.arrays import Array
 from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import DataError
 from zebro_lab.runs.data_paths import DataSource
-from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.slip_source import slip
 from zebro_lab.tables.table_files import read_table_file
 
-OVER_LOAD: Final = "traction_over_load"
-"""Header of a column of traction force over normal force [-]."""
-_MOST_OVER_LOAD = 3.0  # |F/Fn| above which forces stand in the column [-]
 _FEWEST = 3
 
 
@@ -33,9 +26,8 @@ class CurveTable:
 
     Attributes:
         slip: Slip ratio of each point, shape (n,) [-].
-        load: Normal force of each point, shape (n,) [N]; None if the table has traction over load
-            and no loads: it is then the same curve at every load.
-        traction: Traction force of each point [N], or over load [-] where `load` is None, (n,).
+        load: Normal force of each point, shape (n,) [N].
+        traction: Traction force of each point, shape (n,) [N].
         definition: Slip definition.
         source: Source as stated; "unknown" if not stated.
         files: Files that were read.
@@ -43,7 +35,7 @@ class CurveTable:
     """
 
     slip: Array
-    load: Array | None
+    load: Array
     traction: Array
     definition: SlipDefinition
     source: str
@@ -74,8 +66,7 @@ def read_curve_table(path: Path, *, columns: Path | None = None) -> CurveTable:
 
     Raises:
         ZebroLabError: The table or its column map cannot be read, a column or the slip definition
-            is missing, both traction and traction over load are given, a value is not finite or
-            impossible, or there are fewer than 3 points.
+            is missing, a value is not finite or impossible, or there are fewer than 3 points.
     """
     entries = DataSource(path, path.parent).columns() if columns is None else read_columns(columns)
     raw = read_table_file(path, sheet=entries.sheet)
@@ -83,48 +74,19 @@ def read_curve_table(path: Path, *, columns: Path | None = None) -> CurveTable:
     if len(table.rows) < _FEWEST:
         raise DataError(f"has {len(table.rows)} points; a curve needs {_FEWEST} or more", file=path)
     ratio = slip(table)
-    load, traction = _forces(table)
+    if table.source_of("traction_force") is None:
+        raise raw.fault(
+            "is missing; a table of a curve has slip_ratio, traction_force [N] and normal_force "
+            f"[N]; map other headers in {table.columns.stated_in}",
+            "traction_force",
+        )
     sources = [each for each in (entries.source, raw.source) if each]
     return CurveTable(
         slip=ratio.ratio,
-        load=load,
-        traction=traction,
+        load=normal_force(table),
+        traction=table.si("traction_force"),
         definition=ratio.definition,
         source=sources[0] if sources else "unknown",
-        files=_files(path, entries),
+        files=(path,) if entries.file is None else (path, entries.file),
         notes=(*raw.notes, *table.conversions()),
     )
-
-
-def _files(path: Path, entries: Columns) -> tuple[Path, ...]:
-    return (path,) if entries.file is None else (path, entries.file)
-
-
-def _forces(table: RigTable) -> tuple[Array | None, Array]:
-    """Return loads and traction forces [N]; None and traction over load [-] without loads."""
-    raw = table.raw
-    over_load, forces = OVER_LOAD in raw.columns, table.source_of("traction_force") is not None
-    if over_load and forces:
-        raise raw.fault(f"is given beside traction_force; keep one of them, not {OVER_LOAD}",
-                        OVER_LOAD)  # fmt: skip
-    if not over_load:
-        if not forces:
-            raise raw.fault(
-                f"is missing; a table of a curve has slip_ratio, and traction_force [N] with "
-                f"normal_force [N], or {OVER_LOAD} [-]; map other headers in "
-                f"{table.columns.stated_in}",
-                "traction_force",
-            )
-        return normal_force(table), table.si("traction_force")
-    ratio = raw.finite(OVER_LOAD)[table.rows]
-    if np.abs(ratio).max() > _MOST_OVER_LOAD:
-        index = int(np.argmax(np.abs(ratio)))
-        raise raw.fault(
-            f"found {ratio[index]:g}; expected traction over load, at most {_MOST_OVER_LOAD:g}: "
-            "forces in newtons are a column traction_force",
-            OVER_LOAD, int(table.rows[index]),
-        )  # fmt: skip
-    if table.source_of("normal_force") is None:
-        return None, ratio
-    load = normal_force(table)
-    return load, ratio * load

@@ -1,32 +1,33 @@
 # SPDX-License-Identifier: MIT
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from model.errors import DomainError
-from model.slip import Brush, CurveFeatures, curve_features, magic_formula, read_off
+from model.slip import Brush, magic_formula, read_off
 from model.slip.magic_formula import peak_slip
-from model.slip.read_off import (
-    coefficients_from_features,
-    initial_slope,
-    shape_factor,
-    stiffness_factor,
-)
+from model.slip.read_off import initial_slope, shape_factor, stiffness_factor
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 
 THESIS_LOADS = (2.13, 6.63, 8.13, 12.75)  # N, Fig. 4-14
 FAR = np.geomspace(1e-4, 1e3, 4000)
+GRID = np.linspace(0, 1, 62)
 
 
-@given(st.floats(5, 60), st.floats(1.1, 1.9), st.floats(0.5, 50), st.floats(-3, 0.8))
-def test_magic_formula_sampled_far_out_gives_its_coefficients_back(B, C, D, E):
-    assume(peak_slip(B, C, E) < 5)
-    read = read_off(FAR, magic_formula(FAR, B, C, D, E))
-    np.testing.assert_allclose(read.B, B, rtol=5e-3)
-    np.testing.assert_allclose(read.C, C, atol=2e-4)
-    np.testing.assert_allclose(read.D, D, rtol=1e-5)
-    np.testing.assert_allclose(read.E, E, atol=0.01 * (1 + abs(E)))
+@settings(max_examples=20)
+@given(st.floats(15, 60), st.floats(1.2, 1.8), st.floats(0.5, 50), st.floats(-3, 0.7))
+def test_samples_of_a_formula_give_its_coefficients_back(B, C, D, E):
+    assume(0.02 < peak_slip(B, C, E) < 0.3)
+    read = read_off(GRID, magic_formula(GRID, B, C, D, E))
+    np.testing.assert_allclose((read.B, read.C, read.D, read.E), (B, C, D, E), 1e-4, 1e-4)
+
+
+def test_coefficients_scale_with_the_force_only_in_the_peak():
+    force = magic_formula(GRID, 30.0, 1.5, 2.0, 0.3) + 0.01 * np.sin(40 * GRID)
+    one, other = read_off(GRID, force), read_off(GRID, 1000 * force)
+    expected = (one.B, one.C, 1000 * one.D, one.E, 1000 * one.misfit)
+    assert (other.B, other.C, other.D, other.E, other.misfit) == pytest.approx(expected, rel=1e-5)
 
 
 def test_rig_range_to_slip_one_is_far_enough_for_the_source_curve():
@@ -41,11 +42,6 @@ def test_eq_4_25_inverts_the_asymptote(C):
     assert shape_factor(np.sin(np.pi * C / 2), 1.0) == pytest.approx(C, abs=1e-7)
 
 
-@given(st.floats(0.001, 1.0))
-def test_lower_sign_of_eq_4_25_inverts_the_asymptote_of_a_rising_curve(C):
-    assert shape_factor(np.sin(np.pi * C / 2), 1.0, has_peak=False) == pytest.approx(C, abs=1e-7)
-
-
 def test_without_the_lost_leading_one_the_shape_would_have_no_peak():
     assert shape_factor(0.6326, 1.0) - 1 < 1 < shape_factor(0.6326, 1.0)
 
@@ -53,13 +49,6 @@ def test_without_the_lost_leading_one_the_shape_would_have_no_peak():
 @given(st.floats(5, 60), st.floats(1.1, 1.9), st.floats(0.5, 50))
 def test_eq_4_26_inverts_the_slope_at_zero_slip(B, C, D):
     assert stiffness_factor(B * C * D, C, D) == pytest.approx(B)
-
-
-def test_features_are_those_of_the_curve():
-    found = curve_features(FAR, magic_formula(FAR, 34.34, 1.564, 2.5, 0.0))
-    expected = (2.5, peak_slip(34.34, 1.564, 0.0), 2.5 * np.sin(1.564 * np.pi / 2))
-    assert (found.peak_force, found.peak_slip, found.asymptote) == pytest.approx(expected, rel=1e-4)
-    assert found.slope == pytest.approx(34.34 * 1.564 * 2.5, rel=1e-3)
 
 
 def test_initial_slope_needs_no_peak():
@@ -93,18 +82,11 @@ def test_curve_that_ends_just_behind_its_peak_is_refused():
         read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
 
 
-def test_curve_still_falling_at_its_end_is_refused():
-    slip = np.linspace(0, 0.2, 200)
-    with pytest.raises(DomainError, match=r"asymptote not reached: at slip 0\.2"):
-        read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
-
-
 @pytest.mark.parametrize("load", THESIS_LOADS)
 def test_the_grid_of_the_thesis_gives_its_coefficients_at_each_of_its_loads(load):
-    slip = np.linspace(0, 1, 62)
+    slip = GRID
     B, C, D, E = (float(x) for x in THESIS_LAW.coefficients(load, THESIS_VALUES))
     read = read_off(slip, magic_formula(slip, B, C, D, E))
-    assert read.method == "least squares"
     np.testing.assert_allclose((read.B, read.C, read.D, read.E), (B, C, D, E), rtol=1e-6)
     assert read.misfit < 1e-9
 
@@ -119,32 +101,16 @@ def test_standard_errors_of_a_coarse_grid_are_those_of_repeated_measurements():
     assert np.mean([each.misfit for each in read]) == pytest.approx(0.01, rel=0.1)
 
 
-def test_features_are_preferred_where_the_rise_has_samples():
-    read = read_off(FAR, magic_formula(FAR, 34.34, 1.564, 2.5, 0.0))
-    assert (read.method, read.errors) == ("features", None)
-
-
 def test_slope_at_zero_slip_needs_samples_of_the_rise():
     slip = np.linspace(0, 1, 40)
     with pytest.raises(DomainError, match="measure smaller slip ratios"):
-        curve_features(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+        initial_slope(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
 
 
 def test_five_samples_are_too_few_for_least_squares():
     slip = np.array([0.0, 0.1, 0.2, 0.6, 1.0])
     with pytest.raises(DomainError, match="5 samples of a curve"):
         read_off(slip, magic_formula(slip, 34.34, 1.564, 4.84, 0.8))
-
-
-@pytest.mark.parametrize("asymptote", [-0.1, 2.6])
-def test_asymptote_beyond_the_peak_or_below_zero_is_refused(asymptote):
-    with pytest.raises(DomainError, match="lies outside 0 to the peak"):
-        shape_factor(asymptote, 2.5)
-
-
-def test_peak_too_far_out_for_the_rest_is_refused():
-    with pytest.raises(DomainError, match="exceeds 1"):
-        coefficients_from_features(CurveFeatures(2.5, 5.0, 0.5, 134.0))
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from model.slip.definition import SlipDefinition, convert_slip
-from model.slip.magic_formula import magic_formula
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES, thesis_curve
 from support.curve_tables import thesis_table, written_curve
 from zebro_lab.calibration.curve_argument import is_curve, parse_curve
@@ -29,31 +28,16 @@ def test_slip_ratios_are_converted_to_the_definition_of_the_curve():
     assert "'material' slip is converted to 'travel'" in curve.said(TRAVEL)[0]
 
 
-def test_slips_that_noise_puts_beyond_the_limit_have_no_counterpart_and_are_left_out():
-    curve, slip = parse_curve(Path("magic:34,1.5,0.4,0:travel")), np.array([0.5, 1.0, 1.002])
+def test_slips_that_noise_puts_beyond_the_limit_have_no_counterpart_and_are_left_out(tmp_path):
+    path = written_curve(tmp_path / "c.csv", thesis_table().assign(slip_definition="travel"))
+    curve, slip = parse_curve(path), np.array([0.2, 1.0, 1.002])
     np.testing.assert_array_equal(np.isnan(curve.force(slip, 5.0, MATERIAL)), [False, True, True])
-    same = parse_curve(Path("magic:34,1.5,0.4,0:material")).force(slip, 5.0, MATERIAL)
-    assert np.isfinite(same).all()
 
 
 def test_coulomb_is_friction_times_load_at_any_slip_of_any_definition():
     curve = parse_curve(Path("coulomb:0.4"))
     np.testing.assert_allclose(curve.force(SLIP, 10.0, TRAVEL), [-4.0, 4.0, 4.0])
     assert (curve.own_slope(10.0), curve.said(TRAVEL)) == (np.inf, ())
-
-
-def test_magic_has_its_peak_over_load_or_in_newtons_at_one_load():
-    over, at = (
-        parse_curve(Path("magic:34,1.5,0.4,0:travel")),
-        parse_curve(Path("magic:34,1.5,4,0@10")),
-    )
-    expected = magic_formula(SLIP, 34, 1.5, 4.0, 0)
-    np.testing.assert_allclose(over.force(SLIP, 10.0, TRAVEL), expected)
-    np.testing.assert_allclose(at.force(SLIP, 10.0, MATERIAL), expected)
-    assert (over.loads, at.loads) == (None, (10.0,))
-    assert over.own_slope(10.0) == pytest.approx(34 * 1.5 * 4)
-    assert over.said(TRAVEL) == ()
-    assert "taken as 'material', that of the calibration" in at.said(MATERIAL)[0]
 
 
 def test_a_table_is_interpolated_at_its_loads_and_unknown_beyond_its_slips(tmp_path):
@@ -69,20 +53,8 @@ def test_a_table_is_interpolated_at_its_loads_and_unknown_beyond_its_slips(tmp_p
     assert curve.own_slope(12.75) == pytest.approx(THESIS_VALUES[0] * 12.75, rel=0.02)
 
 
-def test_a_table_over_load_is_the_same_at_every_load(tmp_path):
-    table = thesis_table((6.63,))
-    table["traction_over_load"] = table["traction_force"] / 6.63
-    path = written_curve(tmp_path / "c.csv", table.drop(columns=["traction_force", "normal_force"]))
-    curve = parse_curve(path)
-    assert curve.loads is None
-    np.testing.assert_allclose(
-        curve.force(SLIP, 20.0, MATERIAL), 2 * curve.force(SLIP, 10.0, MATERIAL)
-    )
-    assert np.isnan(curve.own_slope(10.0))  # 62 points have none on the rise
-
-
 def test_what_names_a_curve_is_told_from_folders(tmp_path):
-    assert all(is_curve(Path(text)) for text in ("thesis", "coulomb:0.3", "magic:1"))
+    assert all(is_curve(Path(text)) for text in ("thesis", "coulomb:0.3"))
     assert is_curve(written_curve(tmp_path / "curve.csv", thesis_table()))
     assert not is_curve(tmp_path)
     assert not is_curve(tmp_path / "lost.csv")
@@ -91,12 +63,6 @@ def test_what_names_a_curve_is_told_from_folders(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("magic:34,1.5", r"is no curve; expected magic:B,C,D,E with D over load"),
-        ("magic:34,1.5,0.4,x", "is no curve"),
-        ("magic:34,1.5,4.84,0", r"D is 4.84 times the load, .*magic:34,1.5,4.84,0@LOAD"),
-        ("magic:34,1.5,0.4,2", "E at most 1"),
-        ("magic:34,1.5,0.4,nan", "not finite"),
-        ("magic:34,1.5,0.4,0:brake", "unknown slip definition"),
         ("coulomb:0.4:0.01", "sets in over a velocity"),
         ("coulomb:38", "did you mean"),
     ],

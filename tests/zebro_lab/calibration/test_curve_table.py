@@ -18,19 +18,6 @@ def test_forces_at_loads_are_read_with_their_definition(tmp_path):
     assert found.files == (tmp_path / "curve.csv",)
 
 
-def test_traction_over_load_is_multiplied_by_the_loads_that_are_given(tmp_path):
-    table = thesis_table()
-    over = (table["traction_force"] / table["normal_force"]).rename("traction_over_load")
-    with_load = table.drop(columns="traction_force").join(over)
-    found = read_curve_table(written_curve(tmp_path / "a.csv", with_load))
-    np.testing.assert_allclose(found.traction, table["traction_force"])
-    without = read_curve_table(
-        written_curve(tmp_path / "b.csv", with_load.drop(columns="normal_force"))
-    )
-    assert without.load is None
-    np.testing.assert_allclose(without.traction, over)
-
-
 def test_headers_units_and_definition_may_be_stated_in_columns_toml(tmp_path):
     table = thesis_table((6.63,)).drop(columns="slip_definition")
     table = table.assign(slip_ratio=100 * table["slip_ratio"]).rename(columns={"slip_ratio": "sx"})
@@ -47,14 +34,9 @@ def test_headers_units_and_definition_may_be_stated_in_columns_toml(tmp_path):
     ("change", "message"),
     [
         (lambda t: t.drop(columns="slip_definition"), "definition of the slip ratio is not known"),
-        (lambda t: t.drop(columns="traction_force"), "a table of a curve has slip_ratio, and"),
+        (lambda t: t.drop(columns="traction_force"), "a table of a curve has slip_ratio"),
         (lambda t: t.drop(columns="normal_force"), "normal_force.*is missing"),
-        (lambda t: t.assign(traction_over_load=0.3), "beside traction_force"),
         (lambda t: t.head(2), "has 2 points"),
-        (
-            lambda t: t.drop(columns="traction_force").assign(traction_over_load=4.8),
-            r"found 4\.8; expected traction over load, at most 3",
-        ),
     ],
 )
 def test_what_a_table_lacks_or_has_twice_is_named(tmp_path, change, message):

@@ -22,9 +22,8 @@ zebro-lab read-off curve.csv
 zebro-lab read-off datasets/rig-sim --out read-off
 
 Section 4-5-1 of the thesis: peak, asymptote, slope at zero slip and slip of the peak give the four
-coefficients at each load. Where a grid of slip ratios is too coarse for the slope, as the thesis's
-62 points are, the formula closest to all points is taken, by least squares, with standard errors.
-It is no fit with a posterior: that is calibrate-slip.
+coefficients at each load; from these, least squares find the formula closest to all points, with
+standard errors. It is no fit with a posterior: that is calibrate-slip.
 """
 
 
@@ -61,23 +60,11 @@ def _table(result: "ReadOffResult") -> "Table":
     title = f"read off, slip definition {result.definition}; standard errors of least squares"
     table = plain_table(title, ("side",), headings, no_wrap=True)
     for each in result.curves:
-        row, found = each.row(), each.found
-        if found is None:
-            continue
-        errors = found.errors or (None,) * 4
-        values = zip((found.B, found.C, found.D, found.E), errors, strict=True)
-        table.add_row(
-            each.side, f"{each.curve.load:.4g}",
-            *(_with_error(value, error) for value, error in values),
-            f"{row['peak_over_load']:.4g}", f"{row['peak_slip']:.4g}", f"{found.misfit:.3g}",
-        )  # fmt: skip
+        if each.found is not None:
+            row = each.row()
+            table.add_row(
+                each.side, f"{each.curve.load:.4g}",
+                *(f"{row[name]:.4g} ± {row[f'{name}_error']:.2g}" for name in "BCDE"),
+                f"{row['peak_over_load']:.4g}", f"{row['peak_slip']:.4g}", f"{row['misfit_n']:.3g}",
+            )  # fmt: skip
     return table
-
-
-def _with_error(value: float, error: float | None) -> str:
-    """Format a number with its standard error.
-
-    >>> _with_error(34.3419, 0.152), _with_error(1.564, None)
-    ('34.34 ± 0.15', '1.564')
-    """
-    return f"{value:.4g}" if error is None else f"{value:.4g} ± {error:.2g}"

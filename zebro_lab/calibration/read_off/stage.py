@@ -2,7 +2,7 @@
 """Stage of `zebro-lab read-off`: curves by load, their coefficients, and the folder."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -43,17 +43,10 @@ def read_off_curves(request: ReadOffRequest) -> ReadOffResult:
         DomainError: Slip ratios cannot be converted.
     """
     require_replaceable(request.out, READ_OFF, inputs=request.data)
-    read = _points(request)
-    points = read.table
-    if points.load is None:
-        raise DataError(
-            "has traction over load and no normal_force; E and the peak are those of one load: add "
-            "a column normal_force [N]",
-            file=points.files[0],
-        )
+    points, levels = _points(request)
     curves = tuple(
         each
-        for curve in curves_by_load(points.slip, points.load, points.traction, levels=read.levels)
+        for curve in curves_by_load(points.slip, points.load, points.traction, levels=levels)
         for each in _read_sides(curve)
     )
     if not any(each.found for each in curves):
@@ -64,32 +57,23 @@ def read_off_curves(request: ReadOffRequest) -> ReadOffResult:
     return result
 
 
-@dataclass(frozen=True)
-class _Points:
-    """Points of slip, load and traction, (n,) each, and where they come from."""
-
-    table: CurveTable
-    levels: Array | None  # loads that were set, of rig data [N]
-
-
-def _points(request: ReadOffRequest) -> _Points:
-    """Read points of slip, load and traction in the definition that is asked for."""
+def _points(request: ReadOffRequest) -> tuple[CurveTable, Array | None]:
+    """Read points in the definition that is asked for; of rig data also the loads set [N]."""
     if len(request.data) == 1 and is_curve_table(request.data[0]):
         table = read_curve_table(request.data[0], columns=request.columns)
         wanted = SlipDefinition(request.slip_definition or table.definition)
         slip = convert_slip(table.slip, table.definition, wanted)
-        return _Points(replace(table, slip=slip, definition=wanted), None)
+        return replace(table, slip=slip, definition=wanted), None
     data = read_rig_data(
         request.data, columns=request.columns, slip_definition=request.slip_definition
     )
     samples, notes = data.samples, data.notes
-    slip, load, force = samples.slip, samples.normal_force, samples.traction_force
+    columns = [samples.slip, samples.normal_force, samples.traction_force]
     levels = load_levels(block_means(samples, max(1, len(samples) // 1000)))
     if samples.n_runs > 1:
-        slip, load, force = (_run_means(each, samples.slices()) for each in (slip, load, force))
+        columns = [_run_means(each, samples.slices()) for each in columns]
         notes = (*notes, f"points are the means of {counted(samples.n_runs, 'run')}")
-    table = CurveTable(slip, load, force, samples.definition, data.source, data.files, notes)
-    return _Points(table, levels)
+    return CurveTable(*columns, samples.definition, data.source, data.files, notes), levels
 
 
 def _run_means(values: Array, runs: list[slice]) -> Array:

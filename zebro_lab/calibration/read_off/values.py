@@ -29,23 +29,18 @@ class ReadCurve:
 
     def row(self) -> dict[str, object]:
         """Return the row of `read-off.csv`; NaN where nothing was found."""
+        nan = float("nan")
+        found = self.found or ReadOff(nan, nan, nan, nan, (nan,) * 4, nan)
         row: dict[str, object] = {
             "load_n": self.curve.load, "side": self.side, "points": len(self.curve.slip),
         }  # fmt: skip
-        values = [np.nan] * 4 if self.found is None else list(_coefficients(self.found))
-        errors = [np.nan] * 4 if self.found is None or self.found.errors is None else list(
-            self.found.errors
-        )  # fmt: skip
-        for name, value, error in zip("BCDE", values, errors, strict=True):
-            row |= {name: value, f"{name}_error": error}
-        B, C, _, E = values
+        for name, error in zip("BCDE", found.errors, strict=True):
+            row |= {name: getattr(found, name), f"{name}_error": error}
+        peak = float(peak_slip(found.B, found.C, found.E)) if self.found else np.nan
         return row | {
-            "peak_over_load": values[2] / self.curve.load,
-            "peak_slip": float(peak_slip(B, C, E)) if self.found else np.nan,
-            "misfit_n": self.found.misfit if self.found else np.nan,
-            "method": self.found.method if self.found else "",
-            "problem": self.reason,
-        }
+            "peak_over_load": found.D / self.curve.load, "peak_slip": peak,
+            "misfit_n": found.misfit, "problem": self.reason,
+        }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -63,7 +58,3 @@ class ReadOffResult:
     definition: SlipDefinition
     source: str
     notes: tuple[str, ...]
-
-
-def _coefficients(found: ReadOff) -> tuple[float, float, float, float]:
-    return found.B, found.C, found.D, found.E

@@ -23,15 +23,14 @@ Examples:
 
 zebro-lab compare calibration-tiles calibration-carpet
 
-zebro-lab compare calibration magic:34.34,1.564,0.3798,0:material --out against-thesis
+zebro-lab compare calibration thesis --out against-thesis
 
 zebro-lab compare data/RUN1 data/RUN2 --out tiles-carpet
 
-A curve is thesis; coulomb:MU; magic:B,C,D,E with D over load, or with @LOAD in newtons, and the
-slip definition behind a colon; or a table with slip_ratio, slip_definition and traction_over_load,
-or traction_force and normal_force. Probabilities take the two for independent.
+A curve is thesis; coulomb:MU; or a table with slip_ratio, slip_definition, traction_force and
+normal_force. Probabilities take the two for independent.
 """
-_FIRST = "Calibration folder, run folder, or a curve: thesis, coulomb:MU, magic:B,C,D,E or a table."
+_FIRST = "Calibration folder, run folder, or a curve: thesis, coulomb:MU or a table."
 
 
 @request_command()

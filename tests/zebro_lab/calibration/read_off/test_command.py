@@ -69,11 +69,6 @@ def test_slip_is_converted_where_another_definition_is_asked_for(run_command, tm
     ("table", "message"),
     [
         (thesis_table((12.75,)).head(4), "no peak within"),
-        (
-            thesis_table((12.75,)).drop(columns=["traction_force", "normal_force"])
-            .assign(traction_over_load=0.3),
-            "add a column normal_force",
-        ),
     ],
 )  # fmt: skip
 def test_a_table_without_a_curve_at_a_load_is_one_line_and_writes_nothing(

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from model.slip.magic_formula import magic_formula
 from model.slip.thesis import THESIS_VALUES
 from support.compared_folders import calibration
 from support.compared_folders import compared as differences_of
@@ -27,11 +28,16 @@ def compared(first, second, out):
 
 def test_a_curve_of_more_friction_is_outside_and_said_where_and_by_how_much(tmp_path):
     fitted = calibration(tmp_path / "fitted", friction=0.4, sd=0.01)
-    done, by_name = compared(fitted, "magic:40,1.5,0.6,-1:material", tmp_path / "out")
+    table = thesis_table((7.5,), points=400)
+    force = magic_formula(table["slip_ratio"], 40.0, 1.5, 4.5, -1.0)
+    path = written_curve(tmp_path / "curve.csv", table.assign(traction_force=force))
+    done, by_name = compared(fitted, path, tmp_path / "out")
     peak = by_name["peak force at 7.5 N"]
     assert peak.quantiles(0)[0] == pytest.approx(0.4 * 7.5, rel=0.01)
     assert peak.quantiles(1) == pytest.approx((4.5, 4.5, 4.5), rel=1e-3)
-    assert by_name["slope at zero slip at 7.5 N"].quantiles(1)[0] == pytest.approx(40 * 1.5 * 4.5)
+    assert by_name["slope at zero slip at 7.5 N"].quantiles(1)[0] == pytest.approx(
+        40 * 1.5 * 4.5, rel=0.01
+    )
     place = done.comparison.place
     assert not place.inside
     assert place.share_outside > 0.5
@@ -96,12 +102,16 @@ def test_slip_of_another_definition_is_converted_and_said(tmp_path):
 @pytest.mark.parametrize(
     ("second", "error", "message"),
     [
-        ("magic:34,1.5,40,0@100", DataError, "is for 100 N: no load is common"),
+        ("far.csv", DataError, "is for 100 N: no load is common"),
         ("coulomb:0.4:0.1", SettingsError, "sets in over a velocity"),
     ],
 )
-def test_a_curve_without_anything_in_common_is_refused(tmp_path, second, error, message):
+def test_a_curve_without_anything_in_common_is_refused(
+    tmp_path, monkeypatch, second, error, message
+):
     fitted = calibration(tmp_path / "fitted")
+    written_curve(tmp_path / "far.csv", thesis_table((100.0,)))
+    monkeypatch.chdir(tmp_path)
     with pytest.raises(error, match=message):
         compare(fitted, Path(second), out=tmp_path / "out")
     assert not (tmp_path / "out").exists()

@@ -80,7 +80,7 @@ def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_
     manifest = json.loads((done.folder / "manifest.json").read_text())
     assert manifest["settings"]["seed"] == 3
     assert manifest["settings"]["anisotropy"] == 1.3
-    assert priors[0].lateral_sd == pytest.approx(np.log(1.2))
+    assert priors[0].lateral_sd == pytest.approx(np.log(1.3))
     read = [calibration / "slip.toml", *(walk / "legs.csv" for walk in walks)]
     assert {str(file) for file in read} <= set(manifest["inputs"])
     assert set(saved) == {"walk_parameters.png", "left_out.one.png"}

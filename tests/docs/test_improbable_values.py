@@ -23,7 +23,6 @@ from zebro_lab.track.photo_sequence import MOST_APART
 from zebro_lab.track.trajectory.table import FASTEST
 from zebro_lab.walk.request import LONGEST_SLIPPING_STEP, LONGEST_STEP
 from zebro_lab.walk.walking import MOST_STEPS
-from zebro_lab.walk_fit.request import MOST_ANISOTROPY
 
 FORMATS = Path(__file__).parents[2] / "docs" / "formats.md"
 LIMITS = {
@@ -41,7 +40,6 @@ LIMITS = {
     "`--time` of `rig suggest`": (LONGEST_TIME,),
     "`--rate` of `rig suggest`": (HIGHEST_RATE,),
     "angles of a gait": (0, LEAST_DEG),
-    "`--anisotropy`": (1, MOST_ANISOTROPY),
     "`--dt` with slip": (LONGEST_SLIPPING_STEP,),
     "`--dt` without slip": (LONGEST_STEP,),
     "duration over `--dt`": (MOST_STEPS,),

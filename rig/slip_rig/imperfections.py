@@ -8,7 +8,6 @@ import numpy as np
 
 from model.arrays import Array
 from model.errors import DomainError
-from model.slip.rig_errors import RigErrors
 
 GAIN_SD: Final = 0.005
 """Standard deviation of each force channel's relative gain error [-]."""

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.rig_errors import RigErrors
-from model.bayes.samples import DiscAngles, SlipSamples
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import SlipLaw, Values
+from model.slip.rig_errors import RigErrors
+from model.slip.samples import DiscAngles, SlipSamples
 from rig.slip_rig.imperfections import (
     RigImperfections,
     bump_rise,

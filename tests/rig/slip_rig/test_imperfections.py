@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model.errors import DomainError
-from model.slip.rig_errors import RigErrors
 from rig.slip_rig.imperfections import (
     TYPICAL_RIG,
     RigImperfections,

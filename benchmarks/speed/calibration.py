@@ -30,10 +30,10 @@ from benchmarks.speed.calibration_nuts import COMPARED, NUTS_CHAINS, nuts
 from benchmarks.speed.sampled import Sampled
 from benchmarks.tables import print_table
 from model.arrays import Array
+from model.bayes.drawing.weighted import importance_draws
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.likelihood import log_likelihood
 from model.bayes.posterior import LoadCell, SlipPosterior
-from model.bayes.weighted import importance_draws
 from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import draw_imperfections

@@ -18,15 +18,15 @@ from scipy.stats import multivariate_normal
 
 from benchmarks.speed.sampled import Sampled
 from model.arrays import Array
-from model.bayes import sampler
 from model.bayes.calibrate import EFFECTIVE_DRAWS, THIN
-from model.bayes.convergence import assess
+from model.bayes.drawing import sampler
+from model.bayes.drawing.convergence import assess
+from model.bayes.drawing.jumps import choose_jumps
+from model.bayes.drawing.sampler import Jumps, walker_count
+from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import PreparedFit
-from model.bayes.jumps import choose_jumps
 from model.bayes.likelihood import predict_blocks, slip_errors
 from model.bayes.posterior import SlipPosterior
-from model.bayes.sampler import Jumps, walker_count
-from model.bayes.weighted import weighted_draws
 
 ENSEMBLES, THREADS = 4, 2
 IMPORTANCE_DRAWS = 10_000

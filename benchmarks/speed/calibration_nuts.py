@@ -16,12 +16,12 @@ import xarray as xr
 
 from benchmarks.speed.sampled import Sampled
 from model.arrays import Array
+from model.bayes.averaging.load_rule import load_rule
+from model.bayes.averaging.slip_rule import slip_rule
+from model.bayes.drawing.shear import FAR, Shear
 from model.bayes.fit import PreparedFit
-from model.bayes.load_rule import load_rule
 from model.bayes.posterior import SlipPosterior
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Prior, Uniform
-from model.bayes.shear import FAR, Shear
-from model.bayes.slip_rule import slip_rule
 from model.slip.definition import slip_per_radius_error
 from model.slip.thesis import THESIS_LAW
 

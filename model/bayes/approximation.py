@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from model.bayes.laplace import LaplaceMixture
+from model.bayes.drawing.laplace import LaplaceMixture
+from model.bayes.drawing.shear import find_shear
+from model.bayes.drawing.tails import approximate
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import least_squares_values
-from model.bayes.shear import find_shear
-from model.bayes.tails import approximate
 
 FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 PRIOR_DRAWS = 400

@@ -9,7 +9,10 @@ from functools import partial
 import numpy as np
 
 from model.bayes.calibration import Calibration, conclude
-from model.bayes.convergence import Convergence, assess
+from model.bayes.drawing.convergence import Convergence, assess
+from model.bayes.drawing.jumps import choose_jumps
+from model.bayes.drawing.sampler import Chains, Jumps, advance, start_chains
+from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import (
     SHORT_CALLS,
@@ -21,15 +24,12 @@ from model.bayes.fit import (
     require_forces,
     validated,
 )
-from model.bayes.jumps import choose_jumps
 from model.bayes.law_scores import LawScores, choose_law, load_groups, score_laws, weigh_law
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.preview import Preview, preview, weighted_posterior
 from model.bayes.run_out import RunOut, find_run_out, without_run_out
-from model.bayes.sampler import Chains, Jumps, advance, start_chains
 from model.bayes.stated_priors import UNSTATED, StatedPriors
-from model.bayes.weighted import weighted_draws
 from model.errors import FitError
 from model.progress import Watcher
 from model.slip.law import SlipLaw

@@ -8,8 +8,9 @@ import numpy as np
 
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
-from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
+from model.bayes.drawing.convergence import Convergence
+from model.bayes.drawing.weighted import WeightedDraws
 from model.bayes.estimate import (
     Agreement,
     Draws,
@@ -26,7 +27,6 @@ from model.bayes.prior_conflict import PriorShift, prior_shifts
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
 from model.bayes.run_out import RunOut
 from model.bayes.verdict import Verdict, judge
-from model.bayes.weighted import WeightedDraws
 from model.slip.samples import SlipSamples
 
 _CHECKED = 400  # about this many draws are used for residuals and verdict

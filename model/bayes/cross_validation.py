@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.laplace import Laplace, climb
+from model.bayes.drawing.laplace import Laplace, climb
 from model.bayes.posterior import SlipPosterior
 from model.slip.definition import SlipDefinition, slip_per_radius_error
 from model.slip.law import SlipLaw

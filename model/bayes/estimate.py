@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.convergence import MAX_PARETO_K, Convergence
+from model.bayes.drawing.convergence import MAX_PARETO_K, Convergence
+from model.bayes.drawing.sampler import Chains
+from model.bayes.drawing.weighted import WeightedDraws
 from model.bayes.posterior import SlipPosterior
-from model.bayes.sampler import Chains
-from model.bayes.weighted import WeightedDraws
 from model.slip.law import Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import N_SIDES, SidedLaw, side_factors

@@ -9,16 +9,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.bayes.approximation import starting_points, straightened
-from model.bayes.batches import in_batches
-from model.bayes.blocks import SlipBlocks, block_means
+from model.bayes.averaging.blocks import SlipBlocks, block_means
 from model.bayes.checks.raw import opposed_runs
 from model.bayes.cross_validation import CrossValidation, cross_validate
-from model.bayes.laplace import Laplace, LaplaceMixture
+from model.bayes.drawing.batches import in_batches
+from model.bayes.drawing.laplace import Laplace, LaplaceMixture
+from model.bayes.drawing.tails import approximate
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length
 from model.bayes.priors import Prior
 from model.bayes.stated_priors import UNSTATED, StatedPriors, with_stated
-from model.bayes.tails import approximate
 from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
 from model.slip.rig_errors import USUAL, RigErrors

@@ -11,9 +11,9 @@ import math
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
-from model.bayes.load_rule import load_rule
-from model.bayes.slip_rule import POINTS, WEIGHTS, slip_rule
+from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.averaging.load_rule import load_rule
+from model.bayes.averaging.slip_rule import POINTS, WEIGHTS, slip_rule
 from model.compiled import borrowing, inlined
 from model.elementary import log_of
 from model.lanes import LANES, put, row, select, size

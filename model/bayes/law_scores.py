@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import CLEAR_WIN, PreparedFit
 from model.bayes.left_out import (
     DRAWS,
@@ -23,7 +24,6 @@ from model.bayes.left_out import (
     refit_without,
 )
 from model.bayes.residuals import load_levels, nearest_level
-from model.bayes.weighted import weighted_draws
 from model.errors import InsufficientData
 from model.slip.law import SlipLaw
 from model.tasks import compute_tasks

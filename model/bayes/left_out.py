@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from model.arrays import Array
-from model.bayes.convergence import MAX_PARETO_K
 from model.bayes.cross_validation import MAX_SINGLE_FOLDS, N_GROUPED_FOLDS
-from model.bayes.laplace import LaplaceMixture
+from model.bayes.drawing.convergence import MAX_PARETO_K
+from model.bayes.drawing.laplace import LaplaceMixture
+from model.bayes.drawing.tails import approximate
+from model.bayes.drawing.weighted import WeightedDraws, pareto_smoothed, weighted_draws
 from model.bayes.posterior import SlipPosterior
-from model.bayes.tails import approximate
-from model.bayes.weighted import WeightedDraws, pareto_smoothed, weighted_draws
 from model.tasks import compute_tasks
 
 DRAWS = 2_000  # of a posterior, at first

@@ -25,10 +25,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.averaging.load_rule import load_rule
+from model.bayes.averaging.slip_rule import slip_rule
 from model.bayes.lane_likelihood import lane_log_likelihood
-from model.bayes.load_rule import load_rule
-from model.bayes.slip_rule import slip_rule
 from model.compiled import compiled
 from model.slip.definition import slip_per_radius_error
 from model.slip.lane_force import lane_law

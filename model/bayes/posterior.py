@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.drawing.shear import Shear
 from model.bayes.likelihood import NUISANCE, run_log_likelihood
 from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
-from model.bayes.shear import Shear
 from model.bayes.stated_priors import PriorCorrelation
 from model.slip.law import Parameter, SlipLaw
 from model.slip.rig_errors import USUAL, RigErrors

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks, block_means
-from model.bayes.fast_wander import FastWander, fast_wander
+from model.bayes.averaging.blocks import SlipBlocks, block_means
+from model.bayes.averaging.fast_wander import FastWander, fast_wander
+from model.bayes.averaging.slip_noise import slip_noise_variance
 from model.bayes.priors import Prior
-from model.bayes.slip_noise import slip_noise_variance
 from model.errors import FitError
 from model.slip.law import SlipLaw
 from model.slip.samples import SlipSamples

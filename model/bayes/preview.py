@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.bayes.convergence import MAX_PARETO_K, Convergence, assess_weighted
+from model.bayes.drawing.convergence import MAX_PARETO_K, Convergence, assess_weighted
+from model.bayes.drawing.weighted import WeightedDraws
 from model.bayes.estimate import Draws, Estimate, estimate
 from model.bayes.posterior import SlipPosterior
-from model.bayes.weighted import WeightedDraws
 
 DRAWS = 4000  # that the estimates of a preview are computed from
 

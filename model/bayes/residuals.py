@@ -9,7 +9,7 @@ from scipy.linalg import solve_triangular, toeplitz
 from scipy.special import fdtrc, fdtri, ndtri
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
 from model.slip.law import SlipLaw
 

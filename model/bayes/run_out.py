@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.bayes.approximation import starting_points
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.checks.raw import raw_residuals
+from model.bayes.drawing.laplace import Laplace, find_mode
 from model.bayes.fit import CLEAR_WIN, not_identified
-from model.bayes.laplace import Laplace, find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw

@@ -7,13 +7,13 @@ from enum import StrEnum
 
 from model.arrays import Array
 from model.bayes.advice import Advice
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.checks.check import Check, Outcome
 from model.bayes.checks.fit import offsets, run_means, shape, whiteness
 from model.bayes.checks.inspection import TERMS, Inspection
 from model.bayes.checks.reach import RISE, loads, peak, rise, weak_parameters
 from model.bayes.checks.sampling import convergence_checks, engines
-from model.bayes.convergence import Convergence
+from model.bayes.drawing.convergence import Convergence
 from model.bayes.estimate import Agreement
 from model.bayes.residuals import Residuals
 from model.slip.law import SlipLaw

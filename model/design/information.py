@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.checks.linear import STEP, whiten
 from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
 from model.bayes.posterior import SlipPosterior

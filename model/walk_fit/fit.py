@@ -4,7 +4,7 @@
 Two walks cannot identify six offsets unless most of them are small. The prior therefore states
 that every leg has a small offset, and that perhaps one leg has a large offset, wrongly mounted or
 knocked before one walk. Each of these cases has its mode (`model.walk_fit.modes`), around which
-draws are made and weighted (`model.bayes.adaptive`), with steering and stride integrated
+draws are made and weighted (`model.bayes.drawing.adaptive`), with steering and stride integrated
 out (`model.walk_fit.terms`). Paths alone often cannot identify the wrongly mounted leg; several
 cases then have similar weights.
 """
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.adaptive import Effort, WeightedCaseDraws, adaptive_draws
+from model.bayes.drawing.adaptive import Effort, WeightedCaseDraws, adaptive_draws
 from model.errors import InsufficientData
 from model.robot import Robot
 from model.walk.traction import TractionTable

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.adaptive import Mode
+from model.bayes.drawing.adaptive import Mode
 from model.robot import N_LEGS
 from model.walk_fit.misfit import WalkMisfit, walk_states
 from model.walk_fit.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs

@@ -29,12 +29,12 @@ import pytest
 
 from model.arrays import Array
 from model.bayes.approximation import straightened
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
+from model.bayes.drawing.laplace import LaplaceMixture
+from model.bayes.drawing.tails import approximate
+from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import prepare_fit
-from model.bayes.laplace import LaplaceMixture
 from model.bayes.posterior import LoadCell, SlipPosterior
-from model.bayes.tails import approximate
-from model.bayes.weighted import weighted_draws
 from model.slip.rig_errors import USUAL
 from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from model.bayes.drawing.weighted import importance_draws
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
-from model.bayes.weighted import importance_draws
 from model.slip.definition import SlipDefinition
 from model.slip.samples import SlipSamples
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES

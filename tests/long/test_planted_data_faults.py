@@ -16,12 +16,12 @@ import pytest
 from model.arrays import Array
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
-from model.bayes.convergence import Convergence
+from model.bayes.drawing.convergence import Convergence
+from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.estimate import Agreement
 from model.bayes.fit import prepare_fit, scaled_load_cell
 from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, judge
-from model.bayes.weighted import weighted_draws
 from model.errors import ModelError
 from model.slip.magic_formula import MagicFormula
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES

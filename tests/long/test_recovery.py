@@ -21,13 +21,13 @@ import pytest
 from scipy.stats import chi2
 
 from model.arrays import Array
-from model.bayes.convergence import Convergence, assess
+from model.bayes.drawing.convergence import Convergence, assess
+from model.bayes.drawing.jumps import choose_jumps
+from model.bayes.drawing.sampler import Chains, advance, start_chains
+from model.bayes.drawing.weighted import WeightedDraws, weighted_draws
 from model.bayes.estimate import Agreement, Estimate, agreement, estimate, thin_draws
 from model.bayes.fit import PreparedFit, prepare_fit
-from model.bayes.jumps import choose_jumps
 from model.bayes.posterior import LoadCell
-from model.bayes.sampler import Chains, advance, start_chains
-from model.bayes.weighted import WeightedDraws, weighted_draws
 from model.slip.rig_errors import USUAL, RigErrors
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan

@@ -22,11 +22,11 @@ import pytest
 from scipy.stats import chisquare, kstest
 
 from model.bayes.approximation import starting_points, straightened
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
+from model.bayes.drawing.tails import approximate
+from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import not_identified
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.tails import approximate
-from model.bayes.weighted import weighted_draws
 from model.errors import FitError
 from model.slip.rig_errors import USUAL
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.checks.check import Check, Outcome
 from model.bayes.checks.inspection import Inspection
-from model.bayes.convergence import Convergence
+from model.bayes.drawing.convergence import Convergence
 from model.bayes.estimate import Agreement
 from model.bayes.residuals import Residuals
 from model.bayes.verdict import Verdict, judge

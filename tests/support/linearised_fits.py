@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.checks.linear import Linearised, linearise
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from model.bayes.calibration import Calibration, conclude
-from model.bayes.convergence import assess
+from model.bayes.drawing.convergence import assess
+from model.bayes.drawing.sampler import Jumps, advance, start_chains
+from model.bayes.drawing.weighted import importance_draws
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
-from model.bayes.sampler import Jumps, advance, start_chains
-from model.bayes.weighted import importance_draws
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import gammaincinv, ndtri
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import SlipLaw
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.fit import not_identified
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip.coulomb import CoulombStribeck

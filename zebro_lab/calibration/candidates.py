@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.residuals import load_levels
 from model.slip.law import SlipLaw
 from model.slip.laws import APART, LAWS, TOGETHER, slip_law

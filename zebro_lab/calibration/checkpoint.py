@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.sampler import Chains
+from model.bayes.drawing.sampler import Chains
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import DataError

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import BLOCK_MOMENTS, POSTERIOR

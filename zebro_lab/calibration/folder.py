@@ -321,7 +321,7 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
     samples and `BLOCK_MOMENTS` by block, and the variance of the slip error that its run shares.
     Attributes: source, slip definition, law, headline of the verdict.
     """
-    from model.bayes.arviz_import import import_arviz
+    from model.bayes.drawing.arviz_import import import_arviz
 
     az = import_arviz()
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.slip_noise import slip_noise_variance
+from model.bayes.averaging.slip_noise import slip_noise_variance
 from model.counted import counted
 from model.errors import ModelError
 from model.slip.definition import SlipDefinition

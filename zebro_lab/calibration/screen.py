@@ -11,7 +11,7 @@ from rich.text import Text
 
 from model.bayes.calibration import Calibration
 from model.bayes.checks.check import Outcome
-from model.bayes.convergence import MAX_PARETO_K
+from model.bayes.drawing.convergence import MAX_PARETO_K
 from model.bayes.estimate import BRAKING, Estimate, informed
 from model.bayes.law_scores import LawScores
 from model.bayes.preview import Preview

@@ -10,9 +10,9 @@ from pathlib import Path
 from model.bayes.calibrate import FitStopped, SamplerSettings
 from model.bayes.calibrate import calibrate as fit_slip_law
 from model.bayes.calibration import Calibration
+from model.bayes.drawing.sampler import Chains
 from model.bayes.fit import scaled_load_cell
 from model.bayes.preview import Preview
-from model.bayes.sampler import Chains
 from model.progress import Watcher
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT

@@ -10,7 +10,7 @@ from matplotlib.ticker import FixedLocator
 from numpy.typing import ArrayLike
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.law import SlipLaw
 from zebro_lab.plots.sheet import (
     CYCLE,

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.law import SlipLaw
 from model.slip.sided import braking_peak_slip
 from zebro_lab.plots.sheet import (

@@ -9,7 +9,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.law import SlipLaw
 from zebro_lab.plots.sheet import (
     few_ticks,

@@ -5,14 +5,14 @@ import numpy as np
 
 from model.arrays import Array
 from model.bayes.advice import CorrectData
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
+from model.bayes.averaging.fast_wander import FastWander, fast_wander
+from model.bayes.averaging.slip_noise import slip_noise_variance
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.linear import Linearised
-from model.bayes.fast_wander import FastWander, fast_wander
 from model.bayes.likelihood import predict_blocks
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
-from model.bayes.slip_noise import slip_noise_variance
 from model.slip.samples import SlipSamples
 
 NAME = "noise of slip is told from fast wander"

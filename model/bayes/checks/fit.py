@@ -12,7 +12,7 @@ from model.bayes.advice import (
     WeighLoadCell,
     ZeroBeforeEach,
 )
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.repeats import repeated_share
 from model.bayes.likelihood import predict_blocks

@@ -28,7 +28,7 @@ from scipy.linalg import solve_triangular
 from scipy.special import stdtr
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.likelihood import PredictedForces, predict_blocks
 from model.bayes.posterior import SlipPosterior
 from model.bayes.residuals import covariance_factors

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtr
 
 from model.arrays import Array
-from model.bayes.faulty_samples import Clipped, Outliers
-from model.bayes.slip_noise import slip_noise_variance
+from model.bayes.averaging.slip_noise import slip_noise_variance
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw
 from model.slip.samples import SlipSamples
@@ -22,6 +21,43 @@ CLIPPED_EXCESS = 4.0  # samples at the extreme over samples at the next level
 SLIPPING = 0.3  # of the largest traction over load: beyond, a zero error hides no sign
 OPPOSED = 0.9  # share of a run's samples
 PIECE = 20  # samples of the shortest piece of a run whose scatter tells how sure a delay is
+FEWEST_OUTLIERS = 3
+OUTLIER_SHARE = 1e-4  # of the samples
+
+
+@dataclass(frozen=True)
+class Outliers:
+    """Samples that leap from both neighbours.
+
+    Attributes:
+        count: Number of such samples.
+        share: Their share of all samples [-].
+        size: Median leap [N].
+        run: Index of the run with the most of them; 0 if there are none.
+    """
+
+    count: int
+    share: float
+    size: float
+    run: int
+
+    @property
+    def matter(self) -> bool:
+        """Whether there are more than chance, or a single fault, makes."""
+        return self.count >= FEWEST_OUTLIERS and self.share >= OUTLIER_SHARE
+
+
+@dataclass(frozen=True)
+class Clipped:
+    """Samples of a force that lie at its extreme.
+
+    Attributes:
+        limit: The extreme [N].
+        count: Number of samples exactly there.
+    """
+
+    limit: float
+    count: int
 
 
 def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Array, Array]:

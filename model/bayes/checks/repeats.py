@@ -4,7 +4,7 @@
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.residuals import load_levels, nearest_level
 
 MIDDLE = (0.1, 0.9)  # quantiles between which most slips of a run lie

@@ -3,7 +3,7 @@
 
 from model.bayes.advice import SampleAgain, SampleLonger, SamplePosterior
 from model.bayes.checks.check import Check, Outcome, decided, not_testable
-from model.bayes.convergence import MAX_PARETO_K, Convergence
+from model.bayes.drawing.convergence import MAX_PARETO_K, Convergence
 from model.bayes.estimate import ERRORS, MAX_MEAN, MAX_SPREAD, Agreement
 
 ENGINES = "two computations of the posterior agree"

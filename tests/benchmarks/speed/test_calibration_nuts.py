@@ -6,8 +6,8 @@ import pytest
 
 from benchmarks.speed.calibration import LOAD_CELL, simulate
 from benchmarks.speed.calibration_nuts import jax_log_density, largest_difference
+from model.bayes.drawing.shear import Shear
 from model.bayes.fit import prepare_fit
-from model.bayes.shear import Shear
 from model.slip.magic_formula import MagicFormula
 from model.slip.thesis import THESIS_LAW
 from rig.slip_rig.sweep import SweepPlan

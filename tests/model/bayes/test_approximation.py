@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from model.bayes.approximation import FEW_BLOCKS, starting_points, straightened
-from model.bayes.blocks import block_means
-from model.bayes.laplace import LaplaceMixture
+from model.bayes.averaging.blocks import block_means
+from model.bayes.drawing.laplace import LaplaceMixture
+from model.bayes.drawing.tails import approximate
+from model.bayes.drawing.weighted import importance_draws
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.tails import approximate
-from model.bayes.weighted import importance_draws
 from model.slip import MagicFormula
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from model.bayes import cross_validation
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.cross_validation import (
     CrossValidation,
     cross_validate,
     measured_force,
     r_squared,
 )
-from model.bayes.laplace import Laplace, find_mode
+from model.bayes.drawing.laplace import Laplace, find_mode
 from model.bayes.likelihood import NUISANCE, predict_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula, SlipDefinition

@@ -6,8 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model.bayes.blocks import SlipBlocks
-from model.bayes.convergence import Convergence
+from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.drawing.convergence import Convergence
+from model.bayes.drawing.sampler import Chains
+from model.bayes.drawing.weighted import WeightedDraws
 from model.bayes.estimate import (
     Draws,
     Estimate,
@@ -18,8 +20,6 @@ from model.bayes.estimate import (
     thin_draws,
 )
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.sampler import Chains
-from model.bayes.weighted import WeightedDraws
 from model.slip import Brush, CoulombStribeck, MagicFormula
 from model.slip.definition import SlipDefinition
 from model.slip.law import Parameter, SlipLaw

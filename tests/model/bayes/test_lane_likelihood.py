@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.lane_likelihood import lane_log_likelihood
 from model.bayes.likelihood import NUISANCE, filter_runs, predict_blocks, run_log_likelihood
 from model.lanes import LANES

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.fit import prepare_fit, scaled_load_cell
 from model.bayes.law_scores import LawScore, choose_law, load_groups, score_laws, weigh_law
 from model.bayes.left_out import LeftOut

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from model.bayes import left_out
-from model.bayes.blocks import block_means
-from model.bayes.laplace import LaplaceMixture, find_modes
+from model.bayes.averaging.blocks import block_means
+from model.bayes.drawing.laplace import LaplaceMixture, find_modes
+from model.bayes.drawing.weighted import importance_draws
 from model.bayes.left_out import Refitted, leave_out
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
-from model.bayes.weighted import importance_draws
 from model.slip import Brush
 from model.slip.rig_errors import RigErrors
 from rig.slip_rig.imperfections import TYPICAL_RIG

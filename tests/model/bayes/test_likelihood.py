@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.linalg import block_diag, toeplitz
 from scipy.stats import multivariate_normal, skew
 
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.likelihood import (
     NUISANCE,
     log_likelihood,

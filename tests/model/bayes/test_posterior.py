@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import stats
 
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.likelihood import NUISANCE, log_likelihood
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.priors import HalfNormal, Normal

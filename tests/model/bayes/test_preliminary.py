@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import (
     MAX_BLOCKS,

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from model.bayes.drawing.weighted import WeightedDraws
 from model.bayes.preview import preview, weighted_posterior
-from model.bayes.weighted import WeightedDraws
 from support.short_calibration import short_calibration
 
 

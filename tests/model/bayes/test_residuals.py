@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy import stats
 from scipy.linalg import cholesky, toeplitz
 
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.likelihood import NUISANCE, log_likelihood, predict_blocks
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import least_squares_values

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from model.arrays import Array
-from model.bayes.blocks import SlipBlocks
+from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.rise import SLIPS, sampled_rise
 from model.slip import Brush, MagicFormula
 from model.slip.definition import SlipDefinition

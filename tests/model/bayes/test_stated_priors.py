@@ -9,8 +9,8 @@ import pytest
 from scipy import stats
 
 from model.bayes.checks.faults import NOISE
+from model.bayes.drawing.laplace import LaplaceMixture, find_mode, hessian
 from model.bayes.fit import PreparedFit, prepare_fit
-from model.bayes.laplace import LaplaceMixture, find_mode, hessian
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import BlockChoice
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Uniform

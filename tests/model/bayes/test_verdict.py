@@ -18,12 +18,12 @@ from model.bayes.checks.check import Outcome
 from model.bayes.checks.inspection import Inspection, inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.checks.reach import slip_reach
+from model.bayes.drawing.weighted import importance_draws
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, Verdict, judge
-from model.bayes.weighted import importance_draws
 from model.slip import Brush
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG

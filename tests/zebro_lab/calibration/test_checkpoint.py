@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from model.bayes.sampler import Chains
+from model.bayes.drawing.sampler import Chains
 from zebro_lab.calibration.checkpoint import FILE, load_checkpoint, save_checkpoint
 from zebro_lab.files.errors import DataError, NotWritten
 

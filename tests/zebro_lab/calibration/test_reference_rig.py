@@ -14,14 +14,14 @@ from model.bayes.advice import TryLaws
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.checks.reach import RISE
-from model.bayes.convergence import Convergence
 from model.bayes.cross_validation import r_squared
+from model.bayes.drawing.convergence import Convergence
+from model.bayes.drawing.laplace import find_mode
+from model.bayes.drawing.weighted import importance_draws
 from model.bayes.estimate import Agreement
 from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell
-from model.bayes.laplace import find_mode
 from model.bayes.residuals import Residuals, analyse_residuals
 from model.bayes.verdict import Verdict, judge
-from model.bayes.weighted import importance_draws
 from model.slip.magic_formula import MagicFormula
 from model.slip.rig_errors import USUAL, RigErrors
 from zebro_lab.calibration.rig_data import RigData, read_rig_data

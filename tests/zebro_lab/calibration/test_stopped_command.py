@@ -17,7 +17,7 @@ pytestmark = pytest.mark.timeout(600)
 
 LOOK_OFTEN = "import zebro_lab.calibration.stage as stage; stage.CHECKPOINT_SECONDS = 0.0; "
 EASILY_PLEASED = (
-    "import model.bayes.convergence as rules; "
+    "import model.bayes.drawing.convergence as rules; "
     "rules.MIN_LENGTH, rules.MIN_ESS, rules.MAX_R_HAT, rules.MAX_MCSE = 5, 50, 1.2, 0.5; "
 )
 

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.blocks import block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.residuals import load_levels
 from model.counted import counted
 from model.errors import DomainError

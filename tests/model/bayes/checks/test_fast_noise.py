@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from model.bayes.averaging.fast_wander import FastWander
 from model.bayes.checks.check import Check
 from model.bayes.checks.fast_noise import fast_noise
 from model.bayes.checks.raw import raw_residuals
-from model.bayes.fast_wander import FastWander
 from support.linearised_fits import CHOICE, linearised, unchanged
 
 

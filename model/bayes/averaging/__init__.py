@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Samples averaged in blocks, with the errors of their slip."""

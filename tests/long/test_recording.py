@@ -28,7 +28,7 @@ from zebro_lab.runs.stage import list_runs
 from zebro_lab.walk.folder import read_walk
 
 KILLS = int(os.environ.get("ZEBRO_LAB_KILLS", "20"))
-SOAK = float(os.environ.get("ZEBRO_LAB_SOAK", "600"))
+SOAK = float(os.environ.get("ZEBRO_LAB_SOAK", "60"))  # s
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(5400)]
 

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,6 +20,7 @@ from zebro_lab.plots.sheet import (
     few_ticks,
     legend_below,
     new_figure,
+    photograph_axes,
     styled,
     with_minus,
 )
@@ -139,23 +141,17 @@ def band_over_floor(
     Returns:
         The figure, x to the right and y up, both to one scale.
     """
-    width, height = extent[1] - extent[0], extent[3] - extent[2]
-    scale = min(8.5 / width, 7.5 / height)
     kind = "simulated prediction and photograph" if simulated_photos else "simulated prediction"
-    figure = new_figure(
-        f"Predicted and tracked path: {title} ({kind})", False,
-        width=max(scale * width, 5.0) + 0.8, height=scale * height + 1.3,
+    axes = photograph_axes(
+        f"Predicted and tracked path: {title} ({kind})", floor, extent, simulated=False,
+        note=f"photograph at {photo_at:.1f} s; raised objects are displaced",
     )  # fmt: skip
-    axes = figure.add_subplot()
-    # The photograph is drawn paler, so that the paths stand out.
-    axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.55)
     draw_band(axes, band, label="draws", color=BLUE, lw=0.5, alpha=0.25)
     axes.plot(*path.position.T, color=BLUE, lw=1.6, label="predicted path")
     axes.plot(
         *track.position.T, ls="none", marker="o", ms=4.5, color="black", mec="white", mew=0.6,
         label="track",
     )  # fmt: skip
-    axes.set_title(f"photograph at {photo_at:.1f} s; raised objects are displaced", loc="left")
-    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+    figure = cast("Figure", axes.figure)
     legend_below(figure, columns=3)
     return figure

@@ -148,18 +148,13 @@ def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
 
 def _label_corner(axes: Axes, labels: Sequence[str], row: int, column: int) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(3))
-    axes.tick_params(axis="x", labelrotation=35, labelsize=8)
-    axes.tick_params(axis="y", labelsize=8)
-    if row == len(labels) - 1:
-        axes.set_xlabel(_wrapped(labels[column]))
-    else:
-        axes.tick_params(axis="x", labelbottom=False)
+    axes.tick_params(labelsize=8)
+    axes.tick_params(axis="x", labelrotation=35)
+    axes.set_xlabel(_wrapped(labels[column]))
     if column < row:
         axes.yaxis.set_major_locator(MaxNLocator(3))
-        if column == 0:
-            axes.set_ylabel(_wrapped(labels[row]))
-        else:
-            axes.tick_params(axis="y", labelleft=False)
+        axes.set_ylabel(_wrapped(labels[row]))
+    axes.label_outer()
 
 
 def _wrapped(label: str) -> str:

@@ -18,6 +18,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.poses import Poses
@@ -199,6 +200,39 @@ def map_and_panels(
     figure.axes[-1].set_xlabel("time [s]")
     figure.align_ylabels(figure.axes[1:])
     return figure, figure.axes[0], figure.axes[1:]
+
+
+def photograph_axes(
+    title: str,
+    photograph: NDArray[np.uint8],
+    extent: tuple[float, float, float, float],
+    *,
+    simulated: bool,
+    note: str,
+) -> Axes:
+    """Create a figure with a photograph from straight above, pale, x to the right and y up.
+
+    Args:
+        title: Title of the figure.
+        photograph: The floor, BGR, shape (height, width, 3).
+        extent: Lowest x, highest x, lowest y, highest y of the picture on the floor [m].
+        simulated: Whether to append "(simulated)" to the title.
+        note: Note above the photograph.
+
+    Returns:
+        The axes, both to one scale.
+    """
+    width, height = extent[1] - extent[0], extent[3] - extent[2]
+    scale = min(9.0 / width, 8.0 / height)
+    figure = new_figure(
+        title, simulated, width=max(scale * width, 5.0) + 0.8, height=scale * height + 1.2
+    )
+    axes = figure.add_subplot()
+    # Pale, so that what is drawn over it stands out.
+    axes.imshow(photograph[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.6)
+    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+    axes.set_title(note, loc="left")
+    return axes
 
 
 def tint(share: float) -> str:

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,11 +11,19 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from zebro_lab.plots.sheet import BLUE, CYCLE, RED, few_ticks, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import (
+    BLUE,
+    CYCLE,
+    RED,
+    few_ticks,
+    legend_below,
+    new_figure,
+    photograph_axes,
+    styled,
+)
 
 _WIDTH = 9.0  # inches
 _GREEN = CYCLE[2]
-_DOT = 2.5  # points
 _MOST_ARROWS = 24
 _MOST_LABELS = 12
 _ORIGIN, _HEADING = "body's origin", "heading"
@@ -124,26 +133,16 @@ def over_floor(
     Returns:
         The figure, x to the right and y up, both to one scale.
     """
-    width, height = extent[1] - extent[0], extent[3] - extent[2]
-    scale = min(_WIDTH / width, 8.0 / height)
-    figure = new_figure(
-        title, simulated, width=max(scale * width, 5.0) + 0.8, height=scale * height + 1.1
-    )
-    axes = figure.add_subplot()
-    # The photograph is drawn paler, so that the path stands out.
-    axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.65)
-    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=_DOT, label=_ORIGIN)
-    dot = _DOT / 72 / scale  # m
-    hidden = all(float(np.ptp(ellipse, axis=0).max()) < dot for ellipse in ellipses)
-    region = "90 % region of the origin" + ": smaller than a dot" * hidden
+    axes = photograph_axes(title, floor, extent, simulated=simulated, note=note)
+    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=2.5, label=_ORIGIN)
     for ellipse in ellipses:
-        axes.plot(*ellipse.T, color=BLUE, lw=0.9, zorder=5, label=region)
-    arrow = 0.03 * max(width, height)
-    _arrows(axes, poses[:, :2], arrow * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2]))))
-    axes.set_title(note, loc="left")
-    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+        axes.plot(*ellipse.T, color=BLUE, lw=0.9, zorder=5, label="90 % region of the origin")
+    reach = 0.03 * max(extent[1] - extent[0], extent[3] - extent[2])
+    _arrows(axes, poses[:, :2],
+            reach * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2]))))  # fmt: skip
     if np.any(np.all(floor == 0, axis=2)):
         axes.fill_between([], [], color=_UNSEEN, lw=0, label="outside the photograph")
+    figure = cast("Figure", axes.figure)
     legend_below(figure, columns=4)
     labelled = [k for k, label in enumerate(labels) if label]
     for k in labelled[:: -(-len(labelled) // _MOST_LABELS) or 1]:

@@ -4,7 +4,6 @@
 from typing import Any, cast
 
 import numpy as np
-from matplotlib.transforms import BboxBase
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3D, Line3DCollection, Poly3DCollection
 from numpy.typing import NDArray
@@ -58,19 +57,8 @@ class Scene:
             Line3DCollection(no_lines, lw=3.2, capstyle="round", zorder=z) for z in (2, 4)
         )
         for collection in (self._grid, self._far, self._body, self._near):
-            collection.set_clip_on(False)
             self._axes.add_collection3d(collection, autolim=False)
         self._head = self._line(color=RED, lw=2.5, zorder=5)
-
-    def clip_ground(self, panel: BboxBase) -> None:
-        """Cut ground and trace off at the edges of a panel, so that they stay out of others.
-
-        Args:
-            panel: The panel in pixels; it may be transformed.
-        """
-        for artist in (self._grid, self._trace):
-            artist.set_clip_on(True)
-            artist.set_clip_box(panel)
 
     def show(self, sample: int) -> None:
         """Update body, head, legs, trace and ground to the path's sample of this index.

@@ -6,7 +6,6 @@ from typing import cast
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.transforms import Bbox, TransformedBbox
 from mpl_toolkits.mplot3d import Axes3D
 
 from model.robot import Robot
@@ -17,9 +16,7 @@ from zebro_lab.plots.walk_path import snapshot_times
 from zebro_lab.plots.walk_scene import Scene
 
 _COLUMNS = 3
-_WIDTH, _HEIGHT = 3.6, 2.3  # inches of a panel
-_MARGINS, _BELOW = 0.8, 0.3  # inches above and below the panels, for title and sinking legs
-_WIDER = (-0.16, -0.32, 1.32, 1.75)  # of a panel: 3-D axes leave much of their square empty
+_WIDTH, _HEIGHT = 3.6, 2.6  # inches of a panel
 
 
 @styled
@@ -45,30 +42,18 @@ def snapshots(
         orange, those in the air grey; the head's edge is orange, too, and the path blue.
     """
     wanted = snapshot_times(path.t, at)
-    rows = -(-len(wanted) // _COLUMNS)
-    columns = min(len(wanted), _COLUMNS)
-    figure = new_figure(
-        title, True, width=max(_WIDTH * columns, 5.0), height=_MARGINS + _HEIGHT * rows
-    )
+    rows, columns = -(-len(wanted) // _COLUMNS), min(len(wanted), _COLUMNS)
+    figure = new_figure(title, True, width=max(_WIDTH * columns, 5.0), height=0.5 + _HEIGHT * rows)
     figure.set_layout_engine("none")
-    free = _HEIGHT * rows / figure.get_figheight()
-    below = _BELOW / figure.get_figheight()
+    top = 1 - 0.6 / figure.get_figheight()
+    grid = figure.add_gridspec(
+        rows, columns, left=0.0, right=1.0, bottom=0.02, top=top, wspace=0.0, hspace=0.05
+    )
     for number, (t, when) in enumerate(zip(wanted, time_texts(wanted), strict=True)):
-        row, column = divmod(number, columns)
-        width, height = 1.0 / columns, free / rows
-        left, bottom = column * width, below + free - (row + 1) * height
-        box = (left + _WIDER[0] * width, bottom + _WIDER[1] * height,
-               _WIDER[2] * width, _WIDER[3] * height)  # fmt: skip
-        axes = cast("Axes3D", figure.add_axes(box, projection="3d", computed_zorder=False))
-        axes.patch.set_visible(False)
+        place = grid[divmod(number, columns)]
+        axes = cast("Axes3D", figure.add_subplot(place, projection="3d", computed_zorder=False))
         sample = int(np.abs(path.t - t).argmin())
-        scene = Scene(axes, path, robot, ground=ground)
-        panel = Bbox.from_bounds(left, bottom, width, height)
-        scene.clip_ground(TransformedBbox(panel, figure.transFigure))
-        scene.show(sample)
+        Scene(axes, path, robot, ground=ground).show(sample)
         legs = ", ".join(str(leg + 1) for leg in np.flatnonzero(path.contact[sample]))
-        figure.text(
-            left + 0.03 * width, bottom + 0.9 * height, f"t = {when} s   {{{legs}}}", va="center",
-            bbox={"facecolor": "white", "alpha": 0.7, "lw": 0, "pad": 1.0},
-        )  # fmt: skip
+        axes.set_title(f"t = {when} s   {{{legs}}}", y=0.95)
     return figure

@@ -96,17 +96,6 @@ def test_every_colour_of_a_map_and_a_photograph_has_a_key():
     assert "outside the photograph" in keys(figure)
 
 
-@pytest.mark.parametrize(("radius", "note"), [(1e-4, ": smaller than a dot"), (0.1, "")])
-def test_regions_that_a_dot_hides_say_so_in_the_key(radius, note):
-    circle = radius * np.array([[1.0, 0], [0, 1], [-1, 0], [0, -1]])
-    figure = over_floor(
-        PIXELS, extent=(-1.0, 2.0, -1.0, 1.25), poses=POSES, ellipses=[circle], labels=[""] * 4,
-        title="Path", note="", simulated=True,
-    )  # fmt: skip
-    keys = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert f"90 % region of the origin{note}" in keys
-
-
 def test_headings_of_a_long_track_are_thinned_and_end_at_no_gap():
     path = np.column_stack([np.arange(200.0), np.arange(200.0)])
     path[::10] = np.nan

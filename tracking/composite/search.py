@@ -8,11 +8,13 @@ alone.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.body import Alignment, TopPlate, floor_in_view
+from tracking.body.align import SCALE_SD
 from tracking.camera.lens import Camera, CameraPose
 from tracking.composite.known import Exposure, KnownExposure
 from tracking.composite.pasted import PastedReading
@@ -70,7 +72,7 @@ def find_exposures(
     """
     seen = find_markers(pixels, marker.dictionary, wanted=[marker.marker_id], several=True)
     marked = [
-        Exposure(Alignment(pose_of(each), each.score, 0.0), 1.0)
+        Exposure(Alignment(pose_of(_of_open_size(each)), each.score, 0.0), 1.0)
         for each in sorted(seen, key=lambda each: -each.score)
     ]
     best = max((each.alignment.score for each in marked), default=0.0)
@@ -93,6 +95,15 @@ def find_exposures(
         if is_apart(each.planar, places, same) and (each.visible < SHOWS_WHOLE or not each.is_rough)
     ]
     return (*clear, *hidden_ones)
+
+
+def _of_open_size(seen: Sighting) -> Sighting:
+    """Leave the size of a marker open by `SCALE_SD`, as alignments of other exposures do.
+
+    Else one whose print is a little larger than told would be placed differently from them.
+    """
+    off = (seen.corners_px - seen.corners_px.mean(axis=0)).ravel()
+    return replace(seen, covariance=seen.covariance + SCALE_SD**2 * np.outer(off, off))
 
 
 def _occluded_by(

@@ -2,7 +2,7 @@
 """Read frames of a video with their own time stamps."""
 
 import os
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import cv2
@@ -21,12 +21,9 @@ _EXPECTED = (
 )
 _ATOMS = (b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot")  # MP4 and QuickTime
 _MARKS = (b"RIFF", b"\x1a\x45\xdf\xa3")  # AVI; Matroska and WebM
-_EBML = (b"\x1a\x45\xdf\xa3", b"\x18\x53\x80\x67")  # the header of Matroska, and its one segment
 
 
-def video_frames(
-    path: Path, *, every: float = 0.0, cut_short: Callable[[int], None] | None = None
-) -> Iterator[Image]:
+def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
     """Yield frames of a video, rotated upright, with their time stamps.
 
     Times are the frames' own stamps, not their number divided by a rate: phones vary the rate.
@@ -34,8 +31,6 @@ def video_frames(
     Args:
         path: The video.
         every: Least time between two frames that are yielded, to 2 ms; 0 for all frames [s].
-        cut_short: Called after the last frame if the file is shorter than it states, with the
-            number of frames read.
 
     Yields:
         Frames named `FILE#NUMBER`, numbers from 0, with seconds since the start of the video.
@@ -57,9 +52,7 @@ def video_frames(
             raise PhotoError(path.name, f"not a video that can be read; {_EXPECTED}")
         _refuse_large(capture, path.name)
         capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
-        read = yield from _frames(capture, path.name, every)
-        if cut_short is not None and is_cut_short(path):
-            cut_short(read)
+        yield from _frames(capture, path.name, every)
     finally:
         capture.release()
 
@@ -87,8 +80,7 @@ def _refuse_large(capture: cv2.VideoCapture, name: str) -> None:
         )
 
 
-def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Generator[Image, None, int]:
-    """Yield frames; return how many the file has, those left out included."""
+def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Image]:
     last, number = -np.inf, -1
     while capture.grab():
         number += 1
@@ -105,57 +97,3 @@ def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Generator[Ima
         raise PhotoError(
             name, "no frame of the video can be decoded; copy it again or record another"
         )
-    return number + 1
-
-
-def is_cut_short(path: Path) -> bool:
-    """Return whether a video file is shorter than its outermost parts state.
-
-    These are the boxes of MP4 and QuickTime (ISO/IEC 14496-12), the chunks of RIFF (AVI), and the
-    elements of EBML (RFC 8794: Matroska, WebM). A part without a stated size goes to the end.
-
-    Args:
-        path: The video.
-    """
-    end, size = 0, path.stat().st_size
-    with path.open("rb") as file:
-        stated = _stated_by(file.read(4))
-        while end < size:
-            file.seek(end)
-            length = stated(file.read(16))
-            if length is None:
-                return False
-            end += length
-    return end > size
-
-
-def _stated_by(head: bytes) -> Callable[[bytes], int | None]:
-    """Choose how lengths are stated in a file, by its first four bytes.
-
-    The function takes the first 16 bytes of an outermost part and returns its length; None for a
-    part that states none, or is of no known kind.
-    """
-    if head in _EBML:
-        return _element_length
-    return _chunk_length if head == b"RIFF" else _box_length
-
-
-def _chunk_length(head: bytes) -> int | None:
-    length = int.from_bytes(head[4:8], "little")
-    return 8 + length + length % 2 if length and head.startswith(b"RIFF") else None
-
-
-def _box_length(head: bytes) -> int | None:
-    length = int.from_bytes(head[:4], "big")
-    if length == 1:
-        length = int.from_bytes(head[8:16], "big")
-    return length if length >= 8 else None
-
-
-def _element_length(head: bytes) -> int | None:
-    """Return the length of an element of EBML with an identifier of four bytes."""
-    width = 9 - head[4].bit_length() if len(head) > 4 else 9
-    if not head.startswith(_EBML) or width > 8 or len(head) < 4 + width:
-        return None
-    stated = int.from_bytes(head[4 : 4 + width], "big") - (1 << 7 * width)
-    return None if stated == (1 << 7 * width) - 1 else 4 + width + stated

@@ -48,7 +48,6 @@ class PhotoSequence:
         origin: Folder, video or picture, as given.
         left_out: Reason by name of each photograph of the folder that is not used for lack of a
             time.
-        notes: What is to be said of the files.
     """
 
     photos: tuple[Photo, ...]
@@ -56,7 +55,6 @@ class PhotoSequence:
     source: str | None
     origin: Path
     left_out: Mapping[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
 
     @property
     def is_composite(self) -> bool:
@@ -268,16 +266,9 @@ def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
 def _of_video(
     video: Path, folder: Path, every: float, most: int | None, progress: Progress | None
 ) -> PhotoSequence:
-    photos, t, sd, notes = [], [], [], []
+    photos, t, sd = [], [], []
 
-    def cut_short(read: int) -> None:
-        """Note that the file ends early."""
-        notes.append(
-            f"{video.name} is shorter than it states and ends after {read} frames: it is cut "
-            "short, and tracked as far as it goes; copy it again for the rest"
-        )
-
-    for frame in islice(video_frames(video, every=every, cut_short=cut_short), most):
+    for frame in islice(video_frames(video, every=every), most):
         if progress is not None:
             report_step(progress, "frames", None)
         path = folder / f"{len(photos):06d}.png"
@@ -293,7 +284,7 @@ def _of_video(
     step = f", one every {every:g} s" if every > 0 else ""
     source = f"time stamps of the video's frames{step}"
     times = PhotoTimes(np.array(t, float), np.array(sd, float), source)
-    return PhotoSequence(tuple(photos), times, None, video, notes=tuple(notes))
+    return PhotoSequence(tuple(photos), times, None, video)
 
 
 def _require_no_times(request: TimeRequest) -> None:

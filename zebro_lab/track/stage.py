@@ -148,7 +148,7 @@ def _result(
 ) -> TrackResult:
     """Return the result; add left-out photographs and notes known before tracking to `tracked`."""
     lost = {**sequence.left_out, **tracked.lost}
-    notes = (*sequence.notes, *counted.notes, *lens_note(inputs), *tracked.notes)
+    notes = (*counted.notes, *lens_note(inputs), *tracked.notes)
     tracked = replace(tracked, lost=lost, notes=notes)
     count = len(sequence.photos) + len(sequence.left_out)
     if sequence.is_composite:

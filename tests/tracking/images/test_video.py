@@ -14,7 +14,6 @@ import pytest
 
 from tracking.errors import PhotoError
 from tracking.images import video_frames
-from tracking.images.video import is_cut_short
 
 
 def write_video(path, count, rate=10.0):
@@ -32,49 +31,6 @@ def test_frames_come_with_their_own_times(tmp_path):
     thinned = list(video_frames(tmp_path / "a.avi", every=0.3))
     np.testing.assert_allclose([frame.t for frame in thinned], [0, 0.3, 0.6, 0.9], atol=1e-3)
     assert thinned[1].pixels.mean() == pytest.approx(30, abs=3)
-
-
-CONTAINED = (("avi", "MJPG"), ("mkv", "MJPG"), ("mkv", "mp4v"), ("webm", "VP80"))
-
-
-@pytest.mark.parametrize(("ending", "codec"), CONTAINED)
-def test_a_file_that_is_cut_short_is_read_as_far_as_it_goes_and_said(tmp_path, ending, codec):
-    whole, said = tmp_path / f"a.{ending}", []
-    writer = cv2.VideoWriter(str(whole), cv2.VideoWriter.fourcc(*codec), 10.0, (320, 240))
-    noise = np.random.default_rng(0).integers(0, 255, (40, 24, 32, 3), dtype=np.uint8)
-    for frame in noise:
-        writer.write(cv2.resize(frame, (320, 240)))
-    writer.release()
-    assert len(list(video_frames(whole, cut_short=said.append))) == 40
-    content = whole.read_bytes()
-    whole.write_bytes(content + bytes(range(200, 250)))  # of another's, after the end
-    assert not is_cut_short(whole)
-    assert not said
-    whole.write_bytes(content[: 6 * len(content) // 10])
-    frames = list(video_frames(whole, every=0.5, cut_short=said.append))
-    assert 15 < said[0] < 35
-    np.testing.assert_allclose(
-        [frame.t for frame in frames], 0.5 * np.arange(len(frames)), atol=0.1
-    )
-
-
-@pytest.mark.parametrize("wide", [False, True])
-def test_a_box_that_goes_beyond_the_end_cuts_an_mp4_short(tmp_path, wide):
-    file = phone_video(tmp_path / "walk.mp4")
-    assert not is_cut_short(file)
-    content = b"".join((box(b"free", b"1234"), box(b"mdat", bytes(80), wide=wide)))
-    for missing, cut in ((0, False), (1, True)):
-        file.write_bytes(content[: len(content) - missing])
-        assert is_cut_short(file) is cut
-    file.write_bytes(box(b"free", b"") + bytes(4) + b"mdat" + bytes(50))  # to the end
-    assert not is_cut_short(file)
-
-
-def box(kind: bytes, content: bytes, *, wide: bool = False) -> bytes:
-    """Make a box of an MP4, its length of 4 bytes, or of 8."""
-    if wide:
-        return struct.pack(">I4sQ", 1, kind, 16 + len(content)) + content
-    return struct.pack(">I4s", 8 + len(content), kind) + content
 
 
 @pytest.mark.parametrize("kind", ["empty", "text", "no frames"])

@@ -23,11 +23,6 @@ def tracked(scene, robot, photos):
     )
 
 
-def test_the_marker_gives_the_path(scene, robot, photos, walk):
-    found = tracked(scene, robot, photos)
-    np.testing.assert_allclose(found.track.poses, walk[:2], atol=2e-3)
-
-
 def test_a_marker_that_is_nowhere_is_said_with_those_that_are(scene, robot, photos):
     other = replace(robot, marker=replace(robot.marker, marker_id=7))
     with pytest.raises(NoUsablePhoto, match=r"marker 7 .*p0\.png shows 0 of '4x4_50'"):

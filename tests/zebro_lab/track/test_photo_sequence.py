@@ -11,7 +11,6 @@ import pytest
 
 from support.synthetic.stamp import with_time_stamp
 from tracking.camera import Camera
-from tracking.errors import TimesError
 from tracking.images import clock_picture
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.track.photo_sequence import calibrated_for, exposure_times, open_photos
@@ -87,12 +86,6 @@ def test_a_table_may_reorder(tmp_path):
     table.write_text("photo,t_s,t_sigma\na.jpg,7,0.1\nb.jpg,3,0.1\n")
     with open_photos(tmp_path, TimeRequest(table=table)) as sequence:
         assert names_of(sequence) == ("b.jpg", "a.jpg")
-
-
-def test_no_times_at_all_says_what_to_give(tmp_path):
-    photo(tmp_path / "a.jpg", None)
-    with pytest.raises(TimesError, match="--interval"), open_photos(tmp_path, TimeRequest()):
-        pass
 
 
 def test_a_photographed_code_ties_the_cameras_clock_to_the_computers(tmp_path):

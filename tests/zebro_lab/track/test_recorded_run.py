@@ -147,11 +147,3 @@ def test_a_moment_of_photographs_at_intervals_is_wrong_usage(lab, run_command):
     assert (code, out) == (2, "")
     assert "--start: the photographs' times are not those of a camera's clock" in err
     assert not Path("run/track").exists()
-
-
-def test_a_moment_with_a_time_zone_is_wrong_usage(lab, run_command):
-    code, _, err = run_command(
-        "track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00+02:00"
-    )
-    assert code == 2
-    assert "without a zone" in " ".join(err.split())

@@ -45,3 +45,12 @@ def test_lengths_and_frame_steps_are_those_of_the_help():
         _ = replace(ASKED, height_sd="5").bounce_sd
     assert TimeRequest().frame_step == 0.5
     assert TimeRequest(every=0.0).frame_step == 0.0
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"), [("noon", "is not a time"), ("2020-06-01T12:00+02:00", "without a zone")]
+)
+def test_a_moment_is_that_of_a_clock_without_a_zone(text, problem, run_command):
+    ended = run_command("track", "photos", "--camera", "c", "--floor", "f", "--start", text)
+    assert ended.code == 2
+    assert problem in " ".join(ended.err.split())

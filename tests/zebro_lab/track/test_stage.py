@@ -15,11 +15,11 @@ from PIL import Image
 from support.bundled_walk import COMPOSITE, SOME, Nobody, truth
 from tracking.body import Alignment
 from tracking.composite import Exposure
-from tracking.errors import NoUsablePhoto, TrackingError, TrackStopped
+from tracking.errors import TrackStopped
 from tracking.path import TRACK_COLUMNS
 from tracking.photos import search
 from tracking.pose import BodyPose
-from zebro_lab.files.errors import AlreadyExists, SettingsError
+from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.track.annotate_request import AnnotateRequest
 from zebro_lab.track.annotate_stage import annotate
@@ -89,22 +89,6 @@ def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, 
     assert np.abs(difference).max() < 1e-4
 
 
-def test_bad_photographs_are_named_and_lose_no_other(request_, tmp_path, undrawn):
-    photos = tmp_path / "photos"
-    shutil.copytree(request_.photos, photos)
-    whole = (photos / "simulated_03.jpg").read_bytes()
-    (photos / "simulated_03.jpg").write_bytes(whole[: len(whole) // 3])
-    (photos / "simulated_04.jpg").write_bytes(b"")
-    (photos / "simulated_90.heic").write_bytes(b"\0\0\0\x18ftypheic\0\0\0\0")
-    result = track(replace(request_, photos=photos), Nobody())
-    assert set(result.tracked.lost) == {
-        "simulated_03.jpg", "simulated_04.jpg", "simulated_90.heic",
-    }  # fmt: skip
-    assert "0 bytes" in result.tracked.lost["simulated_04.jpg"]
-    assert "HEIC" in result.tracked.lost["simulated_90.heic"]
-    assert len(result.tracked.track.observations) == len(SOME) - 2
-
-
 def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
     file = tmp_path / "said.toml"
     said = AnnotateRequest(
@@ -162,11 +146,6 @@ def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, expos
     np.testing.assert_allclose(np.diff([seen.t for seen in observations]), 4.0)
 
 
-def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):
-    with pytest.raises(SettingsError, match="--interval"):
-        track(replace(request_, photos=COMPOSITE), Nobody())
-
-
 def test_a_marker_of_another_side_is_noticed(request_, undrawn, tmp_path):
     other = edited(request_, tmp_path, "robot.toml", "side = 0.12", "side = 0.15")
     result = track(other, Nobody())
@@ -177,24 +156,6 @@ def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str)
     file = tmp_path / name
     file.write_text(getattr(request, file.stem).read_text().replace(old, new))
     return replace(request, **{file.stem: file})
-
-
-def test_a_floor_of_another_dictionary_says_which_is_seen(few, tmp_path):
-    asked = edited(few, tmp_path, "floor.toml", "side", 'dictionary = "5x5_50"\nside')
-    with pytest.raises(NoUsablePhoto, match="markers of '4x4_50'"):
-        track(asked, Nobody())
-
-
-def test_a_mirrored_floor_is_called_so(request_, tmp_path):
-    asked = edited(request_, tmp_path, "floor.toml", "y = ", "y = 0.0 #")
-    lines = (request_.floor).read_text().splitlines()
-    mirrored = [
-        line if "{" not in line else line.replace("y = ", "y = -").replace("--", "")
-        for line in lines
-    ]
-    asked.floor.write_text("\n".join(mirrored))
-    with pytest.raises(TrackingError, match="mirrored"):
-        track(asked, Nobody())
 
 
 def test_a_stop_leaves_nothing(request_):

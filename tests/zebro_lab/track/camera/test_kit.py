@@ -136,11 +136,6 @@ def test_the_starting_floor_has_the_markers_that_are_printed():
     assert {marker.side for marker in starter_floor().markers} == {FLOOR_SIDE / 1e3}
 
 
-def test_the_same_kit_is_the_same_file(pdf, tmp_path):
-    save_pages(kit_pages("a4"), tmp_path / "again.pdf")
-    assert (tmp_path / "again.pdf").read_bytes() == pdf
-
-
 def test_unknown_paper_is_refused():
     with pytest.raises(SettingsError, match="a4 or letter"):
         kit_pages("a3")

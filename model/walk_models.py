@@ -4,7 +4,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from model.errors import DomainError, WalkError
 from model.gait.direction import Direction
@@ -20,6 +20,8 @@ from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.slipping import SLIPPING
 
+Rule: TypeAlias = Literal["listing", "text"]
+"""What the thesis's dynamics follows where its listing and its text differ."""
 BASELINES = ("no-slip-simple", "no-slip", "thesis")
 
 
@@ -47,7 +49,7 @@ class ModelRun:
     duration: float
     dt: float
     direction: Direction = "left"
-    rule: Literal["listing", "text"] = "listing"
+    rule: Rule = "listing"
     legs: LegState | None = None
     ground: Ground = FLAT
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final, TypeAlias
 
 from typer import Option
 
@@ -25,6 +25,16 @@ ANSWERS_WITHIN: Final = 5.0
 _ADDRESS: Final = re.compile(r"(tcp|tls)://(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):([1-9]\d{0,4})")
 
 
+SchedulerOption: TypeAlias = Annotated[
+    str | None,
+    Option(
+        metavar="tcp://HOST:PORT",
+        help="Dask scheduler whose workers compute independent tasks, instead of this "
+        "machine's cores; tls://HOST:PORT outside a network of your own.",
+    ),
+]
+
+
 class ClusterError(ZebroLabError, ConnectionError):
     """A Dask cluster does not answer, has no workers, was lost, or has other packages."""
 
@@ -37,14 +47,7 @@ class WorkersRequest:
         int | None,
         Option(min=1, help="Cores of this machine to use; default: all."),
     ] = None
-    scheduler: Annotated[
-        str | None,
-        Option(
-            metavar="tcp://HOST:PORT",
-            help="Dask scheduler whose workers compute independent tasks, instead of this "
-            "machine's cores; tls://HOST:PORT outside a network of your own.",
-        ),
-    ] = None
+    scheduler: SchedulerOption = None
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for the address of a scheduler that has another form."""

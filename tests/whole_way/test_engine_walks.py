@@ -41,7 +41,9 @@ def test_an_imported_walk_turns_as_in_the_study(name, shared, command, tmp_path)
             "--label", "engine", "--data", tmp_path / "data")  # fmt: skip
     (run,) = (tmp_path / "data").iterdir()
     arc = np.degrees(one.robot.leg_arc)
-    command("predict", run, "--slip", f"coulomb:{one.friction}", "--arc-deg", arc)
+    robot = tmp_path / "robot.toml"
+    robot.write_text(f"[legs]\narc_deg = {arc}\n")
+    command("predict", run, "--slip", f"coulomb:{one.friction}", "--robot", robot)
     command("validate", run)
     path = pd.read_csv(run / "prediction/path.csv")
     by_command = radius(path["t"].to_numpy(), path[["x", "y"]].to_numpy(), path["yaw"].to_numpy(),

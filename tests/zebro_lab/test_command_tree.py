@@ -177,13 +177,13 @@ def test_a_wrong_value_of_an_option_is_wrong_usage_and_names_the_option(
 def test_wrong_values_are_derived_for_the_options_with_limits_choices_and_forms():
     names = {(named(found), param.name) for found, param, texts in VALUES if texts}
     for expected in (
-        ("zebro-lab walk", "arc_deg"), ("zebro-lab walk", "slip"),
+        ("zebro-lab walk", "steering"), ("zebro-lab walk", "slip"),
         ("zebro-lab calibrate", "law"), ("calibrate-slip", "engine"),
         ("zebro-lab sim zebro", "drop"),
     ):  # fmt: skip
         assert expected in names
-    (texts, *_) = (texts for _, param, texts in VALUES if param.name == "arc_deg")
-    assert {"89.0", "360.0", "nan"} <= set(texts)
+    (texts, *_) = (texts for _, param, texts in VALUES if param.name == "steering")
+    assert {"0.0", "nan"} <= set(texts)
 
 
 def test_text_of_a_form_has_examples_of_what_is_refused():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab init FILE`: write a `columns.toml` from a table's header, or a `ground.toml`."""
+"""`zebro-lab init FILE`: write a `columns.toml` from a table's header, or a template."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -18,14 +18,15 @@ def init(
     file: Annotated[
         Path,
         typer.Argument(
-            metavar="FILE", help="Table whose header is read; of kind ground the file to write."
+            metavar="FILE",
+            help="Table whose header is read; of kind ground or robot the file to write.",
         ),
     ],
     kind: Annotated[
-        Literal["rig", "legs", "imu", "track", "ground"] | None,
+        Literal["rig", "legs", "imu", "track", "ground", "robot"] | None,
         typer.Option(
-            help="What the table holds; default: told from its headers. ground: no table, write "
-            "FILE, a ground.toml for walk --ground."
+            help="What the table holds; default: told from its headers. ground, robot: no table, "
+            "write FILE, a ground.toml or robot.toml to edit."
         ),
     ] = None,
     sheet: Annotated[
@@ -37,10 +38,11 @@ def init(
     """Write a commented columns.toml to the folder of FILE, guessed from its header.
 
     What is not sure ends in "?" there; no command reads the table until somebody deleted it. With
-    --kind ground write FILE itself, a commented ground.toml of level ground.
+    --kind ground or robot write FILE itself, a commented ground.toml of level ground, or a
+    robot.toml of the thesis's robot.
     """
-    if kind == "ground":
-        _write_ground(file, sheet, force, output)
+    if kind == "ground" or kind == "robot":
+        _write_template(file, kind, sheet, force, output)
         return
     from zebro_lab.exchange.init_stage import write_columns_template
 
@@ -58,16 +60,19 @@ def init(
     output.document("init", {**content, "to_check": advice, "notes": list(written.notes)})
 
 
-def _write_ground(file: Path, sheet: str | None, force: bool, output: Output) -> None:
-    """Write a `ground.toml` and say how to use it; raise `BadParameter` for a sheet."""
-    from zebro_lab.ground.template import write_ground_template
+def _write_template(
+    file: Path, kind: Literal["ground", "robot"], sheet: str | None, force: bool, output: Output
+) -> None:
+    """Write a template and say how to use it; raise `BadParameter` for a sheet."""
+    from zebro_lab.exchange.init_stage import write_template
 
     if sheet is not None:
-        raise typer.BadParameter("is of a workbook; a ground has none", param_hint="'--sheet'")
-    written = write_ground_template(file, force=force)
-    output.say(f"wrote {written}, level ground with all keys as comments; edit it, then:")
-    output.say(f"  zebro-lab walk --ground {written} --slip thesis --duration 20 --figures")
-    output.document("init", {"written": [written], "kind": "ground"})
+        raise typer.BadParameter(f"is of a workbook; a {kind} has none", param_hint="'--sheet'")
+    written = write_template(file, kind, force=force)
+    what = "level ground with all keys as comments" if kind == "ground" else "the thesis's robot"
+    output.say(f"wrote {written}, {what}; edit it, then:")
+    output.say(f"  zebro-lab walk --{kind} {written} --slip thesis --duration 20 --figures")
+    output.document("init", {"written": [written], "kind": kind})
 
 
 def _to_check(written: "WrittenColumns") -> list[str]:

@@ -12,8 +12,10 @@ from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.files.opening import read_text
+from zebro_lab.ground.template import TEMPLATE
 from zebro_lab.mcap.ros_bags import is_ros_log
 from zebro_lab.mcap.ros_log import read_messages
+from zebro_lab.robot.robot_file import RobotFile, render_robot_file
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.columns_sections import is_sectioned
 from zebro_lab.tables.table_files import read_table_file
@@ -118,3 +120,24 @@ def _require_free(target: Path, present: str, kind: str | None) -> None:
         )
     if kind in document:
         raise AlreadyExists(f"{target} exists already; {advice}")
+
+
+def write_template(file: Path, kind: Literal["ground", "robot"], *, force: bool = False) -> Path:
+    """Write a commented `ground.toml` of level ground, or `robot.toml` of the thesis's robot.
+
+    Args:
+        file: File to write.
+        kind: What to write.
+        force: Whether to replace an existing file.
+
+    Raises:
+        AlreadyExists: The file exists, and `force` is not set; or it is a folder.
+    """
+    if file.is_dir():
+        raise AlreadyExists(f"{file} is a folder; name the file to write, such as {kind}.toml")
+    if file.exists() and not force:
+        raise AlreadyExists(
+            f"{file} exists already; edit it, replace it with --force, or choose another file name"
+        )
+    ground = TEMPLATE.format(name=file.name)
+    return atomic_write_text(file, ground if kind == "ground" else render_robot_file(RobotFile()))

@@ -98,12 +98,16 @@ def walk_gait(
         ModelError: The walk cannot be computed.
     """
     with kept_or_temporary(out) as folder:
-        request = WalkRequest(
-            GaitRequest(gait, steering=steering, direction=direction),
-            duration,
-            folder,
-            _model_request(slip, model, thesis, ground, robot, BandRequest(draws, seed)),
-        )
+        try:
+            request = WalkRequest(
+                GaitRequest(gait, steering=steering, direction=direction),
+                duration,
+                folder,
+                _model_request(slip, model, ground, robot, BandRequest(draws, seed)),
+                thesis,
+            )
+        except BadParameter as error:
+            raise SettingsError(error.message, key="thesis") from error
         return _walk_result(walk(request, Silent()), folder, draws)
 
 
@@ -112,7 +116,6 @@ def predict_walk(
     *,
     slip: str | None,
     model: ModelName = "dynamics",
-    thesis: RuleName = "listing",
     ground: PathLike | None = None,
     robot: PathLike | None = None,
     columns: PathLike | None = None,
@@ -126,7 +129,6 @@ def predict_walk(
         legs: A table of leg angles, a recorded run, or a walk folder.
         slip: As in `walk_gait`.
         model: As in `walk_gait`.
-        thesis: As in `walk_gait`.
         ground: As in `walk_gait`.
         robot: A `robot.toml`; None for that of the run, else the thesis's robot.
         columns: A `columns.toml` to use instead of the one beside the table; ignored for a run.
@@ -143,7 +145,7 @@ def predict_walk(
             Path(legs),
             folder,
             optional(columns),
-            model=_model_request(slip, model, thesis, ground, robot, BandRequest(draws, seed)),
+            model=_model_request(slip, model, ground, robot, BandRequest(draws, seed)),
         )
         return _walk_result(predict(request, Silent()), folder, draws)
 
@@ -151,18 +153,11 @@ def predict_walk(
 def _model_request(
     slip: str | None,
     model: ModelName,
-    thesis: RuleName,
     ground: PathLike | None,
     robot: PathLike | None,
     band: BandRequest,
 ) -> ModelRequest:
-    """Return the options of the model; raise `SettingsError` for invalid ones."""
-    try:
-        return ModelRequest(
-            slip, model, thesis=thesis, ground=optional(ground), robot=optional(robot), band=band
-        )
-    except BadParameter as error:
-        raise SettingsError(error.message, key="thesis") from error
+    return ModelRequest(slip, model, ground=optional(ground), robot=optional(robot), band=band)
 
 
 def _walk_result(walked: Walked, folder: Path, draws: int) -> WalkResult:

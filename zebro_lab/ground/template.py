@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Write a commented `ground.toml`, as a template for editing."""
+"""A commented `ground.toml`, as a template for editing."""
 
-from pathlib import Path
 from typing import Final
-
-from zebro_lab.files.atomic import atomic_write_text
-from zebro_lab.files.errors import AlreadyExists
 
 TEMPLATE: Final = """\
 # Ground of a walk: zebro-lab walk --ground {name} --slip thesis --duration 20 --figures
@@ -20,23 +16,3 @@ slope_deg = [0.0, 0.0]
 # distance of its places; origin: x and y of the lower left one; unit: m by default.
 # heights = {{ file = "h.csv", step = 0.005, origin = [-0.5, -0.5], unit = "mm" }}
 """
-
-
-def write_ground_template(file: Path, *, force: bool = False) -> Path:
-    """Write a commented `ground.toml` of level ground, with every key beside an example.
-
-    Args:
-        file: File to write.
-        force: Whether to replace an existing file.
-
-    Raises:
-        AlreadyExists: The file exists, and `force` is not set; or it is a folder.
-        OSError: The file cannot be written.
-    """
-    if file.is_dir():
-        raise AlreadyExists(f"{file} is a folder; name the file to write, such as ground.toml")
-    if file.exists() and not force:
-        raise AlreadyExists(
-            f"{file} exists already; edit it, replace it with --force, or choose another file name"
-        )
-    return atomic_write_text(file, TEMPLATE.format(name=file.name))

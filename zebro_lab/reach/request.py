@@ -12,7 +12,6 @@ from model.walk.goal import Goal
 from zebro_lab.terminal.limits import Limits
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.walk.request import (
-    ArcOption,
     GroundOption,
     ModelRequest,
     RobotOption,
@@ -137,7 +136,6 @@ class ReachRequest:
     slip: SlipOption = None
     stepping: SteppingRequest = field(default_factory=SteppingRequest)
     robot: RobotOption = None
-    arc_deg: ArcOption = None
     dt: StepOption = None
     ground: GroundOption = None
     form: FormatOption = "png"
@@ -158,6 +156,6 @@ class ReachRequest:
     def model(self) -> ModelRequest:
         """The model "dynamics" with its options."""
         return ModelRequest(
-            slip=self.slip, robot=self.robot, arc_deg=self.arc_deg, dt=self.dt,
+            slip=self.slip, robot=self.robot, dt=self.dt,
             ground=self.ground,
         )  # fmt: skip

@@ -180,7 +180,7 @@ def _walked(
 
 def _options(request: ReachRequest) -> str:
     """Return the options with which `walk` walks a program as it was planned."""
-    given = {"--slip": request.slip, "--robot": request.robot, "--arc-deg": request.arc_deg,
+    given = {"--slip": request.slip, "--robot": request.robot,
              "--dt": request.dt, "--ground": request.ground}  # fmt: skip
     return shlex.join(
         word for name, value in given.items() if value is not None for word in (name, str(value))

@@ -76,7 +76,7 @@ def read_robot_file(file: Path) -> RobotFile:
             improbable length or mass without a unit, or a marker without position, or no robot can
             have these values.
     """
-    advice = f"zebro-lab walk --write-robot {file} creates a {ROBOT_FILE} to edit"
+    advice = f"zebro-lab init {file} --kind robot writes a {ROBOT_FILE} to edit"
     top = read_settings(file, advice=advice)
     legs = top.table("legs")
     described = RobotFile(

@@ -4,6 +4,8 @@
 from typing import Final
 
 REMOVED: Final[dict[str, str]] = {
+    "--arc-deg": "Write arc_deg into a robot.toml (zebro-lab init robot.toml --kind robot), and "
+    "give it by --robot.",
     "--automaton": "The model thesis takes the rule of its listing for tripods, and contact "
     "detection for other gaits; --thesis text takes Table 3-1's rule.",
     "--contacts-least": "States shorter than 10 ms are joined to the next; path.csv has them.",
@@ -32,6 +34,9 @@ REMOVED: Final[dict[str, str]] = {
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "predict --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
     "--walks fits them to tracked walks.",
+    "predict --thesis": "Leg angles are walked by the listing of the thesis's model; gaits by its "
+    "text too, walk --thesis text.",
+    "predict --threads": "Draws are walked on all cores of this machine; leave the option out.",
     "rig check --zero-sd": "The zero of the load cell counts with 0.1 N; leave the option out.",
     "rig run --adaptive": "Measure in rounds by rig run, calibrate-slip and rig suggest in turn, "
     "as the shell loop in docs/experiments.md does.",
@@ -65,6 +70,8 @@ REMOVED: Final[dict[str, str]] = {
     "track --workers": "Photographs are spread over two processes; leave the option out.",
     "walk --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
     "--walks fits them to tracked walks.",
+    "walk --threads": "Draws are walked on all cores of this machine; leave the option out.",
+    "walk --write-robot": "Write a robot.toml by zebro-lab init robot.toml --kind robot.",
 }
 """What to use instead, a sentence, by "COMMAND", "COMMAND --option", or "--option" of any command.
 

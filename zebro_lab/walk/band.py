@@ -41,7 +41,7 @@ def band_settings(request: BandRequest, informed: InformedLegs | None) -> dict[s
     if informed is not None:
         factor = 1.0 if informed.posterior.prior.lateral_sd == 0 else None
     options = asdict(request)
-    del options["workers"]
+    del options["scheduler"]
     return {**options, "anisotropy": factor, "spread": asdict(ModelSpread())}
 
 

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab walk`: simulate a gait; `zebro-lab predict LEGLOG`: from measured leg angles."""
 
-from pathlib import Path
-from typing import Annotated
-
 import typer
 
 from zebro_lab.terminal.output import TEXT, Output
@@ -15,7 +12,7 @@ Examples:
 
 zebro-lab walk --gait tripod --steering 1.3 --slip thesis --duration 25 --figures
 
-zebro-lab walk --touchdown-deg 50,37.8 --liftoff-deg 130,138 --arc-deg 200 --slip coulomb:0.38
+zebro-lab walk --touchdown-deg 50,37.8 --liftoff-deg 130,138 --slip coulomb:0.38
 --duration 30 --out measured-angles
 
 zebro-lab walk --gait suriana --tau-turn 0.1 --model thesis --slip thesis --duration 4.8 --animate
@@ -27,8 +24,6 @@ zebro-lab walk --gait "{1,4} < {2,5} < {3,6}" --tau-turn 0.1 --slip thesis --dur
 zebro-lab walk --gait tripod --steering 1.3 --slip calibration --duration 25 --draws 300
 
 zebro-lab walk program.toml --slip thesis --figures
-
-zebro-lab walk --write-robot robot.toml
 """
 
 PREDICT_EPILOG = """
@@ -38,7 +33,7 @@ zebro-lab predict legs.csv --slip calibration --out prediction --figures
 
 zebro-lab predict legs.csv --slip calibration --draws 500 --out prediction
 
-zebro-lab predict legs.csv --columns legs.toml --slip coulomb:0.38 --arc-deg 200 --out prediction
+zebro-lab predict legs.csv --columns legs.toml --slip coulomb:0.38 --out prediction
 
 zebro-lab predict legs.csv --slip calibration --draws 5000 --scheduler tcp://127.0.0.1:8786
 
@@ -49,29 +44,20 @@ Draws are the same on this machine's cores and on a Dask cluster. --scheduler ne
 "cluster"; whoever reaches a scheduler can run any program on its workers: docs/cluster.md.
 """
 
-WriteRobot = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Write a robot.toml to edit, and exit.")
-]
-
 
 @request_command(first=("program", "name", "duration", "slip", "out"))
-def walk(request: WalkRequest, write_robot: WriteRobot = None, output: Output = TEXT) -> None:
+def walk(request: WalkRequest, output: Output = TEXT) -> None:
     """Simulate a gait, or a program of several, and write path.csv, a band, pictures and a film."""
     from zebro_lab.walk import stage
     from zebro_lab.walk.screen import run_and_report
 
-    if write_robot is not None:
-        file = stage.write_robot(write_robot, request.model)
-        output.say(f"wrote {file}")
-        output.document("walk", {"written": [file]})
-        return
     if request.duration is None and request.program is None:
         raise typer.BadParameter("missing: the duration of the walk [s]", param_hint="'--duration'")
     request.require_slip()
     run_and_report("walk", lambda watcher: stage.walk(request, watcher), request.out, output)
 
 
-@request_command(first=("log", "out", "slip", "model", "robot", "arc_deg"))
+@request_command(first=("log", "out", "slip", "model", "robot"))
 def predict(request: PredictRequest, output: Output = TEXT) -> None:
     """Predict the path from leg angles: FOLDER/path.csv, a band, pictures and an animation."""
     from zebro_lab.walk import predict_stage

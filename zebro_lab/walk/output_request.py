@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Options of what a walk writes beside its path: band, pictures and contact states."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Annotated
 
 from typer import BadParameter, Option
@@ -14,7 +14,7 @@ from zebro_lab.terminal.picture_options import (
     parse_instants,
     parse_window,
 )
-from zebro_lab.workers import WorkersRequest
+from zebro_lab.workers import SchedulerOption, WorkersRequest
 
 
 @dataclass(frozen=True)
@@ -37,21 +37,27 @@ class BandRequest:
             "sqrt(12), or 0.3 for angles that are not in encoder steps.",
         ),
     ] = None
-    workers: WorkersRequest = field(default_factory=WorkersRequest)
+    scheduler: SchedulerOption = None
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for one or negative draws, their negative sd, or none to share."""
+        _ = self.workers  # checks the address
         if self.draws < 2 and self.draws != 0:
             raise SettingsError(
                 f"is {self.draws}; expected 2 or more, or 0 for no band", key="--draws"
             )
         if self.draws and (self.offset_sd_deg or 0.0) < 0:
             raise SettingsError("expected 0 or more", key="--offset-sd-deg")
-        if self.workers.scheduler is not None and not self.draws:
+        if self.scheduler is not None and not self.draws:
             raise SettingsError(
                 "hands the draws of a band to a cluster; give --draws too, or leave it out",
                 key="--scheduler",
             )
+
+    @property
+    def workers(self) -> WorkersRequest:
+        """Where draws are walked: the scheduler's workers, or all cores of this machine."""
+        return WorkersRequest(scheduler=self.scheduler)
 
 
 @dataclass(frozen=True)

@@ -36,11 +36,6 @@ SlipOption: TypeAlias = Annotated[
 RobotOption: TypeAlias = Annotated[
     Path | None, Option(metavar="FILE", help="robot.toml; default: the thesis's robot.")
 ]
-ArcOption: TypeAlias = Annotated[
-    float | None,
-    Option(metavar="DEG", help="Arc of the legs [deg]; default: the robot's."),
-    Limits(least=90, below=360),
-]
 StepOption: TypeAlias = Annotated[
     float | None,
     Option(
@@ -71,15 +66,7 @@ class ModelRequest:
             "with its errors; no-slip: exact kinematics; no-slip-simple: wheels."
         ),
     ] = "dynamics"
-    thesis: Annotated[
-        RuleName,
-        Option(
-            help="What --model thesis follows where they differ. listing: contacts by A.32, and "
-            "each change sets the body's height; text: contacts by Table 3-1, and the body sinks."
-        ),
-    ] = "listing"
     robot: RobotOption = None
-    arc_deg: ArcOption = None
     dt: StepOption = None
     ground: GroundOption = None
     band: BandRequest = field(default_factory=BandRequest)
@@ -98,18 +85,12 @@ class ModelRequest:
         Raises:
             SettingsError: A `coulomb:…` is no friction law, the step is too long, or a ground is
                 given for a model that walks on level ground only.
-            BadParameter: What the thesis's model follows is given for another one, or a window of
-                time without figures to draw.
+            BadParameter: A window of time is given without figures to draw.
         """
         pictures = self.pictures
         if pictures.window is not None and not (pictures.figures or self.contact.contacts):
             raise BadParameter(
                 "says what figures show; give --figures or --contacts too", param_hint="'--window'"
-            )
-        if self.thesis != "listing" and self.model != "thesis":
-            raise BadParameter(
-                f"is of the thesis's model, not of '{self.model}': give --model thesis too",
-                param_hint="'--thesis'",
             )
         if self.slip is not None:
             coulomb_numbers(self.slip)
@@ -153,6 +134,13 @@ class WalkRequest:
     ] = None
     out: Annotated[Path, Option(metavar="DIR", help="Walk folder to write.")] = Path("walk")
     model: ModelRequest = field(default_factory=ModelRequest)
+    thesis: Annotated[
+        RuleName,
+        Option(
+            help="What --model thesis follows where they differ. listing: contacts by A.32, and "
+            "each change sets the body's height; text: contacts by Table 3-1, and the body sinks."
+        ),
+    ] = "listing"
     program: Annotated[
         Path | None,
         Argument(
@@ -162,7 +150,12 @@ class WalkRequest:
     ] = None  # fmt: skip
 
     def __post_init__(self) -> None:
-        """Raise `BadParameter` for options of a gait beside a program."""
+        """Raise `BadParameter` for options of a gait beside a program, or of another model."""
+        if self.thesis != "listing" and self.model.model != "thesis":
+            raise BadParameter(
+                f"is of the thesis's model, not of '{self.model.model}': give --model thesis too",
+                param_hint="'--thesis'",
+            )
         if self.program is None:
             return
         given = self.gait.given()

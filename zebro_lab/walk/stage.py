@@ -3,20 +3,18 @@
 
 from concurrent.futures import Executor
 from dataclasses import replace
-from pathlib import Path
 
 from model.progress import Watcher
-from zebro_lab.files.atomic import atomic_write_text
-from zebro_lab.files.errors import AlreadyExists, SettingsError
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.robot.gait_argument import make_gait
-from zebro_lab.robot.robot_file import RobotFile, render_robot_file
+from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.asked import AskedWalk
 from zebro_lab.walk.band import predict_band
 from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.program_stage import laid_out
-from zebro_lab.walk.request import ModelRequest, WalkRequest
+from zebro_lab.walk.request import WalkRequest
 from zebro_lab.walk.shown_time import require_shown_times
 from zebro_lab.walk.walking import (
     Walked,
@@ -62,7 +60,7 @@ def _walk(request: WalkRequest, watcher: Watcher, executor: Executor | None) -> 
     require_shown_times(pictures.snapshots, pictures.window, 0.0, duration)
     walked = walk_with(
         request.model, described, asked.reference, duration=duration, what=asked.what,
-        direction=asked.direction, ground=ground,
+        direction=asked.direction, rule=request.thesis, ground=ground,
         notes=(*asked.notes, *speed_warnings(asked.reference, described.leg_speed_limit)),
     )  # fmt: skip
     if request.model.band.draws:
@@ -95,23 +93,3 @@ def _gait(request: WalkRequest, described: RobotFile) -> AskedWalk:
         gait.reference, request.duration, gait.what, settings, direction=gait.direction,
         schedule=gait.schedule,
     )  # fmt: skip
-
-
-def write_robot(file: Path, request: ModelRequest) -> Path:
-    """Write the robot of a request as a commented `robot.toml`, as a template for editing.
-
-    Args:
-        file: File to write; it must not exist.
-        request: Options `--robot` and `--arc-deg`; without them the thesis's robot is written.
-
-    Returns:
-        The file written.
-
-    Raises:
-        AlreadyExists: The file to write exists.
-        NotFound: The file of `--robot` does not exist.
-        SettingsError: The robot file or the arc has an invalid value.
-    """
-    if file.exists():
-        raise AlreadyExists(f"{file} exists already; edit it, or choose another file name")
-    return atomic_write_text(file, render_robot_file(robot_of(request)))

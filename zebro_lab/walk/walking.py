@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from model.arrays import Array
-from model.errors import DefinitionMismatch, DomainError
+from model.errors import DefinitionMismatch
 from model.gait import CyclicReference, SampledReference
 from model.gait.direction import Direction
 from model.gait.events import EventSystem
@@ -20,7 +20,14 @@ from model.progress import Watcher
 from model.robot import Robot
 from model.walk.ground import FLAT, Ground, beyond_grid
 from model.walk.path import WalkPath
-from model.walk_models import MODELS, ModelRun, WalkModel, decides_contact, is_kinematic
+from model.walk_models import (
+    MODELS,
+    ModelRun,
+    Rule,
+    WalkModel,
+    decides_contact,
+    is_kinematic,
+)
 from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.ground.ground_file import GroundFile, read_ground
@@ -118,20 +125,13 @@ def with_contacts(walked: Walked, request: ContactRequest, watcher: Watcher) -> 
 
 
 def robot_of(request: ModelRequest) -> RobotFile:
-    """Return the robot of `--robot`, else the thesis's robot, with the arc `--arc-deg` if given.
+    """Return the robot of `--robot`, else the thesis's robot.
 
     Raises:
         NotFound: The `robot.toml` of the request does not exist.
-        SettingsError: The file or the arc has an invalid value.
+        SettingsError: The file has an invalid value.
     """
-    described = RobotFile() if request.robot is None else read_robot_file(request.robot)
-    if request.arc_deg is None:
-        return described
-    try:
-        robot = replace(described.robot, leg_arc=float(np.radians(request.arc_deg)))
-    except DomainError as error:
-        raise SettingsError(str(error), key="--arc-deg") from error
-    return replace(described, robot=robot)
+    return RobotFile() if request.robot is None else read_robot_file(request.robot)
 
 
 def ground_of(request: ModelRequest) -> GroundFile | None:
@@ -151,6 +151,7 @@ def walk_with(
     duration: float,
     what: str,
     direction: Direction = "left",
+    rule: Rule = "listing",
     logs: tuple[Path, ...] = (),
     angles_are_true: bool = False,
     ground: GroundFile | None = None,
@@ -165,6 +166,7 @@ def walk_with(
         duration: Duration of the walk [s].
         what: Name of the gait or log, for titles.
         direction: Side the gait turns to.
+        rule: What the thesis's model follows where its listing and its text differ.
         logs: Files of the leg log, by whose hash a walk that was fitted is recognised.
         angles_are_true: Whether the angles are exact, as in a walk folder: then only the floor of
             fitted walks applies, not their leg offsets.
@@ -187,7 +189,7 @@ def walk_with(
     dt = time_step(request, model, informed)
     _require_steps(duration, dt)
     run = ModelRun(
-        described.robot, reference, slip, duration, dt, direction, request.thesis,
+        described.robot, reference, slip, duration, dt, direction, rule,
         None if informed is None else informed.middle, FLAT if ground is None else ground.ground,
     )  # fmt: skip
     path = _run(run, model, slip)
@@ -197,7 +199,7 @@ def walk_with(
         notes = (*notes, *ground_notes(ground, path, described.robot))
     grip = "" if slip is None else f", slip {slip.title}"
     how = " (kinematics by contact detection)" if kinematic else (
-        " (by the thesis's text)" if request.thesis == "text" else ""
+        " (by the thesis's text)" if rule == "text" else ""
     )  # fmt: skip
     on = "" if request.ground is None else f", on {request.ground.name}"
     title = f"{what}, model '{model.name}'{how}{grip}{on}"

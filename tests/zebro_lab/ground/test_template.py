@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from model.walk.ground import is_level
+from zebro_lab.exchange.init_stage import write_template
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.ground.ground_file import read_ground
-from zebro_lab.ground.template import TEMPLATE, write_ground_template
+from zebro_lab.ground.template import TEMPLATE
+from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 
 
 def test_walk_takes_a_written_ground_as_it_is(run_command, tmp_path):
@@ -52,10 +54,18 @@ def test_an_existing_file_is_kept_unless_it_is_forced(run_command, tmp_path):
 
 def test_a_folder_is_no_file_to_write(tmp_path):
     with pytest.raises(AlreadyExists, match="is a folder; name the file to write"):
-        write_ground_template(tmp_path)
+        write_template(tmp_path, "ground")
 
 
 def test_a_sheet_of_a_ground_is_refused(run_command, tmp_path):
     ended = run_command("init", tmp_path / "g.toml", "--kind", "ground", "--sheet", "a")
     assert ended.code == 2
     assert "a ground has none" in ended.err
+
+
+def test_a_written_robot_is_the_thesis_s_robot(run_command, tmp_path):
+    file = tmp_path / "robot.toml"
+    ended = run_command("init", file, "--kind", "robot")
+    assert ended.code == 0, ended.err
+    assert f"walk --robot {file}" in " ".join(ended.out.split())
+    assert read_robot_file(file).robot.mass == RobotFile().robot.mass

@@ -158,7 +158,7 @@ def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run_command, t
     data, robot = tmp_path / "data", tmp_path / "robot.toml"
     run_command("record", "--zebro", "sim", "--duration", 1.5, "--label", "walk", "--data", data)
     (folder,) = data.iterdir()
-    run_command("walk", "--write-robot", robot)
+    run_command("init", robot, "--kind", "robot")
     plain = robot.read_text()
     predicted = []
     for offset in ("0.0", "4.0"):

@@ -134,5 +134,5 @@ def test_an_improbable_size_with_its_unit_is_taken(read):
 
 
 def test_missing_file_says_how_to_start_one(tmp_path):
-    with pytest.raises(NotFound, match="--write-robot"):
+    with pytest.raises(NotFound, match="--kind robot"):
         read_robot_file(tmp_path / "robot.toml")

@@ -41,12 +41,6 @@ def test_walk_in_a_pipe_prints_gait_and_end_and_writes_its_folder(tmp_path):
     assert json.loads((out / "manifest.json").read_text())["kind"] == "walk"
 
 
-def test_robot_file_is_started(run_command, tmp_path):
-    code, out, _ = run_command("walk", "--write-robot", tmp_path / "robot.toml", "--arc-deg", 200)
-    assert (code, out) == (0, f"wrote {tmp_path / 'robot.toml'}\n")
-    assert "arc_deg = 200.0" in (tmp_path / "robot.toml").read_text()
-
-
 ERRORS = {
     "steering without solution": (("--steering", 9), "steering factor 9 has no solution"),
     "lift-off before touchdown": (("--liftoff-deg", 40), "lift off at 40 degrees"),

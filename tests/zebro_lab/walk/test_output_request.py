@@ -19,10 +19,10 @@ def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
 
 
 def test_a_scheduler_without_draws_to_share_is_wrong_usage():
-    workers = WorkersRequest(scheduler="tcp://127.0.0.1:8786")
-    assert BandRequest(2, workers=workers).workers == workers
+    address = "tcp://127.0.0.1:8786"
+    assert BandRequest(2, scheduler=address).workers == WorkersRequest(scheduler=address)
     with pytest.raises(SettingsError, match="--scheduler: hands the draws of a band"):
-        BandRequest(workers=workers)
+        BandRequest(scheduler=address)
 
 
 def test_times_of_snapshots_without_figures_are_refused():

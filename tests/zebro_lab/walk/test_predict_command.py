@@ -29,10 +29,10 @@ def test_leg_log_with_a_gap_is_one_line_with_its_place(run_command, tmp_path):
 
 def test_options_reach_the_prediction_and_its_folder(run_command, tmp_path):
     log = write_log(tmp_path)
-    (tmp_path / "robot.toml").write_text("mass = 3.0\n")
+    (tmp_path / "robot.toml").write_text("mass = 3.0\n[legs]\narc_deg = 200\n")
     out = tmp_path / "out"
     ended = run_command("predict", log, "--model", "no-slip-simple", "--dt", "0.02", "--robot",
-                        tmp_path / "robot.toml", "--arc-deg", 200, "--direction", "right",
+                        tmp_path / "robot.toml", "--direction", "right",
                         "--out", out)  # fmt: skip
     assert (ended.code, ended.err) == (0, "")
     assert "SIMULATED walk: " in ended.out

@@ -85,11 +85,13 @@ def test_log_of_the_virtual_world_leads_where_its_robot_went(shared, tmp_path):
         + "".join(f'theta{leg} = "th{leg}"\n' for leg in range(1, 7))
     )
     truth = pd.read_csv(shared / "virtual-world" / "walks" / name)
+    robot = tmp_path / "robot.toml"
+    robot.write_text("[legs]\narc_deg = 200\n")
     walked = predict(
         PredictRequest(
             shared / "virtual-world" / "walks" / name,
             tmp_path / "out",
-            model=ModelRequest(slip="coulomb:0.38:0.001", arc_deg=200.0),
+            model=ModelRequest(slip="coulomb:0.38:0.001", robot=robot),
             columns=columns,
         ),
         Nobody(),

@@ -29,7 +29,7 @@ def test_what_the_thesis_model_follows_is_refused_with_other_models():
     for model in MODELS:
         if model != "thesis":
             with pytest.raises(typer.BadParameter, match="give --model thesis too"):
-                ModelRequest("thesis", model, thesis="text")
+                WalkRequest(duration=1.0, model=ModelRequest("thesis", model), thesis="text")
 
 
 @pytest.mark.parametrize(

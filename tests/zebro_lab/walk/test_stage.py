@@ -10,13 +10,11 @@ from model.errors import DomainError
 from model.walk_models import MODELS
 from support.walk_requests import request
 from support.watchers import Impatient, Nobody
-from zebro_lab.files.errors import AlreadyExists, SettingsError
-from zebro_lab.robot.robot_file import read_robot_file
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.folder import PICTURES, read_draws, read_walk, read_walk_manifest
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.output_request import BandRequest, PictureRequest
-from zebro_lab.walk.request import ModelRequest
-from zebro_lab.walk.stage import walk, write_robot
+from zebro_lab.walk.stage import walk
 from zebro_lab.walk.summary import summarise
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
@@ -51,13 +49,6 @@ def test_every_model_walks_and_its_path_is_read_back(model, tmp_path):
     assert manifest["settings"]["dt"] == walked.dt == MODELS[model].dt
     assert summarise(path).radius > 0
     assert (", slip " in walked.title) == MODELS[model].slips
-
-
-def test_arc_is_that_asked_for(tmp_path):
-    walked = walk(request(tmp_path / "out", arc_deg=200.0), Nobody())
-    assert walked.described.robot.leg_arc == pytest.approx(np.radians(200))
-    with pytest.raises(SettingsError, match="--arc-deg"):
-        walk(request(tmp_path / "bad", arc_deg=20.0), Nobody())
 
 
 def test_pictures_come_when_asked_for_and_say_simulated(tmp_path):
@@ -106,10 +97,3 @@ def test_a_walk_of_more_steps_than_memory_holds_is_refused(model, tmp_path):
     with pytest.raises(SettingsError, match=r"2e-06 s is 2e\+06 steps; .* lengthen --dt"):
         walk(request(tmp_path / "out", model=model, dt=2e-6), Nobody())
     assert not (tmp_path / "out").exists()
-
-
-def test_robot_written_out_is_the_robot_asked_for(tmp_path):
-    file = write_robot(tmp_path / "robot.toml", ModelRequest(arc_deg=200.0))
-    assert np.degrees(read_robot_file(file).robot.leg_arc) == pytest.approx(200)
-    with pytest.raises(AlreadyExists, match="edit it, or choose another"):
-        write_robot(file, ModelRequest())

@@ -58,8 +58,8 @@ def test_the_written_angles_link_hip_and_contact(tmp_path):
 
 
 def test_a_walk_by_the_thesis_s_model_has_them_in_its_folder(tmp_path):
-    request = ModelRequest("thesis", "thesis", thesis="text")
-    asked = WalkRequest(GaitRequest(steering=1.2), 0.5, tmp_path / "out", request)
+    request = ModelRequest("thesis", "thesis")
+    asked = WalkRequest(GaitRequest(steering=1.2), 0.5, tmp_path / "out", request, thesis="text")
     walked = walk(asked, Nobody())
     assert "model 'thesis' (by the thesis's text)" in walked.title
     manifest = json.loads((tmp_path / "out" / "manifest.json").read_text())

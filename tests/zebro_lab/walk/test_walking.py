@@ -12,7 +12,7 @@ from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.request import ModelRequest
-from zebro_lab.walk.walking import MOST_STEPS, robot_of, walk_with
+from zebro_lab.walk.walking import MOST_STEPS, walk_with
 
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.0), 2.0)
 
@@ -52,10 +52,3 @@ def test_steps_that_make_no_walk_or_too_long_a_one_are_an_error(options):
 
 def test_a_step_longer_than_the_model_s_is_noted():
     assert any("legs slip too much" in n for n in walked(slip="coulomb:0.4", dt=0.005).notes)
-
-
-def test_an_arc_in_place_of_the_robot_s_own():
-    robot = robot_of(ModelRequest(arc_deg=200.0)).robot
-    assert robot.leg_arc == pytest.approx(np.radians(200.0))
-    with pytest.raises(SettingsError, match="--arc-deg"):
-        robot_of(ModelRequest(arc_deg=10.0))

@@ -108,7 +108,7 @@ def engine_ground(case: Case) -> tuple[Heights, Friction]:
     )
     if case.seed is not None:
         heights = heights._replace(x=-HALF, y=-HALF, step=GRID)
-    return heights, Friction(FRICTION, 1e-3, np.zeros((0, 5)))
+    return heights, Friction(FRICTION, 1e-3)
 
 
 def write_ground(case: Case, folder: Path) -> Path:

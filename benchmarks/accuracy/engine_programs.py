@@ -174,7 +174,7 @@ def compare(program: Program, folder: Path, finer: bool = False) -> Compared:
     """Walk a program by the command and by the engine, and compare."""
     table = walk_by_command(program, folder)
     t, theta = table["t"].to_numpy(), angles_on_file(table)
-    friction, end = Friction(program.friction, 1e-3, np.zeros((0, 5))), float(t[-1])
+    friction, end = Friction(program.friction, 1e-3), float(t[-1])
 
     def engine(settings: Settings) -> tuple[Motion, float]:
         """Return the motion by the engine, and how well it kept the leg angles [rad]."""

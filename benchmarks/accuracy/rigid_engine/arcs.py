@@ -18,14 +18,12 @@ PER_LEG = 2  # places at which a leg may touch at once: toe and arc, or arc and 
 N_SLOTS = N_CORNERS + N_LEGS * PER_LEG
 SAMPLES = 49  # of an arc; 3.8 degrees apart on a half circle
 NEAR = 0.002  # m above the ground; above it no contact is made
-REFINEMENTS = 20, 34  # golden sections between samples, to 1e-5 rad, and at edges to 1e-8 rad
-FACE = 0.001  # m along x of a step's face, which is not quite upright
-NO_STEPS = np.zeros(0)
+REFINEMENTS = 20  # golden sections between samples, to 1e-5 rad
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
 class Heights(NamedTuple):
-    """Height of the ground: a plane, steps across x, and a map on a square grid, added up.
+    """Height of the ground: a plane and a map on a square grid, added up.
 
     The map is bilinear between its points and constant beyond its edge.
 
@@ -35,11 +33,9 @@ class Heights(NamedTuple):
         step: Distance of rows and of columns [m].
         z: Heights, rows along x, columns along y, shape (m, n); one height is that of flat
             ground [m].
-        highest: Largest height of map and steps over the plane [m].
+        highest: Largest height of the map over the plane [m].
         rise_x: Rise of the plane for each metre of x [-].
         rise_y: The same of y [-].
-        edge: x of the upper edges of the steps, shape (k,) [m].
-        up: How much higher the ground is beyond each, negative for a step down, shape (k,) [m].
     """
 
     x: float
@@ -49,8 +45,6 @@ class Heights(NamedTuple):
     highest: float
     rise_x: float = 0.0
     rise_y: float = 0.0
-    edge: Array = NO_STEPS
-    up: Array = NO_STEPS
 
 
 FLAT = Heights(0.0, 0.0, 1.0, np.zeros((1, 1)), 0.0)
@@ -124,8 +118,6 @@ def _cell(heights, x, y):
 def height_at(heights, x, y):
     """Return the ground's height at a place [m]."""
     height = heights.rise_x * x + heights.rise_y * y
-    for k in range(len(heights.edge)):
-        height += heights.up[k] * _beyond(heights.edge[k], heights.up[k], x)
     if heights.z.size == 1:
         return height + heights.z[0, 0]
     i, j, a, b = _cell(heights, x, y)
@@ -136,19 +128,9 @@ def height_at(heights, x, y):
 
 
 @numba.njit(cache=True)
-def _beyond(edge, up, x):
-    """Return which share of a step is below x: 0 before its face, 1 beyond; the edge is on top."""
-    foot = edge - FACE if up > 0 else edge
-    return min(max((x - foot) / FACE, 0.0), 1.0)
-
-
-@numba.njit(cache=True)
 def normal_at(heights, x, y):
     """Return the x, y and z of the ground's unit normal at a place [-]."""
     slope_x, slope_y = heights.rise_x, heights.rise_y
-    for k in range(len(heights.edge)):
-        if 0.0 < _beyond(heights.edge[k], heights.up[k], x) < 1.0:
-            slope_x += heights.up[k] / FACE
     if heights.z.size > 1:
         i, j, a, b = _cell(heights, x, y)
         z, in_x, in_y = heights.z, min(max(a, 0.0), 1.0), min(max(b, 0.0), 1.0)
@@ -177,7 +159,7 @@ def _lowest_between(low, high, heights, arc):
     a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     at_a = _clearance(np.cos(a), np.sin(a), heights, arc)
     at_b = _clearance(np.cos(b), np.sin(b), heights, arc)
-    for _ in range(REFINEMENTS[1 if len(heights.edge) else 0]):
+    for _ in range(REFINEMENTS):
         if at_a < at_b:
             high, b, at_b = b, a, at_a
             a = high - GOLDEN * (high - low)

@@ -42,7 +42,7 @@ def reference(one: engine_walks.EngineWalk) -> Motion:
 def by_engine(one: engine_walks.EngineWalk, settings: Settings = SETTINGS) -> EnginePath:
     """Walk the log of a reference walk by our engine."""
     theta = one.truth[[f"th{i}" for i in LEGS]].to_numpy()
-    friction = Friction(one.friction, 1e-3, np.zeros((0, 5)))
+    friction = Friction(one.friction, 1e-3)
     return walk(one.robot, one.truth["t"].to_numpy(), theta, friction, settings=settings)
 
 

@@ -28,18 +28,15 @@ PARKED = -100.0  # m; height of planes whose bead is not near the ground
 
 
 class Friction(NamedTuple):
-    """Coulomb friction, smooth about rest, F = mu N v / sqrt(v^2 + v0^2), by place.
+    """Coulomb friction, smooth about rest, F = mu N v / sqrt(v^2 + v0^2).
 
     Attributes:
-        mu: Friction coefficient where no area lies [-].
+        mu: Friction coefficient [-].
         v0: Slip velocity at which friction is 71 % of the full one [m/s].
-        areas: Rectangles with other coefficients: x from, x to, y from, y to [m] and mu, the last
-            one that holds a place counts, shape (k, 5).
     """
 
     mu: float
     v0: float
-    areas: Array
 
 
 class Views(NamedTuple):
@@ -96,8 +93,7 @@ def prepare(views, theta, speed, shape, heights, friction, bead, places, scratch
             if leg >= 0:
                 turn_into(rotation, shape.hips[leg], hip)
                 v = v + speed[leg] * cross(rotation[:, 1], arm - hip)
-            force = _friction(friction, places.point[slot], v, places.normal[slot],
-                              views.loads[slot])  # fmt: skip
+            force = _friction(friction, v, places.normal[slot], views.loads[slot])
             views.wrench[:3] += force
             views.wrench[3:] += cross(arm, force)
 
@@ -143,15 +139,10 @@ def _place(slot, leg, theta, rotation, bead, places, views):
 
 
 @numba.njit(cache=True)
-def _friction(friction, point, v, normal, load):
+def _friction(friction, v, normal, load):
     """Return the friction force on a contact, against its sliding velocity, shape (3,) [N]."""
-    mu = friction.mu
-    for k in range(len(friction.areas)):
-        x0, x1, y0, y1, its = friction.areas[k]
-        if x0 <= point[0] < x1 and y0 <= point[1] < y1:
-            mu = its
     slip = v - (v @ normal) * normal
-    return -mu * load / np.sqrt(slip @ slip + friction.v0**2) * slip
+    return -friction.mu * load / np.sqrt(slip @ slip + friction.v0**2) * slip
 
 
 @cache

@@ -19,8 +19,15 @@ UP = np.radians(270.0)  # a leg that is in the air
 LEVEL = np.eye(3)
 BUMPY = FLAT._replace(
     x=-0.5, y=-0.5, step=0.1, z=np.random.default_rng(1).normal(0, 0.01, (11, 11)), highest=0.04,
-    rise_x=0.1, rise_y=-0.05, edge=np.array([0.02, 0.2]), up=np.array([0.01, -0.02]),
+    rise_x=0.1, rise_y=-0.05,
 )  # fmt: skip
+
+
+def step_up(edge, rise):
+    """Return a map of level ground that is higher from an edge across x on; its face is 1 mm."""
+    x = edge + 0.001 * np.arange(-200, 201)
+    z = np.where(np.arange(401) < 200, 0.0, rise)[:, None] * np.ones(2)
+    return FLAT._replace(x=x[0], y=-0.1, step=0.001, z=z, highest=rise)
 
 
 def touched(theta, heights, z):
@@ -51,9 +58,8 @@ def test_a_leg_beyond_the_vertical_stands_on_its_toe():
 def test_a_leg_on_an_edge_is_pushed_towards_the_centre_of_its_arc():
     theta, ahead = np.radians(30.0), 0.6 * R
     edge = R * np.cos(theta) + ahead
-    step = FLAT._replace(edge=np.array([edge]), up=np.array([0.05]), highest=0.05)
     centre = np.array([R * np.cos(theta), 0.0, 0.05 + 0.8 * R])
-    ((point, normal),) = touched(theta, step, centre[2] + R * np.sin(theta))
+    ((point, normal),) = touched(theta, step_up(edge, 0.05), centre[2] + R * np.sin(theta))
     np.testing.assert_allclose(point, [edge, 0.0, 0.05], atol=1e-6)
     np.testing.assert_allclose(normal, (centre - point) / R, atol=1e-4)
 
@@ -61,9 +67,7 @@ def test_a_leg_on_an_edge_is_pushed_towards_the_centre_of_its_arc():
 def test_a_leg_touches_at_two_places_at_the_foot_of_a_step():
     theta = np.radians(30.0)
     rise = 0.2 * R  # of an edge 0.6 r ahead: as high as the arc there
-    step = FLAT._replace(
-        edge=np.array([R * np.cos(theta) + 0.6 * R]), up=np.array([rise]), highest=rise
-    )
+    step = step_up(R * np.cos(theta) + 0.6 * R, rise)
     points = [point for point, _ in touched(theta, step, R * (1 + np.sin(theta)))]
     assert sorted(point[2] for point in points) == pytest.approx([0.0, rise], abs=1e-6)
 

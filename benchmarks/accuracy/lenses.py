@@ -57,7 +57,7 @@ PAIRS = 60
 
 def pinhole(lens: CameraCalibration) -> NDArray[np.float64]:
     """Return fx, fy, cx and cy of a calibrated lens, shape (4,) [px]."""
-    return lens.camera.matrix[[0, 1, 0, 1], [0, 1, 2, 2]]
+    return np.asarray(lens.camera.matrix[[0, 1, 0, 1], [0, 1, 2, 2]], np.float64)
 
 
 def drawn_camera(rng: np.random.Generator) -> SyntheticCamera:

@@ -144,7 +144,7 @@ def as_npz(**arrays: Any) -> bytes:
     return out.getvalue()
 
 
-def as_csv(separator: str = ",", **columns: Any) -> bytes:
+def as_csv(columns: Mapping[str, Any], separator: str = ",") -> bytes:
     """Spell columns as a table."""
     return pd.DataFrame(columns).to_csv(index=False, sep=separator).encode()
 
@@ -309,9 +309,9 @@ def of_tables() -> dict[str, Parser]:
     t = np.round(np.arange(25) * 0.01, 3)
     columns = {"t": t, "slip_ratio": t, "normal_force": 5.0 + t, "traction_force": t,
                "slip_definition": ["material"] * 25, "run": ["a"] * 25}  # fmt: skip
-    rig = [as_csv(separator, **columns) for separator in (",", ";", "\t")]
+    rig = [as_csv(columns, separator) for separator in (",", ";", "\t")]
     angles = {"t": t, **{name: (t * 3).round(4) for name in ANGLES}}
-    legs, track = as_csv(**angles), as_csv(t_s=t, x_m=t * 2, y_m=t * 0, yaw_rad=t)
+    legs, track = as_csv(angles), as_csv({"t_s": t, "x_m": t * 2, "y_m": t * 0, "yaw_rad": t})
     tum, kitti = (
         "".join(row.format(0.1 * k) for k in range(12)).encode()
         for row in ("{0:.4f} {0:.3f} 0 0 0 0 0 1\n", "1 0 0 {0:.3f} 0 1 0 0 0 0 1 0\n")

@@ -114,7 +114,7 @@ def read_line(page: str, text: str) -> Line:
 _WALK = "datasets/walk-sim"
 _RIG_TABLE = (
     "mkdir -p data && python -c \"import pandas as pd; from pathlib import Path; pd.concat("
-    "[pd.read_parquet(f) for f in sorted(Path('datasets/rig-sim').glob('*.parquet'))])"
+    "[pd.read_csv(f) for f in sorted(Path('datasets/rig-sim').glob('*.csv.gz'))])"
     ".to_csv('{}', index=False)\""
 )  # fmt: skip
 _SEEN = (
@@ -135,7 +135,7 @@ PREPARED = {
     "README.md": (_RIG_TABLE.format("data/bench.csv"), _LOGS, _TUM),
     "docs/calibration.md": (_RIG_TABLE.format("data/bench.csv"),),
     "docs/experiments.md": (
-        "mkdir fresh && cp datasets/rig-sim/*.parquet datasets/rig-sim/columns.toml fresh",
+        "mkdir fresh && cp datasets/rig-sim/*.csv.gz datasets/rig-sim/columns.toml fresh",
     ),
     "docs/recording.md": (
         _LOGS, _TUM, _RIG_TABLE.format("sweep.csv"),
@@ -147,7 +147,7 @@ PREPARED = {
         _LOGS, _TRACK, "calibrate-slip datasets/rig-sim --out calibration",
         "cp -r calibration calibration-tiles && cp -r calibration calibration-carpet",
         f"zebro-lab import --legs legs.csv --imu imu.csv --robot robot.toml {_TAKEN} --data new",
-        "mkdir data && mv new/* data/RUN && cp datasets/rig-sim/*.parquet "
+        "mkdir data && mv new/* data/RUN && cp datasets/rig-sim/*.csv.gz "
         "datasets/rig-sim/columns.toml data",
         f"zebro-lab track {_WALK}/photos --camera {_WALK}/camera.toml --floor {_WALK}/floor.toml "
         f"--robot robot.toml {_TAKEN} --run data/RUN",

@@ -8,11 +8,10 @@ Raises ImportError where NumPyro is missing: `make bench` installs it.
 
 import time
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
-import arviz as az
 import numpy as np
-import xarray as xr
+from arviz_stats.base import array_stats
 
 from benchmarks.speed.sampled import Sampled
 from model.arrays import Array
@@ -219,7 +218,6 @@ def nuts(fit: PreparedFit, *, seed: int) -> tuple[Sampled, float, float]:
     walk.run(walk.post_warmup_state.rng_key)
     z = np.asarray(walk.get_samples(group_by_chain=True))
     ended = time.perf_counter()
-    drawn = az.convert_to_dataset(z)
-    ess, r_hat = (cast("xr.Dataset", f(drawn)) for f in (az.ess, az.rhat))
-    found = Sampled(float(ess["x"].min()), ended - began, f"{float(r_hat['x'].max()):.3f}")
+    ess, r_hat = (f(z, chain_axis=0, draw_axis=1) for f in (array_stats.ess, array_stats.rhat))
+    found = Sampled(float(ess.min()), ended - began, f"{float(r_hat.max()):.3f}")
     return found, ended - warm, apart

@@ -4,6 +4,7 @@
 Everything follows from `SEED`: the load cell's errors are drawn first, the sweep after.
 """
 
+import gzip
 import hashlib
 import os
 import sys
@@ -12,8 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
+import pandas as pd
 
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
@@ -26,21 +26,13 @@ SEED = 2020
 PLAN = SweepPlan()
 SOURCE = "sim:rig-sweep"
 
-UNITS = {
-    "t": "s",
-    "omega_leg": "rad/s",
-    "omega_ground": "rad/s",
-    "normal_force": "N",
-    "traction_force": "N",
-    "run": "",
-}
 TYPES = {  # float32 rounds at 1e-6 of what a sensor's noise already blurs; time has no noise
-    "t": pa.float64(),
-    "omega_leg": pa.float32(),
-    "omega_ground": pa.float32(),
-    "normal_force": pa.float32(),
-    "traction_force": pa.float32(),
-    "run": pa.int16(),
+    "t": np.float64,
+    "omega_leg": np.float32,
+    "omega_ground": np.float32,
+    "normal_force": np.float32,
+    "traction_force": np.float32,
+    "run": np.int16,
 }
 
 
@@ -58,14 +50,15 @@ def simulate() -> tuple[SimulatedSweep, RigImperfections]:
     return sweep, imperfections
 
 
-def tables(sweep: SimulatedSweep) -> dict[str, pa.Table]:
+def tables(sweep: SimulatedSweep) -> dict[str, pd.DataFrame]:
     """Cut the log into one table a load, by file name."""
-    fields = [pa.field(name, kind, metadata={"unit": UNITS[name]}) for name, kind in TYPES.items()]
-    schema = pa.schema(fields, metadata={"source": SOURCE, "note": "simulated, not measured"})
-    whole = pa.table({name: sweep.table[name] for name in TYPES}).cast(schema)
+    rounded = {name: sweep.table[name].astype(kind) for name, kind in TYPES.items()}
+    whole = pd.DataFrame(
+        {name: x if name == "run" else x.astype(float) for name, x in rounded.items()}
+    )
     rows = len(PLAN.slips) * PLAN.n_samples
     return {
-        f"simulated_load_{load:05.2f}N.parquet": whole.slice(rows * position, rows)
+        f"simulated_load_{load:05.2f}N.csv.gz": whole[rows * position : rows * (position + 1)]
         for position, load in enumerate(PLAN.loads)
     }
 
@@ -96,13 +89,8 @@ def write(folder: Path) -> None:
     """
     sweep, imperfections = simulate()
     for name, table in tables(sweep).items():
-        sink = pa.BufferOutputStream()
-        splittable = [column for column in table.column_names if column != "run"]
-        pq.write_table(
-            table, sink, compression="zstd", compression_level=19,
-            use_dictionary=["run"], use_byte_stream_split=splittable,
-        )  # fmt: skip
-        _replace(folder / name, sink.getvalue().to_pybytes())
+        text = table.to_csv(index=False, lineterminator="\n")
+        _replace(folder / name, gzip.compress(text.encode(), mtime=0))
     _replace(folder / "truth.toml", truth(imperfections).encode())
     _replace(folder / "manifest.toml", manifest(folder).encode())
 

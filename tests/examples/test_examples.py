@@ -13,7 +13,7 @@ import pytest
 
 CHECKOUT = Path(__file__).parents[2]
 EXAMPLES = sorted((CHECKOUT / "examples").glob("*.py"))
-ONE_LOAD = "simulated_load_02.13N.parquet"
+ONE_LOAD = "simulated_load_02.13N.csv.gz"
 ARGUMENTS = {"calibrate.py": [ONE_LOAD, "slip_curve.png", "500"]}
 EVERY_RUN, EVERY_PHOTO = 5, 4
 """Of a load's runs and a walk's photographs every how many are in the tests' smaller datasets."""
@@ -53,8 +53,8 @@ def smaller(tmp_path, monkeypatch):
         if n % EVERY_PHOTO:
             photo.unlink()
     rig = CHECKOUT / "datasets" / "rig-sim"
-    table = pd.read_parquet(rig / ONE_LOAD)
-    table[table.run.isin(table.run.unique()[::EVERY_RUN])].to_parquet(tmp_path / ONE_LOAD)
+    table = pd.read_csv(rig / ONE_LOAD)
+    table[table.run.isin(table.run.unique()[::EVERY_RUN])].to_csv(tmp_path / ONE_LOAD, index=False)
     shutil.copy(rig / "columns.toml", tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path

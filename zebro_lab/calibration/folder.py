@@ -28,7 +28,7 @@ from zebro_lab.files.result_folder import ResultKind
 from zebro_lab.files.source_names import is_simulated
 
 if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
-    import arviz as az
+    from xarray import DataTree
 
     from model.bayes.calibration import Calibration
 
@@ -105,7 +105,7 @@ def write_tables(
     (folder / "summary.csv").write_text(summary_csv(calibration))
     if isinstance(calibration.comparison, LawScores):
         (folder / LAWS_CSV).write_text(laws_csv(calibration.comparison))
-    inference_data(calibration).to_netcdf(str(folder / POSTERIOR), engine="h5netcdf")
+    posterior_tree(calibration).to_netcdf(folder / POSTERIOR, engine="h5netcdf")
 
 
 def read_slip(path: Path) -> SlipCurve:
@@ -313,21 +313,23 @@ def summary_csv(calibration: "Calibration") -> str:
     return text.getvalue()
 
 
-def inference_data(calibration: "Calibration") -> "az.InferenceData":
-    """Convert a fit to ArviZ InferenceData, with one chain for each ensemble of walkers.
+def posterior_tree(calibration: "Calibration") -> "DataTree":
+    """Convert a fit to a `DataTree` as ArviZ has it, with one chain for each ensemble of walkers.
 
     Groups: `posterior`, draws of the free parameters; `sample_stats`, log density `lp`;
     `observed_data`, traction by block; `constant_data`, slip ratio, load, run index, number of
     samples and `BLOCK_MOMENTS` by block, and the variance of the slip error that its run shares.
     Attributes: source, slip definition, law, headline of the verdict.
     """
-    from model.bayes.drawing.arviz_import import import_arviz
-
-    az = import_arviz()
+    from xarray import Dataset, DataTree
 
     posterior, draws = calibration.posterior, calibration.draws
     blocks = posterior.blocks
-    observed = {"traction_force": blocks.traction_force}
+    sampled = {
+        p.name: draws.values[..., i]
+        for i, p in enumerate(posterior.parameters)
+        if p.name not in posterior.fixed
+    }
     given = {
         "slip_ratio": blocks.slip,
         "normal_force": blocks.normal_force,
@@ -336,21 +338,24 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
         **{name: getattr(blocks, name) for name in BLOCK_MOMENTS},
         "run_slip_error": blocks.run_slip_error[blocks.run],
     }
-    return az.from_dict(
-        posterior={
-            p.name: draws.values[..., i]
-            for i, p in enumerate(posterior.parameters)
-            if p.name not in posterior.fixed
-        },
-        sample_stats={"lp": draws.log_density},
-        observed_data=observed,
-        constant_data=given,
-        coords={"block": np.arange(len(blocks))},
-        dims={name: ["block"] for name in (*observed, *given)},
-        attrs={
-            "source": calibration.source,
-            "slip_definition": str(blocks.definition),
-            "law": posterior.law.name,
-            "verdict": calibration.verdict.headline(),
-        },
+    attributes = {
+        "source": calibration.source,
+        "slip_definition": str(blocks.definition),
+        "law": posterior.law.name,
+        "verdict": calibration.verdict.headline(),
+    }
+
+    def group(columns: Mapping[str, np.ndarray], *dimensions: str) -> Dataset:
+        shape = next(iter(columns.values())).shape
+        numbers = {name: np.arange(n) for name, n in zip(dimensions, shape, strict=True)}
+        return Dataset({name: (dimensions, x) for name, x in columns.items()}, numbers)
+
+    return DataTree.from_dict(
+        {
+            "/": Dataset(attrs=attributes),
+            "posterior": group(sampled, "chain", "draw"),
+            "sample_stats": group({"lp": draws.log_density}, "chain", "draw"),
+            "observed_data": group({"traction_force": blocks.traction_force}, "block"),
+            "constant_data": group(given, "block"),
+        }
     )

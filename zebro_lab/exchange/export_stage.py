@@ -2,6 +2,7 @@
 """Stage of `zebro-lab export`: write a run as CSV or Parquet tables."""
 
 from collections.abc import Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -9,7 +10,7 @@ import pandas as pd
 
 from rig.sample_columns import SampleColumns
 from zebro_lab.files.atomic import atomic_folder, atomic_write_text
-from zebro_lab.files.errors import AlreadyExists, DataError
+from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
 from zebro_lab.files.settings_text import fill_in
 from zebro_lab.files.shown_text import shown
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
@@ -43,10 +44,15 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
         NotFound: The folder is not a run folder, or its log or profile is missing.
         DataError: The run cannot be read, or has no samples.
         AlreadyExists: `out` exists.
+        SettingsError: `to` is "parquet", and pyarrow is not installed.
         OSError: The tables cannot be written.
     """
     if out.exists():
         raise AlreadyExists(f"{out} exists already; choose another folder with --out")
+    if to == "parquet" and find_spec("pyarrow") is None:
+        raise SettingsError(
+            "'parquet' needs pyarrow: pip install 'zebro-lab[parquet]', or --to csv", key="--to"
+        )
     manifest = read_manifest(folder)
     streams = read_raw_log(folder / LOG_FILE).streams if manifest.profiles else {}
     tables: dict[str, Columns] = {

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from zebro_lab.files.commit import software_commit
 
-RECORDED = ("zebro-lab", "numpy", "scipy", "emcee", "arviz", "numba")
+RECORDED = ("zebro-lab", "numpy", "scipy", "emcee", "arviz-stats", "numba")
 
 
 def file_hash(path: Path) -> str:

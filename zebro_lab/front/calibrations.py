@@ -26,8 +26,8 @@ from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, option
 from zebro_lab.workers import open_executor
 
 if TYPE_CHECKING:
-    import arviz as az
     import pandas as pd
+    from xarray import DataTree
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class CalibrationResult:
         return pd.read_csv(io.StringIO(table), index_col="parameter")
 
     @property
-    def posterior(self) -> "az.InferenceData":
+    def posterior(self) -> "DataTree":
         """Posterior draws, log density and block means; a chain is an ensemble of walkers."""
-        return calibration_folder.inference_data(self.calibration)
+        return calibration_folder.posterior_tree(self.calibration)
 
 
 def read_rig_data(

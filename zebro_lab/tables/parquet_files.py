@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read Parquet files as raw tables."""
+"""Read Parquet files as raw tables; pyarrow is an optional extra."""
 
 import io
 from collections import Counter

@@ -17,7 +17,8 @@ def _read_parquet(path: Path) -> RawTable:
         from zebro_lab.tables.parquet_files import read_parquet_file
     except ImportError as error:
         raise DataError(
-            "is a Parquet table, which needs pyarrow: pip install pyarrow, or save it as CSV",
+            "is a Parquet table, which needs pyarrow: pip install 'zebro-lab[parquet]', or save it "
+            "as CSV",
             file=path,
         ) from error
     return read_parquet_file(path)

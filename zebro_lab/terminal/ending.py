@@ -3,7 +3,6 @@
 
 import os
 import sys
-import warnings
 from collections.abc import Callable
 from typing import Final
 
@@ -29,8 +28,6 @@ def run(app: Callable[[], object]) -> None:
     on stderr. A wrong value of an option (a `SettingsError` about one) has exit code 2, as wrong
     usage has that Typer finds. Other exceptions pass unchanged, with a traceback.
     """
-    # ArviZ warns developers about its next version once a day; this does not concern users.
-    warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)
     try:
         app()
     except Exception as error:

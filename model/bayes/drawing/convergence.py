@@ -2,22 +2,19 @@
 """Convergence diagnostics: R-hat between ensembles, effective sample sizes, chain length, error."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from model.arrays import Array
-from model.bayes.drawing.arviz_import import import_arviz
 from model.bayes.drawing.sampler import Chains, autocorrelation_times
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 MAX_PARETO_K = 0.7  # tail index from which importance weights are not reliable
 MAX_R_HAT = 1.01
 MIN_ESS = 400.0
 MIN_LENGTH = 50.0  # least length of the chains, in autocorrelation times
 MAX_MCSE = 0.05  # largest Monte Carlo error, over the posterior standard deviation
+TAILS = 0.05, 0.95  # quantiles whose effective sample size is that of the tails
 BURN_IN = 5.0  # length in autocorrelation times; the starts are nearly posterior draws
 
 
@@ -131,21 +128,19 @@ def assess(chains: Chains) -> Convergence:
     Args:
         chains: Chains of at least 8 steps.
     """
-    az = import_arviz()
-
     times = autocorrelation_times(chains.z)
     burn_in = int(min(np.ceil(BURN_IN * times.max()), chains.n_steps // 2))
     kept = chains.z[:, burn_in:]
-    walkers = _dataset(_as_chains(kept))
-    ensembles = _dataset(kept.reshape(len(kept), -1, kept.shape[-1]))
+    walkers = _as_chains(kept)
+    ensembles = kept.reshape(len(kept), -1, kept.shape[-1])
     return Convergence(
         burn_in=burn_in,
         length=kept.shape[1],
         autocorrelation_time=times,
-        r_hat=_array(az.rhat(ensembles, method="rank")),
-        ess_bulk=_array(az.ess(walkers, method="bulk")),
-        ess_tail=_array(az.ess(walkers, method="tail")),
-        mcse=1 / np.sqrt(_array(az.ess(walkers, method="mean"))),
+        r_hat=_r_hat(ensembles),
+        ess_bulk=_effective(walkers, method="bulk"),
+        ess_tail=_effective(walkers, method="tail", prob=TAILS),
+        mcse=1 / np.sqrt(_effective(walkers, method="mean")),
         thin=chains.thin,
     )
 
@@ -162,16 +157,14 @@ def assess_weighted(draws: Array, weighted: Array, weights: Array, pareto_k: flo
         weights: Their weights, with sum one, shape (w,).
         pareto_k: Tail index of the weights [-].
     """
-    az = import_arviz()
-
-    quantiles = np.quantile(draws.reshape(-1, draws.shape[-1]), [0.05, 0.95], axis=0)
+    quantiles = np.quantile(draws.reshape(-1, draws.shape[-1]), TAILS, axis=0)
     tails = [_effective_size((weighted <= q).astype(float), weights) for q in quantiles]
     bulk = _effective_size(weighted, weights)
     return Convergence(
         burn_in=0,
         length=draws.shape[1],
         autocorrelation_time=np.ones(draws.shape[-1]),
-        r_hat=_array(az.rhat(_dataset(draws), method="rank")),
+        r_hat=_r_hat(draws),
         ess_bulk=bulk,
         ess_tail=np.minimum(*tails),
         mcse=1 / np.sqrt(bulk),
@@ -185,16 +178,18 @@ def _effective_size(h: Array, weights: Array) -> Array:
     return weights @ away / (weights**2 @ away)
 
 
-def _dataset(chains: Array) -> "Dataset":
-    """Wrap chains (chains, draws, d) as the variable "x" of a Dataset for ArviZ."""
-    from xarray import Dataset
+def _r_hat(chains: Array) -> Array:
+    """Compute the rank-normalised split R-hat of chains (chains, draws, d), shape (d,)."""
+    from arviz_stats.base import array_stats  # takes a second
 
-    return Dataset({"x": (("chain", "draw", "coordinate"), chains)})
+    return np.asarray(array_stats.rhat(chains, chain_axis=0, draw_axis=1, method="rank"))
 
 
-def _array(dataset: Any) -> Array:
-    """Return the variable "x" of ArviZ's result as an array, shape (d,)."""
-    return np.asarray(dataset["x"])
+def _effective(chains: Array, **method: Any) -> Array:
+    """Compute effective sample sizes of chains (chains, draws, d), shape (d,)."""
+    from arviz_stats.base import array_stats  # takes a second
+
+    return np.asarray(array_stats.ess(chains, chain_axis=0, draw_axis=1, **method))
 
 
 def _as_chains(z: Array) -> Array:

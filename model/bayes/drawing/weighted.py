@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp
 
 from model.arrays import Array
 from model.bayes.drawing.adaptive import tempered
-from model.bayes.drawing.arviz_import import import_arviz
 from model.bayes.drawing.batches import in_batches
 from model.bayes.drawing.convergence import MAX_PARETO_K, MIN_ESS
 from model.bayes.drawing.laplace import LaplaceMixture, LogDensity
@@ -208,9 +208,16 @@ def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:
         log_ratio: Logarithms of the raw ratios, shape (n,).
 
     Returns:
-        Logarithms of the weights, whose sum is one, shape (n,), and the tail index of the ratios.
+        Logarithms of the weights, whose sum is one, shape (n,), and the tail index of the ratios:
+        infinite where the tail has fewer than five ratios, or ratios all alike.
     """
-    az = import_arviz()
-    with np.errstate(over="ignore"):  # of ratios many orders of magnitude apart; the limit is right
-        smoothed, pareto_k = az.psislw(log_ratio)
-    return np.asarray(smoothed, dtype=float), float(pareto_k)
+    from arviz_stats.base import array_stats  # takes a second
+
+    try:
+        with np.errstate(all="ignore"):  # of ratios many orders of magnitude apart
+            smoothed, pareto_k = array_stats.psislw(-log_ratio)
+    except ValueError:  # no tail
+        smoothed, pareto_k = log_ratio, np.inf
+    if not (np.isfinite(pareto_k) and np.isfinite(logsumexp(smoothed))):
+        smoothed, pareto_k = log_ratio, np.inf
+    return smoothed - logsumexp(smoothed), float(pareto_k)

@@ -172,7 +172,7 @@ finally:
     )
     printed, _, modules = process.stdout.partition("modules:")
     assert "Usage:" in printed
-    heavy = {"numpy", "scipy", "pandas", "numba", "matplotlib", "emcee", "arviz", "pyarrow", "pint"}
+    heavy = {"numpy", "scipy", "pandas", "numba", "matplotlib", "emcee", "pyarrow", "pint"}
     assert not heavy & set(modules.split())
 
 

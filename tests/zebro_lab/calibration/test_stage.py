@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import copytree
 
-import arviz as az
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 from model.bayes.calibrate import SamplerSettings
 from model.errors import DefinitionMismatch, DomainError
@@ -252,7 +252,7 @@ def test_semicolons_decimal_commas_and_a_bom_change_no_number(
 def test_slip_toml_gives_back_the_posterior(uninterrupted):
     curve = read_slip(uninterrupted)
     np.testing.assert_array_equal(read_slip(uninterrupted / "slip.toml").values, curve.values)
-    stored = az.from_netcdf(uninterrupted / "posterior.nc")["posterior"]
+    stored = xr.open_datatree(uninterrupted / "posterior.nc")["posterior"]
     draws = np.stack([np.ravel(stored[p.name]) for p in curve.law.parameters])
     np.testing.assert_allclose(curve.values, draws.mean(axis=1), rtol=1e-12)
     np.testing.assert_allclose(curve.covariance, np.cov(draws), rtol=1e-9)
@@ -269,7 +269,7 @@ def test_slip_toml_refuses_other_slip_and_keeps_the_tested_loads(uninterrupted):
 
 
 def test_posterior_nc_has_an_ensemble_as_a_chain(uninterrupted):
-    stored = az.from_netcdf(uninterrupted / "posterior.nc")
+    stored = xr.open_datatree(uninterrupted / "posterior.nc")
     assert stored["posterior"].sizes["chain"] == 4
     assert stored["observed_data"]["traction_force"].sizes["block"] == 120
     assert (stored.attrs["source"], stored.attrs["slip_definition"]) == (

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 """An exported run is what its readers read, and says where it comes from."""
 
+import sys
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from support.watchers import Onlooker
 from zebro_lab.exchange.export_stage import FORMATS, export_run
-from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
@@ -54,6 +56,13 @@ def test_a_table_says_that_it_is_simulated(recorded, tmp_path):
     assert read_columns(tmp_path / "csv" / "columns.toml").source == "sim:zebro+rig"
     export_run(recorded, to="parquet", out=tmp_path / "parquet")
     assert read_table_file(tmp_path / "parquet" / "legs.parquet").source == "sim:zebro+rig"
+
+
+def test_without_pyarrow_the_line_says_how_to_get_it(recorded, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(SettingsError, match=r"--to: .*pip install 'zebro-lab\[parquet\]'"):
+        export_run(recorded, to="parquet", out=tmp_path / "parquet")
+    assert not (tmp_path / "parquet").exists()
 
 
 def test_what_is_there_is_not_written_over(recorded, tmp_path):

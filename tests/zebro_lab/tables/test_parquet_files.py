@@ -61,4 +61,4 @@ def test_without_pyarrow_the_line_says_how_to_get_it(tmp_path, monkeypatch):
     file = parquet(tmp_path, pa.table({"t": [0.0, 1.0]}))
     monkeypatch.delitem(sys.modules, "zebro_lab.tables.parquet_files", raising=False)
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert "needs pyarrow: pip install pyarrow" in refusal(read_table_file, file)
+    assert "needs pyarrow: pip install 'zebro-lab[parquet]'" in refusal(read_table_file, file)

@@ -20,11 +20,12 @@ from model.bayes.drawing.adaptive import Effort, WeightedCaseDraws, adaptive_dra
 from model.errors import InsufficientData
 from model.robot import Robot
 from model.walk.traction import TractionTable
-from model.walk_fit.misfit import TrackedWalk, WalkMisfit, walk_states
+from model.walk_fit.misfit import WalkMisfit, walk_states
 from model.walk_fit.modes import ModeSearch
 from model.walk_fit.posterior import WalkPosterior, state_in
 from model.walk_fit.prior import ACROSS, LINEAR, WALKED, WRONG, WalkPrior, all_cases
 from model.walk_fit.terms import Terms
+from model.walk_fit.tracked_walk import TrackedWalk
 
 Progress = Callable[[float], None]
 

@@ -20,10 +20,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.arrays import Array
-from model.errors import InsufficientData, WalkError
-from model.gait.inexact_log import InexactLog
+from model.errors import WalkError
 from model.gait.reference import LegReference
-from model.joint_covariance import JointCovariance
 from model.leg_state import LegState, law_in, robot_in
 from model.path_draws import bent, states_at
 from model.poses import Poses, moved_onto, wrap
@@ -41,49 +39,16 @@ from model.walk.ensemble import (
 )
 from model.walk.traction import TractionTable
 from model.walk_fit.terms import Terms
-from model.walk_fit.tilt import MeasuredTilt, TiltMisfit
+from model.walk_fit.tilt import TiltMisfit
+from model.walk_fit.tracked_walk import TrackedWalk, middle
 
 RECONSTRUCTIONS = 16  # motions drawn from counted angles; or walks that show the step's error
 # s; with a wrongly mounted leg 5 ms turns by 3 % more and saves a third of the time
 LARGEST_STEP = 0.0025
 OFFSETS_SD = np.radians(0.2)  # sd of leg offsets in walks that show the step's error [rad]
-FEWEST_POSES = 3  # one to start from and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
 FINE_SAMPLING = 0.02  # s, where roll and pitch are compared
 _BEND = 1e-3  # step in distance and curvature for finite differences
-
-
-@dataclass(frozen=True)
-class TrackedWalk:
-    """A walk with its leg angles and its tracked poses.
-
-    Attributes:
-        name: Name of the walk.
-        legs: Leg angles from time zero on.
-        t: Times of the tracked poses by the clock of the leg angles, increasing from zero or later;
-            the prediction is moved onto the first pose, shape (n,) [s].
-        states: Tracked x, y [m] and yaw [rad], shape (n, 3).
-        joint: The tracker's covariance of x, y and yaw of all poses.
-        tilt: Roll and pitch by the robot's IMU; None without an IMU.
-
-    Raises:
-        InsufficientData: There are fewer than three poses.
-    """
-
-    name: str
-    legs: LegReference | InexactLog
-    t: Array
-    states: Array
-    joint: JointCovariance
-    tilt: MeasuredTilt | None = None
-
-    def __post_init__(self) -> None:
-        """Check that there are enough tracked poses."""
-        if len(self.t) < FEWEST_POSES:
-            raise InsufficientData(
-                f"walk '{self.name}' has {len(self.t)} tracked poses; expected {FEWEST_POSES} or "
-                "more"
-            )
 
 
 @dataclass(frozen=True)
@@ -221,12 +186,9 @@ class WalkMisfit:
 
     def _walked(self, draws: Sequence[WalkDraw], executor: Executor | None) -> PlanarWalk:
         """Compute every draw's walk at `_times`, with roll and pitch if there is an IMU."""
+        tilted = self.tilt is not None
         return walk_ensemble(
-            draws,
-            self._times(),
-            options=self.options,
-            executor=executor,
-            tilt=self.tilt is not None,
+            draws, self._times(), options=self.options, executor=executor, tilt=tilted
         )
 
     def _times(self) -> Array:
@@ -383,8 +345,3 @@ def _next_states(results: Iterator[Array], name: str) -> Array:
         return next(results)
     except WalkError as error:
         raise WalkError(f"walk '{name}': {error}") from error
-
-
-def middle(legs: LegReference | InexactLog) -> LegReference:
-    """Return the middle motion that an inexact log allows; other leg angles as they are."""
-    return legs.smooth() if isinstance(legs, InexactLog) else legs

@@ -11,7 +11,7 @@ from model.poses import Poses
 from model.robot import GRAVITY, Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.slip import Slip
-from model.walk_fit.misfit import middle
+from model.walk_fit.tracked_walk import middle
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.shared_clock import LARGEST_OFFSET, clock_difference, estimated_clock

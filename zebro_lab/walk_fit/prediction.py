@@ -12,9 +12,9 @@ from model.judgement import Prediction
 from model.predict import FINE, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.walk_fit.fit import WalkFit, fit_walks
-from model.walk_fit.misfit import middle
 from model.walk_fit.posterior import WalkPosterior
 from model.walk_fit.prior import WalkPrior
+from model.walk_fit.tracked_walk import middle
 from model.walk_models import baseline_paths
 from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import slip_tables

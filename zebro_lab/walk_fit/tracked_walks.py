@@ -10,8 +10,8 @@ import numpy as np
 from model.format_distinct import format_distinct
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
-from model.walk_fit.misfit import FEWEST_POSES, TrackedWalk
 from model.walk_fit.tilt import FEWEST, TIME, MeasuredTilt
+from model.walk_fit.tracked_walk import FEWEST_POSES, TrackedWalk
 from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import TRACK, numbered

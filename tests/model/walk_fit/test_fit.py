@@ -13,7 +13,6 @@ from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
 from model.walk_fit.fit import fit_walks
-from model.walk_fit.misfit import TrackedWalk
 from model.walk_fit.prior import (
     ACROSS,
     FLOOR,
@@ -24,6 +23,7 @@ from model.walk_fit.prior import (
     all_cases,
     legs_of,
 )
+from model.walk_fit.tracked_walk import TrackedWalk
 
 DURATION = 8.0
 NOISE = np.array([0.002, 0.002, 0.005])

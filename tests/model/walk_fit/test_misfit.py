@@ -2,7 +2,6 @@
 import numpy as np
 import pytest
 
-from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.joint_covariance import JointCovariance
@@ -10,8 +9,9 @@ from model.predict import ModelSpread
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
-from model.walk_fit.misfit import TrackedWalk, WalkMisfit, walk_states
+from model.walk_fit.misfit import WalkMisfit, walk_states
 from model.walk_fit.prior import WRONG, legs_of
+from model.walk_fit.tracked_walk import TrackedWalk
 
 TABLE = VelocityCoulomb(0.38).table(weight=21.3)
 NOISE = np.array([0.001, 0.001, 0.003])
@@ -65,8 +65,3 @@ def test_terms_say_what_residuals_do_for_small_steering_and_stride(misfit):
     y = np.array([[0.7, -0.4]])
     bent = residuals(misfit, legs(steering=0.7e-3, stride=-0.4e-3))
     assert terms.squares_at(y)[0, 0] == pytest.approx(squares(bent), rel=0.02, abs=1e-3)
-
-
-def test_two_poses_are_no_track(walk):
-    with pytest.raises(InsufficientData, match="2 tracked poses"):
-        TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.joint.part(slice(2)))

@@ -8,8 +8,8 @@ import pytest
 
 from model.errors import ModelError
 from model.gait.reference import SampledReference
-from model.walk_fit.misfit import middle
 from model.walk_fit.prior import WalkPrior
+from model.walk_fit.tracked_walk import middle
 from support.tracked_walks import write_walk
 from support.walk_posteriors import posterior_of
 from zebro_lab.calibration.slip_argument import parse_slip

@@ -12,7 +12,7 @@ from rig.experiment.plan import Plan
 from support.experiment_plans import THESIS_PLAN
 from support.small_layouts import posterior as posterior_of
 from zebro_lab.experiment.plan_file import read_plan
-from zebro_lab.suggest.folder import Expected
+from zebro_lab.suggest.folder import Expected, Suggested
 from zebro_lab.suggest.proposal import (
     Knowledge,
     Proposal,
@@ -21,7 +21,6 @@ from zebro_lab.suggest.proposal import (
     propose,
     seconds_of,
 )
-from zebro_lab.suggest.suggested import Suggested
 
 TIME = 200.0  # s
 

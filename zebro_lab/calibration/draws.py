@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read posterior draws from a netCDF (HDF5) file, with size limits and without external links."""
+"""Posterior draws in a netCDF (HDF5) file: what a fit writes, and reading within limits."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -13,9 +13,17 @@ from zebro_lab.files.opening import open_file, parsing
 
 if TYPE_CHECKING:
     import h5py
+    from xarray import DataTree
+
+    from model.bayes.calibration import Calibration
 
 MOST_DRAWS: Final = 4_000_000
 """Largest number of draws per parameter; a calibration writes some ten thousand."""
+
+BLOCK_MOMENTS = (
+    "slip_wander", "slip_error", "load_variance", "load_skewness", "slip_load_covariance",
+)  # fmt: skip
+"""Moments of slip and load within a block, as `SlipBlocks` has them."""
 
 
 def read_draws_of(
@@ -87,3 +95,51 @@ def _draws(group: "h5py.Group", name: str, path: Path) -> Array:
     if not 0 < size <= MOST_DRAWS:
         raise DataError(f"has {size} draws of '{name}'; expected 1 to {MOST_DRAWS}", file=path)
     return np.ravel(found[()]).astype(float)
+
+
+def posterior_tree(calibration: "Calibration") -> "DataTree":
+    """Convert a fit to a `DataTree` as ArviZ has it, with one chain for each ensemble of walkers.
+
+    Groups: `posterior`, draws of the free parameters; `sample_stats`, log density `lp`;
+    `observed_data`, traction by block; `constant_data`, slip ratio, load, run index, number of
+    samples and `BLOCK_MOMENTS` by block, and the variance of the slip error that its run shares.
+    Attributes: source, slip definition, law, headline of the verdict.
+    """
+    from xarray import Dataset, DataTree
+
+    posterior, draws = calibration.posterior, calibration.draws
+    blocks = posterior.blocks
+    sampled = {
+        p.name: draws.values[..., i]
+        for i, p in enumerate(posterior.parameters)
+        if p.name not in posterior.fixed
+    }
+    given = {
+        "slip_ratio": blocks.slip,
+        "normal_force": blocks.normal_force,
+        "run": blocks.run,
+        "samples": blocks.count,
+        **{name: getattr(blocks, name) for name in BLOCK_MOMENTS},
+        "run_slip_error": blocks.run_slip_error[blocks.run],
+    }
+    attributes = {
+        "source": calibration.source,
+        "slip_definition": str(blocks.definition),
+        "law": posterior.law.name,
+        "verdict": calibration.verdict.headline(),
+    }
+
+    def group(columns: Mapping[str, np.ndarray], *dimensions: str) -> Dataset:
+        shape = next(iter(columns.values())).shape
+        numbers = {name: np.arange(n) for name, n in zip(dimensions, shape, strict=True)}
+        return Dataset({name: (dimensions, x) for name, x in columns.items()}, numbers)
+
+    return DataTree.from_dict(
+        {
+            "/": Dataset(attrs=attributes),
+            "posterior": group(sampled, "chain", "draw"),
+            "sample_stats": group({"lp": draws.log_density}, "chain", "draw"),
+            "observed_data": group({"traction_force": blocks.traction_force}, "block"),
+            "constant_data": group(given, "block"),
+        }
+    )

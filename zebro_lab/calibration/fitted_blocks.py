@@ -9,8 +9,8 @@ import numpy as np
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.definition import SlipDefinition
-from zebro_lab.calibration.draws import read_draws_of
-from zebro_lab.calibration.folder import BLOCK_MOMENTS, POSTERIOR
+from zebro_lab.calibration.draws import BLOCK_MOMENTS, read_draws_of
+from zebro_lab.calibration.folder import POSTERIOR
 from zebro_lab.files.errors import DataError
 
 _ADVICE = "delete it, or calibrate again"

@@ -17,6 +17,7 @@ from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import law_options, slip_law
 from zebro_lab.calibration.advice import advice_text
+from zebro_lab.calibration.draws import posterior_tree
 from zebro_lab.calibration.law_table import LAWS_CSV, laws_content, laws_csv
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
@@ -28,8 +29,6 @@ from zebro_lab.files.result_folder import ResultKind
 from zebro_lab.files.source_names import is_simulated
 
 if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
-    from xarray import DataTree
-
     from model.bayes.calibration import Calibration
 
 SCHEMA = 1
@@ -47,10 +46,6 @@ CALIBRATION = ResultKind(
 )
 """Kind of a calibration folder; `walks/` inside was fitted with its law and is removed with it."""
 
-BLOCK_MOMENTS = (
-    "slip_wander", "slip_error", "load_variance", "load_skewness", "slip_load_covariance",
-)  # fmt: skip
-"""Moments of slip and load within a block, as `SlipBlocks` has them."""
 _ADVICE = "name a slip.toml or the folder that calibrate-slip wrote"
 SUMMARY_COLUMNS = (
     "parameter", "symbol", "unit", "mean", "sd", "q05", "median", "q95", "prior", "contraction",
@@ -311,51 +306,3 @@ def summary_csv(calibration: "Calibration") -> str:
         values = [f"{x:.8g}" for x in numbers]
         table.writerow([name, e.parameter.symbol, e.parameter.unit, *values, *diagnostics])
     return text.getvalue()
-
-
-def posterior_tree(calibration: "Calibration") -> "DataTree":
-    """Convert a fit to a `DataTree` as ArviZ has it, with one chain for each ensemble of walkers.
-
-    Groups: `posterior`, draws of the free parameters; `sample_stats`, log density `lp`;
-    `observed_data`, traction by block; `constant_data`, slip ratio, load, run index, number of
-    samples and `BLOCK_MOMENTS` by block, and the variance of the slip error that its run shares.
-    Attributes: source, slip definition, law, headline of the verdict.
-    """
-    from xarray import Dataset, DataTree
-
-    posterior, draws = calibration.posterior, calibration.draws
-    blocks = posterior.blocks
-    sampled = {
-        p.name: draws.values[..., i]
-        for i, p in enumerate(posterior.parameters)
-        if p.name not in posterior.fixed
-    }
-    given = {
-        "slip_ratio": blocks.slip,
-        "normal_force": blocks.normal_force,
-        "run": blocks.run,
-        "samples": blocks.count,
-        **{name: getattr(blocks, name) for name in BLOCK_MOMENTS},
-        "run_slip_error": blocks.run_slip_error[blocks.run],
-    }
-    attributes = {
-        "source": calibration.source,
-        "slip_definition": str(blocks.definition),
-        "law": posterior.law.name,
-        "verdict": calibration.verdict.headline(),
-    }
-
-    def group(columns: Mapping[str, np.ndarray], *dimensions: str) -> Dataset:
-        shape = next(iter(columns.values())).shape
-        numbers = {name: np.arange(n) for name, n in zip(dimensions, shape, strict=True)}
-        return Dataset({name: (dimensions, x) for name, x in columns.items()}, numbers)
-
-    return DataTree.from_dict(
-        {
-            "/": Dataset(attrs=attributes),
-            "posterior": group(sampled, "chain", "draw"),
-            "sample_stats": group({"lp": draws.log_density}, "chain", "draw"),
-            "observed_data": group({"traction_force": blocks.traction_force}, "block"),
-            "constant_data": group(given, "block"),
-        }
-    )

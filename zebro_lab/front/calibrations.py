@@ -13,6 +13,7 @@ from model.progress import Watcher
 from model.slip.curve import SlipCurve
 from zebro_lab.calibration import folder as calibration_folder
 from zebro_lab.calibration import stage as calibration_stage
+from zebro_lab.calibration.draws import posterior_tree
 from zebro_lab.calibration.request import (
     CalibrationRequest,
     DefinitionName,
@@ -63,7 +64,7 @@ class CalibrationResult:
     @property
     def posterior(self) -> "DataTree":
         """Posterior draws, log density and block means; a chain is an ensemble of walkers."""
-        return calibration_folder.posterior_tree(self.calibration)
+        return posterior_tree(self.calibration)
 
 
 def read_rig_data(

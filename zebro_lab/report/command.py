@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab report RUN`: write an HTML report of a run."""
 
+from datetime import UTC, datetime
+
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
@@ -21,8 +23,6 @@ named, and a calibration that no prediction used is no headline.
 @request_command()
 def report(request: ReportRequest, output: Output = TEXT) -> None:
     """Write an HTML report with slip curve, track, prediction and validation: report.html."""
-    from datetime import UTC, datetime
-
     from zebro_lab.report import stage
     from zebro_lab.report.belonging import belonging
 

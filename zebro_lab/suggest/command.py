@@ -3,6 +3,7 @@
 
 import typer
 
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.suggest.request import SuggestRequest
 from zebro_lab.suggest.target_text import EXPECTED
 from zebro_lab.terminal.output import TEXT, Output
@@ -27,10 +28,9 @@ The suggestion is as good as the law: a few slips over the whole range are alway
 @request_command(first=("plan", "calibration", "target", "time", "alone"))
 def suggest(request: SuggestRequest, output: Output = TEXT) -> None:
     """Suggest slips, loads and duration of further points that make targets less uncertain."""
-    from zebro_lab.files.source_names import is_simulated
     from zebro_lab.suggest import stage
+    from zebro_lab.suggest.folder import points_of
     from zebro_lab.suggest.screen import lines, print_suggested
-    from zebro_lab.suggest.suggested import points_of
 
     if not request.target:
         raise typer.BadParameter(f"missing: name {EXPECTED}", param_hint="'--target'")

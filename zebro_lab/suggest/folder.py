@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The result folder of `rig suggest`: the plan, what it is expected to tell, and a picture."""
+"""Suggested points, what is expected of them, and the result folder of `rig suggest`."""
 
-import csv
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Final
 
+import pandas as pd
+
+from rig.experiment.plan import Plan
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.result_folder import ResultKind
+from zebro_lab.suggest.proposal import Knowledge, Proposal
 
 PLAN: Final = "plan.toml"
 EXPECTED: Final = "expected.csv"
@@ -41,6 +44,47 @@ class Expected:
     sd_suggested: float
 
 
+@dataclass(frozen=True)
+class Suggested:
+    """Suggested points, and what is expected of them.
+
+    Attributes:
+        plan: The plan as it is.
+        plan_seconds: Its estimated duration [s].
+        proposal: The proposed points.
+        expected: Standard deviations of each part of each target.
+        knowledge: What was known before.
+        calibration: Name of the calibration's folder.
+        source: Source of the calibration's data.
+        notes: What the proposal assumes, one line each.
+    """
+
+    plan: Plan
+    plan_seconds: float
+    proposal: Proposal
+    expected: tuple[Expected, ...]
+    knowledge: Knowledge
+    calibration: str
+    source: str
+    notes: tuple[str, ...]
+
+
+def points_of(suggested: Suggested) -> dict[str, object]:
+    """Return the proposed points in numbers, for manifest and document."""
+    proposal = suggested.proposal
+    return {
+        "loads_N": list(proposal.plan.points.loads),
+        "slips": [
+            {"slip_ratio": float(slip), "points": int(count)}
+            for slip, count in zip(proposal.slips, proposal.counts, strict=True)
+        ],
+        "point_s": proposal.plan.points.duration,
+        "duration_s": proposal.seconds,
+        "plan_duration_s": suggested.plan_seconds,
+        "expected": [asdict(row) for row in suggested.expected],
+    }
+
+
 def write_expected(file: Path, rows: Sequence[Expected]) -> None:
     """Write one row a part of a target as CSV.
 
@@ -48,9 +92,6 @@ def write_expected(file: Path, rows: Sequence[Expected]) -> None:
         file: File to write.
         rows: The parts, at least one.
     """
-    with file.open("w", encoding="utf-8", newline="") as text:
-        writer = csv.DictWriter(text, asdict(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            cells = asdict(row).items()
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in cells})
+    pd.DataFrame(map(asdict, rows)).to_csv(
+        file, index=False, float_format="%.6g", lineterminator="\n"
+    )

@@ -21,7 +21,7 @@ from zebro_lab.plots.sheet import (
     slip_label,
     styled,
 )
-from zebro_lab.suggest.suggested import Suggested
+from zebro_lab.suggest.folder import Suggested
 
 _HALF: Final = 1.645  # standard deviations of a 90 % band
 _POINTS: Final = 200

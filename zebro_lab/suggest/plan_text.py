@@ -2,16 +2,16 @@
 """The text of a plan with other points: its other tables and its comments stay as they are."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
+
+import tomlkit
+from tomlkit.items import Array
 
 from model.toml_table import parse_toml
 from rig.experiment.plan import Plan
 from rig.experiment.plan_reading import parse_plan
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.settings_table import SettingsTable
-
-if TYPE_CHECKING:
-    from tomlkit.items import Array
 
 _LINE: Final = 12  # numbers in a line
 
@@ -28,8 +28,6 @@ def with_points(text: str, plan: Plan, *, file: Path) -> str:
         DataError: The result is not that plan, as of a text that states its points in an unusual
             way.
     """
-    import tomlkit
-
     points = plan.points
     document = tomlkit.parse(text)
     table = document["points"]
@@ -54,10 +52,8 @@ def with_points(text: str, plan: Plan, *, file: Path) -> str:
     return changed
 
 
-def _numbers(values: tuple[float, ...]) -> "Array":
+def _numbers(values: tuple[float, ...]) -> Array:
     """Return an array of numbers, of many with several in a line."""
-    import tomlkit
-
     rows = [values[i : i + _LINE] for i in range(0, len(values), _LINE)]
     lines = ",\n    ".join(", ".join(map(repr, row)) for row in rows)
     body = f"[{lines}]" if len(rows) == 1 else f"[\n    {lines},\n]"

@@ -9,8 +9,7 @@ from rich.table import Table
 from model.counted import counted
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import unit_symbol
-from zebro_lab.suggest.folder import PLAN, Expected
-from zebro_lab.suggest.suggested import Suggested
+from zebro_lab.suggest.folder import PLAN, Expected, Suggested
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 

@@ -24,7 +24,16 @@ from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable, result_folder
 from zebro_lab.suggest.calibrated import read_calibrated
 from zebro_lab.suggest.end_pose import end_pose_target, read_walk
-from zebro_lab.suggest.folder import EXPECTED, PICTURE, PLAN, SUGGESTED, Expected, write_expected
+from zebro_lab.suggest.folder import (
+    EXPECTED,
+    PICTURE,
+    PLAN,
+    SUGGESTED,
+    Expected,
+    Suggested,
+    points_of,
+    write_expected,
+)
 from zebro_lab.suggest.plan_text import with_points
 from zebro_lab.suggest.proposal import (
     DURATIONS,
@@ -36,7 +45,6 @@ from zebro_lab.suggest.proposal import (
     propose,
 )
 from zebro_lab.suggest.request import SuggestRequest
-from zebro_lab.suggest.suggested import Suggested, points_of
 from zebro_lab.suggest.target_text import ForceText, ParameterText, TargetText
 from zebro_lab.workers import WorkersRequest, open_executor
 

@@ -10,9 +10,9 @@ from support.suggestions import write_plan
 from support.watchers import Nobody
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.suggest import stage
+from zebro_lab.suggest.folder import points_of
 from zebro_lab.suggest.request import SuggestRequest
 from zebro_lab.suggest.stage import suggest
-from zebro_lab.suggest.suggested import points_of
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
 

@@ -25,15 +25,15 @@ from scipy.optimize import least_squares
 from scipy.special import chdtrc
 
 from model.arrays import Array
+from model.bayes.averaging.load_levels import load_levels, nearest_level
 from model.bayes.checks.groups import groups
 from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
 from model.bayes.drawing.weighted import weighted_draws
-from model.bayes.fit import PreparedFit, compare, prepare_fit, scaled_load_cell, validated
-from model.bayes.law_scores import choose_law, load_groups, score_laws, weigh_law
+from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell, validated
+from model.bayes.law_scores import choose_law, compare, load_groups, score_laws, weigh_law
 from model.bayes.likelihood import predict_blocks
 from model.bayes.preliminary import BlockChoice
-from model.bayes.residuals import load_levels, nearest_level
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula, magic_formula
 from model.slip.rig_errors import RigErrors

@@ -16,15 +16,20 @@ from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import (
     SHORT_CALLS,
-    LawComparison,
     PreparedFit,
-    compare,
     explain_numerical_errors,
     prepare_fit,
     require_forces,
     validated,
 )
-from model.bayes.law_scores import LawScores, choose_law, load_groups, score_laws, weigh_law
+from model.bayes.law_scores import (
+    LawScores,
+    choose_by_runs,
+    choose_law,
+    load_groups,
+    score_laws,
+    weigh_law,
+)
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
 from model.bayes.preview import Preview, preview, weighted_posterior
@@ -141,7 +146,7 @@ def calibrate(
     prepare = partial(_prepare, samples, laws, known, settings, rng, watcher, executor)
     fits = prepare(validate=not scored)
     fit, comparison = (
-        _by_scores(samples, fits, rng, watcher, executor) if scored else _by_comparison(fits)
+        _by_scores(samples, fits, rng, watcher, executor) if scored else choose_by_runs(fits)
     )
     began = clock()
     posterior, judging = fit.posterior, rng.spawn(1)[0]  # the same draws where a fit was resumed
@@ -231,17 +236,6 @@ def _prepare(
         choice = fit.block_choice  # laws are compared on the same blocks
         fits[name] = fit
     return fits
-
-
-def _by_comparison(
-    fits: Mapping[str, PreparedFit],
-) -> tuple[PreparedFit, LawComparison | None]:
-    """Return the fit that `compare` chooses, and the comparison, which is None for one law."""
-    each = list(fits.values())
-    if len(each) == 1:
-        return each[0], None
-    comparison = compare(list(fits), each)
-    return each[comparison.chosen], comparison
 
 
 def _by_scores(

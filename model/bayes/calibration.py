@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.bayes.averaging.load_levels import largest_slips, middle_loads
 from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
@@ -20,11 +21,11 @@ from model.bayes.estimate import (
     curve_estimates,
     estimate,
 )
-from model.bayes.fit import LawComparison, PreparedFit
-from model.bayes.law_scores import LawScores
+from model.bayes.fit import PreparedFit
+from model.bayes.law_scores import LawComparison, LawScores
 from model.bayes.posterior import SlipPosterior
 from model.bayes.prior_conflict import PriorShift, prior_shifts
-from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, middle_loads
+from model.bayes.residuals import Residuals, analyse_residuals
 from model.bayes.run_out import RunOut
 from model.bayes.verdict import Verdict, judge
 from model.slip.samples import SlipSamples

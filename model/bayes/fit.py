@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """From samples to a posterior ready to sample: block means, priors, modes, cross-validation."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -288,65 +288,3 @@ def not_identified(blocks: SlipBlocks) -> dict[str, float]:
         **(single if len(blocks) == blocks.n_runs else {}),
         **({} if erring else {"slip_error_scale": 1.0}),
     }
-
-
-@dataclass(frozen=True)
-class LawComparison:
-    """Comparison of laws by cross-validation.
-
-    Attributes:
-        names: Name of each law.
-        log_density: Log predictive density of all left-out runs under each law; 0 without
-            cross-validation [-].
-        difference: Log predictive density of each law minus the chosen law's [-].
-        standard_error: Standard error of that difference, from the scatter between runs [-].
-        chosen: Index of the chosen law.
-    """
-
-    names: tuple[str, ...]
-    log_density: tuple[float, ...]
-    difference: tuple[float, ...]
-    standard_error: tuple[float, ...]
-    chosen: int
-
-
-def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
-    """Compare laws by the log predictive density of left-out runs, and choose one.
-
-    Starting with the first, a later law replaces the chosen one if its density is larger by more
-    than `CLEAR_WIN` standard errors. Without cross-validation the first law is chosen.
-
-    Args:
-        names: Name of each law, simplest first.
-        fits: A fit for each law, all on the same blocks.
-
-    Raises:
-        DomainError: The fits have different numbers of blocks.
-    """
-    lengths = sorted({len(fit.posterior.blocks) for fit in fits})
-    if len(lengths) > 1:
-        raise DomainError(
-            f"the laws were fitted to {' and '.join(map(str, lengths))} blocks; expected the same "
-            "blocks; pass the first fit's block_choice to the others"
-        )
-    validations = [fit.cross_validation for fit in fits]
-    n_runs = fits[0].posterior.blocks.n_runs
-    density = np.stack([np.zeros(n_runs) if v is None else v.log_density for v in validations])
-    chosen = 0
-    for index in range(1, len(fits)):
-        gain = density[index] - density[chosen]
-        if gain.sum() > CLEAR_WIN * _standard_error(gain):
-            chosen = index
-    excess = density - density[chosen]
-    return LawComparison(
-        names=tuple(names),
-        log_density=tuple(density.sum(axis=1)),
-        difference=tuple(excess.sum(axis=1)),
-        standard_error=tuple(_standard_error(row) for row in excess),
-        chosen=chosen,
-    )
-
-
-def _standard_error(differences: np.ndarray) -> float:
-    """Compute the standard error of the sum of one difference a run, from their own scatter."""
-    return float(np.sqrt(len(differences)) * np.std(differences))

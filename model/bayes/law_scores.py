@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Comparison of slip laws by their predictions of left-out runs and of left-out loads."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.averaging.load_levels import load_levels, nearest_level
 from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import CLEAR_WIN, PreparedFit
 from model.bayes.left_out import (
@@ -23,8 +24,7 @@ from model.bayes.left_out import (
     by_weights,
     refit_without,
 )
-from model.bayes.residuals import load_levels, nearest_level
-from model.errors import InsufficientData
+from model.errors import DomainError, InsufficientData
 from model.slip.law import SlipLaw
 from model.tasks import compute_tasks
 
@@ -254,3 +254,80 @@ def choose_law(scores: Sequence[LawScore], levels: Array) -> LawScores:
         i for i in left if (against := found.loads(i, top)) is None or not against.clearly_worse
     ]
     return LawScores(laws, levels, best, kept[0], tuple(kept))
+
+
+@dataclass(frozen=True)
+class LawComparison:
+    """Comparison of laws by cross-validation.
+
+    Attributes:
+        names: Name of each law.
+        log_density: Log predictive density of all left-out runs under each law; 0 without
+            cross-validation [-].
+        difference: Log predictive density of each law minus the chosen law's [-].
+        standard_error: Standard error of that difference, from the scatter between runs [-].
+        chosen: Index of the chosen law.
+    """
+
+    names: tuple[str, ...]
+    log_density: tuple[float, ...]
+    difference: tuple[float, ...]
+    standard_error: tuple[float, ...]
+    chosen: int
+
+
+def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
+    """Compare laws by the log predictive density of left-out runs, and choose one.
+
+    Starting with the first, a later law replaces the chosen one if its density is larger by more
+    than `CLEAR_WIN` standard errors. Without cross-validation the first law is chosen.
+
+    Args:
+        names: Name of each law, simplest first.
+        fits: A fit for each law, all on the same blocks.
+
+    Raises:
+        DomainError: The fits have different numbers of blocks.
+    """
+    lengths = sorted({len(fit.posterior.blocks) for fit in fits})
+    if len(lengths) > 1:
+        raise DomainError(
+            f"the laws were fitted to {' and '.join(map(str, lengths))} blocks; expected the same "
+            "blocks; pass the first fit's block_choice to the others"
+        )
+    validations = [fit.cross_validation for fit in fits]
+    n_runs = fits[0].posterior.blocks.n_runs
+    density = np.stack([np.zeros(n_runs) if v is None else v.log_density for v in validations])
+    chosen = 0
+    for index in range(1, len(fits)):
+        gain = density[index] - density[chosen]
+        if gain.sum() > CLEAR_WIN * _error_of_sum(gain):
+            chosen = index
+    excess = density - density[chosen]
+    return LawComparison(
+        names=tuple(names),
+        log_density=tuple(density.sum(axis=1)),
+        difference=tuple(excess.sum(axis=1)),
+        standard_error=tuple(_error_of_sum(row) for row in excess),
+        chosen=chosen,
+    )
+
+
+def choose_by_runs(
+    fits: Mapping[str, PreparedFit],
+) -> tuple[PreparedFit, LawComparison | None]:
+    """Return the fit that `compare` chooses, and the comparison, which is None for one law.
+
+    Args:
+        fits: Fit of each law by its name, simplest first.
+    """
+    each = list(fits.values())
+    if len(each) == 1:
+        return each[0], None
+    comparison = compare(list(fits), each)
+    return each[comparison.chosen], comparison
+
+
+def _error_of_sum(differences: np.ndarray) -> float:
+    """Compute the standard error of the sum of one difference a run, from their own scatter."""
+    return float(np.sqrt(len(differences)) * np.std(differences))

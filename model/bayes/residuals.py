@@ -10,14 +10,12 @@ from scipy.special import fdtrc, fdtri, ndtri
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.averaging.load_levels import load_levels, nearest_level
 from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
 from model.slip.law import SlipLaw
 
 SLIP_BINS = 8
-LOAD_GAP = 1.1  # ratio of successive loads above which they are two levels
 FAR_SCORE = 2.0  # below, a run mean is not far out, however close the others are
-RARE_LEVEL = 0.05  # least share of the runs at a level
-MAX_LOAD_LEVELS = 8
 CROSSED = 2.0  # groups of slip that a run crosses on average, from which runs are sweeps
 MISFIT_P = 1e-3  # p-value below which a misfit is none of chance
 
@@ -191,62 +189,6 @@ def lag_correlation(values: Array, run: NDArray[np.intp], lag: int) -> tuple[flo
     late, early = values[lag:][same_run], values[:-lag][same_run]
     size = np.sqrt(np.sum(late**2) * np.sum(early**2))
     return (float(np.sum(late * early) / size) if size > 0 else 0.0), len(late)
-
-
-def load_levels(blocks: SlipBlocks) -> Array:
-    """Find the loads that were set, in increasing order, shape (n_levels,) [N].
-
-    A run's load is the lower quartile of its blocks' loads (a bump on a disc only adds to it).
-    Sorted loads of runs form one level, their median, until one is more than 10 % above the last. A
-    level with fewer than one run in twenty is dropped (a disc that stood still on its bump). With
-    no level left, or more than 8 (the load was swept), 8 quantiles of the blocks' loads replace
-    them.
-    """
-    parts = np.split(blocks.normal_force, blocks.run_starts()[1:-1])
-    ordered = np.sort([np.quantile(part, 0.25) for part in parts])
-    groups = np.split(ordered, np.flatnonzero(ordered[1:] > LOAD_GAP * ordered[:-1]) + 1)
-    levels = np.array([np.median(g) for g in groups if len(g) >= RARE_LEVEL * blocks.n_runs])
-    if 1 <= len(levels) <= MAX_LOAD_LEVELS:
-        return levels
-    return np.quantile(blocks.normal_force, (np.arange(MAX_LOAD_LEVELS) + 0.5) / MAX_LOAD_LEVELS)
-
-
-def middle_loads(blocks: SlipBlocks) -> Array:
-    """Compute the load of the middle of the measurements at each of `load_levels`, shape (m,) [N].
-
-    It is the median of the blocks nearest to the level, at which a curve passes through the
-    middle of its points. The level itself is lower, since it is made of lower quartiles.
-    """
-    levels = load_levels(blocks)
-    load = np.maximum(blocks.normal_force, 1e-9)
-    nearest = nearest_level(load, levels)
-    near = [load[nearest == i] for i in range(len(levels))]
-    return np.array([np.median(each) if len(each) else levels[i] for i, each in enumerate(near)])
-
-
-def nearest_level(load: Array, levels: Array) -> NDArray[np.intp]:
-    """Find the load level nearest to each load, by the ratio of the two.
-
-    Args:
-        load: Loads, shape (n,) [N].
-        levels: Load levels, shape (m,) [N].
-
-    Returns:
-        Index of the level, shape (n,).
-    """
-    return np.argmin(np.abs(np.log(load[:, None] / levels)), axis=1)
-
-
-def largest_slips(blocks: SlipBlocks) -> Array:
-    """Compute the largest absolute slip ratio of the blocks nearest to each of `load_levels`.
-
-    Shape (n_levels,) [-]; 0 for a level without blocks.
-    """
-    levels = load_levels(blocks)
-    nearest = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
-    return np.array(
-        [np.abs(blocks.slip[nearest == i]).max(initial=0.0) for i in range(len(levels))]
-    )
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
-from model.bayes.residuals import load_levels, nearest_level
+from model.bayes.averaging.load_levels import load_levels, nearest_level
 from model.slip.law import SlipLaw
 
 SLIPS = 12  # slip ratios that are added at each load

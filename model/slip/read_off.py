@@ -119,7 +119,8 @@ def read_off(slip: ArrayLike, force: ArrayLike) -> ReadOff:
     (best, covariance), misfit = min(fits, key=lambda fit: fit[1])
     scale = np.array([1.0, 1.0, D, 1.0])
     errors = scale * np.sqrt(np.diag(covariance))
-    return ReadOff(*(best * scale).tolist(), tuple(errors.tolist()), D * misfit)
+    B, C, D, E = (best * scale).tolist()
+    return ReadOff(B, C, D, E, tuple(errors.tolist()), float(f.max()) * misfit)
 
 
 def _least_squares(

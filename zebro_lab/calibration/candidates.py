@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from model.bayes.averaging.blocks import block_means
-from model.bayes.residuals import load_levels
+from model.bayes.averaging.load_levels import load_levels
 from model.slip.law import SlipLaw
 from model.slip.laws import APART, LAWS, TOGETHER, slip_law
 from model.slip.magic_formula import MagicFormula

@@ -184,7 +184,9 @@ def _slip_toml(
 ) -> str:
     import tomlkit
 
-    document = tomlkit.document()
+    from model.bayes.law_scores import LawScores
+
+    scores, document = calibration.comparison, tomlkit.document()
     document.add(tomlkit.comment("Slip curve fitted by calibrate-slip. SI units."))
     if is_simulated(calibration.source):
         document.add(tomlkit.comment("SIMULATED data: nothing here was measured."))
@@ -195,7 +197,7 @@ def _slip_toml(
         "verdict": _verdict_content(calibration),
         **_law_content(calibration),
         "tested": _tested_content(calibration),
-        **_comparison_content(calibration),
+        **({"comparison": laws_content(scores)} if isinstance(scores, LawScores) else {}),
         **({"lateral_force": dict(lateral)} if lateral else {}),
         **_run_out_content(calibration),
         **({"priors": dict(priors)} if priors else {}),
@@ -223,8 +225,7 @@ def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def _law_content(calibration: "Calibration") -> dict[str, Any]:
-    law = calibration.posterior.law
-    k = len(law.parameters)
+    law, k = calibration.posterior.law, len(calibration.posterior.law.parameters)
     return {
         "law": {"name": law.name, **law_options(law)},
         "parameters": {
@@ -243,13 +244,6 @@ def _law_content(calibration: "Calibration") -> dict[str, Any]:
             for load, row in zip(calibration.levels, calibration.curves, strict=True)
         ],
     }  # fmt: skip
-
-
-def _comparison_content(calibration: "Calibration") -> dict[str, Any]:
-    from model.bayes.law_scores import LawScores
-
-    scores = calibration.comparison
-    return {"comparison": laws_content(scores)} if isinstance(scores, LawScores) else {}
 
 
 def _run_out_content(calibration: "Calibration") -> dict[str, Any]:

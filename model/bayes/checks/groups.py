@@ -9,9 +9,9 @@ from scipy.special import chdtrc
 
 from model.arrays import Array
 from model.bayes.advice import Advice
+from model.bayes.averaging.load_levels import load_levels, nearest_level
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.linear import Linearised
-from model.bayes.residuals import load_levels, nearest_level
 
 GROUPS = "mean residuals of each load and side are zero"
 MIN_P = 0.01

@@ -8,6 +8,7 @@ import numpy as np
 
 from model.arrays import Array
 from model.bayes.advice import CorrectData
+from model.bayes.averaging.load_levels import load_levels
 from model.bayes.checks.check import Check, decided, not_testable
 from model.bayes.checks.faults import faults
 from model.bayes.checks.fit import law_advice
@@ -16,7 +17,6 @@ from model.bayes.checks.linear import Linearised
 from model.bayes.checks.terms import LOAD, SIDES, TIME, ZERO, Found, Suspect, find
 from model.bayes.posterior import SlipPosterior
 from model.bayes.preliminary import BlockChoice
-from model.bayes.residuals import load_levels
 from model.slip.samples import SlipSamples
 
 TERM_P = 5e-4  # of each of a dozen terms: less than one sound set in 200 fails

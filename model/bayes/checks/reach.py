@@ -8,8 +8,8 @@ import numpy as np
 from model.arrays import Array
 from model.bayes.advice import Advice, MeasureAlso, beyond_the_peak, measure_slips
 from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.averaging.load_levels import largest_slips, load_levels
 from model.bayes.checks.check import Check, decided, not_testable
-from model.bayes.residuals import largest_slips, load_levels
 from model.bayes.rise import sampled_rise
 from model.slip.law import SlipLaw
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
-from model.bayes.residuals import load_levels, nearest_level
+from model.bayes.averaging.load_levels import load_levels, nearest_level
 
 MIDDLE = (0.1, 0.9)  # quantiles between which most slips of a run lie
 SAME = 0.005  # of the slip ratio: set-points closer than this are the same

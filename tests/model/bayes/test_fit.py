@@ -7,7 +7,8 @@ import pytest
 from model.bayes.averaging.blocks import block_means
 from model.bayes.cross_validation import CrossValidation
 from model.bayes.drawing.laplace import find_mode
-from model.bayes.fit import CLEAR_WIN, compare, prepare_fit, require_forces, scaled_load_cell
+from model.bayes.fit import CLEAR_WIN, prepare_fit, require_forces, scaled_load_cell
+from model.bayes.law_scores import compare
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.errors import DomainError, InsufficientData

@@ -10,7 +10,7 @@ import numpy as np
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import block_means
-from model.bayes.residuals import load_levels
+from model.bayes.averaging.load_levels import load_levels
 from model.counted import counted
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip

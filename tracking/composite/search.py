@@ -17,6 +17,7 @@ from tracking.body import Alignment, TopPlate, floor_in_view
 from tracking.body.align import SCALE_SD
 from tracking.camera.lens import Camera, CameraPose
 from tracking.composite.known import Exposure, KnownExposure
+from tracking.composite.order import order_exposures
 from tracking.composite.pasted import PastedReading
 from tracking.composite.steps import LEAST_STEP, is_apart
 from tracking.errors import CompositeError
@@ -113,19 +114,28 @@ def _occluded_by(
 ) -> tuple[Exposure, ...]:  # fmt: skip
     """Find exposures, also occluded ones, by the body's appearance in a fully visible one.
 
-    The first usable of `clear` is taken, and comes first; empty if none is.
+    Which one lies on top is not told by its marker; where exposures were pasted in order of time,
+    it is the first or the last of the walk. Of these two, or the next usable ones, that is taken
+    by which the others are found with the greater sum of log odds. Empty if none is usable.
     """
-    for exposure in clear:
+    order = order_exposures(np.array([each.planar for each in clear]))
+    readings: list[PastedReading] = []
+    for k in dict.fromkeys((order[-1], order[0], *order)):
         try:
             reading = _reading(
-                pixels, camera, view, known=exposure.alignment.pose, plate=plate,
+                pixels, camera, view, known=clear[k].alignment.pose, plate=plate,
                 body_size=(plate.length, plate.width), prior=prior, hidden=hidden, near=near,
                 reach=reach,
             )  # fmt: skip
         except CompositeError:
             continue  # cut by the picture's edge, too small or too faint: try the next
-        return reading.align(reading.find())
-    return ()
+        readings.append(reading)
+        if len(readings) == 2:
+            break
+    if not readings:
+        return ()
+    best = max(readings, key=lambda reading: sum(each.gain for each in reading.likelier[1]))
+    return best.align(best.find())
 
 
 def find_exposures_like(

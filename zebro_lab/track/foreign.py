@@ -166,7 +166,8 @@ def read_foreign_track(
     if track.poses.has_yaw and not with_covariance:
         track = replace(track, notes=(*track.notes, f"a fit of walks needs a covariance: {ADVICE}"))
     more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
-    files = tuple(dict.fromkeys((*trajectory.files, *([mapping.file] if mapping.file else []))))
+    own = () if mapping.file is None else (mapping.file,)
+    files = tuple(dict.fromkeys((*trajectory.files, *own)))
     return ForeignTrack(track, more, with_covariance, files, trajectory.topic)
 
 

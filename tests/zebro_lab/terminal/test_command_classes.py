@@ -74,7 +74,7 @@ TYPOS = {
     "predict x --slipp thesis": "--slip", "record --zebor sim": "--zebro",
     "plot d --form png": "--format", "track x --camra c": "--camera", "export d --ou q": "--out",
     "xyzzy": None, "analyse": None, "walk --colour red": None, "rig fly": None,
-    "calibrate-slip x --blocklength 3": "--block-length", "calibrate-slip x --chains 4": None,
+    "calibrate-slip x --maxsteps 3": "--max-steps", "calibrate-slip x --chains 4": None,
 }  # fmt: skip
 
 

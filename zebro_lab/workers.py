@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Final, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeAlias
 
 from typer import Option
 
@@ -130,7 +130,7 @@ def _require_same_packages(client: "Client", address: str) -> None:
     """Raise `ClusterError` without workers, or for a worker with other versions of packages."""
     try:
         client.wait_for_workers(1, timeout=ANSWERS_WITHIN)
-        found = client.run(software)
+        found: Any = client.run(software)
     except (ImportError, OSError) as error:
         raise ClusterError(
             f"{address}: has no workers that can load zebro-lab ({error}); start some "

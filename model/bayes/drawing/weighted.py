@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import logsumexp
 
 from model.arrays import Array
 from model.bayes.drawing.adaptive import tempered
@@ -216,8 +215,8 @@ def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:
     try:
         with np.errstate(all="ignore"):  # of ratios many orders of magnitude apart
             smoothed, pareto_k = array_stats.psislw(-log_ratio)
-    except ValueError:  # no tail
+    except (ValueError, IndexError):  # no tail
         smoothed, pareto_k = log_ratio, np.inf
-    if not (np.isfinite(pareto_k) and np.isfinite(logsumexp(smoothed))):
+    if not np.isfinite(pareto_k) or np.isnan(smoothed).any():
         smoothed, pareto_k = log_ratio, np.inf
-    return smoothed - logsumexp(smoothed), float(pareto_k)
+    return smoothed - np.logaddexp.reduce(smoothed), float(pareto_k)

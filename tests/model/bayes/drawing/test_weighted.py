@@ -7,7 +7,7 @@ from scipy import stats
 
 from model.bayes.drawing.laplace import Laplace, LaplaceMixture, find_mode, find_modes
 from model.bayes.drawing.tails import approximate
-from model.bayes.drawing.weighted import importance_draws, weighted_draws
+from model.bayes.drawing.weighted import importance_draws, pareto_smoothed, weighted_draws
 
 
 def two_hills(z):
@@ -188,3 +188,21 @@ def test_adapted_draws_come_in_random_order():
     half = len(drawn.z) // 2
     assert drawn.part(slice(half)).effective_size > 0.3 * drawn.effective_size
     assert drawn.part(slice(half, None)).effective_size > 0.3 * drawn.effective_size
+
+
+@pytest.mark.parametrize(
+    "log_ratio", [np.zeros(60), np.array([0.0, -1.0, -2.0]), np.r_[0.0, np.full(59, -5000.0)]]
+)
+def test_ratios_without_a_tail_are_unreliable_and_kept_as_they_are(log_ratio):
+    smoothed, pareto_k = pareto_smoothed(log_ratio)
+    assert pareto_k == np.inf
+    assert np.exp(smoothed).sum() == pytest.approx(1.0)
+    assert smoothed - smoothed[0] == pytest.approx(log_ratio - log_ratio[0])
+
+
+@pytest.mark.parametrize("k", [0.3, 0.9])
+def test_the_tail_index_of_pareto_ratios_is_found(k):
+    rng = np.random.default_rng(1)
+    drawn = [pareto_smoothed(-k * np.log(rng.random(40_000))) for _ in range(8)]
+    assert np.mean([found for _, found in drawn]) == pytest.approx(k, abs=0.1)
+    assert np.exp(drawn[0][0]).sum() == pytest.approx(1.0)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from model.bayes.averaging.slip_noise import slip_noise_variance
 from model.counted import counted
@@ -15,9 +14,18 @@ from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from model.slip.rig_errors import USUAL, RigErrors
 from model.slip.samples import SlipSamples
-from zebro_lab.calibration.lateral_force import LateralForce, lateral_force, no_sums
-from zebro_lab.calibration.rig_part import RigPart, read_part
-from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
+from zebro_lab.calibration.lateral_force import LateralForce
+from zebro_lab.calibration.rig_part import (
+    RigPart,
+    joined_lateral,
+    joined_load_cell,
+    joined_priors,
+    joined_rig_errors,
+    joined_samples,
+    joined_source,
+    read_part,
+)
+from zebro_lab.files.errors import DataError, ZebroLabError
 from zebro_lab.runs.counted_once import (
     content_hash,
     duplicates_note,
@@ -109,14 +117,14 @@ def read_rig_data(
     skipped = [f"{labels[source]}: left out, {why}" for source, why in out.items()]
     if not parts:
         raise DataError(f"every run is left out: {'; '.join((*skipped, *duplicates))}")
-    samples = _joined(parts)
+    samples = joined_samples(parts)
     _require_informative(samples, parts)
-    priors, priors_file = _joined_priors(parts)
-    lateral = _joined_lateral(parts)
+    priors, priors_file = joined_priors(parts)
+    lateral = joined_lateral(parts)
     return RigData(
         samples=samples,
         files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
-        source=_joined_source(parts),
+        source=joined_source(parts),
         notes=(
             *_notes(parts),
             *(() if lateral is None else (lateral.text,)),
@@ -126,8 +134,8 @@ def read_rig_data(
             *duplicates,
             *columns_above_roots(sources, columns),
         ),
-        load_cell=_joined_load_cell(parts),
-        rig_errors=_joined_rig_errors(parts),
+        load_cell=joined_load_cell(parts),
+        rig_errors=joined_rig_errors(parts),
         repeated=duplicates,
         priors=priors,
         priors_file=priors_file,
@@ -269,23 +277,6 @@ def _without_duplicates(
     return kept, repeated
 
 
-def _joined(parts: Sequence[RigPart]) -> SlipSamples:
-    first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
-    timed = [part.time for part in parts if part.time is not None]
-    return SlipSamples(
-        slip=np.concatenate([part.slip.ratio for part in parts]),
-        normal_force=np.concatenate([part.normal_force for part in parts]),
-        traction_force=np.concatenate([part.traction_force for part in parts]),
-        run=np.concatenate(
-            [part.runs.index + first for part, first in zip(parts, first_run, strict=False)]
-        ),
-        run_names=tuple(name for part in parts for name in part.runs.names),
-        definition=parts[0].slip.definition,
-        time=np.concatenate(timed) if len(timed) == len(parts) else None,
-        angles=joined_angles([part.angles for part in parts])[0],
-    )
-
-
 def _require_one_definition(parts: Sequence[RigPart]) -> None:
     first = parts[0]
     for part in parts:
@@ -321,64 +312,6 @@ def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None
             + ("" if trials else ", or set runs.each_row in columns.toml if rows are trials"),
             file=where,
         )
-
-
-def _joined_source(parts: Sequence[RigPart]) -> str:
-    stated = dict.fromkeys(s for part in parts for s in part.sources or ("unknown",))
-    return next(iter(stated)) if len(stated) == 1 else f"mixed:{','.join(stated)}"
-
-
-def _joined_load_cell(parts: Sequence[RigPart]) -> dict[str, float]:
-    joined: dict[str, float] = {}
-    origin: dict[str, Path | None] = {}
-    for part in parts:
-        for name, value in part.columns.load_cell.items():
-            if joined.setdefault(name, value) != value:
-                raise SettingsError(
-                    f"is {value:g} here and {joined[name]:g} in {origin[name]}; "
-                    f"calibrate data of two load cells apart",
-                    file=part.columns.file, key=f"load_cell.{name}",
-                )  # fmt: skip
-            origin.setdefault(name, part.columns.file)
-    return joined
-
-
-def _joined_priors(parts: Sequence[RigPart]) -> tuple[tuple[str, ...], Path | None]:
-    """Return the priors of the parts' column maps and their file; raise where two maps differ."""
-    stated = {part.columns.file: part.columns.priors for part in parts if part.columns.priors}
-    maps = list(stated.items())
-    for file, priors in maps[1:]:
-        if set(priors) != set(maps[0][1]):
-            raise SettingsError(
-                f"differs from that of {maps[0][0]}; state priors in one of them, or with --prior",
-                file=file, key="priors",
-            )  # fmt: skip
-    return (maps[0][1], maps[0][0]) if maps else ((), None)
-
-
-def _joined_lateral(parts: Sequence[RigPart]) -> LateralForce | None:
-    """Return mean and scatter of the lateral force over all parts; None if none has one."""
-    return lateral_force(
-        [
-            no_sums(_samples_of_runs(part)) if part.lateral is None else part.lateral
-            for part in parts
-        ]
-    )
-
-
-def _samples_of_runs(part: RigPart) -> NDArray[np.intp]:
-    return np.bincount(part.runs.index, minlength=len(part.runs.names))
-
-
-def _joined_rig_errors(parts: Sequence[RigPart]) -> RigErrors:
-    """Return the larger standard deviations of all parts' rigs."""
-    each = [part.rig_errors for part in parts]
-    return RigErrors(
-        max(errors.radius_ratio for errors in each),
-        max(errors.rolling_resistance for errors in each),
-        max(errors.slip_scatter for errors in each),
-        max(errors.run_out for errors in each),
-    )
 
 
 def _notes(parts: Sequence[RigPart]) -> list[str]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read one table or run folder of a rig experiment as samples in SI."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,16 +11,17 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.slip.definition import SlipDefinition
 from model.slip.rig_errors import RigErrors
-from model.slip.samples import DiscAngles
-from zebro_lab.calibration.lateral_force import lateral_sums
+from model.slip.samples import DiscAngles, SlipSamples
+from zebro_lab.calibration.lateral_force import LateralForce, lateral_force, lateral_sums, no_sums
 from zebro_lab.calibration.plausible import require_plausible
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.runs.counted_once import run_keys
 from zebro_lab.runs.data_paths import DataSource
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.manifest import RIG, TABLE
 from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.tables.columns import Columns, RunRule
-from zebro_lab.tables.disc_angles import disc_angles
+from zebro_lab.tables.disc_angles import disc_angles, joined_angles
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
@@ -158,3 +160,81 @@ def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns
     raw = RawTable(folder, series, source=run.manifest.source, notes=(*run.notes, *notes))
     own = replace(columns, source=None, columns={}, constants=run.manifest.constants, runs=rule)
     return raw, own, run.files
+
+
+def joined_samples(parts: Sequence[RigPart]) -> SlipSamples:
+    """Join the samples of all parts, runs numbered throughout."""
+    first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
+    timed = [part.time for part in parts if part.time is not None]
+    return SlipSamples(
+        slip=np.concatenate([part.slip.ratio for part in parts]),
+        normal_force=np.concatenate([part.normal_force for part in parts]),
+        traction_force=np.concatenate([part.traction_force for part in parts]),
+        run=np.concatenate(
+            [part.runs.index + first for part, first in zip(parts, first_run, strict=False)]
+        ),
+        run_names=tuple(name for part in parts for name in part.runs.names),
+        definition=parts[0].slip.definition,
+        time=np.concatenate(timed) if len(timed) == len(parts) else None,
+        angles=joined_angles([part.angles for part in parts])[0],
+    )
+
+
+def joined_source(parts: Sequence[RigPart]) -> str:
+    """Return the source that all parts state, or all of them as "mixed:a,b"."""
+    stated = dict.fromkeys(s for part in parts for s in part.sources or ("unknown",))
+    return next(iter(stated)) if len(stated) == 1 else f"mixed:{','.join(stated)}"
+
+
+def joined_load_cell(parts: Sequence[RigPart]) -> dict[str, float]:
+    """Return what the parts state of one load cell; raise where they differ."""
+    joined: dict[str, float] = {}
+    origin: dict[str, Path | None] = {}
+    for part in parts:
+        for name, value in part.columns.load_cell.items():
+            if joined.setdefault(name, value) != value:
+                raise SettingsError(
+                    f"is {value:g} here and {joined[name]:g} in {origin[name]}; "
+                    f"calibrate data of two load cells apart",
+                    file=part.columns.file, key=f"load_cell.{name}",
+                )  # fmt: skip
+            origin.setdefault(name, part.columns.file)
+    return joined
+
+
+def joined_priors(parts: Sequence[RigPart]) -> tuple[tuple[str, ...], Path | None]:
+    """Return the priors of the parts' column maps and their file; raise where two maps differ."""
+    stated = {part.columns.file: part.columns.priors for part in parts if part.columns.priors}
+    maps = list(stated.items())
+    for file, priors in maps[1:]:
+        if set(priors) != set(maps[0][1]):
+            raise SettingsError(
+                f"differs from that of {maps[0][0]}; state priors in one of them, or with --prior",
+                file=file, key="priors",
+            )  # fmt: skip
+    return (maps[0][1], maps[0][0]) if maps else ((), None)
+
+
+def joined_lateral(parts: Sequence[RigPart]) -> LateralForce | None:
+    """Return mean and scatter of the lateral force over all parts; None if none has one."""
+    return lateral_force(
+        [
+            no_sums(_samples_of_runs(part)) if part.lateral is None else part.lateral
+            for part in parts
+        ]
+    )
+
+
+def _samples_of_runs(part: RigPart) -> NDArray[np.intp]:
+    return np.bincount(part.runs.index, minlength=len(part.runs.names))
+
+
+def joined_rig_errors(parts: Sequence[RigPart]) -> RigErrors:
+    """Return the larger standard deviations of all parts' rigs."""
+    each = [part.rig_errors for part in parts]
+    return RigErrors(
+        max(errors.radius_ratio for errors in each),
+        max(errors.rolling_resistance for errors in each),
+        max(errors.slip_scatter for errors in each),
+        max(errors.run_out for errors in each),
+    )

@@ -47,13 +47,13 @@ from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import legs_view
 from zebro_lab.report.page import render_report
 from zebro_lab.report.sources import find_sources
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file, render_robot_file
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.runs.profile_streams import legs_stream
 from zebro_lab.runs.stage import list_runs
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.table_files import read_table_file
@@ -294,10 +294,9 @@ def posterior_draws(file: Path) -> object:
 
 def recorded() -> bytes:
     """Record a log of legs."""
-    profile, out = load_leg_profile("zebro-100-serial"), io.BytesIO()
-    views = {"legs": legs_view("legs", profile=profile)}
-    writer = LogWriter(out, views=views, attachments={"profiles/legs.toml": "x = 1"}, start=0.0,
-                       start_ns=10**18)  # fmt: skip
+    out, streams = io.BytesIO(), {"legs": legs_stream(load_leg_profile("zebro-100-serial"))}
+    writer = LogWriter(out, streams=streams, attachments={"profiles/legs.toml": "x = 1"},
+                       start=0.0, start_ns=10**18)  # fmt: skip
     writer.event(0.0, "began")
     writer.write("legs", [Sample(0.01 * n, 0.01 * n, n, tuple(range(n, n + 6))) for n in range(60)])
     writer.finish()

@@ -217,7 +217,7 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
         Orientation, angular rate and specific force of the body, corrected for the mounting.
     """
     columns = as_columns(samples)
-    body, rate, force = decode_motion(profile, columns.counts.reshape(-1, len(profile.record)))
+    body, rate, force = _decode_motion(profile, columns.counts.reshape(-1, len(profile.record)))
     yaw, pitch, roll = body.as_euler("ZYX").T
     return Orientation(
         host_time=columns.host_time,
@@ -230,7 +230,7 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
     )
 
 
-def decode_motion(profile: ImuProfile, counts: Array) -> tuple[Rotation, Array, Array]:
+def _decode_motion(profile: ImuProfile, counts: Array) -> tuple[Rotation, Array, Array]:
     """Compute rotations from the body's axes to the inertial frame, and motion in these axes.
 
     Args:

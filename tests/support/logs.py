@@ -11,18 +11,14 @@ from rig.imu.profile import load_imu_profile
 from rig.slip_rig.profile import load_rig_profile
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.mcap.log_writer import LogWriter
-from zebro_lab.mcap.stream_views import board_view, drives_view, imu_view, legs_view, load_cell_view
+from zebro_lab.runs.profile_streams import imu_stream, legs_stream, rig_streams
 
 START = 100.0
-RIG = load_rig_profile("rig-odrive-netft")
-BOARD = load_rig_profile("rig-board-serial")
-LEGS = load_leg_profile("zebro-100-serial")
-VIEWS = {
-    "legs": legs_view("legs", profile=LEGS),
-    "imu": imu_view("imu", profile=load_imu_profile("imu-quaternion-serial")),
-    "drives": drives_view("drives", profile=RIG.drives),
-    "load_cell": load_cell_view("load_cell", profile=RIG.load_cell),
-    "board": board_view("board", profile=BOARD.board),
+STREAMS = {
+    "legs": legs_stream(load_leg_profile("zebro-100-serial")),
+    "imu": imu_stream(load_imu_profile("imu-quaternion-serial")),
+    **rig_streams(load_rig_profile("rig-odrive-netft")),
+    **rig_streams(load_rig_profile("rig-board-serial")),
 }
 COUNTS = {
     "legs": (99, 1, 2, 3, 4, 5),
@@ -46,7 +42,7 @@ def log_of(stream, rows=3):
     ]
     file = io.BytesIO()
     writer = LogWriter(
-        file, views={stream: VIEWS[stream]}, attachments={"profiles/x.toml": "schema = 1"},
+        file, streams={stream: STREAMS[stream]}, attachments={"profiles/x.toml": "schema = 1"},
         start=START, start_ns=10**18,
     )  # fmt: skip
     writer.write(stream, given_samples)

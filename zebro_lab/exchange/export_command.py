@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab export`: a recorded run as tables or as one MCAP file."""
+"""`zebro-lab export`: a recorded run as tables."""
 
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
@@ -9,31 +9,15 @@ import typer
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
-ExportFormat: TypeAlias = Literal["csv", "parquet", "mcap"]
+ExportFormat: TypeAlias = Literal["csv", "parquet"]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
-
-To = Annotated[
-    ExportFormat,
-    typer.Option(help="Format: tables (csv, parquet), or one MCAP file for Foxglove."),
-]
-Out = Annotated[
-    Path, typer.Option(metavar="PATH", help="New folder for the tables; for mcap, a new file.")
-]
+To = Annotated[ExportFormat, typer.Option(help="Format of the tables.")]
+Out = Annotated[Path, typer.Option(metavar="PATH", help="New folder for the tables.")]
 
 
 @request_command()
 def export(run: RunFolder, out: Out, to: To = "csv", output: Output = TEXT) -> None:
-    """Export a run as tables of its samples, or its track and prediction as one MCAP file."""
-    if to == "mcap":
-        from zebro_lab.exchange.export_mcap_stage import export_mcap
-
-        exported = export_mcap(run, out=out)
-        for topic, count in exported.topics.items():
-            output.say(f"{topic}: {count} messages")
-        output.say(*exported.notes, f"wrote {exported.file}")
-        content = {"messages": dict(exported.topics), "notes": list(exported.notes)}
-        output.document("export", {**content, "written": [exported.file]})
-        return
+    """Export a run as tables of its samples."""
     from zebro_lab.exchange.export_stage import export_run, unended_notes
 
     files = list(export_run(run, to=to, out=out))

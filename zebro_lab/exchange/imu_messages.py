@@ -13,9 +13,9 @@ from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, TopicRows, read_topic
-from zebro_lab.mcap.ros_messages import IMU
 from zebro_lab.tables.raw_table import RawTable
 
+IMU: Final = "sensor_msgs/msg/Imu"
 _VECTORS: Final = {"angular_velocity": "rate", "linear_acceleration": "force"}
 
 
@@ -51,7 +51,7 @@ def read_imu_messages(
         DataError: It cannot be read, has no such messages, or several topics and none is chosen, or
             the messages mark the orientation as not measured.
     """
-    found = read_topic(path, (IMU.name,), what="IMU messages", topic=topic, topics=topics)
+    found = read_topic(path, (IMU,), what="IMU messages", topic=topic, topics=topics)
     with parsing(path, OTHER_FIELDS):
         columns = _columns(found)
     if columns is None:

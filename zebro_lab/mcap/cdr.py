@@ -6,8 +6,6 @@ tests compare these bytes with its decoder.
 """
 
 import struct
-from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any, Self
 
 import numpy as np
@@ -42,23 +40,14 @@ class CdrWriter:
         """Append an unsigned 8-bit integer."""
         return self._packed("<B", 1, value)
 
-    def float64(self, *values: float) -> Self:
-        """Append doubles without a length: single fields, or an array of fixed length."""
-        return self._packed(f"<{len(values)}d", 8, *values)
-
     def text(self, value: str) -> Self:
         """Append a string in UTF-8, with its length in bytes before and a zero byte behind.
 
         The length counts the zero byte; lone surrogates are written as Python escapes.
         """
         self._align(4)
-        self._parts += _text_block(value)
-        return self
-
-    def texts(self, values: Sequence[str]) -> Self:
-        """Append a sequence of strings, preceded by their number."""
-        self._align(4)
-        self._parts += _texts_block(tuple(values))
+        data = value.encode("utf-8", "backslashreplace") + b"\0"
+        self._parts += struct.pack("<I", len(data)) + data
         return self
 
     def array(self, values: NDArray[Any]) -> Self:
@@ -72,7 +61,7 @@ class CdrWriter:
     def time(self, nanoseconds: int) -> Self:
         """Append a `builtin_interfaces/Time` (int32 s, uint32 ns) from ns since the Unix epoch."""
         seconds, rest = divmod(nanoseconds, _NANOSECONDS)
-        return self._packed("<iI", 4, seconds, rest)
+        return self._packed("<i", 4, seconds)._packed("<I", 4, rest)
 
     def message(self) -> bytes:
         """Return the encoded message: the CDR header and all fields so far."""
@@ -81,23 +70,10 @@ class CdrWriter:
     def _align(self, size: int) -> None:
         self._parts += bytes(-len(self._parts) % size)
 
-    def _packed(self, layout: str, size: int, *values: float) -> Self:
+    def _packed(self, layout: str, size: int, value: int) -> Self:
         self._align(size)
-        self._parts += struct.pack(layout, *values)
+        self._parts += struct.pack(layout, value)
         return self
-
-
-def _text_block(value: str) -> bytes:
-    data = value.encode("utf-8", "backslashreplace") + b"\0"
-    return struct.pack("<I", len(data)) + data
-
-
-@lru_cache(maxsize=256)  # names of joints: the same in every message
-def _texts_block(values: tuple[str, ...]) -> bytes:
-    block = struct.pack("<I", len(values))
-    for value in values:
-        block += bytes(-len(block) % 4) + _text_block(value)
-    return block
 
 
 class CdrReader:

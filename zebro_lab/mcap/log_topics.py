@@ -112,7 +112,9 @@ def _chosen(
 ) -> str:
     if not found:
         raise DataError(
-            f"holds no {what}; expected messages of type {', '.join(sorted(types))}", file=path
+            f"holds no {what}; expected messages of type {', '.join(sorted(types))}, or of a run "
+            "that zebro-lab recorded the run's folder",
+            file=path,
         )
     if topic is not None:
         if topic not in found:

@@ -1,36 +1,55 @@
 # SPDX-License-Identifier: MIT
 """Write the MCAP log of a run incrementally, so that it is readable up to the last flush."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import IO, Final
 
-import numpy as np
+from mcap.well_known import MessageEncoding, SchemaEncoding
+from mcap.writer import CompressionType, Writer
 
 from rig.device import Counters, Sample
 from rig.sample_columns import as_columns
 from zebro_lab.mcap.cdr import CdrWriter
-from zebro_lab.mcap.message_log import MessageLog
-from zebro_lab.mcap.raw_log import RAW_SCHEMAS, encode_raw, raw_topic
-from zebro_lab.mcap.ros_messages import INFO, LOG, Schema, log_entry
-from zebro_lab.mcap.stream_views import StreamView
+from zebro_lab.mcap.raw_log import RAW_SCHEMAS, RawStream, encode_raw, raw_topic
 
 EVENTS: Final = "/events"
-COUNTERS: Final = Schema(
-    "zebro_lab/msg/Counters",
-    "# What happened to a stream so far.\n"
+LOG: Final = "rcl_interfaces/msg/Log"
+"""Type of the messages of `EVENTS`."""
+LOG_TEXT: Final = f"""\
+builtin_interfaces/Time stamp
+uint8 level
+string name
+string msg
+string file
+string function
+uint32 line
+{"=" * 80}
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"""
+INFO, WARNING, ERROR = 20, 30, 40
+"""Severity levels of a `LOG` message, by ROS."""
+_COUNTERS: Final = "zebro_lab/msg/Counters"
+_SCHEMAS: Final = {
+    **{name: text for name, (_, text) in RAW_SCHEMAS.items()},
+    LOG: LOG_TEXT,
+    _COUNTERS: "# What happened to a stream so far.\n"
     + "".join(f"uint64 {field.name}\n" for field in fields(Counters))
     + "uint64 dropped  # by the recorder: nobody wrote them in time\n",
-)
+}
+"""Definition in ros2msg of each type of message."""
 _CHUNK_BYTES: Final = 1 << 20  # flushing ends a chunk long before
 
 
 class LogWriter:
-    """Writer of a run's MCAP log: raw samples, display messages, events; not thread-safe.
+    """Writer of a run's MCAP log: raw samples, counters, events; not thread-safe.
 
     Args:
         file: Binary output file; writing to it begins at once.
-        views: Converter of each stream's samples to display messages, by the stream's name.
+        streams: Description of each stream's raw samples, by the stream's name.
         attachments: Texts of the device profiles to attach, by file name.
         start: Host time at which the run began [s].
         start_ns: Start of the run since the Unix epoch [ns].
@@ -43,40 +62,38 @@ class LogWriter:
         self,
         file: IO[bytes],
         *,
-        views: Mapping[str, StreamView],
+        streams: Mapping[str, RawStream],
         attachments: Mapping[str, str],
         start: float,
         start_ns: int,
     ) -> None:
-        self.written = {raw_topic(name): 0 for name in views}
-        self._views = views
+        self.written = {raw_topic(name): 0 for name in streams}
         self._start, self._start_ns = start, start_ns
-        self._log = MessageLog(file, chunk_size=_CHUNK_BYTES)
-        self._log.register(EVENTS, LOG)
-        for name, view in views.items():
-            self._register(name, view)
+        self._dtypes = {name: RAW_SCHEMAS[each.schema][0] for name, each in streams.items()}
+        self._writer = Writer(file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._writer.start(profile="ros2", library="zebro-lab")
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[str, int] = {}
+        self._messages: Counter[str] = Counter()
+        self._register(EVENTS, LOG)
+        for name, stream in streams.items():
+            self._register(raw_topic(name), stream.schema, stream.metadata)
+            self._register(f"/{name}/counters", _COUNTERS)
         for name, text in attachments.items():
-            self._log.attach(start_ns, name, "application/toml", text)
+            self._writer.add_attachment(start_ns, start_ns, name, "application/toml", text.encode())
 
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
-        """Write samples of a stream: one message of raw counts, and its display messages.
-
-        The message of raw counts is stamped with the time of the last sample.
+        """Write samples of a stream as one message, stamped with the time of the last sample.
 
         Args:
-            stream: Name of the stream, one of `views`.
+            stream: Name of the stream, one of `streams`.
             samples: Next samples of the stream, at least one.
         """
-        view = self._views[stream]
-        dtype, _ = RAW_SCHEMAS[view.raw_schema]
+        dtype, topic = self._dtypes[stream], raw_topic(stream)
         columns = as_columns(samples, dtype)
-        host_time = columns.host_time - self._start
-        stamps = (self._start_ns + np.rint(1e9 * host_time).astype(np.int64)).tolist()
-        topic = raw_topic(stream)
-        self._log.add(topic, stamps[-1], encode_raw(columns, dtype=dtype, start=self._start))
+        stamp = self.stamp(float(columns.host_time[-1]))
+        self._add(topic, stamp, encode_raw(columns, dtype=dtype, start=self._start))
         self.written[topic] += len(samples)
-        for shown, stamp, message in view.messages(columns, stamps):
-            self._log.add(shown, stamp, message)
 
     def event(self, host_time: float, text: str, *, level: int = INFO) -> None:
         """Write an event to the topic `/events`.
@@ -84,10 +101,12 @@ class LogWriter:
         Args:
             host_time: Host time of the event [s].
             text: Description of the event.
-            level: Severity: `INFO`, `WARNING` or `ERROR` of `ros_messages`.
+            level: Severity: `INFO`, `WARNING` or `ERROR`.
         """
         stamp = self.stamp(host_time)
-        self._log.add(EVENTS, stamp, log_entry(stamp, text, level=level))
+        message = CdrWriter().time(stamp).uint8(level).text("zebro_lab")
+        message.text(text).text("").text("").uint32(0)
+        self._add(EVENTS, stamp, message.message())
 
     def count(self, host_time: float, stream: str, counters: Counters, *, dropped: int) -> None:
         """Write the counters of a stream to its topic `/STREAM/counters`.
@@ -102,23 +121,30 @@ class LogWriter:
         for field in fields(Counters):
             message.uint64(getattr(counters, field.name))
         stamp = self.stamp(host_time)
-        self._log.add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
+        self._add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
 
     def flush(self) -> None:
         """Pass all buffered data to the operating system; they survive a crash of this process."""
-        self._log.flush()
+        self._writer.flush()
 
     def finish(self) -> None:
         """Write the index and the end of the log; the file stays open."""
-        self._log.finish()
+        self._writer.finish()
 
     def stamp(self, host_time: float) -> int:
         """Convert host time [s] to Unix time [ns] by the start of the run, not the wall clock."""
         return self._start_ns + round((host_time - self._start) * 1e9)
 
-    def _register(self, name: str, view: StreamView) -> None:
-        _, text = RAW_SCHEMAS[view.raw_schema]
-        raw = Schema(view.raw_schema, text)
-        self._log.register(raw_topic(name), raw, metadata=view.metadata)
-        for topic, schema in (*view.topics.items(), (f"/{name}/counters", COUNTERS)):
-            self._log.register(topic, schema)
+    def _register(self, topic: str, schema: str, metadata: Mapping[str, str] | None = None) -> None:
+        if schema not in self._schemas:
+            self._schemas[schema] = self._writer.register_schema(
+                schema, SchemaEncoding.ROS2, _SCHEMAS[schema].encode()
+            )
+        self._channels[topic] = self._writer.register_channel(
+            topic, MessageEncoding.CDR, self._schemas[schema], dict(metadata or {})
+        )
+
+    def _add(self, topic: str, stamp: int, message: bytes) -> None:
+        number = self._messages[topic]
+        self._messages[topic] += 1
+        self._writer.add_message(self._channels[topic], stamp, message, stamp, number)

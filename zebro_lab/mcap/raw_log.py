@@ -5,7 +5,7 @@ Raw counts are stored, not angles or forces. These are computed from the counts 
 which can be corrected later.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -35,6 +35,19 @@ RAW_SCHEMAS: dict[str, tuple[str, str]] = {
 }
 """Type of the counts and text of each schema, by name: whole numbers for almost all devices,
 doubles for those whose counts have a fraction."""
+
+
+@dataclass(frozen=True)
+class RawStream:
+    """Description of one device's raw samples in a log.
+
+    Attributes:
+        schema: Name of the schema of the samples, a key of `RAW_SCHEMAS`.
+        metadata: Names and units of the device's counts, so that the log needs no profile.
+    """
+
+    schema: str
+    metadata: Mapping[str, str]
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.sample_queue import SampleQueue
 from zebro_lab.files.errors import RecordingError
-from zebro_lab.mcap.log_writer import LogWriter
-from zebro_lab.mcap.ros_messages import INFO
+from zebro_lab.mcap.log_writer import INFO, LogWriter
 from zebro_lab.recording.place import require_space
 from zebro_lab.recording.run_files import RunFiles
 from zebro_lab.recording.threads import needing_threads
@@ -128,7 +127,7 @@ class RunRecorder:
 
         Args:
             text: Description of the event.
-            level: Severity: `INFO`, `WARNING` or `ERROR` of `mcap.ros_messages`.
+            level: Severity: `INFO`, `WARNING` or `ERROR`.
         """
         now = self._clock.now()
         self._notes.append(lambda log: log.event(now, text, level=level))

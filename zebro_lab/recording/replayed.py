@@ -12,7 +12,7 @@ from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
-from zebro_lab.runs.profile_views import IMU, profile_views
+from zebro_lab.runs.profile_streams import IMU, profile_streams
 from zebro_lab.runs.recorded_legs import LEGS
 
 _RIG_STREAMS: Final = ("drives", "load_cell", "board")
@@ -67,9 +67,9 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     file = profile_file(folder, kept)
     if not file.is_file():
         raise NotFound(f"{file}: missing; copy it from the computer where the run was recorded")
-    views = profile_views(file)
+    described = profile_streams(file)
     for each in chosen:
-        if each not in views:
+        if each not in described:
             raise DataError(
                 f"does not describe stream '{each}' of the log, as the recorded rig's does; "
                 "copy that profile from the computer where the run was recorded",

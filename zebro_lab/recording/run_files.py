@@ -20,7 +20,7 @@ from zebro_lab.runs.manifest import (
     profile_file,
     write_manifest,
 )
-from zebro_lab.runs.profile_views import stored_views
+from zebro_lab.runs.profile_streams import stored_streams
 
 RESERVE: Final = 1 << 16
 """Disk space reserved in the run folder for log end and end record on a full disk [bytes]."""
@@ -61,14 +61,14 @@ class RunFiles:
             profile_file(folder, name).parent.mkdir(exist_ok=True)
             profile_file(folder, name).write_text(text, encoding="utf-8", newline="")
         self._first = [folder / MANIFEST_FILE, *(profile_file(folder, name) for name in profiles)]
-        views = stored_views(folder, profiles)
-        self.streams = tuple(views)
+        streams = stored_streams(folder, profiles)
+        self.streams = tuple(streams)
         (folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
         self._file = (folder / LOG_FILE).open("xb")
         try:
             self._place = OpenPlace(folder / LOG_FILE, self._file)
             self.log = LogWriter(
-                self._file, views=views, start=start,
+                self._file, streams=streams, start=start,
                 attachments={f"profiles/{name}.toml": text for name, text in profiles.items()},
                 start_ns=epoch_ns(manifest.began),
             )  # fmt: skip

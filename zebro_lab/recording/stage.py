@@ -14,7 +14,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import RigError
 from zebro_lab.files.errors import RecordingError, SettingsError
 from zebro_lab.files.source_names import is_twin, joined_source
-from zebro_lab.mcap.ros_messages import WARNING
+from zebro_lab.mcap.log_writer import WARNING
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
 from zebro_lab.recording.recorder import RunRecorder

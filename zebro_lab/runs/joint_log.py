@@ -18,12 +18,12 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, SeveralTopics, read_topic
 from zebro_lab.mcap.ros_bags import LoggedMessage
-from zebro_lab.mcap.ros_messages import JOINT_STATE
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.runs.joined_readings import joined_readings
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
 
+JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 DYNAMIC: Final = "control_msgs/msg/DynamicJointState"
 """Message of ros2_control, which names the interfaces of each joint."""
 _ORDER = "front left, front right, middle left, middle right, rear left, rear right"
@@ -73,7 +73,7 @@ def read_joint_log(
         DataError: No ROS log, no joint positions (on `topic`), or several topics and none chosen.
     """
     asked = {"what": "joint positions", "topic": topic, "topics": topics}
-    types = (JOINT_STATE.name, DYNAMIC)
+    types = (JOINT_STATE, DYNAMIC)
     joints: dict[str, set[str]] = {}
     try:
         found = read_topic(path, types, parts=partial(_with_positions, joints=joints), **asked)

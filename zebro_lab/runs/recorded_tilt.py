@@ -14,7 +14,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import profile_file, read_manifest
-from zebro_lab.runs.profile_views import IMU
+from zebro_lab.runs.profile_streams import IMU
 
 
 @dataclass(frozen=True)

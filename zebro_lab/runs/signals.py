@@ -21,9 +21,9 @@ from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.zebro.profile import LegProfile, decode_angles, load_leg_profile
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import is_simulated
+from zebro_lab.mcap.log_writer import LOG, WARNING
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
-from zebro_lab.mcap.ros_messages import LOG, WARNING
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_slip_rig_run, run_state
 from zebro_lab.runs.manifest import RIG, RunManifest, profile_file, read_manifest
 from zebro_lab.runs.recorded_legs import LEGS
@@ -291,7 +291,7 @@ def _of_table(rows: Array, manifest: RunManifest) -> Iterator[Panel]:
 
 def _events(log: Path, manifest: RunManifest) -> tuple[Event, ...]:
     start = epoch_ns(manifest.began)
-    messages, _ = read_messages(log, schema=LOG.name)
+    messages, _ = read_messages(log, schema=LOG)
     return tuple(
         Event(1e-9 * (message.log_time - start), message.content.msg,
               message.content.level >= WARNING)

@@ -19,13 +19,12 @@ from rig.slip_rig.profile import FURTHER, render_table_profile
 from zebro_lab.files.atomic import atomic_folder, atomic_write_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hash
-from zebro_lab.mcap.log_writer import LogWriter
+from zebro_lab.mcap.log_writer import WARNING, LogWriter
 from zebro_lab.mcap.raw_log import raw_topic
-from zebro_lab.mcap.ros_messages import WARNING
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, require_new, run_path
 from zebro_lab.runs.manifest import RIG, TABLE, RunManifest, profile_file, write_manifest
-from zebro_lab.runs.profile_views import stored_views
+from zebro_lab.runs.profile_streams import stored_streams
 
 _BOARD: Final = "board"
 _BLOCKS: Final = {"walk": 100, "slip-rig": 1000}  # samples per chunk; a truncated file loses one
@@ -101,8 +100,9 @@ def _write_log(
     ]
     with (draft / LOG_FILE).open("wb") as file:
         log = LogWriter(
-            file, views=stored_views(draft, profiles), start=0.0, start_ns=epoch_ns(manifest.began),
+            file, streams=stored_streams(draft, profiles), start=0.0,
             attachments={f"profiles/{name}.toml": text for name, text in profiles.items()},
+            start_ns=epoch_ns(manifest.began),
         )  # fmt: skip
         if event:
             log.event(0.0, event)

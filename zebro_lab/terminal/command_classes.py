@@ -5,6 +5,7 @@ import inspect
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
+from itertools import pairwise
 from typing import Any, Final
 
 import typer
@@ -30,6 +31,7 @@ class _Strict:
         Raises:
             BadParameter: An option that takes one value is given more than once.
         """
+        words = tuple(args)
         try:
             _require_single(self, ctx, args)
             typer_class: Any = super()  # comes after this class among the bases
@@ -41,6 +43,9 @@ class _Strict:
                 _offer(unknown, ctx.command_path, unknown.option_name, _options(self, ctx))
             elif hasattr(error.__cause__, "errors"):  # by pydantic
                 unknown.message = _named_value(unknown.message, unknown.__cause__.errors()[0])
+            elif hasattr(error, "param"):  # a value that an option had in an earlier version
+                for option_and_value in map(" ".join, pairwise(words)):
+                    _offer(unknown, ctx.command_path, option_and_value, ())
             raise
 
     def get_short_help_str(self, limit: int = 45) -> str:

@@ -32,6 +32,8 @@ REMOVED: Final[dict[str, str]] = {
     "law alone by --carry law.",
     "calibrate --zero-stability": "State zero_stability in [load_cell] of columns.toml.",
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
+    "export --to mcap": "A track opens in other tools by track/path.tum; path.csv of a prediction "
+    "and the tables of --to csv open anywhere.",
     "predict --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
     "--walks fits them to tracked walks.",
     "predict --thesis": "Leg angles are walked by the listing of the thesis's model; gaits by its "
@@ -73,7 +75,8 @@ REMOVED: Final[dict[str, str]] = {
     "walk --threads": "Draws are walked on all cores of this machine; leave the option out.",
     "walk --write-robot": "Write a robot.toml by zebro-lab init robot.toml --kind robot.",
 }
-"""What to use instead, a sentence, by "COMMAND", "COMMAND --option", or "--option" of any command.
+"""What to use instead, a sentence, by "COMMAND", "COMMAND --option", "COMMAND --option value", or
+"--option" of any command.
 
 A command in a group has the group's name before it ("study sbc"), and `calibrate-slip` is
 "calibrate".
@@ -85,7 +88,7 @@ def replacement(command_path: str, name: str) -> str | None:
 
     Args:
         command_path: Command that was typed, as `zebro-lab rig` or `calibrate-slip`.
-        name: Option or subcommand that it does not know.
+        name: Option, option with its value, or subcommand that it does not know.
     """
     command = command_path.removeprefix("zebro-lab").replace("calibrate-slip", "calibrate").strip()
     return REMOVED.get(f"{command} {name}".strip(), REMOVED.get(name))

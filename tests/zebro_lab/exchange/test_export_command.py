@@ -3,13 +3,10 @@
 
 import os
 import re
-from pathlib import Path
 
 import pytest
 
 from support.written_runs import edit, make_run
-from zebro_lab.exchange import export_mcap_stage
-from zebro_lab.exchange.export_mcap_stage import Exported
 
 
 @pytest.mark.parametrize("form", ["csv", "parquet"])
@@ -37,16 +34,3 @@ def test_a_run_that_did_not_end_is_exported_with_its_state(tmp_path, run_command
     assert ended.out.startswith("WARNING: the run has not ended, state 'recording': it is being ")
     edit(folder, exit_status="completed")
     assert "WARNING" not in run_command("export", folder, "--out", tmp_path / "more").out
-
-
-def test_topics_of_a_log_for_viewers_are_counted(tmp_path, run_command, monkeypatch):
-    def export_mcap(run: Path, *, out: Path) -> Exported:
-        return Exported(out, {"/tf": 12, "/track": 3}, (f"of {run.name}",))
-
-    monkeypatch.setattr(export_mcap_stage, "export_mcap", export_mcap)
-    ended = run_command("export", "a-run", "--out", tmp_path / "a.mcap", "--to", "mcap")
-    assert (ended.code, ended.err) == (0, "")
-    assert (
-        ended.out
-        == f"/tf: 12 messages\n/track: 3 messages\nof a-run\nwrote {tmp_path / 'a.mcap'}\n"
-    )

@@ -14,8 +14,8 @@ from support.leg_motions import tripod
 from support.watchers import Nobody
 from support.written_bags import JOINTS, imu, joints, odometry, transforms, write_bag
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.mcap.log_writer import LOG, WARNING
 from zebro_lab.mcap.ros_log import read_messages
-from zebro_lab.mcap.ros_messages import LOG, WARNING
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.track.file import read_track
@@ -93,7 +93,7 @@ def test_suspected_leg_angles_are_warned_of_and_kept_with_the_run(tmp_path):
     pd.DataFrame(table).to_csv(tmp_path / "legs.csv", index=False)
     imported = taken(tmp_path, legs=tmp_path / "legs.csv")
     (line,) = [note for note in imported.notes if "legs 2, 4 and 6 turn backwards" in note]
-    events, _ = read_messages(imported.folders[0] / "log.mcap", schema=LOG.name)
+    events, _ = read_messages(imported.folders[0] / "log.mcap", schema=LOG)
     assert [(each.content.level, each.content.msg) for each in events][1:] == [(WARNING, line)]
     (tmp_path / "robot.toml").write_text("[legs]\nsign = [1, -1, 1, -1, 1, -1]")
     right = taken(tmp_path, legs=tmp_path / "legs.csv", robot=tmp_path / "robot.toml", label="x")
@@ -253,25 +253,13 @@ def test_times_beyond_what_a_log_can_hold_are_refused(tmp_path, name, first):
     assert not list(tmp_path.glob("data/*"))
 
 
-def test_a_ros_log_of_joint_states_is_a_leg_log(files, tmp_path):
-    folder, _ = everything(files, tmp_path)
-    imported = taken(tmp_path, legs=folder / "log.mcap", label="again")
-    again = read_manifest(imported.folders[0])
-    assert again.start == "2026-03-04T05:06:07+00:00"  # its stamps are seconds since 1970
-    assert again.source == "import:log.mcap"
-    ours, theirs = (read_leg_log(f).reference for f in (folder, imported.folders[0]))
-    np.testing.assert_allclose(theirs.t, ours.t - ours.t[0], atol=1e-6)
-    np.testing.assert_allclose(theirs.theta, ours.theta, atol=1e-9)
-
-
 def test_a_log_without_leg_angles_is_refused(files, tmp_path):
     (files / "noise.mcap").write_bytes(b"\x00" * 500)
     with pytest.raises(DataError, match="not an MCAP"):
         taken(tmp_path, legs=files / "noise.mcap")
     folder, _ = everything(files, tmp_path)
-    (files / "named.toml").write_text('[legs]\ntopic = "/joints"')
-    with pytest.raises(DataError, match="/legs/joint_states"):
-        taken(tmp_path, legs=folder / "log.mcap", columns=files / "named.toml")
+    with pytest.raises(DataError, match=r"holds no joint positions.*the run's folder"):
+        taken(tmp_path, legs=folder / "log.mcap")
 
 
 WALKED = tripod(1.2).angles(T12)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rig.device import Sample
-from support.logs import COUNTS, VIEWS, log_of
+from support.logs import COUNTS, STREAMS, log_of
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.raw_log import read_raw_log
@@ -14,7 +14,7 @@ from zebro_lab.mcap.raw_log import read_raw_log
 def test_a_log_is_read_up_to_where_it_is_cut(tmp_path):
     path = tmp_path / "log.mcap"
     with path.open("wb") as file:
-        writer = LogWriter(file, views={"legs": VIEWS["legs"]}, attachments={}, start=0.0,
+        writer = LogWriter(file, streams={"legs": STREAMS["legs"]}, attachments={}, start=0.0,
                            start_ns=0)  # fmt: skip
         for n in range(50):
             writer.write("legs", [Sample(n / 10, n / 10, n, COUNTS["legs"])])

@@ -7,10 +7,9 @@ import pytest
 from support.written_bags import BEGAN, imu, joints, stamped, write_bag
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.log_topics import read_topic
-from zebro_lab.mcap.ros_messages import JOINT_STATE
 
 T = np.arange(0.0, 1.0, 0.1)
-TYPES = (JOINT_STATE.name,)
+TYPES = ("sensor_msgs/msg/JointState",)
 
 
 @pytest.fixture(scope="module")

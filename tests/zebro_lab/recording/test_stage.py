@@ -21,8 +21,8 @@ from support.leg_tables import table_of
 from support.logs import events
 from support.watchers import Onlooker, RecordWatcher
 from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.log_writer import WARNING
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.ros_messages import WARNING
 from zebro_lab.recording.devices import default_gait, open_devices, profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.request import RecordRequest

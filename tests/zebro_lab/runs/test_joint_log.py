@@ -6,27 +6,46 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap_ros2.writer import Writer
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.mcap.message_log import MessageLog
-from zebro_lab.mcap.ros_messages import JOINT_STATE, joint_state
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.runs.joint_log import joint_table, legs_of_joints, read_joint_log
 from zebro_lab.tables.mapped_columns import canonical_columns
 
+HEADER = f"""\
+{"=" * 80}
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+{"=" * 80}
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"""
+JOINT_STATE = f"""\
+std_msgs/Header header
+string[] name
+float64[] position
+float64[] velocity
+float64[] effort
+{HEADER}"""
 Stamped = tuple[str, float, float, dict[str, float]]
 
 
 def write(file: Path, *states: Stamped) -> Path:
     """Write joint states: topic, stamp [s], log time [s], position of each joint [rad]."""
     with file.open("wb") as out:
-        log = MessageLog(out)
-        for topic in dict.fromkeys(state[0] for state in states):
-            log.register(topic, JOINT_STATE)
+        writer = Writer(out)
+        schema = writer.register_msgdef("sensor_msgs/msg/JointState", JOINT_STATE.strip())
         for topic, stamp, log_time, joints in states:
-            message = joint_state(round(1e9 * stamp), [*joints], position=[*joints.values()])
-            log.add(topic, round(1e9 * log_time), message)
-        log.finish()
+            seconds, rest = divmod(round(1e9 * stamp), 10**9)
+            message = {
+                "header": {"stamp": {"sec": seconds, "nanosec": rest}, "frame_id": ""},
+                "name": [*joints], "position": [*joints.values()], "velocity": [], "effort": [],
+            }  # fmt: skip
+            writer.write_message(topic, schema, message, log_time=round(1e9 * log_time))
+        writer.finish()
     return file
 
 
@@ -160,8 +179,6 @@ float64[] values
 
 
 def test_positions_of_dynamic_joint_states_are_read(tmp_path):
-    from mcap_ros2.writer import Writer
-
     with (tmp_path / "bag.mcap").open("wb") as out:
         writer = Writer(out)
         schema = writer.register_msgdef("control_msgs/msg/DynamicJointState", DYNAMIC.strip())

@@ -13,13 +13,14 @@ from model.arrays import Array
 from zebro_lab.files.opening import parsing
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, TopicRows, read_topic
 from zebro_lab.mcap.ros_bags import LoggedMessage
-from zebro_lab.mcap.ros_poses import POSE, TRANSFORMS
 from zebro_lab.tables.raw_table import RawTable
 
 ODOMETRY: Final = "nav_msgs/msg/Odometry"
 STAMPED: Final = "geometry_msgs/msg/PoseStamped"
+POSE: Final = "geometry_msgs/msg/PoseWithCovarianceStamped"
 TRANSFORM: Final = "geometry_msgs/msg/TransformStamped"
-POSE_TYPES: Final = (ODOMETRY, STAMPED, POSE.name, TRANSFORM, TRANSFORMS.name)
+TRANSFORMS: Final = "tf2_msgs/msg/TFMessage"
+POSE_TYPES: Final = (ODOMETRY, STAMPED, POSE, TRANSFORM, TRANSFORMS)
 _STATIC: Final = "tf_static"  # topic of transforms that never change
 
 
@@ -69,7 +70,7 @@ def read_logged_poses(
 
 
 def _parts(message: LoggedMessage) -> Parts:
-    if message.type != TRANSFORMS.name:
+    if message.type != TRANSFORMS:
         yield message.topic, message.content.header, message.content
     elif not message.topic.endswith(_STATIC):
         for each in message.content.transforms:
@@ -78,7 +79,7 @@ def _parts(message: LoggedMessage) -> Parts:
 
 def _pose(kind: str, content: Any) -> tuple[float, ...]:
     """Return position x, y, z and quaternion x, y, z, w of a message's content."""
-    if kind in (TRANSFORM, TRANSFORMS.name):
+    if kind in (TRANSFORM, TRANSFORMS):
         moved = content.transform if kind == TRANSFORM else content
         p, q = moved.translation, moved.rotation
     else:
@@ -88,7 +89,7 @@ def _pose(kind: str, content: Any) -> tuple[float, ...]:
 
 
 def _covariance(found: TopicRows) -> Array | None:
-    if found.type not in (ODOMETRY, POSE.name):
+    if found.type not in (ODOMETRY, POSE):
         return None
     covariance = np.array([each.pose.covariance for each in found.contents], dtype=float)
     known = covariance.any() and np.isfinite(covariance).all()  # ROS: zeros are unknown

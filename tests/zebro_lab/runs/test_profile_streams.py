@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A stored profile tells which streams its device has and how they are shown."""
+"""A stored profile tells which streams its device has, and what their counts are."""
 
 import pytest
 
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.runs.profile_views import profile_views, stored_views
+from zebro_lab.runs.profile_streams import profile_streams, stored_streams
 
 STREAMS = {
     ("legs", "zebro-100-serial"): {"legs"},
@@ -15,14 +15,14 @@ STREAMS = {
 
 
 @pytest.mark.parametrize("stored", STREAMS)
-def test_each_stream_of_a_profile_has_its_topics(stored, tmp_path):
+def test_each_stream_of_a_profile_names_its_counts_and_units(stored, tmp_path):
     name, profile = stored
     (tmp_path / "profiles").mkdir()
     file = tmp_path / "profiles" / f"{name}.toml"
     file.write_text(profile_text(profile))
-    views = profile_views(file)
-    assert set(views) == STREAMS[stored]
-    for stream, view in views.items():
-        assert view.topics
-        assert all(topic.startswith(f"/{stream}/") for topic in view.topics)
-    assert set(stored_views(tmp_path, [name])) == STREAMS[stored]
+    streams = profile_streams(file)
+    assert set(streams) == STREAMS[stored]
+    for stream in streams.values():
+        assert stream.metadata["counts"]
+        assert stream.metadata["unit"]
+    assert stored_streams(tmp_path, [name]) == streams

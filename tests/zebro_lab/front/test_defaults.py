@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Without a folder to write no files are kept; a named one is neither made nor removed."""
 
-from pathlib import Path
-
 import pytest
 
-from zebro_lab.front.defaults import Silent, kept_or_temporary, optional
+from zebro_lab.front.defaults import kept_or_temporary
 
 
 def test_a_result_is_kept_where_it_is_named(tmp_path):
@@ -28,15 +26,3 @@ def test_an_unnamed_result_is_removed_whatever_happens():
     with pytest.raises(ValueError, match="diverged"):
         fail()
     assert not folders[0].parent.exists()
-
-
-def test_a_path_that_may_be_missing_stays_missing():
-    assert optional(None) is None
-    assert optional("a/b") == Path("a/b")
-
-
-def test_nothing_is_shown_and_nobody_asks_to_stop(capsys):
-    watcher = Silent()
-    watcher.step("fitting", 0.5)
-    assert watcher.stop_requested() is False
-    assert capsys.readouterr() == ("", "")

@@ -11,22 +11,6 @@ from zebro_lab.plots import (
 )
 
 
-def test_runs_of_one_block_leave_a_note_in_place_of_lags(few):
-    panel = few.picture("residuals").axes[2]
-    assert [text.get_text() for text in panel.texts] == ["too few runs have two blocks"]
-
-
-def test_wild_residuals_are_counted_and_do_not_squeeze_the_histogram(one_load):
-    whitened = np.append(np.zeros(60), [50.0, -1e6])
-    marks = {"run_score": np.array([0.0, 3.0]), "simulated": True}
-    figure = residuals(one_load.blocks, whitened=whitened, **marks)
-    assert figure.axes[1].get_xlim()[1] < 10
-    legends = [axes.get_legend() for axes in figure.axes]
-    entries = [text.get_text() for each in legends if each for text in each.get_texts()]
-    assert "blocks (2 beyond ±8 at the edges)" in entries
-    assert "central 90 %: 1 of 2 outside" in entries
-
-
 def test_lags_are_drawn_with_the_band_of_white_noise(rig):
     rng = np.random.default_rng(1)
     n = len(rig.blocks.slip)

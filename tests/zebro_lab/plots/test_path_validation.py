@@ -27,12 +27,3 @@ def test_errors_are_along_across_and_of_yaw_in_millimetres_and_degrees():
     labels = [axes.get_ylabel() for axes in figure.axes]
     assert labels == ["y [m]", "ahead [mm]", "to the left [mm]", "yaw [deg]"]
     assert figure.get_suptitle() == "Prediction and track: w (simulated)"
-
-
-def test_a_path_that_stands_still_is_not_drawn_and_draws_are():
-    still = Poses(T, np.zeros((len(T), 2)), 0 * T)
-    band = Poses(T, np.stack([TRACK.position] * 70), np.zeros((70, len(T))))
-    paths = {"prediction": TRACK, "stand still": still}
-    above, along, _, _ = path_validation(paths, TRACK, band=band, title="w", simulated=False).axes
-    assert len(above.lines) == 60 + 2
-    assert len(along.lines) == 1 + 1  # the prediction and zero

@@ -7,7 +7,6 @@ import pytest
 from zebro_lab.plots import (
     corner,
     save,
-    traces,
 )
 
 
@@ -27,11 +26,3 @@ def test_a_posterior_of_one_point_or_one_parameter_is_drawn(tmp_path):
     save(point, tmp_path / "point.png")
     save(line, tmp_path / "line.png")
     assert (len(point.axes), len(line.axes)) == (3, 1)
-
-
-def test_long_chains_are_thinned_and_every_ensemble_has_a_line():
-    chains = np.random.default_rng(4).normal(size=(5, 30_000, 2))
-    figure = traces(chains, labels=("a [-]", "b [N]"), simulated=False)
-    for density, trace in zip(figure.axes[::2], figure.axes[1::2], strict=True):
-        assert len(density.lines) == len(trace.lines) == 5
-        assert all(len(line.get_xdata()) <= 4000 for line in trace.lines)

@@ -4,7 +4,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from support.calibration_scenes import RIG_LOADS, labelled_lines, scatters
 
@@ -34,24 +33,3 @@ def test_peaks_are_marked_where_the_tables_have_them(any_scene):
     marks = labelled_lines(any_scene.curves(), "peak")
     found = {float(max(mark.get_xdata())) for mark in marks}
     np.testing.assert_allclose(sorted(found), sorted(tabled), rtol=1e-12)
-
-
-def test_a_narrow_peak_gets_a_close_up_and_a_wide_one_none(rig, one_load, tyre):
-    assert (len(rig.curves().axes), len(one_load.curves().axes)) == (8, 2)
-    close = rig.curves().axes[1]
-    assert close.get_xlim()[1] == pytest.approx(0.15, abs=0.01)
-    assert len(tyre.curves().axes) == 4
-
-
-@pytest.mark.parametrize("count", [1, 3, 5, 8])
-def test_up_to_eight_loads_have_a_panel_each(rig, count):
-    figure = replace(rig, load_levels=np.linspace(2, 16, count)).curves()
-    assert len(figure.axes) == 2 * count
-    assert max(figure.get_size_inches()) < 14
-
-
-def test_a_load_without_blocks_still_shows_its_curve(one_load):
-    figure = replace(one_load, load_levels=np.array([6.63, 100.0])).curves()
-    titles = [axes.get_title(loc="left") for axes in figure.axes]
-    assert "load 100 N (no blocks)" in titles
-    assert len(labelled_lines(figure, "posterior median")) == 4

@@ -5,11 +5,6 @@ import numpy as np
 import pytest
 
 
-def test_a_single_load_still_spans_a_surface(one_load):
-    bottom, top = one_load.picture("surface").axes[0].get_ylim()
-    assert bottom < 0.85 * 6.63 < 1.15 * 6.63 < top
-
-
 def test_the_surface_is_the_law_over_tested_slip_and_load(rig):
     (axes,) = rig.picture("surface").axes
     assert axes.get_zlabel() == "traction force, also as colour [N]"

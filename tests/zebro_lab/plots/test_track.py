@@ -35,19 +35,6 @@ def residuals(simulated: bool = True):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("count", [1, 12, 13, 40])
-def test_at_most_twelve_labels_are_written_evenly(count):
-    poses = np.column_stack([0.1 * np.arange(count), np.zeros(count), np.zeros(count)])
-    figure = over_floor(
-        PIXELS, extent=(-1.0, 6.0, -1.0, 1.0), poses=poses, ellipses=[],
-        labels=[f"{2 * k} s" for k in range(count)], title="Path", note="", simulated=True,
-    )  # fmt: skip
-    shown = [int(text.get_text().removesuffix(" s")) // 2 for text in figure.axes[0].texts]
-    assert shown[0] == 0
-    assert len(set(np.diff(shown))) <= 1
-    assert min(count, 7) <= len(shown) <= 12
-
-
 @pytest.mark.parametrize("draw", [floor, photograph, residuals])
 def test_what_is_simulated_says_so_and_what_is_not_does_not(draw, tmp_path):
     assert "(simulated)" in draw().get_suptitle()
@@ -74,33 +61,3 @@ def test_the_photograph_has_v_down_and_half_a_pixel_around_it():
     (axes,) = photograph().axes
     assert axes.get_xlim() == (-0.5, 119.5)
     assert axes.get_ylim() == (89.5, -0.5)
-
-
-def test_every_way_of_finding_is_told_apart():
-    labels = residuals().axes[0].get_legend_handles_labels()[1]
-    assert {"by marker", "by hand", "by body"} <= set(labels)
-
-
-def test_every_colour_of_a_map_and_a_photograph_has_a_key():
-    def keys(figure):
-        return {text.get_text() for text in figure.legends[0].get_texts()}
-
-    assert keys(floor()) == {"body's origin", "heading", "90 % region of the origin"}
-    assert keys(photograph()) == {"body's origin", "heading", "mark, dot at its first corner"}
-    partly = PIXELS.copy()
-    partly[:10] = 0
-    figure = over_floor(
-        partly, extent=(-1.0, 2.0, -1.0, 1.25), poses=POSES, ellipses=[], labels=[""] * 4,
-        title="Path", note="", simulated=True,
-    )  # fmt: skip
-    assert "outside the photograph" in keys(figure)
-
-
-def test_headings_of_a_long_track_are_thinned_and_end_at_no_gap():
-    path = np.column_stack([np.arange(200.0), np.arange(200.0)])
-    path[::10] = np.nan
-    figure = over_photo(PIXELS, title="Path", simulated=True, path_px=path, headings_px=path + 5)
-    (arrows,) = figure.axes[0].collections
-    starts = np.asarray(arrows.get_offsets())
-    assert 12 <= len(starts) <= 24
-    assert np.isfinite(starts).all()

@@ -25,9 +25,3 @@ def test_the_legs_of_each_state_are_above_its_bars(walked):
     colours = [str(bars.get_facecolor()) for bars in axes.collections]
     assert len(set(colours[::2])) == len(set(colours[1::2])) == 1
     assert colours[0] != colours[1]
-
-
-def test_states_too_narrow_for_their_label_have_none(walked):
-    figure = drawn(walked, (0.0, 5.99), step=0.05)
-    assert len(figure.axes[0].texts) == 0
-    assert len(figure.axes[0].lines) > 50

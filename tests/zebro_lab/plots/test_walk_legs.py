@@ -14,7 +14,6 @@ from zebro_lab.plots.walk_legs import (
     normal_forces,
     slip_ratios,
     stances,
-    traction_forces,
 )
 
 
@@ -75,20 +74,6 @@ def test_a_leg_at_rest_has_no_slip_ratio_whatever_the_solver_leaves_of_it(walked
         drawn = axes.lines[1].get_ydata()
         assert np.all(np.isnan(drawn[half:]))
         assert np.isfinite(drawn[: half - 10]).mean() > 0.9
-
-
-def test_an_impact_beyond_the_axes_is_marked(walked):
-    force = walked.normal_force.copy()
-    force[120, 3] = 777.0
-    figure = normal_forces(replace(walked, normal_force=force), title="")
-    labels = figure.axes[3].get_legend_handles_labels()[1]
-    assert "beyond the axes" in labels
-    assert figure.axes[3].get_ylim()[1] < 100
-
-
-def test_what_is_shaded_and_drawn_has_a_key(walked):
-    texts = [text.get_text() for text in traction_forces(walked, title="").legends[0].get_texts()]
-    assert texts[:3] == ["leg on the ground", "forward", "to the left"]
 
 
 def test_forces_that_a_model_does_not_compute_are_said_to_be_none(walked):

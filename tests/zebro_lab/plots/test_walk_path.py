@@ -11,17 +11,6 @@ from model.robot import Robot
 from zebro_lab.plots.walk_path import mean_rate, motion, orientation, path_with_snapshots
 
 
-def test_snapshots_show_the_body_where_it_is(walked):
-    figure = path_with_snapshots(walked, Robot(), title="A walk")
-    axes = figure.axes[0]
-    assert axes.get_aspect() == 1.0
-    bodies = [patch.get_path().vertices for patch in axes.patches]
-    assert len(bodies) == 6
-    for body, index in zip(bodies[::5], (0, -1), strict=True):
-        middle = (body.min(axis=0) + body.max(axis=0)) / 2
-        np.testing.assert_allclose(middle, walked.position[index, :2], atol=0.03)
-
-
 def test_motion_is_drawn_with_means_of_its_derivatives(walked):
     panels = np.reshape(motion(walked, title="A walk").axes, (3, 3))
     inner = slice(10, -10)
@@ -75,19 +64,3 @@ def test_snapshots_are_where_they_are_asked_for(walked):
         middle = (body.min(axis=0) + body.max(axis=0)) / 2
         there = walked.position[np.abs(walked.t - t).argmin(), :2]
         np.testing.assert_allclose(middle, there, atol=0.03)
-
-
-def test_a_legend_stays_within_a_narrow_figure(walked):
-    straight_up = replace(walked, position=walked.position[:, [1, 0, 2]] * [0.01, 20.0, 1.0])
-    figure = path_with_snapshots(straight_up, Robot(), title="A walk")
-    figure.draw_without_rendering()
-    box = figure.legends[0].get_window_extent()
-    assert figure.bbox.x0 <= box.x0
-    assert box.x1 <= figure.bbox.x1
-
-
-def test_rounding_errors_of_a_straight_walk_are_drawn_as_zero(walked):
-    still = np.zeros_like(walked.position)
-    still[:, 1] = 1e-6 * np.sin(40 * walked.t)
-    panels = np.reshape(motion(replace(walked, position=still), title="").axes, (3, 3))
-    assert np.ptp(panels[0, 1].get_ylim()) >= 0.002

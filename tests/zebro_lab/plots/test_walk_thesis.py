@@ -56,12 +56,6 @@ def test_contacts_change_where_hip_heights_cross(path):
         assert np.all(np.isnan(down) != np.isnan(other))
 
 
-def test_the_lowest_point_is_drawn_without_a_line_across(path):
-    for axes in lowest_angles(path, title="A walk").axes:
-        drawn = axes.lines[-1].get_ydata()
-        assert np.nanmax(np.abs(np.diff(drawn))) < 5.0
-
-
 def test_coordinates_of_kinematics_have_no_accelerations(path):
     kinematic = replace(path, acceleration=np.full_like(path.acceleration, np.nan))
     assert len(coordinates(kinematic, title="A walk").axes) == 12

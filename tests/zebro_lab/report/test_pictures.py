@@ -12,7 +12,7 @@ from PIL import Image
 from support.report_pages import made
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.report import pictures
-from zebro_lab.report.pictures import CAPTIONS, caption_of, embed, lies_in, place_of
+from zebro_lab.report.pictures import CAPTIONS, embed, lies_in
 
 
 def unpacked(url: str) -> Image.Image:
@@ -63,26 +63,10 @@ def test_photographs_are_embedded_small_and_look_the_same(tmp_path):
     assert len(url) < file.stat().st_size / 4
 
 
-def test_what_is_transparent_is_white(tmp_path):
-    clear = np.zeros((8, 8, 4), np.uint8)
-    found = embed(drawn(tmp_path / "a.png", clear), stage="track", simulated=False)
-    assert np.asarray(unpacked(found.data).convert("RGB")).min() == 255
-
-
 def test_a_picture_too_long_for_webp_is_embedded_as_it_is(tmp_path):
     file = drawn(tmp_path / "a.png", np.zeros((1, 16_400), np.uint8))
     start, _, data = embed(file, stage="track", simulated=False).data.partition(",")
     assert (start, base64.b64decode(data)) == ("data:image/png;base64", file.read_bytes())
-
-
-def test_a_picture_has_caption_and_name(tmp_path):
-    drawn(tmp_path / "curves.png", lines())
-    found = embed(tmp_path / "curves.png", stage="calibration", simulated=False)
-    assert (found.caption, found.name) == (CAPTIONS["curves"], "curves.png")
-    simulated = embed(tmp_path / "curves.png", stage="calibration", simulated=True)
-    assert simulated.caption == CAPTIONS["curves"] + " (simulated)"
-    track = drawn(tmp_path / "residuals.png", lines())
-    assert "smoothed track" in embed(track, stage="track", simulated=False).caption
 
 
 def test_an_svg_is_embedded_as_it_is(tmp_path):
@@ -127,17 +111,3 @@ def test_files_outside_the_folder_do_not_lie_in_it(tmp_path, name):
     (tmp_path / "in" / "link.png").symlink_to(tmp_path / "secret.png")
     assert not lies_in(tmp_path / "in", name)
     assert lies_in(tmp_path / "in", "a.png")
-
-
-def test_captions_go_by_name_and_in_a_validation_by_its_end():
-    assert caption_of("map", stage="track") == CAPTIONS["map"]
-    assert caption_of("walk.floor", stage="validation") == CAPTIONS[".floor"]
-    assert caption_of("map", stage="validation") == CAPTIONS[".errors"]
-    assert caption_of("my_own-one", stage="track") == "my own one"
-    names = ["other.png", "band.png", "path.png", "map.png"]
-    assert sorted(names, key=place_of) == ["map.png", "path.png", "band.png", "other.png"]
-
-
-def test_the_captions_of_traction_say_what_is_drawn():
-    assert "added in pairs" in CAPTIONS["paired_traction"]
-    assert "over slip ratio" in CAPTIONS["curves"]

@@ -37,18 +37,6 @@ def test_a_track_alone_is_compared_with_trajectories_and_needs_nothing_else(
     assert "none needs a slip curve" in page.text
 
 
-def test_a_track_alone_beside_a_walk_leaves_the_advice_for_the_walk(walk, tmp_path):
-    data = tmp_path / "data"
-    write_json(data / "alone" / "run.json", TRACK_ALONE)
-    (walk / "track").rename(data / "alone" / "track")
-    walk.rename(data / "walk")
-    page = made(data, calibration=tmp_path / "nowhere")
-    assert "zebro-lab calibrate" in page.text
-    assert f"zebro-lab track PHOTOS --camera camera.toml --floor floor.toml --run {data}/walk" in (
-        page.text
-    )
-
-
 def test_a_folder_of_runs_is_one_page(walk, tmp_path):
     data = tmp_path / "data"
     data.mkdir()
@@ -86,11 +74,6 @@ def test_a_picture_from_elsewhere_is_not_shown_and_one_that_is_gone_is_left_out(
     track = find_sources(walk, calibration=walk).runs[0].parts["track"]
     assert [each.name for each in track.pictures] == ["map.png"]
     assert track.not_shown == ("../x.png",)
-
-
-def test_a_folder_of_another_kind_is_no_calibration(walk):
-    with pytest.raises(DataError, match="'kind' is predict, expected calibration"):
-        find_sources(walk, calibration=walk / "prediction")
 
 
 def test_a_folder_with_nothing_to_report_is_named(tmp_path):

@@ -96,13 +96,6 @@ def test_alone_forgets_the_calibrations_data(suggest, tmp_path):
     assert float(one["sd_suggested"]) < float(other["sd_suggested"])
 
 
-def test_without_a_target_it_is_wrong_usage(suggest, tmp_path):
-    ended = suggest()
-    assert ended.code == 2
-    assert "missing: name a parameter of the law" in ended.err
-    assert not (tmp_path / "plan-suggested").exists()
-
-
 @pytest.mark.parametrize(
     ("target", "said"),
     [
@@ -122,13 +115,6 @@ def test_a_target_that_is_unknown_says_what_there_is(suggest, tmp_path, target, 
     assert not (tmp_path / "plan-suggested").exists()
 
 
-def test_too_short_a_time_says_what_it_takes(suggest):
-    ended = suggest("--target", "friction", "--time", "10")
-    assert ended.code == 1
-    assert "10 s are too short for 7 slips" in ended.err
-    assert "s or more" in ended.err
-
-
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -141,12 +127,6 @@ def test_a_plan_without_points_to_choose_from_is_refused(suggest, tmp_path, old,
     ended = suggest("--target", "friction", plan=write_plan(tmp_path, (old, new)))
     assert ended.code in (1, 2)
     assert said in " ".join(ended.err.split()) or "normal force" in ended.err
-
-
-def test_slips_beyond_the_calibration_are_told(suggest, tmp_path):
-    plan = write_plan(tmp_path, ("last = 0.3", "last = 1.0"))
-    ended = suggest("--target", "friction", plan=plan)
-    assert "the plan's slips go beyond those of the calibration" in " ".join(ended.out.split())
 
 
 def broken(folder, file, old, new):
@@ -189,8 +169,3 @@ def test_the_plan_may_not_be_replaced_by_the_result(suggest, tmp_path):
     ended = suggest("--target", "friction", plan=plan)
     assert ended.code == 1
     assert tomllib.loads(plan.read_text())["name"] == "thesis 4 x 62"
-
-
-def test_help_has_examples(run_command):
-    ended = run_command("rig", "suggest", "--help")
-    assert "--target walk:data/RUN" in " ".join(ended.out.split())

@@ -28,16 +28,3 @@ def test_the_band_after_is_inside_the_band_now(figure):
     now, after = figure.axes[0].collections[:2]
     heights = [np.ptp(each.get_paths()[0].vertices[:, 1]) for each in (now, after)]
     assert heights[1] <= heights[0]
-
-
-def test_slips_are_marked_larger_where_there_are_more(figure):
-    proposal = suggested().proposal
-    marks = figure.axes[0].collections[2]
-    assert np.asarray(marks.get_offsets())[:, 0] == pytest.approx(proposal.slips)
-    order = np.argsort(proposal.counts)
-    assert np.all(np.diff(marks.get_sizes()[order]) >= 0)
-    texts = [[text.get_text() for text in axes.texts] for axes in figure.axes[:2]]
-    near = np.abs(proposal.slips) <= 0.12  # 15 % of the largest slip
-    several = proposal.counts > 1
-    assert texts[0] == [str(n) for n in proposal.counts[several & ~near]]
-    assert texts[1] == [str(n) for n in proposal.counts[several & near]]

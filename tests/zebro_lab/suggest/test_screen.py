@@ -2,14 +2,12 @@
 """The screen tells what is expected, the points, and what they assume."""
 
 import io
-from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
 
 from support.suggestions import suggested
-from zebro_lab.suggest.folder import Expected
-from zebro_lab.suggest.screen import lines, print_suggested
+from zebro_lab.suggest.screen import print_suggested
 
 
 def printed(found):
@@ -31,24 +29,3 @@ def test_the_table_compares_now_the_plan_and_the_suggestion():
     assert f"suggestion, {minutes} min {seconds} s" in text
     assert "calibration of SIMULATED data, source 'sim:test'" in text
     assert "next: zebro-lab rig plan out/plan.toml" in text
-
-
-def test_points_are_told_with_how_often():
-    found = suggested()
-    points, assumed = lines(found)
-    assert assumed == "assumes much"
-    assert points.startswith(f"{2 * found.proposal.counts.sum()} points of ")
-    assert "at loads of 3, 9 N each slips of -0.2, " in points
-    assert " times)" in points
-
-
-def test_units_and_parts_of_walks_are_told():
-    row = Expected("walk:run", "heading", "rad", 0.5, 0.2, 0.1)
-    text = printed(replace(suggested(), expected=(row,)))
-    assert "walk:run heading" in text
-    assert "0.5 rad" in text
-
-
-def test_relative_sds_of_forces_are_in_percent():
-    row = Expected("force@0.02:8", "force@0.02:8", "dimensionless", 0.051, 0.02, 0.01)
-    assert " 5.1 % " in printed(replace(suggested(), expected=(row,)))

@@ -43,9 +43,8 @@ class _Strict:
                 _offer(unknown, ctx.command_path, unknown.option_name, _options(self, ctx))
             elif hasattr(error.__cause__, "errors"):  # by pydantic
                 unknown.message = _named_value(unknown.message, unknown.__cause__.errors()[0])
-            elif hasattr(error, "param"):  # a value that an option had in an earlier version
-                for option_and_value in map(" ".join, pairwise(words)):
-                    _offer(unknown, ctx.command_path, option_and_value, ())
+            for option_and_value in map(" ".join, pairwise(words)):  # a removed value
+                _offer(unknown, ctx.command_path, option_and_value, ())
             raise
 
     def get_short_help_str(self, limit: int = 45) -> str:

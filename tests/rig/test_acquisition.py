@@ -79,12 +79,6 @@ def test_commands_go_before_reads_and_the_end_is_called_once():
     assert len(order) >= 20
 
 
-def test_a_pause_still_reads_what_came_meanwhile():
-    sink = Kept()
-    read(Device(Stream(), pause=0.001), sink)
-    assert len(sink.samples) >= 20
-
-
 def test_reading_ends_by_itself_at_its_time():
     stream, sink = Stream(), Kept()
     reader = Acquisition(Device(stream), sink=sink, start=0.0)

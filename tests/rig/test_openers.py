@@ -2,10 +2,8 @@
 """Addresses choose profile, port and driver, real or simulated."""
 
 import numpy as np
-import pytest
 
 from model.gait.reference import SampledReference
-from rig.errors import ProfileError
 from rig.links.serve import PortServer
 from rig.openers import IMU_PROFILE, LEGS_PROFILE, imu_at, legs_at, resolve
 from rig.twins import robot_twin
@@ -21,12 +19,6 @@ def rng():
 def test_sim_alone_is_the_twin_of_the_default_profile():
     assert resolve("sim", default=LEGS_PROFILE) == (LEGS_PROFILE, "sim")
     assert resolve("mine.toml@COM3", default=LEGS_PROFILE) == ("mine.toml", "COM3")
-
-
-@pytest.mark.parametrize("address", ["zebro-100-serial", "@port", "mine@", "replay:RUN"])
-def test_an_address_without_profile_and_port_is_named(address):
-    with pytest.raises(ProfileError, match=address):
-        resolve(address, default=LEGS_PROFILE)
 
 
 def test_a_port_is_real_whoever_serves_it(take):
@@ -47,8 +39,3 @@ def test_twins_say_that_they_are_simulated(take):
     with imu_at(f"{IMU_PROFILE}@sim", name="imu2", rng=rng()) as unit, unit:
         assert (unit.source, unit.name) == ("sim:imu", "imu2")
         assert take(unit, 1)
-
-
-def test_an_imu_at_a_port_has_the_name_it_is_given():
-    with imu_at(f"{IMU_PROFILE}@/dev/null", name="imu1", rng=rng()) as unit:
-        assert (unit.source, unit.name) == ("real", "imu1")

@@ -4,18 +4,12 @@
 import pytest
 
 from rig.errors import ProfileError, WrongDevice
-from rig.profile import open_profile, shipped_profiles, split_address
-
-LEG_PROFILES = ["vregs-dump", "zebro-100-can", "zebro-100-serial", "zebrobus-uart"]
+from rig.profile import open_profile, split_address
 
 
 def test_an_unknown_profile_is_named_with_its_nearest():
     with pytest.raises(ProfileError, match="did you mean 'zebro-100-serial'"):
         open_profile("zebro-100-serail", device="legs")
-
-
-def test_every_shipped_profile_has_a_device():
-    assert set(LEG_PROFILES) < set(shipped_profiles())
 
 
 @pytest.mark.parametrize("address", ["zebro-100-serial", "@/dev/ttyUSB0", "profile@"])

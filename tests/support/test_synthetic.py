@@ -14,21 +14,17 @@ from PIL import Image
 from PIL.ExifTags import IFD, Base
 
 from support.synthetic import (
-    HARSH,
     IDEAL,
     Conditions,
     DrawnFloorMarker,
     DrawnPose,
     DrawnRobotMarker,
     DrawnScene,
-    Glare,
     Light,
     RobotLook,
     RobotState,
-    Shade,
     Sheet,
     charuco_cells,
-    checkerboard_cells,
     composite,
     develop,
     look_at,
@@ -39,8 +35,7 @@ from support.synthetic import (
     take_photo,
     with_time_stamp,
 )
-from support.synthetic.lens import distort, undistort
-from support.synthetic.patterns import INK, PAPER, floor_texture
+from support.synthetic.patterns import INK, PAPER
 from support.synthetic.surfaces import box_hit, half_circle_hit
 
 DISTORTION = (-0.2, 0.05, 0.001, -0.0015, 0.01)
@@ -60,17 +55,6 @@ def background():
 @pytest.fixture(scope="module")
 def photo(background):
     return take_photo(SCENE, STATE, rng=np.random.default_rng(0), background=background)
-
-
-def detector(dictionary=cv2.aruco.DICT_4X4_50):
-    parameters = cv2.aruco.DetectorParameters()
-    parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_APRILTAG
-    return cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(dictionary), parameters)
-
-
-def found_corners(pixels):
-    corners, ids, _ = detector().detectMarkers(pixels)
-    return {int(number): found[0] for number, found in zip(np.ravel(ids), corners, strict=True)}
 
 
 def outline_moments(polygon):
@@ -125,23 +109,6 @@ def test_a_ray_leads_back_to_its_pixel(u, v, distance):
     seen = distance * CAMERA.rays((u, v))
     point = CAMERA.rotation.T @ (seen - CAMERA.translation)
     np.testing.assert_allclose(CAMERA.project(point), (u, v), atol=1e-7)
-
-
-def test_undistortion_inverts_distortion():
-    points = np.random.default_rng(1).uniform(-0.5, 0.5, (200, 2))
-    np.testing.assert_allclose(undistort(distort(points, DISTORTION), DISTORTION), points,
-                               atol=1e-10)  # fmt: skip
-
-
-def test_what_is_behind_the_camera_has_no_pixel():
-    assert np.isnan(CAMERA.project(CAMERA.position - CAMERA.rotation[2])).all()
-
-
-def test_the_camera_looks_at_its_target_and_stands_upright():
-    camera = look_at((1.0, -2.0, 1.5), (0.2, 0.4, 0.0))
-    np.testing.assert_allclose(camera.project((0.2, 0.4, 0.0)), (639.5, 479.5), atol=1e-9)
-    assert camera.project((0.2, 0.4, 0.1))[1] < 479.5
-    np.testing.assert_allclose(camera.position, (1.0, -2.0, 1.5))
 
 
 # sub-pixel geometry
@@ -209,25 +176,6 @@ def edge_points(drawn, start, end):
     return np.array(points, float)
 
 
-def test_checkerboard_corners_are_found_where_they_are():
-    grid = checkerboard_cells(7, 5)
-    rotation = DrawnPose(0, 0, 0.2, 0, 0.1, 0.0).rotation
-    sheet = Sheet(grid, (0.45, 0.35), np.array([0.3, 0.2, 0.05]), rotation)
-    picture = paint_sheets(
-        np.zeros((360, 480, 3), np.float32), [sheet], camera=CAMERA, light=FLAT_LIGHT
-    )  # fmt: skip
-    pixels, _ = develop(picture, replace(IDEAL, defocus_sd_px=1.2), rng=np.random.default_rng(0))
-    x, y = np.meshgrid(np.arange(-2.5, 3) * 0.05, np.arange(1.5, -2, -1) * 0.05)
-    true = CAMERA.project(sheet.at(x, y)).reshape(-1, 1, 2)
-    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-4)
-    found = cv2.cornerSubPix(
-        np.ascontiguousarray(pixels[..., 0]), true.astype(np.float32) + 0.4, (7, 7), (-1, -1), stop
-    )
-    error = found - true  # of the finder, mostly: it falls as the picture gets smoother
-    assert np.sqrt(np.mean(error**2)) < 0.02
-    assert np.abs(error.mean(axis=0)).max() < 0.005
-
-
 def test_the_robots_marker_is_the_same_print_as_a_sheet_would_be(background, photo):
     marker = DrawnRobotMarker()
     rotation = STATE.pose.rotation @ np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
@@ -249,20 +197,6 @@ def test_the_robots_marker_is_the_same_print_as_a_sheet_would_be(background, pho
     assert np.mean(difference > 2) < 0.01
 
 
-@pytest.mark.parametrize("height", [0.0385, 0.12])
-def test_markers_are_decoded_near_their_true_corners(background, height):
-    look = RobotLook(DrawnRobotMarker(5, 0.12, height))
-    drawn = take_photo(
-        SCENE, STATE, look=look, rng=np.random.default_rng(0), background=background
-    )  # fmt: skip
-    found = found_corners(drawn.pixels)
-    assert set(found) == {5, 10, 11}
-    true = {5: marker_corners(STATE, look.marker)}
-    true |= {marker.marker_id: marker.corners for marker in SCENE.markers}
-    for number, corners in true.items():
-        np.testing.assert_allclose(found[number], CAMERA.project(corners), atol=1.0)
-
-
 # patterns
 
 
@@ -275,26 +209,12 @@ def test_marker_cells_are_those_of_the_dictionary():
     assert cells.min() == np.float32(INK)
 
 
-def test_unknown_markers_are_refused():
-    with pytest.raises(ValueError, match="DICT_9X9"):
-        marker_cells(0, dictionary="DICT_9X9")
-    with pytest.raises(ValueError, match="0 to 49"):
-        marker_cells(50)
-
-
 def test_charuco_cells_are_opencvs_board():
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
     board = cv2.aruco.CharucoBoard((5, 4), 0.04, 0.03, dictionary)
     expected = board.generateImage((5 * 32, 4 * 32), marginSize=0) > 127
     drawn = np.kron(charuco_cells(5, 4), np.ones((4, 4))) > 0.5
     assert np.mean(drawn != expected) < 0.01  # it rounds some of its edges by a pixel
-
-
-def test_the_floor_repeats_without_a_seam():
-    texture = floor_texture(np.random.default_rng(3))[..., 0]
-    seam = np.abs(texture[0] - texture[-1]).mean()
-    within = np.abs(np.diff(texture, axis=0)).mean()
-    assert seam < 1.3 * within
 
 
 # the robot
@@ -346,31 +266,6 @@ def test_cover_is_the_robot_and_the_shadow_darkens_only_the_floor(background, ph
     np.testing.assert_allclose((u.mean(), v.mean()), centre, atol=6)
 
 
-def test_all_six_legs_are_visible_from_above():
-    camera = look_at((0.0, -0.01, 1.5), (0.0, 0.0, 0.0), width=320, height=240,
-                     field_of_view=0.4)  # fmt: skip
-    state = RobotState(DrawnPose(0.0, 0.0, 0.0))
-    picture = take_photo(DrawnScene(camera, light=FLAT_LIGHT), state, rng=np.random.default_rng(0))
-    for x in (0.097, 0.0, -0.097):
-        for side in (1, -1):
-            u, v = camera.project((x, side * 0.1156, 0.08))
-            around = picture.cover[int(v) - 12 : int(v) + 12, int(u) - 4 : int(u) + 4]
-            assert around.max() == 1.0, (x, side)
-
-
-def test_without_a_marker_none_is_found_and_head_differs_from_tail(background):
-    look = RobotLook(None)
-    pictures = [
-        take_photo(SCENE, replace(STATE, pose=replace(STATE.pose, yaw=yaw)), look=look,
-                   rng=np.random.default_rng(0), background=background)
-        for yaw in (0.5, 0.5 + np.pi)
-    ]  # fmt: skip
-    assert set(found_corners(pictures[0].pixels)) == {10, 11}
-    both = (pictures[0].cover > 0.9) & (pictures[1].cover > 0.9)
-    difference = np.abs(pictures[0].pixels[both].astype(int) - pictures[1].pixels[both])
-    assert difference.mean() > 10
-
-
 def test_motion_smears_about_the_middle_of_the_exposure(background):
     moving = replace(STATE, velocity_xy=(0.4, 0.1), yaw_rate=0.5)
     blurred = take_photo(
@@ -398,23 +293,7 @@ def test_a_robot_at_rest_is_drawn_as_if_every_pixel_were_sampled_in_full(backgro
     assert np.abs(at_rest.cover - moving.cover).max() < 1e-6
 
 
-def test_a_robot_outside_the_picture_leaves_it_alone(background):
-    away = RobotState(DrawnPose(0.3, 5.0, 0.0))
-    shot = take_photo(SCENE, away, rng=np.random.default_rng(0), background=background)
-    clean, _ = develop(background, IDEAL, rng=np.random.default_rng(0))
-    np.testing.assert_array_equal(shot.pixels, clean)
-
-
 # the photograph
-
-
-def test_the_same_seed_gives_the_same_bytes_and_another_does_not(background):
-    shots = [
-        take_photo(SCENE, STATE, conditions=HARSH, rng=np.random.default_rng(seed),
-                   background=background)
-        for seed in (4, 4, 5)
-    ]  # fmt: skip
-    assert shots[0].jpeg == shots[1].jpeg != shots[2].jpeg
 
 
 def test_noise_has_the_promised_spread():
@@ -439,37 +318,6 @@ def test_blur_keeps_light_and_place(blur):
     assert spread.max() < 204
 
 
-def test_shake_spreads_along_its_direction():
-    dot = np.zeros((41, 41, 3), np.float32)
-    dot[20, 20] = 1.0
-    kind = replace(IDEAL, exposure=1.0, shake_px=(8.0, 0.0))
-    pixels, _ = develop(dot, kind, rng=np.random.default_rng(0))
-    v, u = np.nonzero(pixels[..., 0])
-    assert set(v) == {20}
-    assert np.ptp(u) == 8
-
-
-def test_glare_adds_light_and_shade_takes_it():
-    flat = np.full((60, 80, 3), 0.4, np.float32)
-    kind = replace(
-        IDEAL, exposure=1.0, glare=(Glare((20, 30), 5.0, 0.9),), shade=(Shade((50.0, 0.0), 0.0, 4),)
-    )
-    pixels, _ = develop(flat, kind, rng=np.random.default_rng(0))
-    grey = pixels[..., 0].astype(float)
-    assert grey[30, 20] == 255
-    assert grey[30, 75] == pytest.approx(0.4 * grey[5, 45], abs=1)
-    assert grey[5, 45] == 102
-
-
-def test_a_harsh_photograph_is_dark_and_compressed(background):
-    shot = take_photo(
-        SCENE, STATE, conditions=HARSH, rng=np.random.default_rng(0), background=background
-    )
-    assert shot.pixels.mean() < 50
-    decoded = cv2.imdecode(np.frombuffer(shot.jpeg, np.uint8), cv2.IMREAD_COLOR)
-    np.testing.assert_array_equal(decoded, shot.pixels)
-
-
 # composites
 
 
@@ -488,23 +336,6 @@ def test_a_pasted_composite_shows_every_exposure_as_it_was(series):
         robot = cv2.erode((shot.cover > 0.99).astype(np.uint8), np.ones((3, 3))) > 0
         difference = np.abs(merged[robot].astype(int) - shot.pixels[robot])
         assert np.mean(difference > 3) < 0.02
-
-
-def test_later_exposures_are_pasted_on_top(series):
-    near = replace(STATE, pose=DrawnPose(0.1, 0.15, 0.0))
-    later = take_photo(SCENE, near, rng=np.random.default_rng(0),
-                       background=render_background(SCENE))  # fmt: skip
-    merged = composite([series[0], later])
-    robot = cv2.erode((later.cover > 0.99).astype(np.uint8), np.ones((3, 3))) > 0
-    assert np.abs(merged[robot].astype(int) - later.pixels[robot]).max() <= 3
-
-
-def test_a_composite_of_nothing_or_of_two_sizes_is_refused(series):
-    with pytest.raises(ValueError, match="one or more"):
-        composite([])
-    small = replace(series[0], pixels=series[0].pixels[:100])
-    with pytest.raises(ValueError, match="480x100, 480x360"):
-        composite([series[0], small])
 
 
 # time stamps

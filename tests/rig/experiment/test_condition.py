@@ -3,16 +3,8 @@
 
 import pytest
 
-from rig.experiment.condition import Condition, RigState, next_stop
+from rig.experiment.condition import Condition, RigState
 from rig.safety import StopCategory
-
-
-def test_each_ctrl_c_asks_for_a_harder_stop_up_to_the_hardest():
-    asked = [None]
-    for _ in range(4):
-        asked.append(next_stop(asked[-1]))
-    hardest = StopCategory.EMERGENCY
-    assert asked[1:] == [StopCategory.SOFT, StopCategory.SAFE, hardest, hardest]
 
 
 @pytest.mark.parametrize("state", [RigState.STOPPED, RigState.LATCHED])
@@ -31,13 +23,6 @@ def test_a_held_run_can_go_on_and_says_how_long_it_waits():
     keys = Condition(RigState.HOLDING, True, pending=StopCategory.SOFT, hold=5.0).keys
     assert keys.startswith("r + Enter: resume; ")
     assert keys.endswith("a safe stop follows unless resumed within 5 s")
-
-
-def test_a_running_one_can_be_confirmed_paused_and_stopped():
-    keys = Condition(RigState.RUNNING, True).keys
-    assert keys.startswith(
-        "Enter: confirm a prompt; p + Enter: pause after this point; Ctrl-C or s"
-    )
 
 
 @pytest.mark.parametrize(("energised", "why", "said"), [

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The normal force is set by a person within its tolerance, or at once by a simulated one."""
 
-import math
 from types import SimpleNamespace
 
 from rig.experiment.load import LEAST, HandShaft, SimulatedOperator
@@ -31,11 +30,6 @@ def test_a_person_is_asked_and_believed_only_within_the_tolerance(lab):
     assert outcome.completed
     assert len([text for kind, text in twin.sink.events if kind == "prompt"]) == 3
     assert asked.count("set the normal force to 8 N +/- 3 N, then confirm") >= 5
-
-
-def test_a_shaft_without_a_tolerance_is_prompted_without_one(lab):
-    load = HandShaft(lab["twin"]().control, tolerance=math.inf)
-    assert load.request(4.9) == "set the normal force to 4.9 N, then confirm"
 
 
 def test_the_simulated_operator_sets_the_load_exactly_and_is_done():

@@ -32,10 +32,3 @@ def test_of_a_plans_and_a_rigs_limits_the_smaller_counts(lab):
     both = rig_limits(limits, ALLOWED)
     assert (both.speed, both.normal_force) == (40.0, 10.0)
     assert (both.torque, both.lateral_force, both.temperature_celsius) == (2.0, 3.0, None)
-
-
-def test_guards_that_are_off_are_named_with_their_limits(lab):
-    limits = lab["plan"]().limits
-    assert limits.guards_off_text == ""
-    off = replace(limits, silence=2.0, speed_error=9.0, guards_off=("silence", "speed_error"))
-    assert off.guards_off_text == "silence (2 s), speed_error (9 rad/s)"

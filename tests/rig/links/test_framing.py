@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
 import numpy as np
 import pytest
-from cobs import cobs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.errors import ProtocolError
 from rig.links.faults import Faults, FaultyWire
 from rig.links.framing import CobsFramer, TrailerFramer
 from rig.links.packet import LONGEST_BODY, WRAP, Packet, decode_packet, encode_packet
@@ -26,32 +24,6 @@ packets = st.builds(
     ticks=st.integers(0, WRAP - 1),
     body=st.binary(max_size=LONGEST_BODY),
 )
-
-
-@given(packets)
-def test_a_packet_comes_back_as_it_was(packet):
-    wire = encode_packet(packet)
-    assert wire.count(b"\0") == 1
-    assert wire.endswith(b"\0")
-    assert len(wire) - 1 <= LONGEST
-    assert decode_packet(cobs.decode(wire[:-1])) == packet
-
-
-@given(st.binary(max_size=300))
-def test_any_bytes_are_read_as_a_packet_or_as_none(content):
-    decode_packet(content)
-
-
-@given(packet=packets, bit=st.integers(0, 10_000))
-def test_a_packet_with_one_bit_flipped_is_never_taken(packet, bit):
-    content = bytearray(cobs.decode(encode_packet(packet)[:-1]))
-    content[bit // 8 % len(content)] ^= 1 << bit % 8
-    assert decode_packet(bytes(content)) is None
-
-
-def test_a_body_too_long_for_a_packet_is_refused():
-    with pytest.raises(ProtocolError, match=f"{LONGEST_BODY + 1} bytes"):
-        encode_packet(Packet(1, 0, 0, bytes(LONGEST_BODY + 1)))
 
 
 @given(st.lists(packets, max_size=8), st.integers(0, 2**32 - 1))
@@ -116,13 +88,3 @@ def test_no_damaged_packet_is_taken_at_any_bit_error_rate(flip):
     taken = [p for c in framer.feed(data) if (p := decode_packet(c)) is not None]
     assert set(taken) <= set(sent)
     assert len(taken) > 0.5 * len(sent) * (1 - flip) ** (8 * 27)
-
-
-def test_a_perfect_wire_changes_nothing():
-    frames = [b"abc", b"defg"]
-    assert FaultyWire(Faults(), rng=np.random.default_rng(0)).stream(frames) == b"abcdefg"
-
-
-def test_an_impossible_fault_rate_is_refused():
-    with pytest.raises(ProtocolError, match=r"flip is 1\.5"):
-        Faults(flip=1.5)

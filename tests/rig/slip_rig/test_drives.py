@@ -8,8 +8,6 @@ from contextlib import contextmanager
 import can
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from rig.clock import ManualClock
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout
@@ -19,7 +17,6 @@ from rig.slip_rig.can_simple import (
     ESTIMATES,
     Command,
     can_id,
-    describe_error,
 )
 from rig.slip_rig.drives import DriveBus, disc_speed
 from rig.slip_rig.imperfections import RigImperfections
@@ -82,11 +79,6 @@ def test_an_estimate_that_is_no_number_is_refused(request, wait_until):
             other.send(can.Message(arbitration_id=arbitration_id, data=data, is_extended_id=False))
         samples = wait_until(lambda: drives.counters.refused == 2, reading=drives)
     assert all(math.isfinite(sample.counts[0]) for sample in samples)
-
-
-@given(st.integers(0, 2**32 - 1), st.sampled_from(["0.5", "0.6"]))
-def test_every_error_is_spelled_out(error, firmware):
-    assert bool(describe_error(error, firmware)) == bool(error)
 
 
 class AdapterPort:

@@ -14,7 +14,7 @@ from rig.errors import LinkError
 from rig.links.faults import PERFECT_LINE, Faults
 from rig.links.serve import Ticker
 from rig.links.udp import UdpLink
-from rig.slip_rig.decode import Forces, decode_forces
+from rig.slip_rig.decode import decode_forces
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.load_cell import NetFtCell, read_configuration
 from rig.slip_rig.profile import load_rig_profile
@@ -164,8 +164,3 @@ def test_the_configuration_is_fetched_from_the_cell():
 def test_a_cell_without_a_page_is_an_error_that_names_it():
     with pytest.raises(LinkError, match=r"127\.0\.0\.1:9"):
         read_configuration("127.0.0.1", port=9, timeout=0.5)
-
-
-def forces(normal, traction, n=1000, sd=0.01, seed=0):
-    noise = np.random.default_rng(seed).normal(0, sd, (2, n))
-    return Forces(np.arange(n) / 1000.0, normal + noise[0], traction + noise[1])

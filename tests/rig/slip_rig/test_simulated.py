@@ -83,12 +83,6 @@ def test_a_standing_leg_disc_carries_no_force():
     assert np.all(rig.truth().traction == 0)
 
 
-def test_what_is_true_of_a_rig_can_be_written_down():
-    said = world("brush", imperfections=TYPICAL_RIG).description()
-    assert said["law"] == "brush"
-    assert said["imperfections"]["bump_height"] == TYPICAL_RIG.bump_height
-
-
 def test_impossible_dynamics_are_refused():
     with pytest.raises(ProtocolError, match="speed_lag is 0 s"):
         RigDynamics(speed_lag=0.0)

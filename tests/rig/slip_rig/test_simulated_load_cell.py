@@ -9,7 +9,7 @@ import numpy as np
 from rig.links.faults import PERFECT_LINE
 from rig.links.serve import Ticker
 from rig.links.udp import UdpLink
-from rig.slip_rig.decode import Forces, decode_forces
+from rig.slip_rig.decode import decode_forces
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import load_rig_profile
@@ -64,8 +64,3 @@ def test_leaving_stops_the_cell(take, wait_until):
         sent = cell.sent
         time.sleep(0.05)
         assert cell.sent == sent
-
-
-def forces(normal, traction, n=1000, sd=0.01, seed=0):
-    noise = np.random.default_rng(seed).normal(0, sd, (2, n))
-    return Forces(np.arange(n) / 1000.0, normal + noise[0], traction + noise[1])

@@ -68,10 +68,6 @@ def test_a_wrong_zero_is_repaired_by_the_profile_without_a_new_recording():
     assert np.degrees(off[:, 4].mean()) == pytest.approx(1.4 * 3.6, abs=0.5)
 
 
-def test_no_samples_are_no_angles():
-    assert decode_angles(load_leg_profile("vregs-dump"), []).theta.shape == (0, 1)
-
-
 def test_samples_of_another_device_are_refused():
     with pytest.raises(ProtocolError, match="1 channels"):
         decode_angles(load_leg_profile("zebro-100-serial"), [Sample(0, None, 0, (1,))])

@@ -54,11 +54,6 @@ def test_a_short_run_in_real_time_takes_its_time(plan, tmp_path, monkeypatch):
     assert "completed: 2 points finished" in result.output
 
 
-def test_nobody_to_talk_to_is_said(tmp_path):
-    result = zebro_lab("say", "pause", "--data", tmp_path)
-    assert "no experiment is running here" in str(result.exception)
-
-
 def test_help_loads_nothing_heavy():
     code = (
         "import sys; from typer.testing import CliRunner; from zebro_lab.main import app; "

@@ -22,7 +22,7 @@ from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.journal import read_journal
 from zebro_lab.experiment.stage import command_run
-from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.runs.folder import find_runs, read_slip_rig_run
 from zebro_lab.runs.manifest import read_manifest
 
@@ -88,36 +88,6 @@ def test_a_resumed_run_does_not_repeat_the_noise_of_what_was_measured_before(lab
     lab.run(plan, data, resume=True)
     before, after, *_ = forces_of(data)
     assert not np.array_equal(before[:20], after[:20])
-
-
-def test_an_experiment_is_not_begun_twice_nor_resumed_with_another_plan(lab, plan, tmp_path):
-    data = tmp_path / "data"
-    with pytest.raises(NotFound, match="no experiment to resume"):
-        lab.run(plan, data, resume=True)
-    lab.run(plan, data)
-    with pytest.raises(AlreadyExists, match="--resume"):
-        lab.run(plan, data)
-    plan.write_text(plan.read_text() + "# changed\n")
-    with pytest.raises(SettingsError, match="was started with another plan"):
-        lab.run(plan, data, resume=True)
-
-
-@pytest.mark.parametrize("resume", [False, True])
-def test_points_without_their_journal_are_neither_repeated_nor_resumed(lab, plan, tmp_path, resume):
-    lab.run(plan, tmp_path)
-    (tmp_path / "experiment.jsonl").unlink()
-    with pytest.raises(AlreadyExists, match=r"experiment\.jsonl is missing; restore that file"):
-        lab.run(plan, tmp_path, resume=resume)
-
-
-def test_an_emergency_stop_stays_latched_on_disk_until_it_is_reset(lab, plan, tmp_path):
-    data, control = tmp_path / "data", Control()
-    stop = lab.StopAfter(2, lambda: control.stop.request(StopCategory.EMERGENCY, "planted"))
-    assert lab.run(plan, data, watcher=stop, control=control).reason == "emergency stop: planted"
-    with pytest.raises(SettingsError, match=r"latched \(.*\); inspect the rig"):
-        lab.run(plan, data, resume=True)
-    assert lab.run(plan, data, resume=True, reset_emergency=True).completed
-    assert lab.run(plan, data, resume=True).attempts == 0  # the latch is gone
 
 
 def test_a_plan_beyond_a_limit_leaves_nothing_behind(lab, plan, tmp_path):

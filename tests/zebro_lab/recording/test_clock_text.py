@@ -1,27 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A clock is told with as many digits as are known, and not at all where too little is."""
 
-import pytest
-
 from rig.clock_fit import DRIFT_SD
-from zebro_lab.recording.clock_text import clock_in_words, with_uncertainty
+from zebro_lab.recording.clock_text import clock_in_words
 
 CLOCK = {"offset": 0.0017331, "drift": -3.2443e-4, "delay": 0.00408, "offset_sd": 2.5e-4,
          "drift_sd": 2.05e-5}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("value", "half_width", "text"),
-    [
-        (324.43, 41.0, "324 ± 41"),
-        (324.43, 410.0, "320 ± 410"),
-        (2.2222, 0.0123, "2.222 ± 0.012"),
-        (-0.5, 0.25, "-0.50 ± 0.25"),
-        (1.0, 0.0, "1"),
-    ],
-)
-def test_no_digit_is_shown_that_is_not_known(value, half_width, text):
-    assert with_uncertainty(value, half_width) == text
 
 
 def test_a_clock_is_told_with_its_uncertainty():

@@ -114,16 +114,6 @@ def test_a_disk_that_takes_no_more_ends_a_recording_with_its_record(run_command,
     assert len(read_raw_log(folder / "log.mcap").streams["/load_cell/raw"]) > 100
 
 
-def test_a_run_is_exported_as_tables(run_command, tmp_path):
-    run_command(
-        "record", "--zebro", "sim", "--duration", 0.3, "--label", "x", "--data", tmp_path / "data"
-    )
-    (folder,) = (tmp_path / "data").iterdir()
-    code, out, _ = run_command("export", folder, "--out", tmp_path / "out", "--to", "parquet")
-    assert code == 0
-    assert f"wrote {tmp_path / 'out' / 'legs.parquet'}" in out
-
-
 ERRORS = {
     "no such port": (("--label", "x", "--zebro", "zebro-100-serial@/dev/no"), "cannot open port"),
     "no such profile": (("--label", "x", "--imu", "mine@sim"), "neither a file 'mine' nor a"),
@@ -138,20 +128,6 @@ def test_an_error_is_one_line_and_nothing_is_written(options, message, run_comma
     assert message in err
     assert err.count("\n") == 1
     assert not (tmp_path / "data").exists()
-
-
-def test_a_device_is_required_like_any_other_option(run_command, tmp_path):
-    code, _, err = run_command("record", "--label", "x", "--data", tmp_path / "data")
-    assert code == 2
-    assert (
-        err
-        == "error: --zebro, --imu, --rig: no device to record is given; add one or more of them\n"
-    )
-    assert not (tmp_path / "data").exists()
-
-
-def test_a_run_needs_a_label_and_a_place(run_command):
-    assert run_command("record", "--zebro", "sim")[0] == 2
 
 
 def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run_command, tmp_path):

@@ -44,13 +44,6 @@ def test_what_is_drawn_fits_and_keeps_the_time_and_what_is_simulated(width, heig
     assert "legs SIMULATED" in lines[1]
 
 
-def test_a_low_terminal_leaves_out_values_before_streams():
-    for height, values in ((6, 2), (5, 1), (4, 0)):
-        lines = drawn(100, height)
-        assert any(line.startswith("load_cell") for line in lines)
-        assert sum(line in VALUES.values() for line in lines) == values
-
-
 def test_a_stream_that_has_sent_nothing_is_waited_for():
     silent = {**STREAMS, "imu": StreamStatus("real", 0.0, Counters(), 0)}
     assert time_left(RecordStatus(Path("run"), 0.0, 9.0, silent)) == (

@@ -4,7 +4,6 @@
 import contextlib
 import json
 import os
-import shutil
 import signal
 import subprocess
 import termios
@@ -80,20 +79,6 @@ def terminal():
             os.close(side)
 
 
-def test_a_folder_removed_while_recording_ends_it_with_one_line(tmp_path):
-    data = tmp_path / "data"
-    with recording(data) as process:
-        folder = growing(data)
-        shutil.rmtree(folder)
-        removed = time.monotonic()
-        _, err = process.communicate(timeout=10)
-        assert time.monotonic() - removed < 5.0
-    assert process.returncode == 1
-    assert err.count(b"\n") == 1
-    assert b"removed or renamed" in err
-    assert not folder.exists()
-
-
 @pytest.mark.parametrize("when", ["before", "while"])
 def test_a_stopped_terminal_holds_up_no_recording(tmp_path, when):
     with terminal() as (_, slave, _sides):
@@ -125,15 +110,6 @@ def test_a_pipe_that_nobody_reads_holds_up_no_recording(tmp_path):
     assert process.returncode == 0
     (folder,) = tmp_path.iterdir()
     require_whole(folder)
-
-
-def test_a_hangup_ends_a_recording_with_a_complete_record(tmp_path):
-    with recording(tmp_path) as process:
-        folder = growing(tmp_path)
-        process.send_signal(signal.SIGHUP)
-        _, err = process.communicate(timeout=20)
-    assert (process.returncode, err) == (130, b"")
-    assert require_whole(folder)["exit_status"] == "stopped: SIGHUP"
 
 
 @pytest.mark.parametrize("session", [True, False])

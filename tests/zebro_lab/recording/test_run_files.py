@@ -8,8 +8,7 @@ from zebro_lab.files.errors import RecordingError
 from zebro_lab.recording import run_files
 from zebro_lab.recording.devices import profile_text
 from zebro_lab.recording.run_files import RunFiles
-from zebro_lab.runs.folder import run_state
-from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 MANIFEST = RunManifest(kind="walk", label="x", source="sim:test", start="2026-01-02T03:04:05+00:00")
 
@@ -25,14 +24,6 @@ def begun(folder):
     return RunFiles(folder, MANIFEST, profiles={"legs": profile_text(PROFILE)}, start=0.0)
 
 
-def test_a_run_that_begins_is_a_run_that_is_recording(folder):
-    files = begun(folder)
-    assert run_state(folder, read_manifest(folder)) == "recording"
-    assert profile_file(folder, "legs").read_text() == profile_text(PROFILE)
-    assert files.streams == ("legs",)
-    files.close()
-
-
 def test_the_end_is_written_into_a_folder_that_was_renamed(folder):
     files, renamed = begun(folder), folder.with_name("renamed")
     folder.rename(renamed)
@@ -45,13 +36,6 @@ def test_the_end_is_written_into_a_folder_that_was_renamed(folder):
     manifest = read_manifest(renamed)
     assert manifest.streams == {"/legs/raw": 0}
     assert len(manifest.log_sha256) == 64
-
-
-def test_a_log_that_is_not_whole_has_no_checksum(folder):
-    files = begun(folder)
-    files.write_end(MANIFEST, whole=False)
-    files.close()
-    assert read_manifest(folder).log_sha256 is None
 
 
 def test_a_beginning_that_fails_leaves_no_open_file(folder, monkeypatch):

@@ -11,7 +11,6 @@ from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
-from rich.live import Live
 
 from rig.device import Counters
 from zebro_lab.recording import screen as module
@@ -31,18 +30,6 @@ def console(*, terminal):
 
 def written_on(place):
     return place.file.getvalue()
-
-
-@pytest.mark.parametrize("duration", [None, 10.0])
-def test_a_terminal_sees_counters_time_and_what_is_simulated(duration):
-    place = console(terminal=True)
-    with Live(console=place) as live:
-        RecordScreen(place, live).show(RecordStatus(Path("run"), 4.0, duration, STREAMS))
-    text = written_on(place)
-    for part in ("legs SIMULATED", "100", "1234", "56", "7", "8"):
-        assert part in text
-    assert "imu SIMULATED" not in text
-    assert ("6 s left" in text) == (duration is not None)
 
 
 @pytest.mark.parametrize("terminal", [False, True])
@@ -96,20 +83,6 @@ def test_a_pipe_that_nobody_reads_any_more_is_not_waited_for(monkeypatch):
         with pytest.raises((OSError, SystemExit)):
             screen.show(RecordStatus(Path("run"), 1.0, None, STREAMS))
         assert screen.close()
-
-
-def test_a_terminal_of_another_width_is_cleared():
-    place = console(terminal=True)
-    live = Live(console=place, auto_refresh=False)
-    screen = RecordScreen(place, live)
-    status, clear = RecordStatus(Path("run"), 4.0, None, STREAMS), "\x1b[2J"
-    for width, cleared in ((100, False), (100, False), (60, True)):
-        place.width = width
-        screen._drawn = float("-inf")
-        before = len(written_on(place))
-        screen.show(status)
-        assert (clear in written_on(place)[before:]) == cleared
-    assert screen.close()
 
 
 @pytest.mark.parametrize("number", SIGNALS)

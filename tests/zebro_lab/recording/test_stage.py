@@ -7,13 +7,10 @@ import numpy as np
 import pytest
 
 from model.gait.reference import SampledReference
-from rig.acquisition import Acquisition, Device, acquiring
+from rig.acquisition import Device, acquiring
 from rig.backends import leg_driver, leg_link
-from rig.clock import ManualClock
 from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.links.serve import PortServer
-from rig.replay import ReplayStream
-from rig.sample_queue import LossyTap
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from support.leg_motions import T, tripod
@@ -92,17 +89,6 @@ def test_a_recorded_rig_is_data_for_a_calibration(everything):
     assert np.all(np.diff(table.t) > 0)
     assert np.median(table.omega_leg) == pytest.approx(12.0, abs=0.1)
     assert np.all(table.normal_force > 0)
-
-
-def test_recorded_samples_replay_through_the_drivers_interface(everything):
-    stream = read_raw_log(everything[0].folder / "log.mcap").streams["/load_cell/raw"]
-    samples = stream
-    clock = ManualClock()
-    replay = ReplayStream(samples, name="load_cell", source="replay:RUN", clock=clock)
-    with replay:
-        clock.sleep(1e3)
-        again = replay.read(0.1)
-    assert [s[1:] for s in again] == [s[1:] for s in samples]
 
 
 @pytest.fixture(scope="module")
@@ -219,27 +205,3 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     stream = read_raw_log(recorder.folder / "log.mcap").streams["/legs/raw"]
     assert np.diff(stream.host_time).max() > 1.2
     assert len(stream) == counters.received
-
-
-def test_a_viewer_that_hangs_slows_nobody(tmp_path):
-    twin = robot_twin(LEGS, default_gait(), rng=np.random.default_rng(0))
-    with PortServer(twin) as server:
-        legs = leg_driver(LEGS, leg_link(LEGS, server.port))
-        taken = []
-
-        class Sink:
-            def write(self, stream, samples):
-                taken.extend(samples)
-                return True
-
-            def event(self, text, *, level=20):
-                pass
-
-        reader = Acquisition(Device(legs), sink=Sink(), start=0.0)
-        reader.tap = LossyTap(limit=10)
-        with legs:
-            reader.start()
-            wait_until(lambda: len(taken) > 30)  # the viewer sleeps
-            reader.stop()
-    newest = reader.tap.take()
-    assert newest == taken[-10:]

@@ -10,7 +10,7 @@ from typing import Annotated, Final, TypeAlias
 from typer import Argument, BadParameter, Option
 
 from zebro_lab.recording.address_argument import require_address
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 
 STANDARD_GRAVITY: Final = 9.80665
 
@@ -71,7 +71,7 @@ class WeighRequest:
         Path | None, Option(metavar="DIR", help="Folder for columns.toml with gain_sd and bias_sd.")
     ] = None
     gravity: Annotated[
-        float, Option(help="Gravity at the rig [m/s²]."), Limits(above=0.0, most=30.0)
+        float, Option(help="Gravity at the rig [m/s²]."), Range(above=0.0, most=30.0)
     ] = STANDARD_GRAVITY
     fast: Fast = False
     seed: Seed = 0

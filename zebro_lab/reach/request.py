@@ -9,7 +9,7 @@ from typing import Annotated
 from typer import BadParameter, Option
 
 from model.walk.goal import Goal
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.walk.request import (
     GroundOption,
@@ -76,29 +76,29 @@ class SteppingRequest:
             metavar="SECONDS",
             help="Duration of a cycle before waiting [s], shared evenly by the groups; default: 2.",
         ),
-        Limits(least=0.1, most=1000.0),
+        Range(least=0.1, most=1000.0),
     ] = None
     tau_ground: Annotated[
         float | None,
         Option(metavar="SECONDS", help="Least stance time [s], with --tau-flight; no --cycle."),
-        Limits(least=0.01, most=1000.0),
+        Range(least=0.01, most=1000.0),
     ] = None
     tau_flight: Annotated[
         float | None,
         Option(metavar="SECONDS", help="Flight time [s], with --tau-ground; no --cycle."),
-        Limits(least=0.01, most=1000.0),
+        Range(least=0.01, most=1000.0),
     ] = None
     tau_double: Annotated[
         float,
         Option(
             metavar="SECONDS", help="Time that a group and the next stand together [s]; default: 0."
         ),
-        Limits(least=0.0, most=1000.0),
+        Range(least=0.0, most=1000.0),
     ] = 0.0
     touchdown_deg: Annotated[
         float,
         Option(metavar="DEG", help="Leg angle at touchdown of a whole stance, 90 down [deg]."),
-        Limits(least=3.2, below=180.0),
+        Range(least=3.2, below=180.0),
     ] = 50.0
     liftoff_deg: Annotated[
         float | None,
@@ -106,7 +106,7 @@ class SteppingRequest:
             metavar="DEG",
             help="Leg angle at lift-off of a whole stance [deg]; default: of equal hip height.",
         ),
-        Limits(least=3.2, below=360.0),
+        Range(least=3.2, below=360.0),
     ] = None
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, TypeAlias
 from typer import Argument, Option
 
 from zebro_lab.recording.address_argument import require_address
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 
 _ADDRESS = "PROFILE@PORT|sim|replay:RUN"
 _DURATION = (
@@ -39,9 +39,9 @@ class RecordRequest:
         Option("--imu", metavar=_ADDRESS, help="Inertial measurement unit to record; repeatable."),
     ] = ()
     rig: Annotated[str | None, Option(metavar=_ADDRESS, help="Slip rig to record.")] = None
-    duration: Annotated[
-        float | None, Option(metavar="SECONDS", help=_DURATION), Limits(above=0)
-    ] = None
+    duration: Annotated[float | None, Option(metavar="SECONDS", help=_DURATION), Range(above=0)] = (
+        None
+    )
     material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
     operator: Annotated[str, Option(help="Name of the operator.")] = "unknown"
     robot: Annotated[str | None, Option(help="Name of the robot, noted in run.json.")] = None
@@ -74,7 +74,7 @@ class CheckRequest:
     touchdown_deg: Annotated[
         float | None,
         Option("--lift-off-for", metavar="DEG", help=_FOR),
-        Limits(above=0, below=90),
+        Range(above=0, below=90),
     ] = None
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 from typer import BadParameter, Option
 
 from model.similar_name import nearest
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 
 GAIT_NAMES: Final = ("tripod", "suriana", "maxplus", "tetrapod", "buehler")
 """Names of gaits; any other is given by its groups of legs."""
@@ -76,18 +76,18 @@ class GaitRequest:
         "tripod"
     )
     steering: Annotated[
-        float | None, Option(help=_STEERING), Limits(above=0, advice=_OTHER_SIDE)
+        float | None, Option(help=_STEERING), Range(above=0, advice=_OTHER_SIDE)
     ] = None
     direction: Annotated[Side | None, Option(help=_SIDE)] = None
     touchdown_deg: Annotated[str | None, Option(metavar=_PAIR, help=_TOUCHDOWN)] = None
     liftoff_deg: Annotated[str | None, Option(metavar=_PAIR, help=_LIFTOFF)] = None
-    cycle: Annotated[float | None, Option(metavar="SECONDS", help=_CYCLE), Limits(above=0)] = None
-    tau_ground: Annotated[
-        float | None, Option(metavar="SECONDS", help=_GROUND), Limits(above=0)
-    ] = None
-    tau_flight: Annotated[
-        float | None, Option(metavar="SECONDS", help=_FLIGHT), Limits(above=0)
-    ] = None
+    cycle: Annotated[float | None, Option(metavar="SECONDS", help=_CYCLE), Range(above=0)] = None
+    tau_ground: Annotated[float | None, Option(metavar="SECONDS", help=_GROUND), Range(above=0)] = (
+        None
+    )
+    tau_flight: Annotated[float | None, Option(metavar="SECONDS", help=_FLIGHT), Range(above=0)] = (
+        None
+    )
     tau_turn: Annotated[float | None, Option(min=0.0, metavar="SECONDS", help=_TURN)] = None
     tau_double: Annotated[float | None, Option(min=0.0, metavar="SECONDS", help=_DOUBLE)] = None
 

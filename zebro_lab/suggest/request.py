@@ -8,7 +8,7 @@ from typing import Annotated, Final
 from typer import Argument, Option
 
 from zebro_lab.suggest.target_text import TargetText, WalkText, parse_target
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 from zebro_lab.terminal.picture_options import FormatOption
 
 LONGEST_TIME: Final = 360_000.0
@@ -44,7 +44,7 @@ class SuggestRequest:
     time: Annotated[
         float | None,
         Option(metavar="SECONDS", help="Time that the plan may take [s]; default: that of PLAN."),
-        Limits(above=0.0, most=LONGEST_TIME),
+        Range(above=0.0, most=LONGEST_TIME),
     ] = None
     alone: Annotated[
         bool,
@@ -56,7 +56,7 @@ class SuggestRequest:
     rate: Annotated[
         float | None,
         Option(metavar="HERTZ", help="Sample rate [Hz]; default: that of the rig's profile."),
-        Limits(above=0.0, most=HIGHEST_RATE),
+        Range(above=0.0, most=HIGHEST_RATE),
     ] = None
     seed: Annotated[int, Option(min=0, help="Seed of the posterior's draws.")] = 1
     out: Annotated[Path, Option(metavar="DIR", help="Folder to write, with plan.toml.")] = Path(

@@ -20,8 +20,8 @@ from zebro_lab.tables.text_encoding import WINDOWS, decoded, possible_encodings
 from zebro_lab.tables.text_layout import (
     BLANKS,
     SEPARATORS,
-    Layout,
     Line,
+    TextLayout,
     find_layout,
 )
 
@@ -117,7 +117,7 @@ def _is_open(text: str) -> bool:
     return opened
 
 
-def _layout(path: Path, lines: list[Line]) -> Layout:
+def _layout(path: Path, lines: list[Line]) -> TextLayout:
     try:
         layout = find_layout(lines)
     except DataError as error:
@@ -129,7 +129,7 @@ def _layout(path: Path, lines: list[Line]) -> Layout:
     return layout
 
 
-def _frame(path: Path, layout: Layout, data: bytes, encoding: str) -> pd.DataFrame:
+def _frame(path: Path, layout: TextLayout, data: bytes, encoding: str) -> pd.DataFrame:
     names = [*layout.header.names, *[_SURPLUS] * (layout.width > len(layout.header.names))]
     text = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")
     for _ in range(layout.last_line):  # here, since pandas looks for quotes in skipped lines
@@ -155,7 +155,7 @@ def _frame(path: Path, layout: Layout, data: bytes, encoding: str) -> pd.DataFra
             raise DataError("has a header but no rows", file=path) from error
 
 
-def _table(path: Path, layout: Layout, frame: pd.DataFrame, encoding: str) -> RawTable:
+def _table(path: Path, layout: TextLayout, frame: pd.DataFrame, encoding: str) -> RawTable:
     columns = _without_empty_ends(path, frame, layout)
     odd = layout.separator != ","
     said = [f"cells are separated by {SEPARATORS[layout.separator]}"] * odd
@@ -173,7 +173,9 @@ def _table(path: Path, layout: Layout, frame: pd.DataFrame, encoding: str) -> Ra
     )
 
 
-def _without_empty_ends(path: Path, frame: pd.DataFrame, layout: Layout) -> Mapping[str, pd.Series]:
+def _without_empty_ends(
+    path: Path, frame: pd.DataFrame, layout: TextLayout
+) -> Mapping[str, pd.Series]:
     """Return the columns without empty rows at the end, and without an empty one at the right."""
     last = str(frame.columns[-1]) if len(frame.columns) else ""
     unnamed = last == f"column {len(frame.columns)}" and len(frame.columns) > 1

@@ -32,7 +32,7 @@ Line = tuple[int, str]
 
 
 @dataclass(frozen=True)
-class Layout:
+class TextLayout:
     """Layout of a text table.
 
     Attributes:
@@ -77,7 +77,7 @@ class _Candidate:
         return self.header is not None, data.width > 1, data.values
 
 
-def find_layout(lines: Sequence[Line]) -> Layout:
+def find_layout(lines: Sequence[Line]) -> TextLayout:
     """Find the layout of a table from its first lines.
 
     Args:
@@ -240,13 +240,13 @@ def _is_transposed(rows: Sequence[Sequence[str]]) -> bool:
     )
 
 
-def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> Layout:
+def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> TextLayout:
     rows = best.rows[data.first : data.stop]
     widest = max(range(len(rows)), key=lambda i: len(rows[i]))
     cells = [cell for row in rows for cell in row]
     _require_fit(best, header, data, body)
     last = body[data.first - 1][0] if data.first else body[0][0] - 1
-    return Layout(best.separator, header, last, decimal_sign(cells), len(rows[widest]))
+    return TextLayout(best.separator, header, last, decimal_sign(cells), len(rows[widest]))
 
 
 def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> None:
@@ -271,7 +271,7 @@ def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequenc
             )  # fmt: skip
 
 
-def _without_numbers(body: Sequence[Line]) -> Layout:
+def _without_numbers(body: Sequence[Line]) -> TextLayout:
     """Return the layout of a table of texts, or without rows: its first line is the header."""
     split = {s: [split_line(line, s) for _, line in body] for s in SEPARATORS if s != BLANKS}
     regular = [s for s, rows in split.items() if len(rows[0]) > 1 and len(set(map(len, rows))) == 1]
@@ -290,4 +290,4 @@ def _without_numbers(body: Sequence[Line]) -> Layout:
                 row=row, line=line,
             )  # fmt: skip
     names = [name or f"column {i}" for i, name in enumerate(rows[0], start=1)]
-    return Layout(separator, made_header(names, 1), body[0][0], None, len(names))
+    return TextLayout(separator, made_header(names, 1), body[0][0], None, len(names))

@@ -52,7 +52,7 @@ class _Strict:
         return _summary(self.help)
 
 
-class Command(_Strict, TyperCommand):
+class StrictCommand(_Strict, TyperCommand):
     """Command that refuses an option given twice and shows plain metavars in its help."""
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
@@ -112,7 +112,9 @@ class Application(typer.Typer):
 
     def command(self, name: str | None = None, **settings: Any) -> Callable[..., Any]:
         """Return the decorator that adds a function as a command, as `typer.Typer.command`."""
-        return super().command(name, **{"cls": Command, "context_settings": SETTINGS, **settings})
+        return super().command(
+            name, **{"cls": StrictCommand, "context_settings": SETTINGS, **settings}
+        )
 
 
 def _offer(error: Any, path: str, name: str, known: Collection[str]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Limits of the numbers that options take: one value that is checked and shown in the help."""
+"""Range of the numbers that options take: one value that is checked and shown in the help."""
 
 import math
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Limits:
+class Range:
     """Range of a number; it stands beside the `typer.Option` in the annotation of a field.
 
     A limit that belongs to the range may as well be given as `min` or `max` of the option. NaN and
@@ -20,9 +20,9 @@ class Limits:
         below: Number that exceeds all numbers of the range.
         advice: What to do about a number outside; empty for nothing.
 
-    >>> str(Limits(least=90, below=360)), str(Limits(above=0)), str(Limits(least=1, most=6))
+    >>> str(Range(least=90, below=360)), str(Range(above=0)), str(Range(least=1, most=6))
     ('90 or more and below 360', 'above 0', '1 to 6')
-    >>> Limits(above=0).hold(0.0), Limits().hold(float("nan"))
+    >>> Range(above=0).hold(0.0), Range().hold(float("nan"))
     (False, False)
     """
 

@@ -20,7 +20,7 @@ LINE_EVERY: Final = 10.0
 """Shortest time between two lines of progress, and before the first [s]."""
 
 
-class Display(Protocol):
+class ProgressDisplay(Protocol):
     """Shows how far the present step of a command is."""
 
     def show(self, what: str, fraction: float | None) -> None:
@@ -36,7 +36,7 @@ class ProgressBar:
         acknowledge: Called when a stop is requested that the command will follow.
     """
 
-    def __init__(self, display: Display, acknowledge: Callable[[], object]) -> None:
+    def __init__(self, display: ProgressDisplay, acknowledge: Callable[[], object]) -> None:
         self._display = display
         self._acknowledge = acknowledge
         self._what = ""
@@ -189,7 +189,7 @@ def progress_bar(console: Console | None = None, *, quiet: bool = False) -> Iter
 
 def _display(
     console: Console, stack: ExitStack, *, quiet: bool
-) -> tuple[Display, Callable[[], object]]:
+) -> tuple[ProgressDisplay, Callable[[], object]]:
     """Return a display for a console, and what acknowledges a requested stop there."""
     if quiet:
         return _Silence(), lambda: None

@@ -14,14 +14,14 @@ from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin, 
 from typer import BadParameter
 from typer.models import ParameterInfo
 
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 
-Command = Callable[..., None]
+CommandFunction = Callable[..., None]
 METAVARS: Final = {int: "N", float: "NUMBER", str: "TEXT", Path: "PATH"}
 """What the help shows for the value of an option that has no metavar of its own."""
 
 
-def request_command(*, first: tuple[str, ...] = ()) -> Callable[[Command], Command]:
+def request_command(*, first: tuple[str, ...] = ()) -> Callable[[CommandFunction], CommandFunction]:
     """Decorate a function for Typer: a parameter that is a dataclass becomes an option per field.
 
     Each field is annotated with its `typer.Option` or `typer.Argument`. A field that is itself a
@@ -34,7 +34,7 @@ def request_command(*, first: tuple[str, ...] = ()) -> Callable[[Command], Comma
             in the order of the function and of the fields.
     """
 
-    def decorate(function: Command) -> Command:
+    def decorate(function: CommandFunction) -> CommandFunction:
         hints = get_type_hints(function, include_extras=True)
         own = inspect.signature(function).parameters
         options = [each for name in own for each in _options(name, hints[name], own[name].default)]
@@ -89,7 +89,7 @@ def _is_repeatable(hint: Any) -> bool:
 def completed(hint: Any) -> Any:
     """Complete an annotation with a `typer.Option` or `typer.Argument`; return others unchanged.
 
-    A missing metavar is set by the type; `min`, `max` and `Limits` are put into the help, and
+    A missing metavar is set by the type; `min`, `max` and `Range` are put into the help, and
     checked after parsing together with that every number is finite.
 
     Args:
@@ -106,7 +106,7 @@ def completed(hint: Any) -> Any:
     if info.metavar is None and bool not in types:
         info.metavar = _metavar(types)
     if info.parser is None and (float in types or int in types):
-        _limit(info, next((each for each in metadata if isinstance(each, Limits)), Limits()))
+        _limit(info, next((each for each in metadata if isinstance(each, Range)), Range()))
     return Annotated[kind, info]
 
 
@@ -127,7 +127,7 @@ def _metavar(types: tuple[Any, ...]) -> str | None:
     return None if None in names else " ".join(map(str, names))
 
 
-def _limit(info: ParameterInfo, limits: Limits) -> None:
+def _limit(info: ParameterInfo, limits: Range) -> None:
     """Move `min` and `max` of an option into its limits; show those in the help, and check them."""
     limits = replace(
         limits,
@@ -140,7 +140,7 @@ def _limit(info: ParameterInfo, limits: Limits) -> None:
     info.callback = _check(limits, info.callback)
 
 
-def _check(limits: Limits, then: Callable[..., Any] | None) -> Callable[[Any], Any]:
+def _check(limits: Range, then: Callable[..., Any] | None) -> Callable[[Any], Any]:
     def check(value: Any) -> Any:
         for number in value if isinstance(value, list | tuple) else (value,):
             if number is not None and not limits.hold(number):

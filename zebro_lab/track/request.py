@@ -12,7 +12,7 @@ from typer import Argument, BadParameter, Option
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import option_to_si
 from zebro_lab.robot.marker_print import LARGEST_PRINT
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 from zebro_lab.terminal.picture_options import FormatOption
 
 KIND = "track"
@@ -49,7 +49,7 @@ class TimeRequest:
             metavar="SECONDS",
             help="Interval of the camera's timer or of exposures, instead of EXIF times [s].",
         ),
-        Limits(above=0),
+        Range(above=0),
     ] = None
     table: Annotated[
         Path | None,
@@ -151,7 +151,7 @@ class TrackRequest:
             help="Longest time between two poses of an uninterrupted path [s]; default: 3.5 median "
             "intervals.",
         ),
-        Limits(above=0),
+        Range(above=0),
     ] = None
     source: Annotated[
         str | None,

@@ -8,7 +8,7 @@ from typing import Annotated
 from typer import Argument, Option
 
 from zebro_lab.mcap.ros_bags import is_ros_log
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
@@ -97,7 +97,7 @@ class ValidateRequest:
             help="Distance of a relative error of trajectories [m]; repeatable; default: three "
             "round ones up to a quarter of the reference.",
         ),
-        Limits(above=0),
+        Range(above=0),
     ] = ()
     correct_scale: Annotated[
         bool,

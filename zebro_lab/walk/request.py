@@ -12,7 +12,7 @@ from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
 from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 from zebro_lab.walk.output_request import BandRequest, ContactRequest, PictureRequest
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
@@ -43,7 +43,7 @@ StepOption: TypeAlias = Annotated[
         help=f"Time step [s], at most {LONGEST_SLIPPING_STEP:g} with slip and "
         f"{LONGEST_STEP:g} without; default: the model's.",
     ),
-    Limits(above=0),
+    Range(above=0),
 ]
 GroundOption: TypeAlias = Annotated[
     Path | None,
@@ -130,7 +130,7 @@ class WalkRequest:
     duration: Annotated[
         float | None,
         Option(metavar="SECONDS", help="Duration of the walk, required without a program [s]."),
-        Limits(above=0),
+        Range(above=0),
     ] = None
     out: Annotated[Path, Option(metavar="DIR", help="Walk folder to write.")] = Path("walk")
     model: ModelRequest = field(default_factory=ModelRequest)

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Limits hold exactly the numbers that they describe."""
+"""A range holds exactly the numbers that it describes."""
 
 import math
 
 import pytest
 
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 
 
 @pytest.mark.parametrize(
     ("limits", "text", "inside", "outside"),
     [
-        (Limits(least=90, below=360), "90 or more and below 360", (90, 359.9), (89.9, 360)),
-        (Limits(above=0), "above 0", (5e-324, 1e308), (0, -1)),
-        (Limits(least=0, most=1), "0 to 1", (0, 1), (-0.1, 1.1)),
-        (Limits(above=0, most=30), "above 0 and at most 30", (1, 30), (0, 30.1)),
-        (Limits(), "", (-1e308, 0), ()),
+        (Range(least=90, below=360), "90 or more and below 360", (90, 359.9), (89.9, 360)),
+        (Range(above=0), "above 0", (5e-324, 1e308), (0, -1)),
+        (Range(least=0, most=1), "0 to 1", (0, 1), (-0.1, 1.1)),
+        (Range(above=0, most=30), "above 0 and at most 30", (1, 30), (0, 30.1)),
+        (Range(), "", (-1e308, 0), ()),
     ],
 )
 def test_limits_hold_what_they_say(limits, text, inside, outside):

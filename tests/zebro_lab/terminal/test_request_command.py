@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from zebro_lab.terminal.limits import Limits
+from zebro_lab.terminal.limits import Range
 from zebro_lab.terminal.request_command import completed, request_command, value_types
 
 
@@ -92,7 +92,7 @@ def test_a_given_metavar_a_parser_and_plain_types_are_kept():
 
 def test_limits_of_both_ways_to_state_them_are_shown_and_checked_in_every_number():
     given = typer.Option(min=0.0, help="Sizes.")
-    hint = completed(Annotated[tuple[float, float], given, Limits(below=5)])
+    hint = completed(Annotated[tuple[float, float], given, Range(below=5)])
     info = get_args(hint)[1]
     assert info.help == "Sizes. Allowed: 0 or more and below 5."
     assert (given.min, given.help) == (0.0, "Sizes.")
@@ -104,7 +104,7 @@ def test_limits_of_both_ways_to_state_them_are_shown_and_checked_in_every_number
 
 
 def test_advice_on_a_number_outside_its_limits_stands_in_the_error_alone():
-    hint = completed(Annotated[float, typer.Option(help="It."), Limits(above=0, advice="turn")])
+    hint = completed(Annotated[float, typer.Option(help="It."), Range(above=0, advice="turn")])
     info = get_args(hint)[1]
     assert info.help == "It. Allowed: above 0."
     with pytest.raises(typer.BadParameter, match=r"^found -1; expected above 0; turn$"):

@@ -16,7 +16,7 @@ from zebro_lab.files.shown_text import shown
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE, RECOVERED, read_slip_rig_run, run_state
 from zebro_lab.runs.manifest import RECORDING, read_manifest
-from zebro_lab.runs.recorded_legs import LEGS, read_recorded_legs
+from zebro_lab.runs.recorded_walk import LEGS, read_recorded_legs
 from zebro_lab.tables.columns import COLUMNS_FILE
 
 Format = Literal["csv", "parquet"]

@@ -33,7 +33,7 @@ from zebro_lab.recording.replayed import IMU, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.gait_player import GaitPlayer
 from zebro_lab.runs.manifest import RIG
-from zebro_lab.runs.recorded_legs import LEGS
+from zebro_lab.runs.recorded_walk import LEGS
 
 RIG_PROFILE: Final = "rig-odrive-netft"
 PAUSE: Final = 0.053

@@ -14,7 +14,7 @@ from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
-from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
+from zebro_lab.runs.recorded_walk import is_recorded, read_recorded_legs
 from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, read_mapped_columns
 from zebro_lab.tables.table_files import read_table_file

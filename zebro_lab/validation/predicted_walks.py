@@ -10,8 +10,7 @@ from zebro_lab.files.names import PATH_CSV, TRACK, numbered
 from zebro_lab.files.replacement import recover
 from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
 from zebro_lab.runs.manifest import RIG_KIND, read_manifest
-from zebro_lab.runs.recorded_legs import TRACK_ALONE, is_recorded
-from zebro_lab.runs.recorded_tilt import Tilt, read_recorded_tilt
+from zebro_lab.runs.recorded_walk import TRACK_ALONE, Tilt, is_recorded, read_recorded_tilt
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.track.photographs import TrackedPhotos, photos_of_track

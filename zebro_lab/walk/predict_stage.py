@@ -18,7 +18,7 @@ from zebro_lab.mcap.ros_bags import is_ros_log
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import LegNames, read_leg_log
-from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.runs.recorded_walk import is_recorded
 from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.walk.band import predict_band
 from zebro_lab.walk.folder import PREDICTION, WALKED

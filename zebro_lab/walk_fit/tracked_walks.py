@@ -21,8 +21,7 @@ from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
 from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_each
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import read_manifest
-from zebro_lab.runs.recorded_legs import is_recorded
-from zebro_lab.runs.recorded_tilt import read_recorded_tilt
+from zebro_lab.runs.recorded_walk import is_recorded, read_recorded_tilt
 from zebro_lab.tables.table_files import TABLE_SUFFIXES
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV

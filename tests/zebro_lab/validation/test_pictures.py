@@ -11,7 +11,7 @@ from model.judgement import Prediction, judge_tilt
 from model.poses import Poses
 from model.robot import Robot
 from support.photo_tracks import write_photo_track
-from zebro_lab.runs.recorded_tilt import Tilt
+from zebro_lab.runs.recorded_walk import Tilt
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.photographs import photos_of_track
 from zebro_lab.validation.judged_run import judge_run

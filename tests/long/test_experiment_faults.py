@@ -5,7 +5,6 @@ import contextlib
 import re
 import time
 from functools import partial
-from pathlib import Path
 
 import pytest
 
@@ -18,6 +17,7 @@ from rig.slip_rig.rdt import SATURATED
 from rig.slip_rig.simulated import SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
+from support.experiment_plans import LENIENT, short_plan
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
@@ -28,22 +28,13 @@ from zebro_lab.runs.manifest import read_manifest
 
 pytestmark = pytest.mark.long
 
-THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
 WATCHDOG = 1.0
 """Five times a real one's [s]: a busy machine holds a process up for longer than that."""
-SMALL = {
-    "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [4.0]",
-    "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.1, 0.3, 0.6]",
-    "duration = 1.0": "duration = 0.3",
-    "tare_duration = 10.0": "tare_duration = 0.3",
-    "check_every = 62": "check_every = 0",
-    "friction = 0.15": "friction = 0.4",
-    "slip_drift = 0.02": "slip_drift = 0.05",
-    "friction_drift = 0.2": "friction_drift = 0.5",
-    "silence = 0.25": "silence = 2.0\nreading_age = 2.0\ntemperature_celsius = 80.0\ntorque = 1.0\n"
-    'guards_off = ["silence", "reading_age", "speed_error_time"]',
-    "speed_error_time = 0.2": "speed_error_time = 2.0",
-}
+GUARDED = (
+    "2.0\nreading_age = 2.0\ntemperature_celsius = 80.0\ntorque = 1.0\n"
+    'guards_off = ["silence", "reading_age", "speed_error_time"]'
+)
+"""Value of `silence`, and limits on what drives and load cell tell beside it."""
 
 
 class PlantAt(ExperimentWatcher):
@@ -154,12 +145,8 @@ def come_to_rest(rig):
 def test_after_a_fault_the_discs_rest_the_reason_is_kept_and_resume_ends_the_plan(
     tmp_path, monkeypatch, twins, plant, error, said
 ):
-    text = THESIS_PLAN.read_text()
-    for old, new in SMALL.items():
-        assert old in text
-        text = text.replace(old, new)
-    plan, data = tmp_path / "plan.toml", tmp_path / "data"
-    plan.write_text(text)
+    plan = short_plan(tmp_path, loads="[4.0]", slips="[0.1, 0.3, 0.6]", silence=GUARDED, **LENIENT)
+    data = tmp_path / "data"
     request = partial(RigRunRequest, plan, "rig-odrive-netft@sim", data)
     rested = []
     leave = CanLink.close

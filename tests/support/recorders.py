@@ -2,6 +2,7 @@
 """Recorders of a robot's legs, and what they wrote."""
 
 import time
+from pathlib import Path
 
 from rig.device import Sample
 from zebro_lab.mcap.raw_log import read_raw_log
@@ -30,6 +31,17 @@ def until(holds, limit=5.0):
     while not holds() and time.monotonic() < end:
         time.sleep(0.01)
     assert holds()
+
+
+def growing(data: Path) -> Path:
+    """Wait for a run that holds samples, and return its folder."""
+    end = time.monotonic() + 60  # in a fresh clone numba may compile first
+    while time.monotonic() < end:
+        for log in data.glob("*/log.mcap"):
+            if (log.parent / "run.json").is_file() and read_raw_log(log).streams:
+                return log.parent
+        time.sleep(0.05)
+    raise AssertionError("nothing was recorded")
 
 
 def count_in(run):

@@ -2,44 +2,22 @@
 """What the tests of experiments share: a small plan, and a run of it on a twin without waiting."""
 
 import json
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from rig.experiment.control import Control
 from rig.experiment.watcher import ExperimentWatcher
+from support.experiment_plans import LENIENT, short_plan
 from zebro_lab.experiment.journal import JOURNAL_FILE
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.stage import run_experiment
 
-THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-thesis.toml"
-SMALL = {
-    "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [4.0, 8.0]",
-    "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.02, 0.1, 0.6]",
-    "duration = 1.0": "duration = 0.2",
-    "tare_duration = 10.0": "tare_duration = 0.3",
-    "check_every = 62": "check_every = 0",
-    "tolerance = 0.3": "tolerance = 8.0",
-    "friction = 0.15": "friction = 0.4",
-    "slip_drift = 0.02": "slip_drift = 0.05",
-    "friction_drift = 0.2": "friction_drift = 0.5",
-    # A busy machine may hold a process up.
-    "silence = 0.25": "silence = 3.0\nreading_age = 3.0\nguards_off = "
-    '["silence", "reading_age", "speed_error_time"]',
-    "speed_error_time = 0.2": "speed_error_time = 2.0",
-}
-
 
 @pytest.fixture(name="plan")
 def _plan(tmp_path):
-    text = THESIS_PLAN.read_text()
-    for old, new in SMALL.items():
-        assert old in text
-        text = text.replace(old, new)
-    file = tmp_path / "plan.toml"
-    file.write_text(text)
-    return file
+    slips = {"loads": "[4.0, 8.0]", "slips": "[0.02, 0.1, 0.6]"}
+    return short_plan(tmp_path, **slips, duration="0.2", tolerance="8.0", **LENIENT)
 
 
 def run(plan, data, *, watcher=None, control=None, **options):

@@ -67,13 +67,14 @@ def test_recordings_beside_an_experiment_are_left_alone(lab, plan, tmp_path, kin
     assert manifests(recording) == before
 
 
-def test_points_without_their_journal_are_not_measured_over(lab, plan, tmp_path):
+@pytest.mark.parametrize("resume", [False, True])
+def test_points_without_their_journal_are_not_measured_over(lab, plan, tmp_path, resume):
     data = tmp_path / "data"
     lab.run(plan, data)
     (data / JOURNAL_FILE).unlink()
     before = manifests(data)
     with pytest.raises(AlreadyExists, match=f"points of an experiment.*{JOURNAL_FILE}"):
-        lab.run(plan, data)
+        lab.run(plan, data, resume=resume)
     assert manifests(data) == before
 
 

@@ -7,28 +7,17 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from support.commands import COMMAND, started
+from support.recorders import growing
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.walk.folder import read_walk
 
 HEAVY = {"numpy", "scipy", "pandas", "can", "serial", "mcap", "matplotlib", "numba", "rig.device"}
-
-
-def growing(data: Path) -> Path:
-    """Wait for a run that holds samples, and return its folder."""
-    end = time.monotonic() + 20
-    while time.monotonic() < end:
-        for log in data.glob("*/log.mcap"):
-            if (log.parent / "run.json").is_file() and read_raw_log(log).streams:
-                return log.parent
-        time.sleep(0.05)
-    raise AssertionError("nothing was recorded")
 
 
 @pytest.mark.parametrize(
@@ -69,7 +58,7 @@ def test_an_excluded_run_is_kept_and_listed_with_the_reason(run_command, tmp_pat
     assert (code, err.count("\n")) == (1, 1)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_recording_with_a_complete_record(number, tmp_path):
     with started("record", "--zebro", "sim", "--label", "x", "--data", tmp_path) as process:
         folder = growing(tmp_path)

@@ -7,12 +7,12 @@ import os
 import signal
 import subprocess
 import termios
-import time
 
 import numpy as np
 import pytest
 
 from support.commands import COMMAND
+from support.recorders import growing
 from zebro_lab.mcap.raw_log import read_raw_log
 
 
@@ -34,17 +34,6 @@ def recording(data, *options, **given):
     finally:
         process.kill()
         process.communicate()
-
-
-def growing(data):
-    """Wait for a run that holds samples, and return its folder."""
-    end = time.monotonic() + 60  # in a fresh clone numba may compile first
-    while time.monotonic() < end:
-        for log in data.glob("*/log.mcap"):
-            if (log.parent / "run.json").is_file() and read_raw_log(log).streams:
-                return log.parent
-        time.sleep(0.05)
-    raise AssertionError("nothing was recorded")
 
 
 def end_record(folder):

@@ -3,7 +3,6 @@
 
 import http.server
 import threading
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -11,13 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.errors import LinkError
-from rig.links.faults import PERFECT_LINE, Faults
-from rig.links.serve import Ticker
-from rig.links.udp import UdpLink
+from rig.links.faults import Faults
 from rig.slip_rig.decode import decode_forces
-from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.load_cell import NetFtCell, read_configuration
-from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.rdt import (
     MOST_IN_ONE,
     RECORD,
@@ -26,31 +21,7 @@ from rig.slip_rig.rdt import (
     Request,
     describe_status,
 )
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
-from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
-from rig.slip_rig.sweep import SweepPlan
-
-PROFILE = load_rig_profile("rig-odrive-netft").load_cell
-PAGE = (
-    b"<netft><cfgcpf>1000000</cfgcpf><cfgcpt>1000</cfgcpt><scfgfu>N</scfgfu>"
-    b"<comrdtrate>7000</comrdtrate></netft>"
-)
-
-
-@contextmanager
-def twin(faults=PERFECT_LINE, *, buffered=False):
-    world = SimulatedRig(
-        plan=SweepPlan(loads=(8.0,)),
-        imperfections=RigImperfections(),
-        dynamics=RigDynamics(),
-        rng=np.random.default_rng(0),
-    )
-    rng = np.random.default_rng(0)
-    with SimulatedLoadCell(world, profile=PROFILE, faults=faults, rng=rng) as cell:
-        with Ticker(cell.poll) as ticker:
-            link = UdpLink(cell.host, cell.port, source=cell.source)
-            yield cell, NetFtCell(link, profile=PROFILE, buffered=buffered)
-        assert ticker.failure is None
+from support.cell_twins import PAGE, PROFILE, OneRead, twin
 
 
 @pytest.mark.parametrize("buffered", [False, True])
@@ -114,17 +85,6 @@ def test_a_saturated_cell_says_so_in_every_sample(take):
     assert describe_status(status) == "transducer saturated"
 
 
-class _OneRead(UdpLink):
-    """Gives the same datagrams whenever it is read."""
-
-    def __init__(self, *datagrams):
-        super().__init__("127.0.0.1", 1)
-        self._datagrams = list(datagrams)
-
-    def read(self, timeout):
-        return self._datagrams
-
-
 @given(st.lists(st.sampled_from([b"short", 1, 2, 3, 4, 5, 200]), max_size=12))
 def test_a_read_keeps_each_record_with_its_own_counts(sent):
     datagrams = [
@@ -133,7 +93,7 @@ def test_a_read_keeps_each_record_with_its_own_counts(sent):
         else RECORD.pack(item, 10 * item, 7, item, 0, -item, 0, 0, 0)
         for item in sent
     ]
-    stream = NetFtCell(_OneRead(*datagrams), profile=PROFILE)
+    stream = NetFtCell(OneRead(*datagrams), profile=PROFILE)
     samples = stream.read(0.0)
     numbers = [s.sequence % 2**32 for s in samples]  # a jump back is a restart: they grow on
     assert [s.counts for s in samples] == [(n, 0, -n, 0, 0, 0) for n in numbers]

@@ -6,36 +6,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.errors import ProtocolError
-from rig.links.udp import UdpLink
 from rig.slip_rig.load_cell import NetFtCell
-from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.rdt import (
     RECORD,
     describe_status,
     parse_configuration,
 )
-
-PROFILE = load_rig_profile("rig-odrive-netft").load_cell
-PAGE = (
-    b"<netft><cfgcpf>1000000</cfgcpf><cfgcpt>1000</cfgcpt><scfgfu>N</scfgfu>"
-    b"<comrdtrate>7000</comrdtrate></netft>"
-)
-
-
-class _OneRead(UdpLink):
-    """Gives the same datagrams whenever it is read."""
-
-    def __init__(self, *datagrams):
-        super().__init__("127.0.0.1", 1)
-        self._datagrams = list(datagrams)
-
-    def read(self, timeout):
-        return self._datagrams
+from support.cell_twins import PAGE, PROFILE, OneRead
 
 
 @given(st.binary(max_size=80))
 def test_any_datagram_is_whole_records_or_damaged(datagram):
-    stream = NetFtCell(_OneRead(datagram), profile=PROFILE)
+    stream = NetFtCell(OneRead(datagram), profile=PROFILE)
     samples = stream.read(0.0)
     whole = len(datagram) in (RECORD.size, 2 * RECORD.size)
     assert bool(samples) == whole

@@ -2,38 +2,11 @@
 """The simulated cell forgets clients, and serves its configuration."""
 
 import time
-from contextlib import contextmanager
 
 import numpy as np
 
-from rig.links.faults import PERFECT_LINE
-from rig.links.serve import Ticker
-from rig.links.udp import UdpLink
 from rig.slip_rig.decode import decode_forces
-from rig.slip_rig.imperfections import RigImperfections
-from rig.slip_rig.load_cell import NetFtCell
-from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
-from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
-from rig.slip_rig.sweep import SweepPlan
-
-PROFILE = load_rig_profile("rig-odrive-netft").load_cell
-
-
-@contextmanager
-def twin(faults=PERFECT_LINE, *, buffered=False):
-    world = SimulatedRig(
-        plan=SweepPlan(loads=(8.0,)),
-        imperfections=RigImperfections(),
-        dynamics=RigDynamics(),
-        rng=np.random.default_rng(0),
-    )
-    rng = np.random.default_rng(0)
-    with SimulatedLoadCell(world, profile=PROFILE, faults=faults, rng=rng) as cell:
-        with Ticker(cell.poll) as ticker:
-            link = UdpLink(cell.host, cell.port, source=cell.source)
-            yield cell, NetFtCell(link, profile=PROFILE, buffered=buffered)
-        assert ticker.failure is None
+from support.cell_twins import PROFILE, twin
 
 
 def test_bias_makes_the_present_reading_zero(take):

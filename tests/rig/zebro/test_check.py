@@ -12,7 +12,6 @@ from rig.backends import leg_driver
 from rig.clock import ManualClock
 from rig.errors import DeviceFault, RigTimeout
 from rig.links.memory import MemoryLink
-from rig.twins import robot_twin
 from rig.zebro.check import (
     MovedLeg,
     check_legs,
@@ -22,15 +21,7 @@ from rig.zebro.check import (
     zero_legs,
 )
 from rig.zebro.profile import load_leg_profile
-
-STANDING = SampledReference(np.array([0.0, 1.0]), np.tile(np.linspace(0.2, 1.2, 6), (2, 1)))
-
-
-def robot(name="zebro-100-serial", truth=None, gait=STANDING):
-    clock = ManualClock()
-    profile = load_leg_profile(name)
-    twin = robot_twin(truth or profile, gait, rng=np.random.default_rng(0))
-    return leg_driver(profile, MemoryLink(twin, clock=clock), clock=clock), clock
+from support.leg_twins import standing as robot
 
 
 def test_the_check_finds_order_and_signs():

@@ -7,23 +7,11 @@ import numpy as np
 import pytest
 
 from model.gait.reference import SampledReference
-from rig.backends import leg_driver
-from rig.clock import ManualClock
 from rig.device import iterate
 from rig.errors import LimitExceeded, ProtocolError, RigTimeout
-from rig.links.memory import MemoryLink
-from rig.twins import robot_twin
 from rig.zebro.commands import follow, leave_still, milliseconds
-from rig.zebro.profile import decode_angles, load_leg_profile
-
-STANDING = SampledReference(np.array([0.0, 1.0]), np.tile(np.linspace(0.2, 1.2, 6), (2, 1)))
-
-
-def robot(name="zebro-100-serial", truth=None, gait=STANDING):
-    clock = ManualClock()
-    profile = load_leg_profile(name)
-    twin = robot_twin(truth or profile, gait, rng=np.random.default_rng(0))
-    return leg_driver(profile, MemoryLink(twin, clock=clock), clock=clock), clock
+from rig.zebro.profile import decode_angles
+from support.leg_twins import standing as robot
 
 
 @pytest.mark.parametrize("name", ["zebro-100-serial", "zebrobus-uart"])

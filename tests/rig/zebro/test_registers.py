@@ -4,30 +4,9 @@
 import numpy as np
 import pytest
 
-from model.gait.reference import SampledReference
-from rig.backends import leg_driver
-from rig.clock import ManualClock
-from rig.device import iterate
 from rig.links.faults import Faults
-from rig.links.memory import MemoryLink
-from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
-
-TIMES = np.linspace(0, 200, 4001)
-GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
-SERIAL = load_leg_profile("zebro-100-serial")
-
-
-def stream_of(profile, faults, seed=0, twin=None):
-    clock = ManualClock()
-    twin = twin or robot_twin(profile, GAIT, faults=faults, rng=np.random.default_rng(seed))
-    return leg_driver(profile, MemoryLink(twin, clock=clock), clock=clock), clock, twin
-
-
-def read(faults, duration=20.0, profile=SERIAL):
-    stream, clock, _ = stream_of(profile, faults)
-    with stream:
-        return list(iterate(stream, duration=duration, clock=clock)), stream.counters
+from support.leg_twins import read, stream_of
 
 
 def test_a_poll_whose_answer_is_cut_is_not_mixed_with_the_next():

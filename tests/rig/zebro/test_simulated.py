@@ -3,24 +3,11 @@
 
 import numpy as np
 
-from model.gait.reference import SampledReference
-from rig.backends import leg_driver
-from rig.clock import ManualClock
 from rig.device import iterate
 from rig.links.faults import Faults
-from rig.links.memory import MemoryLink
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
-
-TIMES = np.linspace(0, 200, 4001)
-GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
-SERIAL = load_leg_profile("zebro-100-serial")
-
-
-def stream_of(profile, faults, seed=0, twin=None):
-    clock = ManualClock()
-    twin = twin or robot_twin(profile, GAIT, faults=faults, rng=np.random.default_rng(seed))
-    return leg_driver(profile, MemoryLink(twin, clock=clock), clock=clock), clock, twin
+from support.leg_twins import GAIT, SERIAL, stream_of
 
 
 def test_a_robot_that_restarts_is_noticed_and_read_on():

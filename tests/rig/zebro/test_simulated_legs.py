@@ -1,15 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Simulated legs that were commanded stay where they were turned."""
 
-import numpy as np
-
-from model.gait.reference import SampledReference
-from rig.zebro.profile import load_leg_profile
 from rig.zebro.simulated_legs import SimulatedLegs
-
-TIMES = np.linspace(0, 200, 4001)
-GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
-SERIAL = load_leg_profile("zebro-100-serial")
+from support.leg_twins import GAIT, SERIAL
 
 
 def test_a_commanded_leg_stays_where_it_was_turned_when_the_robot_restarts():

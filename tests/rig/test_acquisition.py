@@ -6,17 +6,18 @@ import threading
 import pytest
 
 from rig.acquisition import Acquisition, Device, acquiring
-from rig.clock import SYSTEM_CLOCK
+from rig.clock import ManualClock
 from rig.device import Counters, Sample
 from rig.errors import LimitExceeded
 
 
 class Stream:
-    """Gives one sample a read, numbered, until it is told to raise."""
+    """Gives one sample a read, each 1 ms of its clock, until it is told to raise."""
 
     name, source = "legs", "sim:test"
 
     def __init__(self, *, gap_at=None):
+        self.clock = ManualClock()
         self.number, self.lost, self.error, self._gap_at = 0, 0, None, gap_at
 
     @property
@@ -24,12 +25,12 @@ class Stream:
         return Counters(received=self.number, lost=self.lost)
 
     def read(self, timeout):
-        SYSTEM_CLOCK.sleep(0.001)
+        self.clock.sleep(0.001)
         if self.error is not None:
             raise self.error
         self.number += 1
         self.lost += 3 * (self.number == self._gap_at)
-        return [Sample(SYSTEM_CLOCK.now(), None, self.number, (self.number,))]
+        return [Sample(self.clock.now(), None, self.number, (self.number,))]
 
 
 class Kept:
@@ -49,7 +50,7 @@ class Kept:
 
 
 def read(device, sink):
-    with acquiring([device], sink=sink, start=0.0) as readers:
+    with acquiring([device], sink=sink, start=0.0, clock=device.stream.clock) as readers:
         assert sink.enough.wait(20)
     return readers[device.name]
 
@@ -81,14 +82,12 @@ def test_commands_go_before_reads_and_the_end_is_called_once():
 
 def test_reading_ends_by_itself_at_its_time():
     stream, sink = Stream(), Kept()
-    reader = Acquisition(Device(stream), sink=sink, start=0.0)
-    reader.end_at(SYSTEM_CLOCK.now() + 0.05)
+    reader = Acquisition(Device(stream), sink=sink, start=0.0, clock=stream.clock)
+    reader.end_at(0.05)
     reader.start()
-    SYSTEM_CLOCK.sleep(0.3)
-    number = stream.number
-    SYSTEM_CLOCK.sleep(0.1)
-    assert stream.number == number
-    reader.stop()
+    reader._thread.join(20)
+    assert not reader._thread.is_alive()
+    assert stream.clock.now() == pytest.approx(0.05, abs=0.0011)
 
 
 @pytest.mark.parametrize("where", ["check", "read"])
@@ -101,11 +100,9 @@ def test_an_error_ends_the_reading_and_is_kept(where):
             raise error
 
     device = Device(stream, check if where == "check" else None)
-    with acquiring([device], sink=sink, start=0.0) as readers:
+    with acquiring([device], sink=sink, start=0.0, clock=stream.clock) as readers:
         assert sink.enough.wait(20)
         if where == "read":
             stream.error = error
-        end = SYSTEM_CLOCK.now() + 20
-        while readers["legs"].failure is None and SYSTEM_CLOCK.now() < end:
-            SYSTEM_CLOCK.sleep(0.005)
+        readers["legs"]._thread.join(20)
     assert readers["legs"].failure is error

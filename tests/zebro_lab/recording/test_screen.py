@@ -5,7 +5,6 @@ import io
 import os
 import signal
 import threading
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -57,15 +56,20 @@ def test_a_pipe_gets_a_line_now_and_then(monkeypatch):
 
 
 def test_a_pipe_that_takes_no_line_is_told_at_the_end(monkeypatch):
-    free = threading.Event()
-    place = Console(file=SimpleNamespace(write=lambda _: free.wait(20), flush=lambda: None))
+    entered, free = threading.Event(), threading.Event()
+
+    def hang(_):
+        entered.set()
+        free.wait(20)
+
+    place = Console(file=SimpleNamespace(write=hang, flush=lambda: None))
     monkeypatch.setattr(module, "LINE_EVERY", 0.0)
     with record_screen(place) as screen:
         status = RecordStatus(Path("run"), 1.0, None, STREAMS)
         writer = threading.Thread(target=screen.show, args=(status,), daemon=True)
         writer.start()
         try:
-            time.sleep(0.1)
+            assert entered.wait(20)
             assert not screen.close()
         finally:
             free.set()

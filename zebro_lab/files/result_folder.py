@@ -22,7 +22,7 @@ from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import MANIFEST, listed_outputs, read_json_object
 from zebro_lab.files.provenance import file_hash, software
-from zebro_lab.files.replacement import recover, replace_folder, require_free_previous
+from zebro_lab.files.replacement import recover, replace_folder
 
 _GLOB: Final = "*"
 
@@ -62,22 +62,20 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
         AlreadyExists: `out` is a file or below one, a broken link or behind one, the working folder
             or above it, or the result of another command; its manifest cannot be read; a file that
             the manifest lists was changed; a file to be written exists and is not listed;
-            `out.previous` exists; `out` is an input, or has one among the files to be replaced; or
+            `out` is an input, or has one among the files to be replaced; or
             another process is replacing it.
         NotWritten: The nearest existing parent folder, or the folder itself, cannot be written to.
-        DataError: Only `out.previous` is left of an interrupted replacement; it cannot be renamed.
+        DataError: A replacement was interrupted, and what is left of it cannot be renamed.
     """
     software_commit()  # of the code that computes, not of what is committed meanwhile
     folder = real_place(out)
-    recover(folder, writing=True)
+    recover(folder)
     _require_ground(out)
     if os.path.lexists(folder) and not folder.is_dir():
         raise AlreadyExists(f"{out} is a file; give the name of a folder as --out")
     _require_not_inside(out, folder)
-    if folder.exists():
-        require_free_previous(folder)
     for each in kind.inside:
-        recover(folder / each, writing=True)
+        recover(folder / each)
     owned = _owned(folder, kind)
     fixed = [name for name in (*kind.names, MANIFEST) if _GLOB not in name]
     _require_free(folder, fixed, kind, owned)

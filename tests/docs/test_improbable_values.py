@@ -16,9 +16,9 @@ from zebro_lab.robot.leg_log import LONGEST_TURN, LONGEST_WRAPPED
 from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.robot.robot_file import HEAVIEST, LARGEST
 from zebro_lab.suggest.request import HIGHEST_RATE, LONGEST_TIME
+from zebro_lab.tables.columns import INTERVALS
 from zebro_lab.tables.columns_file import LARGEST_LOAD_CELL_ERROR, LARGEST_RIG_ERROR
 from zebro_lab.tables.disc_angles import DISAGREEMENT
-from zebro_lab.tables.mapped_columns import INTERVALS
 from zebro_lab.track.photo_sequence import MOST_APART
 from zebro_lab.track.trajectory.table import FASTEST
 from zebro_lab.walk.request import LONGEST_SLIPPING_STEP, LONGEST_STEP

@@ -35,9 +35,9 @@ from zebro_lab.runs.counted_once import (
 from zebro_lab.runs.data_paths import DataSource, columns_above_roots, find_sources
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RECORDING, RIG_KIND, read_manifest
-from zebro_lab.tables.columns import Columns, parse_definition
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.disc_angles import joined_angles
+from zebro_lab.tables.rig_columns import RigColumns, parse_definition
 from zebro_lab.tables.table_files import table_stem
 
 _LEAST_SAMPLES = 20  # of a recording, to estimate its noise
@@ -176,7 +176,7 @@ def _of_the_rig(sources: Sequence[DataSource]) -> tuple[list[DataSource], tuple[
 
 def _read_parts(
     sources: Sequence[DataSource],
-    maps: Mapping[DataSource, Columns],
+    maps: Mapping[DataSource, RigColumns],
     labels: Mapping[DataSource, str],
     wanted: SlipDefinition | None,
 ) -> tuple[list[RigPart], dict[DataSource, str]]:
@@ -200,7 +200,9 @@ def _is_cut_short(run: Path) -> bool:
     return read_manifest(run).exit_status == RECORDING
 
 
-def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[DataSource, Columns]:
+def _column_maps(
+    sources: Sequence[DataSource], override: Path | None
+) -> dict[DataSource, RigColumns]:
     if override is not None:
         return dict.fromkeys(sources, read_columns(override))
     return {source: source.columns() for source in sources}
@@ -240,7 +242,7 @@ def _bytes_of(source: DataSource) -> str:
 
 def _known(
     excluded: Collection[DataSource],
-    maps: Mapping[DataSource, Columns],
+    maps: Mapping[DataSource, RigColumns],
     labels: Mapping[DataSource, str],
 ) -> dict[str, str]:
     """Return "LABEL, which is left out" for each excluded run, by its key, which a copy shares.

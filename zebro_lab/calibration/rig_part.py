@@ -20,9 +20,9 @@ from zebro_lab.runs.data_paths import DataSource
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.manifest import RIG, TABLE
 from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
-from zebro_lab.tables.columns import Columns, RunRule
 from zebro_lab.tables.disc_angles import disc_angles, joined_angles
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.rig_columns import RigColumns, RunRule
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
@@ -53,7 +53,7 @@ class RigPart:
     """
 
     path: Path
-    columns: Columns
+    columns: RigColumns
     sources: tuple[str, ...]
     rows_read: int
     slip: SlipColumn
@@ -96,7 +96,7 @@ class RigPart:
 
 
 def read_part(
-    source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None
+    source: DataSource, columns: RigColumns, label: str, wanted: SlipDefinition | None
 ) -> RigPart:
     """Read one table or run folder as samples in SI, separated into runs.
 
@@ -139,7 +139,9 @@ def read_part(
     )
 
 
-def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
+def _run_folder_table(
+    folder: Path, columns: RigColumns
+) -> tuple[RawTable, RigColumns, tuple[Path, ...]]:
     """Read a run folder as a table; return it with its column map and the files read.
 
     The table has canonical columns in SI. It is one run, or one run per sweep if raw samples of

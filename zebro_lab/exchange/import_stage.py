@@ -27,9 +27,8 @@ from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import rig_columns
+from zebro_lab.tables.columns_file import read_mapped_columns, rig_columns
 from zebro_lab.tables.columns_sections import columns_above
-from zebro_lab.tables.mapped_columns import read_mapped_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, TRACK
 from zebro_lab.terminal.leg_options import joint_names

@@ -20,9 +20,10 @@ from zebro_lab.files.source_names import stated_source
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.runs.table_run import write_slip_rig_run
-from zebro_lab.tables.columns import COLUMNS_FILE, Columns, RigErrorsStated
+from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.columns_file import prior_entry
 from zebro_lab.tables.disc_angles import disc_angles
+from zebro_lab.tables.rig_columns import RigColumns, RigErrorsStated
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import run_times, separate_runs
@@ -68,7 +69,7 @@ class RigRun:
 
 
 def rig_runs(
-    path: Path, columns: Columns, *, label: str, material: str, operator: str
+    path: Path, columns: RigColumns, *, label: str, material: str, operator: str
 ) -> tuple[list[RigRun], tuple[str, ...]]:
     """Read a table of a slip rig and separate it into runs.
 
@@ -203,7 +204,7 @@ def _left_out(table: RigTable) -> tuple[str, ...]:
     )
 
 
-def _stated(columns: Columns) -> dict[str, Mapping[str, object]]:
+def _stated(columns: RigColumns) -> dict[str, Mapping[str, object]]:
     usual, given = asdict(RigErrorsStated()), asdict(columns.rig_errors)
     sections: dict[str, Mapping[str, object]] = {
         "load_cell": columns.load_cell,

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_kinds import looks_like_other
 
@@ -56,7 +56,7 @@ class ImuLog:
     has_yaw: bool = True
 
 
-def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
+def imu_of_table(table: RawTable, mapping: Columns) -> ImuLog:
     """Convert an IMU table to quaternions, rates and forces; orientation may be roll and pitch.
 
     Args:
@@ -83,7 +83,7 @@ def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
     )
 
 
-def _not_read(table: RawTable, mapping: MappedColumns, *, has_yaw: bool) -> Iterator[str]:
+def _not_read(table: RawTable, mapping: Columns, *, has_yaw: bool) -> Iterator[str]:
     """Yield a note of a missing yaw, and one of the columns that are mapped to no quantity."""
     if not has_yaw:
         yield f"{table.path.name} has no column of yaw; yaw is not measured"
@@ -97,7 +97,7 @@ def _not_read(table: RawTable, mapping: MappedColumns, *, has_yaw: bool) -> Iter
         )
 
 
-def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, bool]:
+def _orientation(table: RawTable, mapping: Columns) -> tuple[Array, bool]:
     """Return quaternions, shape (n, 4), and whether the table has a yaw; 0 is taken without."""
     if mapping.has(table, "qw"):
         columns = [_numbers(table, mapping, name) for name in _QUATERNION]
@@ -120,7 +120,7 @@ def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, bool]:
     return turned.as_quat(scalar_first=True), known
 
 
-def _require_radians(table: RawTable, mapping: MappedColumns, tilt: Array) -> None:
+def _require_radians(table: RawTable, mapping: Columns, tilt: Array) -> None:
     """Raise if a body tilts far in radians whose unit nobody states: they may be degrees."""
     largest = float(np.max(np.abs(tilt), initial=0.0))
     if largest <= LARGEST_TILT or mapping.states_unit(table, "roll"):
@@ -134,17 +134,17 @@ def _require_radians(table: RawTable, mapping: MappedColumns, tilt: Array) -> No
     )
 
 
-def _numbers(table: RawTable, mapping: MappedColumns, name: str) -> Array:
+def _numbers(table: RawTable, mapping: Columns, name: str) -> Array:
     return mapping.numbers(table, name, what=f"{name} of the body", advice=_ADVICE)
 
 
-def _or_nan(table: RawTable, mapping: MappedColumns, name: str) -> Array:
+def _or_nan(table: RawTable, mapping: Columns, name: str) -> Array:
     if mapping.has(table, name):
         return _numbers(table, mapping, name)
     return np.full(len(table), np.nan)
 
 
-def _require_no_multiples_of_g(table: RawTable, mapping: MappedColumns, force: list[Array]) -> None:
+def _require_no_multiples_of_g(table: RawTable, mapping: Columns, force: list[Array]) -> None:
     """Raise if a specific force whose unit nobody states averages 1, as of a body in g."""
     columns = [mapping.mapped[name] for name in _FORCE]
     if any(c.unit_stated or table.unit_of(c.name, "m/s^2") is not None for c in columns):
@@ -168,7 +168,7 @@ def is_in_g(usual: float) -> bool:
     return abs(usual - 1.0) < NEAR_G
 
 
-def _require_unit(table: RawTable, mapping: MappedColumns, quaternion: Array) -> None:
+def _require_unit(table: RawTable, mapping: Columns, quaternion: Array) -> None:
     norm = np.linalg.norm(quaternion, axis=1)
     good = np.abs(norm - 1) <= _NORM_TOLERANCE
     if not good.all():

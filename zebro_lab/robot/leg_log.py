@@ -12,8 +12,7 @@ from model.gait.reference import SampledReference
 from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError
 from zebro_lab.robot.leg_gaps import bridged_gaps
-from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.columns import COLUMNS_FILE, Columns
 from zebro_lab.tables.raw_table import RawTable
 
 ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
@@ -49,7 +48,7 @@ class LegLog:
 
 def legs_of_table(
     table: RawTable,
-    mapping: MappedColumns,
+    mapping: Columns,
     *,
     files: Sequence[Path],
     leg_sign: Sequence[int] = (1,) * N_LEGS,
@@ -88,11 +87,11 @@ def legs_of_table(
     )
 
 
-def _angle(table: RawTable, name: str, columns: MappedColumns) -> Array:
+def _angle(table: RawTable, name: str, columns: Columns) -> Array:
     return columns.numbers(table, name, what=f"angle of leg {name[-1]}", advice=_ADVICE)
 
 
-def _require_unwrapped(table: RawTable, columns: MappedColumns, raw: Array, theta: Array) -> None:
+def _require_unwrapped(table: RawTable, columns: Columns, raw: Array, theta: Array) -> None:
     """Check that unwrapping is not ambiguous: short steps, but for jumps by one turn."""
     jumps, turns = np.abs(np.diff(raw, axis=0)), np.abs(np.diff(theta, axis=0))
     wrapped = bool((jumps > np.pi).any())

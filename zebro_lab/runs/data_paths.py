@@ -9,9 +9,10 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
-from zebro_lab.tables.columns import COLUMNS_FILE, Columns
+from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.columns_file import read_columns, rig_columns
 from zebro_lab.tables.columns_sections import columns_above
+from zebro_lab.tables.rig_columns import RigColumns
 from zebro_lab.tables.table_files import PLAIN_SUFFIXES, is_table_file
 from zebro_lab.tables.table_kinds import RIG
 
@@ -36,7 +37,7 @@ class DataSource:
         """Whether the path is a run folder, not a table file."""
         return self.path.is_dir()
 
-    def columns(self) -> Columns:
+    def columns(self) -> RigColumns:
         """Read the nearest `columns.toml`; of a run folder, up to the root only.
 
         Raises:
@@ -44,7 +45,7 @@ class DataSource:
         """
         if self.is_run_folder:
             file = self._columns_of_run()
-            return Columns() if file is None else read_columns(file)
+            return RigColumns() if file is None else read_columns(file)
         return rig_columns(self.path)
 
     def _columns_of_run(self) -> Path | None:

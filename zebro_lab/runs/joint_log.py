@@ -20,7 +20,7 @@ from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, SeveralTopics, read_t
 from zebro_lab.mcap.ros_bags import LoggedMessage
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.runs.joined_readings import joined_readings
-from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
@@ -88,7 +88,7 @@ def read_joint_log(
     return JointLog(table, legs_of_joints(table.columns), found.topic)
 
 
-def joint_table(log: JointLog, columns: MappedColumns) -> RawTable:
+def joint_table(log: JointLog, columns: Columns) -> RawTable:
     """Return the table of a log in which every leg has a column, with a note on the joints' names.
 
     Args:

@@ -15,8 +15,9 @@ from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_walk import is_recorded, read_recorded_legs
+from zebro_lab.tables.columns import Columns
+from zebro_lab.tables.columns_file import read_mapped_columns
 from zebro_lab.tables.columns_sections import columns_above
-from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, read_mapped_columns
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.tables.table_kinds import LEGS
 
@@ -68,7 +69,7 @@ def read_leg_log(
     """
     if is_recorded(path):
         table, files = read_recorded_legs(path)
-        mapping = canonical_columns(LEG_UNITS)
+        mapping = Columns(LEG_UNITS)
         return legs_of_table(table, mapping, files=files, leg_sign=leg_sign, mending=_IN_A_RUN)
     file = path if is_ros_log(path) else _table_of(path)
     mapping, topic = read_mapped_columns(LEGS, file, columns, LEG_UNITS)
@@ -80,7 +81,7 @@ def read_leg_log(
 
 def legs_of_file(
     path: Path,
-    mapping: MappedColumns,
+    mapping: Columns,
     *,
     names: LegNames | None = None,
     leg_sign: Sequence[int] = (1,) * N_LEGS,

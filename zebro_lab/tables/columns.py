@@ -2,67 +2,33 @@
 """Columns of a table as canonical columns in SI: what a `columns.toml` states, as values."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
+from typing import Final
+
+import numpy as np
 
 from model.arrays import Array
 from model.similar_name import nearest
 from model.slip.definition import SlipDefinition
-from model.slip.rig_errors import (
-    RADIUS_TOLERANCE,
-    ROLLING_RESISTANCE,
-    RUN_OUT,
-    UNKNOWN_RATIO,
-    UNKNOWN_SCATTER,
-    RigErrors,
-    radius_ratio_sd,
-    run_out_scatter,
-)
-from zebro_lab.files.errors import SettingsError, UnitError
+from zebro_lab.files.errors import UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition
+from zebro_lab.tables.table_kinds import looks_like_other
 
-COLUMNS_FILE = "columns.toml"
+COLUMNS_FILE: Final = "columns.toml"
+INTERVALS: Final = (2e-5, 2.0)
+"""Range of the median time between samples of a table whose unit of time is not stated [s]."""
 
-
-@dataclass(frozen=True)
-class CanonicalColumn:
-    """A column that a calibration uses.
-
-    Attributes:
-        name: Canonical name of the column.
-        unit: SI unit of the column; None if its cells are text.
-        meaning: Description in one line, with the sign convention.
-    """
-
-    name: str
-    unit: str | None
-    meaning: str
-
-
-CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
-    column.name: column
-    for column in (
-        CanonicalColumn("t", "s", "time, increasing within a run"),
-        CanonicalColumn("omega_leg", "rad/s", "angular speed of the leg disc"),
-        CanonicalColumn("omega_ground", "rad/s", "angular speed of the ground disc"),
-        CanonicalColumn("angle_leg", "rad", "angle of the leg disc, of one zero; for its run-out"),
-        CanonicalColumn("angle_ground", "rad", "angle of the ground disc, of one zero"),
-        CanonicalColumn("radius_leg", "m", "radius of the leg disc at the contact"),
-        CanonicalColumn("radius_ground", "m", "radius of the ground disc at the contact"),
-        CanonicalColumn("slip_ratio", "dimensionless", "slip ratio, with its definition"),
-        CanonicalColumn("normal_force", "N", "normal force, positive when pressed together"),
-        CanonicalColumn("traction_force", "N", "traction force, positive when driving"),
-        CanonicalColumn("lateral_force", "N", "force across the discs, if the cell measures it"),
-        CanonicalColumn("run", None, "name or number of the run"),
-        CanonicalColumn("slip_definition", None, "material, travel or larger; one in each file"),
-    )
-})  # fmt: skip
+_FRAMES: Final = re.compile(
+    r"(frame|sample|packet|record|scan|index|bild)[ _]*(#|no\.?|nr\.?|number|counter|index)?",
+    re.IGNORECASE,
+)
 
 
 @dataclass(frozen=True)
@@ -154,107 +120,162 @@ def scaled(si_unit: str) -> str:
 
 
 @dataclass(frozen=True)
-class RunRule:
-    """Rule that separates the rows of one file into runs; at most one attribute is given.
-
-    Without a rule, a change in the `run` column starts a run; without that, the file is one run.
-
-    Attributes:
-        by: Columns, by their headers in the file; a change of value in one starts a new run.
-        gap: Interval between samples beyond which a new run starts [s]; None if not given.
-        each_row: Whether every row is the mean of one trial, and therefore a run.
-    """
-
-    by: tuple[str, ...] = ()
-    gap: float | None = None
-    each_row: bool = False
-
-
-@dataclass(frozen=True)
-class RigErrorsStated:
-    """Standard deviations of errors of the rig, as a `columns.toml` states them.
-
-    Attributes:
-        radius: Of each disc's radius [m].
-        radius_ratio: Of the relative error of the ratio of the radii, instead of `radius` [-]; None
-            if not given.
-        rolling_resistance: Of the rolling resistance over the load [-].
-        run_out: Amplitude by which each disc's radius at the contact varies once a turn, and the
-            standard deviation of each coefficient of a disc whose angle is recorded [m].
-    """
-
-    radius: float = RADIUS_TOLERANCE
-    radius_ratio: float | None = None
-    rolling_resistance: float = ROLLING_RESISTANCE
-    run_out: float = RUN_OUT
-
-    def resolved(self, radii: Mapping[str, float]) -> RigErrors:
-        """Return the standard deviations that a fit takes.
-
-        Args:
-            radii: `radius_leg` and `radius_ground` [m], those that are known; without both, the
-                ratio's standard deviation is `UNKNOWN_RATIO` if it is not given, and the scale of
-                slip that the speeds do not show `UNKNOWN_SCATTER`.
-        """
-        ratio, scatter = UNKNOWN_RATIO, UNKNOWN_SCATTER
-        if {"radius_leg", "radius_ground"} <= radii.keys():
-            both = radii["radius_leg"], radii["radius_ground"]
-            ratio = radius_ratio_sd(*both, self.radius)
-            scatter = run_out_scatter(*both, self.run_out)
-        ratio = ratio if self.radius_ratio is None else self.radius_ratio
-        return RigErrors(ratio, self.rolling_resistance, scatter, self.run_out)
-
-
-@dataclass(frozen=True)
 class Columns:
-    """Content of a `columns.toml`.
+    """Column map of a table: header, unit and sign of each canonical column.
 
     Attributes:
-        file: The `columns.toml` itself; None without one: headers are canonical names, in SI.
-        source: "real", "sim:what", "replay:what" or "unknown"; None if not stated.
-        sheet: Sheet of a workbook to read; None for the only one.
+        units: SI unit of each canonical column, by name; None if its cells are text.
         columns: Mapped columns by canonical name; only those with an entry.
-        constants: Given radii of the discs, `radius_leg` and `radius_ground` [m], by name.
-        runs: Rule that separates rows into runs.
-        keep: Conditions that every kept row must meet, all of them.
-        load_cell: Given standard deviations from the load cell's certificate by name, SI:
-            `zero_stability`, `gain_sd`, `bias_sd`, `crosstalk_sd`.
-        priors: What is known of parameters beforehand, as texts such as "friction = 0.4 ± 0.05".
-        rig_errors: Standard deviations of errors of the rig.
+        source: "real", "sim:what", "replay:what" or "unknown"; None if not stated.
+        file: The `columns.toml`; None without one: headers are canonical names, in SI.
+        where: Dotted section in the file, with a final dot; "" for the whole file.
+        sheet: Sheet of a workbook to read; None for the only one.
+        keep: Conditions that rows must meet to be read, all of them.
     """
 
-    file: Path | None = None
-    source: str | None = None
-    sheet: str | None = None
+    units: Mapping[str, str | None]
     columns: Mapping[str, MappedColumn] = field(default_factory=dict)
-    constants: Mapping[str, float] = field(default_factory=dict)
-    runs: RunRule = RunRule()
+    source: str | None = None
+    file: Path | None = None
+    where: str = ""
+    sheet: str | None = None
     keep: tuple[RowCondition, ...] = ()
-    load_cell: Mapping[str, float] = field(default_factory=dict)
-    priors: tuple[str, ...] = ()
-    rig_errors: RigErrorsStated = field(default_factory=lambda: RigErrorsStated())
+
+    @property
+    def mapped(self) -> Mapping[str, MappedColumn]:
+        """The column of every canonical name; without an entry one of that header, in SI."""
+        plain = {name: MappedColumn(name, unit or "") for name, unit in self.units.items()}
+        return plain | dict(self.columns)
 
     @property
     def stated_in(self) -> str:
         """The `columns.toml` by its path, for messages; by its name alone where there is none."""
         return str(self.file or COLUMNS_FILE)
 
+    def has(self, table: RawTable, name: str) -> bool:
+        """Return whether a table has a column, once or repeatedly, by the header it is mapped to.
 
-def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
-    """Parse the name of a slip definition.
+        Args:
+            table: Table to look in.
+            name: Canonical name of the column.
+        """
+        header = self.mapped[name].name
+        return header in table.columns or header in table.repeated
+
+    def states_unit(self, table: RawTable, name: str) -> bool:
+        """Return whether the map or the file state the unit of a column.
+
+        Args:
+            table: Table with the column.
+            name: Canonical name of the column.
+        """
+        mapped = self.mapped[name]
+        return mapped.unit_stated or table.unit_of(mapped.name, mapped.unit) is not None
+
+    def conversions(self, table: RawTable) -> tuple[str, ...]:
+        """Return a note of the columns that are converted by the units that the file states.
+
+        Args:
+            table: Table with the columns.
+
+        Raises:
+            DataError: A unit of the file is unknown or measures another quantity.
+        """
+        found = [
+            column.in_unit_of(table, self.units[name])
+            for name, column in self.mapped.items()
+            if not column.unit_stated and self.has(table, name)
+        ]
+        said = ", ".join(column.said for column in found if abs(column.factor) != 1)
+        return (f"{table.path.name}: units are those that the file states: {said}",) * bool(said)
+
+    def called(self, name: str, header: str) -> "Columns":
+        """Return a copy of the map with another header for a column; unit and sign are kept.
+
+        Args:
+            name: Canonical name of the column.
+            header: New header in the file.
+        """
+        mapped = replace(self.mapped[name], name=header)
+        return replace(self, columns={**self.columns, name: mapped})
+
+    def numbers(self, table: RawTable, name: str, *, what: str, advice: str) -> Array:
+        """Return a column in SI with the canonical sign, finite throughout, shape (n,).
+
+        Args:
+            table: The table.
+            name: Canonical name.
+            what: Description of the column, for the error message.
+            advice: What to do about a cell without a number, for the error message.
+
+        Raises:
+            DataError: The column is missing, ambiguous or of dates, or a cell has no finite number;
+                names the cell.
+        """
+        mapped = self.mapped[name]
+        if not self.has(table, name):
+            other = looks_like_other(table.columns, self.mapped)
+            known = nearest(mapped.name, list(table.columns))
+            frames = _frames(table) if self.units[name] == "s" else ""
+            raise table.fault(
+                f"the column of the {what} is missing{other}; {known}; if its header differs, map "
+                f"it in {self.stated_in}: [{self.where}columns.{name}]{frames}",
+                mapped.name,
+            )
+        mapped = mapped.in_unit_of(table, self.units[name])
+        values = mapped.in_si(table)
+        table.require_finite(mapped.name, values, f"a number in {mapped.unit}: {advice}")
+        return values
+
+    def times(self, table: RawTable, name: str, *, advice: str) -> Array:
+        """Return the times of samples, as `numbers`; their unit must fit if it is not stated.
+
+        Args:
+            table: The table.
+            name: Canonical name.
+            advice: What to do about a cell without a number, for the error message.
+
+        Raises:
+            DataError: As in `numbers`; or neither file nor map state the unit, and in seconds the
+                samples would be more than `INTERVALS` apart, or less.
+        """
+        values = self.numbers(table, name, what="time", advice=advice)
+        mapped = self.mapped[name]
+        stated = mapped.unit_stated or mapped.name in table.units
+        if mapped.name != name:  # the ending of t_s itself is no statement of who wrote the file
+            stated = stated or table.unit_of(mapped.name, "s") is not None
+        if not stated:
+            require_usual_steps(table, mapped.name, np.diff(values), f"{self.where}columns.{name}")
+        return values
+
+
+def require_usual_steps(table: RawTable, header: str, steps: Array, section: str) -> None:
+    """Check that times whose unit nobody states are those of samples, if they are in seconds.
 
     Args:
-        text: Name of the definition: material, travel or larger.
-        file: File that it was read from, for the error message.
-        key: Key or column that it was read from, for the error message.
+        table: The table.
+        header: Header of its column of times.
+        steps: Differences of successive times, those between runs left out, shape (n,) [s].
+        section: Dotted section of the column in a `columns.toml`, for the message.
 
     Raises:
-        SettingsError: There is no definition of this name.
+        DataError: Half of the steps or more are outside `INTERVALS`.
     """
-    try:
-        return SlipDefinition(str(text))
-    except ValueError as error:
-        advice = nearest(str(text), list(SlipDefinition))
-        raise SettingsError(
-            f"unknown slip definition '{text}'; {advice}", file=file, key=key
-        ) from error
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    if usual <= 0 or INTERVALS[0] <= usual <= INTERVALS[1]:
+        return
+    unit = "ms" if usual > 1 else "min"
+    raise table.fault(
+        f"samples are {usual:.3g} s apart, {steps.sum():.5g} s in all, if times are in s; "
+        f"expected {INTERVALS[0]:g} to {INTERVALS[1]:g} s between samples: state the unit in "
+        f'{COLUMNS_FILE}, such as [{section}] unit = "{unit}", or "s" if that is right',
+        header,
+    )
+
+
+def _frames(table: RawTable) -> str:
+    """Return advice for a table whose time is a number of frames; "" for others."""
+    frames = next((name for name in table.columns if _FRAMES.fullmatch(name)), None)
+    if frames is None:
+        return ""
+    return f'; of frames at 100 Hz: name = "{frames}", unit = "s", scale = 0.01'

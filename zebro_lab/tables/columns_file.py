@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read and check a `columns.toml` of a rig, and the map of each column of any table.
+"""Read and check a `columns.toml`: of a rig, of a time series, and the map of each column.
 
 The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commented example.
 """
@@ -12,19 +12,18 @@ from pathlib import Path
 from zebro_lab.files.errors import UnitError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
-from zebro_lab.tables.columns import (
+from zebro_lab.tables.columns import Columns, MappedColumn, scaled
+from zebro_lab.tables.columns_sections import read_nearest, read_section, read_source
+from zebro_lab.tables.date_cells import is_date_unit
+from zebro_lab.tables.rig_columns import (
     CANONICAL,
-    Columns,
-    MappedColumn,
+    RigColumns,
     RigErrorsStated,
     RunRule,
     parse_definition,
-    scaled,
 )
-from zebro_lab.tables.columns_sections import read_nearest, read_section, read_source
-from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.row_conditions import read_row_conditions
-from zebro_lab.tables.table_kinds import RIG
+from zebro_lab.tables.table_kinds import RIG, TRACK
 
 _CONSTANTS = {"radius_leg": "m", "radius_ground": "m"}
 LARGEST_LOAD_CELL_ERROR = 0.2
@@ -45,7 +44,7 @@ _RIG_ERRORS = {
 }
 
 
-def read_columns(file: Path) -> Columns:
+def read_columns(file: Path) -> RigColumns:
     """Read and check a `columns.toml`.
 
     Raises:
@@ -56,7 +55,7 @@ def read_columns(file: Path) -> Columns:
     return parse_columns(read_section(RIG, file))
 
 
-def rig_columns(table: Path, named: Path | None = None) -> Columns:
+def rig_columns(table: Path, named: Path | None = None) -> RigColumns:
     """Read the column map of a table of a rig: that named, else the nearest, else the default.
 
     Args:
@@ -67,10 +66,10 @@ def rig_columns(table: Path, named: Path | None = None) -> Columns:
         NotFound, SettingsError: As `read_columns`.
     """
     entries = read_section(RIG, named) if named else read_nearest(RIG, table.parent)
-    return Columns() if entries is None else parse_columns(entries)
+    return RigColumns() if entries is None else parse_columns(entries)
 
 
-def parse_columns(table: SettingsTable) -> Columns:
+def parse_columns(table: SettingsTable) -> RigColumns:
     """Parse and check the content of a `columns.toml`.
 
     Args:
@@ -79,16 +78,12 @@ def parse_columns(table: SettingsTable) -> Columns:
     Raises:
         SettingsError: It has an unknown key, unit or value, or more than one run rule.
     """
-    columns = table.table("columns")
-    columns_file = Columns(
+    units = {name: column.unit for name, column in CANONICAL.items()}
+    columns_file = RigColumns(
         file=Path(table.file),
         source=read_source(table),
         sheet=table.text("sheet") if "sheet" in table else None,
-        columns={
-            name: parse_mapped_column(columns, name, column.unit)
-            for name, column in CANONICAL.items()
-            if name in columns
-        },
+        columns=_mapped_columns(table, units),
         constants=_quantities(table.table("constants"), _CONSTANTS),
         runs=_runs(table),
         keep=read_row_conditions(table.table("rows")),
@@ -98,6 +93,68 @@ def parse_columns(table: SettingsTable) -> Columns:
     )
     table.finish()
     return columns_file
+
+
+def parse_mapped_columns(
+    table: SettingsTable, units: Mapping[str, str], *, with_rows: bool = False
+) -> Columns:
+    """Parse a column map; columns without an entry keep their canonical name and unit.
+
+    Args:
+        table: Table with the keys `source`, `sheet` and `columns`, all optional; no others are
+            allowed.
+        units: SI unit of each column, by canonical name.
+        with_rows: Whether it may have the section `rows`, too, which says which rows are read.
+
+    Raises:
+        SettingsError: A key, a header, a unit or a sign is invalid.
+    """
+    columns = _mapped_columns(table, units)
+    source = table.text("source") if "source" in table else None
+    sheet = table.text("sheet") if "sheet" in table else None
+    keep = read_row_conditions(table.table("rows")) if with_rows else ()
+    table.finish()
+    where = f"{table.path}." if table.path else ""
+    return Columns(units, columns, source, Path(table.file), where, sheet, keep)
+
+
+def read_mapped_columns(
+    kind: str, table: Path, named: Path | None, units: Mapping[str, str], *, alone: bool = False
+) -> tuple[Columns, str | None]:
+    """Read the column map of a time series from the `columns.toml` that applies to its table.
+
+    Args:
+        kind: Kind of the table: `legs`, `imu` or `track`.
+        table: Path of the table, or of the ROS log.
+        named: A `columns.toml`; None for the nearest, from the table's folder upwards, if any.
+        units: SI unit of each column, by canonical name.
+        alone: Whether all entries of a named file without sections are for this table.
+
+    Returns:
+        The map, canonical names and units without a `columns.toml`; and the topic of a ROS log
+        that it states, if any.
+
+    Raises:
+        NotFound: The named `columns.toml` does not exist.
+        SettingsError: It cannot be read, or a key, a unit or a sign is invalid.
+    """
+    entries = read_section(kind, named, alone=alone) if named else read_nearest(kind, table.parent)
+    if entries is None:
+        return Columns(units, where=f"{kind}."), None
+    topic = entries.text("topic") if "topic" in entries else None
+    return parse_mapped_columns(entries, units, with_rows=kind == TRACK), topic
+
+
+def _mapped_columns(
+    table: SettingsTable, units: Mapping[str, str | None]
+) -> dict[str, MappedColumn]:
+    """Parse the entries of the section `columns`, by canonical name."""
+    columns = table.table("columns")
+    return {
+        name: parse_mapped_column(columns, name, unit)
+        for name, unit in units.items()
+        if name in columns
+    }
 
 
 def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) -> MappedColumn:
@@ -196,7 +253,7 @@ def _priors(table: SettingsTable) -> tuple[str, ...]:
 
 
 def prior_entry(text: str) -> tuple[str, str]:
-    """Return a prior as key and text of `[priors]`, from one text of `Columns.priors`."""
+    """Return a prior as key and text of `[priors]`, from one text of `RigColumns.priors`."""
     name, value = re.split(r" [=~] ", text, maxsplit=1)
     return name, value
 

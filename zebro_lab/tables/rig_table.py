@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import CANONICAL, Columns, MappedColumn
+from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.raw_table import OVERLOAD, RawTable, is_measured, missing_text
+from zebro_lab.tables.rig_columns import CANONICAL, RigColumns
 from zebro_lab.tables.table_kinds import looks_like_other
 
 
@@ -27,7 +28,7 @@ class RigTable:
     """
 
     raw: RawTable
-    columns: Columns
+    columns: RigColumns
     rows: NDArray[np.intp]
 
     def source_of(self, name: str) -> MappedColumn | None:
@@ -39,11 +40,8 @@ class RigTable:
         Raises:
             DataError: The file states a unit that is unknown or measures another quantity.
         """
-        si_unit = CANONICAL[name].unit
-        if name in self.columns.columns:
-            return self.columns.columns[name].in_unit_of(self.raw, si_unit)
-        if name in self.raw.columns or name in self.raw.repeated:
-            return MappedColumn(name, si_unit or "").in_unit_of(self.raw, si_unit)
+        if name in self.columns.columns or self.columns.has(self.raw, name):
+            return self.columns.mapped[name].in_unit_of(self.raw, self.columns.units[name])
         return None
 
     def conversions(self) -> tuple[str, ...]:

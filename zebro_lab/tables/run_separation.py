@@ -9,8 +9,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from zebro_lab.tables.columns import require_usual_steps
 from zebro_lab.tables.header_rows import unique_names
-from zebro_lab.tables.mapped_columns import require_usual_steps
 from zebro_lab.tables.rig_table import RigTable
 
 ONE_RUN = "each file is one run"

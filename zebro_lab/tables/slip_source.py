@@ -9,7 +9,8 @@ from model.arrays import Array
 from model.errors import DomainError
 from model.similar_name import nearest
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
-from zebro_lab.tables.columns import CANONICAL, MappedColumn, parse_definition
+from zebro_lab.tables.columns import MappedColumn
+from zebro_lab.tables.rig_columns import CANONICAL, parse_definition
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.table_kinds import looks_like_other
 

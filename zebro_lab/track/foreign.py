@@ -13,7 +13,7 @@ from model.arrays import Array
 from model.poses import wrap
 from model.travel import has_travelled, travel_direction
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.track.file import TrackFile, track_of_table, tum_lines
 from zebro_lab.track.trajectory.file import Trajectory, read_trajectory
 from zebro_lab.track.trajectory.request import TrajectoryRequest
@@ -119,7 +119,7 @@ class ForeignTrack:
 
 def read_foreign_track(
     path: Path,
-    mapping: MappedColumns,
+    mapping: Columns,
     request: TrajectoryRequest,
     *,
     topic: str | None = None,

@@ -13,14 +13,14 @@ from support.written_runs import edit
 from zebro_lab.calibration.rig_part import RigPart, read_part
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.data_paths import DataSource
-from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.columns_file import read_columns
+from zebro_lab.tables.rig_columns import RigColumns
 
 TWICE = '[columns.normal_force]\nname = "FZ"\nunit = "kN"\nsign = -1\n[runs]\nby = ["day"]\n'
 
 
-def part_of(path, *, mapped: Columns | None = None, wanted=None) -> RigPart:
-    return read_part(DataSource(path, path.parent), mapped or Columns(), "rig", wanted)
+def part_of(path, *, mapped: RigColumns | None = None, wanted=None) -> RigPart:
+    return read_part(DataSource(path, path.parent), mapped or RigColumns(), "rig", wanted)
 
 
 @pytest.fixture

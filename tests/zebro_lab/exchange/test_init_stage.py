@@ -17,9 +17,9 @@ from zebro_lab.exchange.columns_template import render_columns
 from zebro_lab.exchange.init_stage import write_columns_template
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.rig_columns import RigColumns
 
 N = 40
 
@@ -39,7 +39,7 @@ def rig() -> pd.DataFrame:
     })  # fmt: skip
 
 
-def template(folder: Path, table: pd.DataFrame) -> tuple[str, Columns]:
+def template(folder: Path, table: pd.DataFrame) -> tuple[str, RigColumns]:
     table.to_csv(folder / "rig.csv", index=False)
     path = write_columns_template(folder / "rig.csv").file
     text = path.read_text()

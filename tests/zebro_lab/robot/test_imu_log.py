@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.robot.imu_log import IMU_UNITS, ImuLog, imu_of_table
-from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 
 T = [0.0, 0.1]
@@ -20,14 +20,14 @@ T = [0.0, 0.1]
 
 def read(**columns) -> ImuLog:
     series = {name: pd.Series(values) for name, values in ({"t": T} | columns).items()}
-    return imu_of_table(RawTable(Path("imu.csv"), series), canonical_columns(IMU_UNITS))
+    return imu_of_table(RawTable(Path("imu.csv"), series), Columns(IMU_UNITS))
 
 
 def in_radians(**columns) -> ImuLog:
     """Read angles whose unit the file states: any attitude."""
     series = {name: pd.Series(values) for name, values in ({"t": T} | columns).items()}
     raw = RawTable(Path("imu.csv"), series, units={"roll": "rad"})
-    return imu_of_table(raw, canonical_columns(IMU_UNITS))
+    return imu_of_table(raw, Columns(IMU_UNITS))
 
 
 def orientation(log: ImuLog) -> np.ndarray:
@@ -62,7 +62,7 @@ def test_a_specific_force_in_g_is_refused_unless_its_unit_is_stated():
     with pytest.raises(DataError, match=r"force is 1.02 m/s\^2 in the middle.*unit = \"g\""):
         read(**level, force_z=[1.02, 1.01])
     assert read(**level, force_z=[9.8, 9.9]).notes == read(roll=[0.0, 0.0], pitch=[0.0, 0.0]).notes
-    stated = canonical_columns(IMU_UNITS)
+    stated = Columns(IMU_UNITS)
     for axis in "xyz":
         stated = stated.called(f"force_{axis}", f"a{axis}_g")
     table = {

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from support.leg_tables import leg_table
 from zebro_lab.files.errors import DataError
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
-from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 
@@ -21,7 +21,7 @@ from zebro_lab.tables.table_files import read_table_file
 def read(table: pd.DataFrame, folder: Path, **options) -> LegLog:
     table.to_csv(folder / "legs.csv", index=False)
     raw = read_table_file(folder / "legs.csv")
-    return legs_of_table(raw, canonical_columns(LEG_UNITS), files=[raw.path], **options)
+    return legs_of_table(raw, Columns(LEG_UNITS), files=[raw.path], **options)
 
 
 def in_memory(table: pd.DataFrame) -> RawTable:
@@ -32,9 +32,7 @@ def in_memory(table: pd.DataFrame) -> RawTable:
 def test_angles_wrapped_to_a_turn_are_unwrapped(start):
     table, angles = leg_table(), list(ANGLES)
     wrapped = table.assign(**(table[angles] + start) % (2 * np.pi))
-    found = legs_of_table(
-        in_memory(wrapped), canonical_columns(LEG_UNITS), files=[Path("legs.csv")]
-    )
+    found = legs_of_table(in_memory(wrapped), Columns(LEG_UNITS), files=[Path("legs.csv")])
     growth = table[angles].to_numpy() - table[angles].to_numpy()[0]
     theta = found.reference.theta
     np.testing.assert_allclose(theta - theta[0], growth, atol=1e-9)
@@ -49,7 +47,7 @@ def test_signs_of_the_robots_legs_are_applied(tmp_path):
 def test_the_source_of_the_table_is_kept_and_unknown_without_one():
     for source, expected in (("sim:zebro", "sim:zebro"), (None, "unknown")):
         raw = dataclasses.replace(in_memory(leg_table()), source=source)
-        found = legs_of_table(raw, canonical_columns(LEG_UNITS), files=[raw.path])
+        found = legs_of_table(raw, Columns(LEG_UNITS), files=[raw.path])
         assert (found.source, found.files) == (expected, (raw.path,))
 
 

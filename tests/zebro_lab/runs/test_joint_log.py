@@ -11,7 +11,7 @@ from mcap_ros2.writer import Writer
 from zebro_lab.files.errors import DataError
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.runs.joint_log import joint_table, legs_of_joints, read_joint_log
-from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.columns import Columns
 
 HEADER = f"""\
 {"=" * 80}
@@ -89,7 +89,7 @@ def test_a_log_without_positions_says_what_is_expected(tmp_path):
 def test_names_that_state_their_legs_are_columns_of_legs_and_told(tmp_path):
     joints = {"rr": 6.0, "lf": 1.0, "rf": 2.0, "lm": 3.0, "rm": 4.0, "lr": 5.0}
     log = read_joint_log(write(tmp_path / "bag.mcap", ("/joints", 1.0, 1.0, joints)))
-    table = joint_table(log, canonical_columns(LEG_UNITS))
+    table = joint_table(log, Columns(LEG_UNITS))
     assert [table.numbers(name)[0] for name in ANGLES] == [1, 2, 3, 4, 5, 6]
     (note,) = table.notes
     assert note == "leg log: legs and their joints by name: 1 lf, 2 rf, 3 lm, 4 rm, 5 lr, 6 rr"
@@ -98,9 +98,7 @@ def test_names_that_state_their_legs_are_columns_of_legs_and_told(tmp_path):
 def test_messages_of_other_joints_on_the_topic_are_skipped(tmp_path):
     legs, arm = {f"leg_{leg}": 0.1 * leg for leg in range(1, 7)}, {"arm": 1.0}
     states = [("/joints", 1.0 + 0.1 * i, 1.0, (legs, arm)[i % 2]) for i in range(6)]
-    table = joint_table(
-        read_joint_log(write(tmp_path / "bag.mcap", *states)), canonical_columns(LEG_UNITS)
-    )
+    table = joint_table(read_joint_log(write(tmp_path / "bag.mcap", *states)), Columns(LEG_UNITS))
     np.testing.assert_allclose(table.numbers("t"), [1.0, 1.2, 1.4])
     np.testing.assert_allclose(table.numbers("theta6"), 0.6)
     assert table.notes == ("bag.mcap: 3 of 6 messages have no leg's joint: skipped",)
@@ -109,7 +107,7 @@ def test_messages_of_other_joints_on_the_topic_are_skipped(tmp_path):
 def test_joints_are_never_legs_by_their_place_in_the_message(tmp_path):
     joints = {f"motor_{number}": 0.1 * number for number in range(6)}
     log = read_joint_log(write(tmp_path / "bag.mcap", ("/joints", 1.0, 1.0, joints)))
-    columns = canonical_columns(LEG_UNITS)
+    columns = Columns(LEG_UNITS)
     with pytest.raises(DataError, match=r"has the joints motor_0, .* --joints A,B,C,D,E,F"):
         joint_table(log, columns)
     for leg, name in enumerate(ANGLES):
@@ -123,9 +121,9 @@ def test_messages_of_one_leg_each_are_joined_in_the_unit_of_the_columns(tmp_path
         for leg in range(1, 7):
             t = 1 + 0.01 * i + 0.001 * leg
             states.append(("/joints", t, 1.0, {f"leg_{leg}": 200 * t % 360}))
-    columns = canonical_columns(LEG_UNITS)
+    columns = Columns(LEG_UNITS)
     degrees = {name: replace(columns.mapped[name], unit="deg") for name in ANGLES}
-    columns = replace(columns, mapped={**columns.mapped, **degrees})
+    columns = replace(columns, columns=degrees)
     table = joint_table(read_joint_log(write(tmp_path / "bag.mcap", *states)), columns)
     t = table.numbers("t")
     for name in ANGLES:
@@ -146,7 +144,7 @@ def test_topics_of_one_leg_each_are_read_together(tmp_path):
     arm = [("/arm", 1 + 0.01 * i, 1.0, {"gripper": 0.1}) for i in range(20)]
     log = read_joint_log(write(tmp_path / "bag.mcap", *states, *arm))
     assert log.topic == ", ".join(f"/leg{leg}/state" for leg in range(1, 7))
-    table = joint_table(log, canonical_columns(LEG_UNITS))
+    table = joint_table(log, Columns(LEG_UNITS))
     for name in ANGLES:
         np.testing.assert_allclose(table.numbers(name), 3 * (table.numbers("t") - 1), atol=1e-6)
 

@@ -9,9 +9,10 @@ import pytest
 
 from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import NotFound, SettingsError
-from zebro_lab.tables.columns import Columns, MappedColumn, RigErrorsStated, RunRule
+from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.rig_columns import RigColumns, RigErrorsStated, RunRule
 from zebro_lab.tables.row_conditions import RowCondition
 
 WHOLE = """
@@ -44,14 +45,14 @@ rolling_resistance = "1 %"
 """
 
 
-def read(tmp_path: Path, text: str) -> Columns:
+def read(tmp_path: Path, text: str) -> RigColumns:
     file = tmp_path / "columns.toml"
     file.write_text(text, encoding="utf-8")
     return read_columns(file)
 
 
 def test_every_key_is_read_in_si(tmp_path):
-    assert read(tmp_path, WHOLE) == Columns(
+    assert read(tmp_path, WHOLE) == RigColumns(
         file=tmp_path / "columns.toml",
         source="sim:sweep",
         columns={
@@ -69,7 +70,7 @@ def test_every_key_is_read_in_si(tmp_path):
 
 
 def test_empty_file_changes_nothing(tmp_path):
-    assert read(tmp_path, "") == Columns(file=tmp_path / "columns.toml")
+    assert read(tmp_path, "") == RigColumns(file=tmp_path / "columns.toml")
 
 
 @pytest.mark.parametrize("source", ["import:legs.csv", "mixed:real,sim:imu"])

@@ -17,9 +17,8 @@ from support.bounded_reading import LONGEST_MESSAGE
 from zebro_lab.exchange.column_guesses import UNITS
 from zebro_lab.exchange.init_stage import WrittenColumns, write_columns_template
 from zebro_lab.files.errors import SettingsError, ZebroLabError
-from zebro_lab.tables.columns import CANONICAL
-from zebro_lab.tables.columns_file import read_columns
-from zebro_lab.tables.mapped_columns import read_mapped_columns
+from zebro_lab.tables.columns_file import read_columns, read_mapped_columns
+from zebro_lab.tables.rig_columns import CANONICAL
 from zebro_lab.tables.rig_table import RigTable
 from zebro_lab.tables.table_files import read_table_file
 

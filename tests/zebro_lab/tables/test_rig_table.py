@@ -10,8 +10,9 @@ import pytest
 from support.rig_tables import N, columns, given_slip, write
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import Columns, MappedColumn
+from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.rig_columns import RigColumns
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows, parse_row_condition
 
@@ -19,7 +20,7 @@ from zebro_lab.tables.row_conditions import kept_rows, parse_row_condition
 def table_of(columns: dict[str, MappedColumn], constants: dict[str, float], **values) -> RigTable:
     """Return a rig table of two rows, of which the second is kept."""
     series = {name: pd.Series(each) for name, each in values.items()}
-    settings = Columns(file=Path("columns.toml"), columns=columns, constants=constants)
+    settings = RigColumns(file=Path("columns.toml"), columns=columns, constants=constants)
     return RigTable(RawTable(Path("rig.csv"), series), settings, np.array([1]))
 
 
@@ -51,7 +52,7 @@ def test_an_overload_is_skipped_by_the_condition_that_is_proposed(factor, sign):
     with pytest.raises(DataError, match="which instruments write at an overload") as raised:
         table.si("traction_force")
     assert f'keep = ["{condition}"]' in str(raised.value)
-    settings = Columns(columns=mapped, keep=(parse_row_condition(condition),))
+    settings = RigColumns(columns=mapped, keep=(parse_row_condition(condition),))
     assert kept_rows(table.raw, settings.keep).tolist() == [0]
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from zebro_lab.robot.imu_log import IMU_UNITS
 from zebro_lab.robot.leg_log import LEG_UNITS
-from zebro_lab.tables.columns import CANONICAL
+from zebro_lab.tables.rig_columns import CANONICAL
 from zebro_lab.tables.table_kinds import looks_like_other
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 

@@ -8,12 +8,9 @@ import pandas as pd
 import pytest
 
 from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.tables.columns import Columns
+from zebro_lab.tables.columns_file import parse_mapped_columns, read_mapped_columns
 from zebro_lab.tables.columns_sections import read_section
-from zebro_lab.tables.mapped_columns import (
-    canonical_columns,
-    parse_mapped_columns,
-    read_mapped_columns,
-)
 from zebro_lab.track.file import tum_lines
 from zebro_lab.track.foreign import read_foreign_track
 from zebro_lab.track.trajectory.request import Axis, TrajectoryRequest
@@ -36,7 +33,7 @@ def track_of(file: Path, zero: float = 0.0):
 
 
 def read(file: Path, **how):
-    return read_foreign_track(file, canonical_columns(MAPPED_UNITS), TrajectoryRequest(**how))
+    return read_foreign_track(file, Columns(MAPPED_UNITS), TrajectoryRequest(**how))
 
 
 def test_short_names_do_and_time_is_counted_from_the_zero_given(tmp_path):

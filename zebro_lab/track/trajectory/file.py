@@ -14,7 +14,7 @@ from model.poses import Poses
 from model.rigid_path import RigidPath, plane_axes, rotations_of_quaternions
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
-from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.trajectory.layouts import read_number_lines, read_number_table
@@ -117,7 +117,7 @@ def read_trajectory(
     path: Path,
     request: TrajectoryRequest,
     *,
-    mapping: MappedColumns | None = None,
+    mapping: Columns | None = None,
     which: int = 0,
     topic: str | None = None,
     topics: Collection[str] = (),
@@ -140,8 +140,8 @@ def read_trajectory(
         SettingsError: An option does not fit the file.
     """
     stated = request.layout_of(which)
-    mapping = mapping or canonical_columns(MAPPED_UNITS)
-    plain = replace(mapping, mapped=canonical_columns(MAPPED_UNITS).mapped, keep=())
+    mapping = mapping or Columns(MAPPED_UNITS)
+    plain = replace(mapping, columns={}, keep=())
     if is_ros_log(path):
         _require_no_other(path, request, stated)
         logged = read_logged_poses(path, topic=topic, topics=topics)
@@ -172,7 +172,7 @@ def read_trajectory(
 
 
 def _trajectory(
-    path: Path, layout: Layout, table: RawTable, mapping: MappedColumns, request: TrajectoryRequest
+    path: Path, layout: Layout, table: RawTable, mapping: Columns, request: TrajectoryRequest
 ) -> Trajectory:
     """Convert a table of poses to a trajectory, with notes on what is doubtful."""
     plane = request.plane or (Plane.XZ if layout is Layout.KITTI else Plane.XY)
@@ -236,7 +236,7 @@ def _require_no_other(path: Path, request: TrajectoryRequest, stated: Layout | N
         raise SettingsError(f"{path} is a ROS log; leave the option out", key="--layout")
 
 
-def _with_all_rows(trajectory: Trajectory, mapping: MappedColumns | None) -> Trajectory:
+def _with_all_rows(trajectory: Trajectory, mapping: Columns | None) -> Trajectory:
     """Add a note that rows are chosen from tables only, where `[rows] keep` is stated."""
     if mapping is None or not mapping.keep:
         return trajectory

@@ -12,7 +12,7 @@ from model.arrays import Array
 from model.counted import counted
 from model.poses import Poses
 from model.travel import has_travelled, travel_direction
-from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import kept_rows
 
@@ -105,7 +105,7 @@ class TableColumns(NamedTuple):
 
 
 def read_table_columns(
-    table: RawTable, mapping: MappedColumns, units: Mapping[str, str], *, what: str = "trajectory"
+    table: RawTable, mapping: Columns, units: Mapping[str, str], *, what: str = "trajectory"
 ) -> TableColumns:
     """Convert the columns of a path to SI, and check its stamps.
 
@@ -141,9 +141,7 @@ def read_table_columns(
     return TableColumns(columns, (*notes, *repeated), table)
 
 
-def _in_seconds(
-    table: RawTable, mapping: MappedColumns, columns: dict[str, Array]
-) -> tuple[str, ...]:
+def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) -> tuple[str, ...]:
     """Convert stamps whose unit nobody states to seconds if they are times since 1970; note it.
 
     Raises:
@@ -171,7 +169,7 @@ def _in_seconds(
 
 
 def _kept_stamps(
-    table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]
+    table: RawTable, mapping: Columns, columns: Mapping[str, Array]
 ) -> tuple[NDArray[np.intp], tuple[str, ...]]:
     """Return the rows to keep, the first of each stamp, and a note on those that are left out.
 
@@ -214,7 +212,7 @@ def _kept_stamps(
 
 
 def _require_unit_quaternions(
-    table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]
+    table: RawTable, mapping: Columns, columns: Mapping[str, Array]
 ) -> None:
     if not set(QUATERNION) <= set(columns):
         return
@@ -232,7 +230,7 @@ def _require_unit_quaternions(
         )
 
 
-def _with_poses(table: RawTable, mapping: MappedColumns) -> tuple[RawTable, tuple[str, ...]]:
+def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, tuple[str, ...]]:
     """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on the rest."""
     if mapping.keep:
         table = table.part(kept_rows(table, mapping.keep, where=mapping.where))
@@ -248,7 +246,7 @@ def _with_poses(table: RawTable, mapping: MappedColumns) -> tuple[RawTable, tupl
     return table.part(np.flatnonzero(~empty)), (note,)
 
 
-def _advice(mapping: MappedColumns, name: str) -> str:
+def _advice(mapping: Columns, name: str) -> str:
     header = mapping.mapped[name].name
     return (
         f'leave such poses out, as by [{mapping.where}rows] keep = ["`{header}` > -1e9"] in '
@@ -256,7 +254,7 @@ def _advice(mapping: MappedColumns, name: str) -> str:
     )
 
 
-def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]) -> None:
+def _require_radians(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> None:
     heading = mapping.mapped.get("yaw_rad")
     if "yaw_rad" not in columns or heading is None:
         return
@@ -274,7 +272,7 @@ def _require_radians(table: RawTable, mapping: MappedColumns, columns: Mapping[s
 
 
 def _require_metres(
-    table: RawTable, mapping: MappedColumns, columns: Mapping[str, Array]
+    table: RawTable, mapping: Columns, columns: Mapping[str, Array]
 ) -> tuple[str, ...]:
     """Return a note on positions whose unit nobody states: they are taken in metres.
 
@@ -299,7 +297,7 @@ def _require_metres(
     return (f"positions ('{east.name}', …) are taken in m, since no unit of them is stated",)
 
 
-def recognised(table: RawTable, mapping: MappedColumns) -> MappedColumns:
+def recognised(table: RawTable, mapping: Columns) -> Columns:
     """Map columns that are missing and not mapped in a file to headers that are recognised."""
     for name, seen in named_columns(list(table.columns)).items():
         free = name in mapping.mapped and mapping.mapped[name].name == name

@@ -8,14 +8,14 @@ from model.progress import Watcher
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.settings_table import SettingsTable
-from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns import COLUMNS_FILE, Columns
+from zebro_lab.tables.columns_file import parse_mapped_columns
 from zebro_lab.tables.columns_sections import (
     columns_above,
     read_nearest,
     read_section,
     require_checked,
 )
-from zebro_lab.tables.mapped_columns import MappedColumns, parse_mapped_columns
 from zebro_lab.tables.table_kinds import TRACK
 from zebro_lab.track.trajectory.file import Trajectory, read_trajectory
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
@@ -73,7 +73,7 @@ def _read(file: Path, request: ValidateRequest, which: int) -> Trajectory:
     return replace(found, source=source, notes=(*found.notes, *above))
 
 
-def trajectory_columns(file: Path, named: Path | None) -> MappedColumns | None:
+def trajectory_columns(file: Path, named: Path | None) -> Columns | None:
     """Read the column map of a trajectory; None if nothing is stated.
 
     It is the section `[track]` of the file that is named, or of the nearest `columns.toml`, from

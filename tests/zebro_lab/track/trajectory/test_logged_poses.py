@@ -6,7 +6,7 @@ import pytest
 
 from support.written_bags import BEGAN, joints, odometry, stamped, transforms, write_bag
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.columns import Columns
 from zebro_lab.track.foreign import ForeignTrack, read_foreign_track
 from zebro_lab.track.trajectory.request import Axis, Plane, TrajectoryRequest
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
@@ -16,7 +16,7 @@ PATH = np.column_stack([0.1 * T, 0.05 * T**2, T])  # yaw passes half a turn
 
 
 def read(bag, *, topics=(), **how) -> ForeignTrack:
-    mapping = canonical_columns(MAPPED_UNITS)
+    mapping = Columns(MAPPED_UNITS)
     return read_foreign_track(bag, mapping, TrajectoryRequest(**how), topics=topics)
 
 

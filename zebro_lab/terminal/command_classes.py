@@ -40,11 +40,11 @@ class _Strict:
             unknown: Any = error
             if hasattr(unknown, "possibilities"):  # Typer's own are other options as well
                 unknown.possibilities = None
-                _offer(unknown, ctx.command_path, unknown.option_name, _options(self, ctx))
+                _offer(unknown, _name(ctx), unknown.option_name, _options(self, ctx))
             elif hasattr(error.__cause__, "errors"):  # by pydantic
                 unknown.message = _named_value(unknown.message, unknown.__cause__.errors()[0])
             for option_and_value in map(" ".join, pairwise(words)):  # a removed value
-                _offer(unknown, ctx.command_path, option_and_value, ())
+                _offer(unknown, _name(ctx), option_and_value, ())
             raise
 
     def get_short_help_str(self, limit: int = 45) -> str:
@@ -87,7 +87,7 @@ class Group(_Strict, TyperGroup):
             return super().resolve_command(ctx, args)
         except Exception as error:
             if args[0] not in known:
-                _offer(error, ctx.command_path, args[0], known)
+                _offer(error, _name(ctx), args[0], known)
             raise
 
 
@@ -131,6 +131,13 @@ def _named_value(message: str, found: Mapping[str, Any]) -> str:
     if kind in _EXPECTED:
         return f"found '{found.get('input')}'; expected {_EXPECTED[kind]}"
     return message.removeprefix("Value error, ")
+
+
+def _name(ctx: Any) -> str:
+    """Return the name of a command with those of its groups, without the program's: `rig run`."""
+    if ctx.parent is not None:
+        return f"{_name(ctx.parent)} {ctx.command.name}".strip()
+    return "" if isinstance(ctx.command, Group) else ctx.command.name
 
 
 def _options(command: Any, ctx: Any) -> list[str]:

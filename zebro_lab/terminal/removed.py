@@ -31,6 +31,8 @@ REMOVED: Final[dict[str, str]] = {
     "calibrate --widen": "State wider priors of single parameters by --prior, or carry over the "
     "law alone by --carry law.",
     "calibrate --zero-stability": "State zero_stability in [load_cell] of columns.toml.",
+    "camera calibrate --workers": "Photographs are searched in two processes; leave the option "
+    "out.",
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "export --to mcap": "A track opens in other tools by track/path.tum; path.csv of a prediction "
     "and the tables of --to csv open anywhere.",
@@ -78,17 +80,15 @@ REMOVED: Final[dict[str, str]] = {
 """What to use instead, a sentence, by "COMMAND", "COMMAND --option", "COMMAND --option value", or
 "--option" of any command.
 
-A command in a group has the group's name before it ("study sbc"), and `calibrate-slip` is
-"calibrate".
+A command in a group has the group's name before it ("rig run"); `calibrate-slip` is "calibrate".
 """
 
 
-def replacement(command_path: str, name: str) -> str | None:
+def replacement(command: str, name: str) -> str | None:
     """Return what to use instead of a command or option of an earlier version; None if never one.
 
     Args:
-        command_path: Command that was typed, as `zebro-lab rig` or `calibrate-slip`.
+        command: Command that was typed, without the program's name, as `rig run`.
         name: Option, option with its value, or subcommand that it does not know.
     """
-    command = command_path.removeprefix("zebro-lab").replace("calibrate-slip", "calibrate").strip()
     return REMOVED.get(f"{command} {name}".strip(), REMOVED.get(name))

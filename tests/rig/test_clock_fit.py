@@ -36,14 +36,6 @@ def test_a_moment_of_samples_read_at_a_loss_tells_no_drift(seed):
     assert abs(fit_clock(device, 3.0 + batch).drift) < 4e-3
 
 
-@pytest.mark.parametrize("drift", [1e-4, -5e-3, 1e-2])
-def test_a_minute_of_samples_tells_any_drift(drift):
-    rng = np.random.default_rng(1)
-    device = np.arange(6000) / 100
-    host = 3.0 + (1 + drift) * device + rng.exponential(0.01, 6000)
-    assert fit_clock(device, host).drift == pytest.approx(drift, abs=2e-5)
-
-
 @pytest.mark.parametrize("duration", [2.0, 10.0, 60.0])
 def test_offset_and_drift_lie_within_two_standard_uncertainties(duration):
     rng, inside = np.random.default_rng(2), []

@@ -20,12 +20,11 @@ from rig.replay import ReplayStream
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
-from rig.slip_rig.sweep import SweepPlan
 from rig.twins import robot_twin, simulated_legs, simulated_rig_devices
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.simulated_legs import SimulatedLegs
+from support.board_twins import world
 
 TIMES = np.linspace(0, 60, 601)
 GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
@@ -33,12 +32,6 @@ GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
 
 def rng():
     return np.random.default_rng(3)
-
-
-def rig():
-    return SimulatedRig(
-        plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng()
-    )
 
 
 def in_memory(twin, driver):
@@ -66,7 +59,7 @@ def rig_stream(stream):
     @contextmanager
     def serve():
         with simulated_rig_devices(
-            load_rig_profile("rig-odrive-netft"), rig(), rng=rng()
+            load_rig_profile("rig-odrive-netft"), world(imperfections=TYPICAL_RIG), rng=rng()
         ) as devices:
             yield getattr(devices, stream)
 
@@ -84,7 +77,7 @@ LIVE = {
     "drives": rig_stream("drives"),
     "load cell": rig_stream("load_cell"),
     "board": in_memory(
-        lambda: SimulatedBoard(rig(), profile=BOARD.board, rng=rng()),
+        lambda: SimulatedBoard(world(imperfections=TYPICAL_RIG), profile=BOARD.board, rng=rng()),
         partial(RigBoard, profile=BOARD.board, limits=BOARD.limits),
     ),
 }

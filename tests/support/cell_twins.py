@@ -8,12 +8,11 @@ import numpy as np
 from rig.links.faults import PERFECT_LINE
 from rig.links.serve import Ticker
 from rig.links.udp import UdpLink
-from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
+from support.board_twins import world
 
 PROFILE = load_rig_profile("rig-odrive-netft").load_cell
 PAGE = (
@@ -26,12 +25,9 @@ PAGE = (
 @contextmanager
 def twin(faults=PERFECT_LINE, *, buffered=False):
     """Serve a cell under 8 N; yield it and the driver, not yet entered."""
-    world = SimulatedRig(
-        plan=SweepPlan(loads=(8.0,)), imperfections=RigImperfections(), dynamics=RigDynamics(),
-        rng=np.random.default_rng(0),
-    )  # fmt: skip
     rng = np.random.default_rng(0)
-    with SimulatedLoadCell(world, profile=PROFILE, faults=faults, rng=rng) as cell:
+    rig = world(plan=SweepPlan(loads=(8.0,)))
+    with SimulatedLoadCell(rig, profile=PROFILE, faults=faults, rng=rng) as cell:
         with Ticker(cell.poll) as ticker:
             link = UdpLink(cell.host, cell.port, source=cell.source)
             yield cell, NetFtCell(link, profile=PROFILE, buffered=buffered)

@@ -4,17 +4,14 @@
 from contextlib import contextmanager
 
 import can
-import numpy as np
 
 from rig.errors import DeviceFault
 from rig.links.can import CanLink
 from rig.links.serve import Ticker
 from rig.slip_rig.drives import DriveBus
-from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
-from rig.slip_rig.sweep import SweepPlan
+from support.board_twins import world
 
 PROFILE = load_rig_profile("rig-odrive-netft")
 
@@ -26,14 +23,8 @@ WATCHDOG = 0.3
 def twin(request, **options):
     """Serve both drives; yield them and the driver, not yet entered."""
     channel = request.node.nodeid
-    world = SimulatedRig(
-        plan=SweepPlan(),
-        imperfections=RigImperfections(),
-        dynamics=RigDynamics(),
-        rng=np.random.default_rng(0),
-    )
     with can.Bus(interface="virtual", channel=channel) as bus:
-        axes = SimulatedDrives(world, bus, profile=PROFILE.drives, watchdog=WATCHDOG)
+        axes = SimulatedDrives(world(), bus, profile=PROFILE.drives, watchdog=WATCHDOG)
         with Ticker(axes.poll) as ticker:
             link = CanLink(f"virtual:{channel}", source=axes.source)
             yield axes, DriveBus(link, profile=PROFILE.drives, limits=PROFILE.limits, **options)

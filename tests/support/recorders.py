@@ -26,7 +26,7 @@ def some(first, count):
     return [Sample(now, n / 100, n, (n % 100,) * 6) for n in range(first, first + count)]
 
 
-def until(holds, limit=5.0):
+def until(holds, limit=20.0):
     end = time.monotonic() + limit
     while not holds() and time.monotonic() < end:
         time.sleep(0.01)

@@ -40,25 +40,23 @@ class Onlooker:
 
 
 class RecordWatcher:
-    """Watcher that stops a recording after a number of calls or samples, or raises an error.
+    """Watcher that stops a recording after a number of calls or samples.
 
     Attributes:
         seen: Statuses that were shown.
         notes: Notes that were shown, each with the number of statuses shown before.
     """
 
-    def __init__(self, *, looks=None, samples=None, error=None):
+    def __init__(self, *, looks=None, samples=None):
         self.seen = []
         self.notes = []
-        self._looks, self._samples, self._error = looks, samples or {}, error
+        self._looks, self._samples = looks, samples or {}
 
     def note(self, line):
         self.notes.append((line, len(self.seen)))
 
     def show(self, status):
         self.seen.append(status)
-        if self._error is not None and len(self.seen) > 2:
-            raise self._error
 
     def stop_reason(self):
         looked = self._looks is not None and len(self.seen) >= self._looks

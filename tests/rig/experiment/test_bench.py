@@ -15,14 +15,12 @@ from rig.experiment.control import Control
 from rig.links.can import CanLink
 from rig.slip_rig.can_simple import AxisState, Command, split_id
 from rig.slip_rig.decode import measured_slip
-from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.rdt import SATURATED
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
-from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
+from support.board_twins import world
 from support.memory_sink import MemorySink
 
 PROFILE = load_rig_profile("rig-odrive-netft")
@@ -43,10 +41,7 @@ def standing(lab, monkeypatch, **limits):
             found[_kind] = self
 
         monkeypatch.setattr(kind, "__init__", keep)
-    rig = SimulatedRig(
-        plan=SweepPlan(), imperfections=RigImperfections(),
-        dynamics=RigDynamics(), rng=np.random.default_rng(0),
-    )  # fmt: skip
+    rig = world()
     rig.load = 5.0
     rng = np.random.default_rng(1)
     with (

@@ -19,12 +19,6 @@ def test_the_socket_commands_the_run():
             return send_command(server.port, server.token, command)
 
         assert say("status") == "not started"
-        say("pause")
-        assert control.paused
-        say("note the leg squeaks")
-        say("confirm")
-        assert control.take_confirmation()
-        assert not control.take_confirmation()
         say("soft")
         assert control.stop.pending.category is StopCategory.SOFT
         say("resume")
@@ -33,8 +27,6 @@ def test_the_socket_commands_the_run():
         assert control.stop.pending.reason == "smoke"
         say("resume")
         assert control.stop.latched
-        kinds = [note.kind for note in control.take_notes()]
-        assert kinds == ["pause", "note", "resume", "resume"]
 
 
 def test_who_does_not_know_the_token_commands_nothing():

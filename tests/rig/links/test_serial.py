@@ -75,11 +75,3 @@ class SerialStream(SerialLink):
 
     def __exit__(self, *_):
         self.close()
-
-
-def test_closing_twice_is_no_fault():
-    with server() as port:
-        link = SerialLink(port.port, baudrate=9600)
-        link.open()
-        link.close()
-        link.close()

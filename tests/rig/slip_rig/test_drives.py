@@ -3,27 +3,19 @@
 
 import math
 import time
-from contextlib import contextmanager
 
 import can
-import numpy as np
 import pytest
 
-from rig.clock import ManualClock
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout
 from rig.links.can import CanLink
-from rig.links.slcan import SlcanAdapter
 from rig.slip_rig.can_simple import (
     ESTIMATES,
     Command,
     can_id,
 )
-from rig.slip_rig.drives import DriveBus, disc_speed
-from rig.slip_rig.imperfections import RigImperfections
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
-from rig.slip_rig.simulated_drives import SimulatedDrives
-from rig.slip_rig.sweep import SweepPlan
-from support.drive_twins import PROFILE, WATCHDOG, healthy, turn, twin
+from rig.slip_rig.drives import DriveBus
+from support.drive_twins import PROFILE, healthy, turn, twin
 
 
 def test_leaving_stops_the_discs(request, wait_until):
@@ -79,82 +71,3 @@ def test_an_estimate_that_is_no_number_is_refused(request, wait_until):
             other.send(can.Message(arbitration_id=arbitration_id, data=data, is_extended_id=False))
         samples = wait_until(lambda: drives.counters.refused == 2, reading=drives)
     assert all(math.isfinite(sample.counts[0]) for sample in samples)
-
-
-class AdapterPort:
-    """Stands for pyserial's port in python-can's slcan: adapter and drives by a manual clock."""
-
-    def __init__(self, adapter, drives, clock):
-        self.adapter, self.drives, self.clock = adapter, drives, clock
-        self.inbox, self.outbox = bytearray(), b""
-        self.write_timeout = None
-
-    def _poll(self):
-        self.drives.poll(self.clock.now())
-        received, self.outbox = self.outbox, b""
-        self.inbox += self.adapter.poll(self.clock.now(), received)
-
-    @property
-    def in_waiting(self):
-        self._poll()
-        return len(self.inbox)
-
-    def read(self, size):
-        if not self.inbox:
-            self.clock.sleep(0.001)  # the port's own time limit
-            self._poll()
-        data = bytes(self.inbox[:size])
-        del self.inbox[:size]
-        return data
-
-    def write(self, data):
-        self.outbox += data
-
-    def flush(self):
-        pass
-
-    def close(self):
-        pass
-
-
-@contextmanager
-def behind_an_adapter(request):
-    """Yield a rig, a manual clock, and the driver of its drives behind an SLCAN adapter."""
-    world = SimulatedRig(
-        plan=SweepPlan(), imperfections=RigImperfections(), dynamics=RigDynamics(),
-        rng=np.random.default_rng(0),
-    )  # fmt: skip
-    clock = ManualClock()
-    channel = request.node.nodeid
-    with (
-        can.Bus(interface="virtual", channel=channel) as near,
-        can.Bus(interface="virtual", channel=channel) as far,
-        can.Bus(interface="slcan", channel="loop://", sleep_after_open=0.0) as slcan,
-    ):
-        slcan.serialPortOrig.close()
-        axes = SimulatedDrives(world, near, profile=PROFILE.drives, watchdog=WATCHDOG)
-        slcan.serialPortOrig = AdapterPort(SlcanAdapter(far, source="sim:rig"), axes, clock)
-        slcan.open()
-        link = CanLink(slcan, clock=clock)
-        yield (
-            world,
-            clock,
-            DriveBus(link, profile=PROFILE.drives, limits=PROFILE.limits, clock=clock),
-        )
-
-
-def test_a_speed_read_over_slcan_in_a_ramp_is_not_behind(request):
-    with behind_an_adapter(request) as (world, clock, drives), drives:
-        turn(drives, leg=0.0, ground=0.0)
-        began, seen = clock.now(), []
-        while (elapsed := clock.now() - began) < 4.0:
-            drives.leg.set_speed(3.0 * elapsed)
-            drives.ground.set_speed(elapsed)
-            clock.sleep(0.004)
-            samples = drives.read(0.0)
-            seen += [s for s in samples if s.channel == PROFILE.drives.leg.node]
-        drives.require_healthy()
-    assert len(seen) > 300
-    assert seen[-1].host_time > clock.now() - 0.02
-    speed = disc_speed(PROFILE.drives.leg, seen[-1].counts[1])
-    assert speed == pytest.approx(world.speeds()["leg"][1], abs=0.2)

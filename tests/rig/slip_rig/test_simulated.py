@@ -29,16 +29,6 @@ def test_a_rig_left_alone_glides_through_its_slips_and_obeys_its_law(law):
     np.testing.assert_allclose(at, [0.2, 0.3, 0.4], atol=3e-3)
 
 
-def test_a_rig_left_alone_takes_one_load_after_another():
-    rig = world(plan=SweepPlan(slips=(0.0, 0.5), loads=(2.0, 6.0), duration=0.5))
-    since_start, loads = np.arange(30) / 10, []
-    for time in since_start:
-        rig.advance(0.05 + time)
-        loads.append(rig.load)
-    expected = np.where(since_start % 2.0 < 1.0, 2.0, 6.0)
-    assert np.mean(np.array(loads) == expected) > 0.9
-
-
 def test_the_same_seed_gives_the_same_rig_however_often_it_is_asked():
     def run(step):
         rig = world(imperfections=PERFECT, seed=4)

@@ -84,16 +84,12 @@ def test_a_saved_profile_comes_back(name, tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("counts_per_revolution", "counts_per_revolutoin", "counts_per_revolution: is missing"),
         ("counts_per_revolution", "counts_per_revolutoin", "did you mean 'counts_per_revolution'"),
-        ("rate = 100.0", "rate = 100.0\nrats = 1", "did you mean 'rate'"),
-        ("rate = 100.0", "rate = -1.0", "above 0"),
         ("rate = 100.0", "rate = nan", "finite"),
         ("order = [1, 2", "order = [1, 1", "different leg numbers"),
         ("order = [1, 2, 3, 4, 5, 6]", "order = [1, 2, 3]", "six"),
         ("sign = [1,", "sign = [2,", "1 or -1"),
         ('layout = "packet"', 'layout = "can"', "needs 'can'"),
-        ('layout = "packet"', 'layout = "morse"', "expected one of"),
         (
             'device = "legs"',
             'device = "imu"',
@@ -102,8 +98,6 @@ def test_a_saved_profile_comes_back(name, tmp_path):
         ("schema = 1", "schema = 2", "schema"),
         ("[link]", "[link", "TOML"),
         ("baudrate = 3000000", 'baudrate = "fast"', "whole number"),
-        ("[stream]", "[steam]", "rate: is missing"),
-        ("order = [1, 2, 3, 4, 5, 6]", 'order = "all"', "whole numbers"),
     ],
 )
 def test_a_malformed_profile_is_refused_and_the_place_named(tmp_path, old, new, said):

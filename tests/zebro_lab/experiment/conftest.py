@@ -20,6 +20,12 @@ def _plan(tmp_path):
     return short_plan(tmp_path, **slips, duration="0.2", tolerance="8.0", **LENIENT)
 
 
+@pytest.fixture
+def short(tmp_path):
+    """Write a plan of two points that the criteria of the thesis's plan judge."""
+    return short_plan(tmp_path)
+
+
 def run(plan, data, *, watcher=None, control=None, **options):
     request = RigRunRequest(plan, "sim", data, fast=True, **options)
     return run_experiment(request, watcher or ExperimentWatcher(), control or Control())

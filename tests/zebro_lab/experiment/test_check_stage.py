@@ -4,10 +4,8 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 from typer.testing import CliRunner
 
-from support.experiment_plans import short_plan
 from zebro_lab.calibration.folder import SlipFile
 from zebro_lab.experiment.check_stage import check_runs
 from zebro_lab.main import app
@@ -21,19 +19,14 @@ def stated(curve):
     return SlipFile(curve, Path("slip.toml"), "real", None)
 
 
-@pytest.fixture(name="plan")
-def _plan(tmp_path):
-    return short_plan(tmp_path)
-
-
-def test_a_rig_that_lost_friction_has_drifted(plan, tmp_path, monkeypatch):
+def test_a_rig_that_lost_friction_has_drifted(short, tmp_path, monkeypatch):
     from dataclasses import replace
 
     from model.slip.thesis import thesis_curve
     from zebro_lab.experiment import check_stage as rig_check
 
     data = tmp_path / "data"
-    assert zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", data).exit_code == 0
+    assert zebro_lab("run", short, "--rig", "sim", "--fast", "--data", data).exit_code == 0
     curve = thesis_curve()
     monkeypatch.setattr(rig_check, "read_slip_file", lambda path: stated(curve))
     assert not any(found.verdict for found in check_runs([data], tmp_path).runs)

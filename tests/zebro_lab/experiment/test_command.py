@@ -6,11 +6,9 @@ import sys
 import time
 from functools import partial
 
-import pytest
 from typer.testing import CliRunner
 
 from rig.twins import simulated_rig_devices
-from support.experiment_plans import short_plan
 from zebro_lab.main import app
 
 
@@ -18,21 +16,16 @@ def zebro_lab(*arguments):
     return CliRunner().invoke(app, ["rig", *map(str, arguments)])
 
 
-@pytest.fixture(name="plan")
-def _plan(tmp_path):
-    return short_plan(tmp_path)
-
-
-def test_a_run_says_what_each_point_is_worth(plan, tmp_path):
-    result = zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", tmp_path / "data")
+def test_a_run_says_what_each_point_is_worth(short, tmp_path):
+    result = zebro_lab("run", short, "--rig", "sim", "--fast", "--data", tmp_path / "data")
     assert result.exit_code == 0, result.output
     assert "point-0002 Fn 8 N slip 0.0500 (attempt 1): good" in result.output
     assert "completed: 2 points finished, 0 points failed" in result.output
 
 
-def test_refused_points_have_an_exit_code_of_their_own(plan, tmp_path):
-    plan.write_text(plan.read_text().replace("slip = 0.02   ", "slip = 1e-9   "))
-    result = zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", tmp_path / "data")
+def test_refused_points_have_an_exit_code_of_their_own(short, tmp_path):
+    short.write_text(short.read_text().replace("slip = 0.02   ", "slip = 1e-9   "))
+    result = zebro_lab("run", short, "--rig", "sim", "--fast", "--data", tmp_path / "data")
     assert result.exit_code == 3
     assert "2 points failed" in result.output
 
@@ -44,29 +37,19 @@ def test_a_weighing_prints_line_and_prior():
     assert zebro_lab("weigh", "--rig", "sim", "--masses", "one").exit_code == 2
 
 
-def test_a_short_run_in_real_time_takes_its_time(plan, tmp_path, monkeypatch):
+def test_a_short_run_in_real_time_takes_its_time(short, tmp_path, monkeypatch):
     patient = partial(simulated_rig_devices, watchdog=3.0)
     monkeypatch.setattr("zebro_lab.experiment.rig_at_hand.simulated_rig_devices", patient)
     began = time.monotonic()
-    result = zebro_lab("run", plan, "--rig", "rig-odrive-netft@sim", "--data", tmp_path / "data")
+    result = zebro_lab("run", short, "--rig", "rig-odrive-netft@sim", "--data", tmp_path / "data")
     assert result.exit_code == 0, result.output
     assert time.monotonic() - began > 1.5
     assert "completed: 2 points finished" in result.output
 
 
-def test_help_loads_nothing_heavy():
-    code = (
-        "import sys; from typer.testing import CliRunner; from zebro_lab.main import app; "
-        "CliRunner().invoke(app, ['rig', 'run', '--help']); "
-        "print([m for m in ('numpy', 'can', 'scipy', 'rich.live') if m in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
-def test_streams_that_a_shell_has_closed_are_no_fault(plan, tmp_path):
+def test_streams_that_a_shell_has_closed_are_no_fault(short, tmp_path):
     command = (
-        f"{sys.executable} -c 'from zebro_lab.main import main; main()' rig run {plan} --rig sim "
+        f"{sys.executable} -c 'from zebro_lab.main import main; main()' rig run {short} --rig sim "
         f"--fast --data {tmp_path / 'data'} <&- >&-"
     )
     done = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE, text=True, timeout=120)

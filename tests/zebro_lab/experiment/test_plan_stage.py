@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: MIT
 """A plan is foreseen: its points, time, guards that are off, and every step."""
 
-import pytest
 from typer.testing import CliRunner
 
-from support.experiment_plans import THESIS_PLAN, short_plan
+from support.experiment_plans import THESIS_PLAN
 from zebro_lab.main import app
 
 
 def zebro_lab(*arguments):
     return CliRunner().invoke(app, ["rig", *map(str, arguments)])
-
-
-@pytest.fixture(name="plan")
-def _plan(tmp_path):
-    return short_plan(tmp_path)
 
 
 def test_the_sources_plan_is_foreseen():
@@ -25,14 +19,14 @@ def test_the_sources_plan_is_foreseen():
     assert "limits of the plan, which all set-points keep" in result.output
 
 
-def test_guards_that_are_off_are_named(plan):
+def test_guards_that_are_off_are_named(short):
     said = "guards switched off by the plan: silence (3 s), reading_age (3 s), speed_error_t"
-    assert said in zebro_lab("plan", plan).output
+    assert said in zebro_lab("plan", short).output
     assert "guards switched off" not in zebro_lab("plan", THESIS_PLAN).output
 
 
-def test_every_step_is_listed_where_asked(plan):
-    lines = zebro_lab("plan", plan, "--steps").output.splitlines()
+def test_every_step_is_listed_where_asked(short):
+    lines = zebro_lab("plan", short, "--steps").output.splitlines()
     assert lines[-3:] == [
         "zero-0001",
         "point-0002 Fn 8 N slip 0.0500",

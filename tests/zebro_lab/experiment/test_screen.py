@@ -13,15 +13,9 @@ from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.verdict import PointVerdict
 from rig.safety import StopCategory
-from support.experiment_plans import short_plan
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.screen import ExperimentScreen, experiment_screen
 from zebro_lab.experiment.stage import run_experiment
-
-
-@pytest.fixture(name="plan")
-def _plan(tmp_path):
-    return short_plan(tmp_path)
 
 
 def test_a_terminal_sees_progress_prompt_and_verdict():
@@ -81,7 +75,7 @@ def test_a_pipe_that_nobody_reads_is_named(monkeypatch):
             screen.draw_on()
 
 
-def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
+def test_a_hold_is_visible_and_says_which_key_goes_on(short, tmp_path):
     control = Control()
 
     class Holding(ExperimentScreen):
@@ -89,9 +83,9 @@ def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
             super().judged(point, verdict, attempt=attempt)
             control.stop.request(StopCategory.SOFT, "Ctrl-C")
 
-    plan.write_text(plan.read_text().replace("hold = 600.0", "hold = 1.0"))
+    short.write_text(short.read_text().replace("hold = 600.0", "hold = 1.0"))
     console = Console(file=io.StringIO(), width=200)
-    request = RigRunRequest(plan, "sim", tmp_path / "data", fast=True)
+    request = RigRunRequest(short, "sim", tmp_path / "data", fast=True)
     screen = Holding(console, None)
     run_experiment(request, screen, control)
     screen.draw()

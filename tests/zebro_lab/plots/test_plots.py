@@ -52,11 +52,6 @@ def test_the_slip_axis_names_its_definition(tyre):
     labels = {name: texts(tyre.picture(name)) for name in PICTURES}
     for name in ("curves", "surface", "residuals"):
         assert "slip ratio, travel definition [-]" in labels[name]
-    assert "traction force [N]" in labels["curves"]
-    assert {"normal force [N]", "traction force, also as colour [N]"} <= set(
-        labels["surface"].splitlines()
-    )
-    assert "normal force [N]" in labels["residuals"]
 
 
 def test_simulated_pictures_say_so_and_measured_ones_do_not(one_load):

@@ -29,7 +29,6 @@ def test_a_board_is_data_for_a_calibration(tmp_path):
         ({}, SettingsError, "no device"),
         ({"rig": "sim", "duration": 0.0}, SettingsError, "expected more than 0"),
         ({"zebro": "zebro-100-serail@sim"}, ProfileError, "did you mean 'zebro-100-serial'"),
-        ({"zebro": "zebro-100-serial"}, SettingsError, "expected PROFILE@PORT"),
         (
             {"zebro": "zebro-100-serial@/dev/nowhere"},
             ConnectionError,

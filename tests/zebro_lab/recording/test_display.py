@@ -4,15 +4,9 @@
 import threading
 import time
 
+from support.recorders import until
 from zebro_lab.recording import display as module
 from zebro_lab.recording.display import Display
-
-
-def until(holds, limit=20.0):
-    end = time.monotonic() + limit
-    while not holds():
-        assert time.monotonic() < end, "still waiting"
-        time.sleep(0.005)
 
 
 def test_the_last_status_is_shown_before_the_end():

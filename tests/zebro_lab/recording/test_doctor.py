@@ -11,12 +11,6 @@ from serial.tools import list_ports
 from zebro_lab.recording import doctor
 
 
-def test_this_machine_has_all_that_is_needed(tmp_path):
-    found = list(doctor.examine(tmp_path))
-    assert "BROKEN" not in {each.state for each in found}
-    assert {"zebro-lab", "packages", "disk"} <= {each.what for each in found}
-
-
 def test_a_missing_package_and_a_wrong_version_are_broken_and_others_extras_are_not():
     needed = ["no-such-package>=1", "numpy>=999", "also-missing; extra == 'x'", "scipy>=1"]
     missing, wrong, rest = doctor.check_requirements(needed)

@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 
 from support.commands import COMMAND
+from support.report_pages import write_json
 from zebro_lab.files.errors import DataError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
@@ -57,11 +58,6 @@ q05 = 1.4
 q95 = 1.6
 """
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-
-
-def write_json(file: Path, content: object) -> None:
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(content))
 
 
 def part(folder: Path, kind: str, pictures: list[str] = [], **content: object) -> None:  # noqa: B006

@@ -179,12 +179,6 @@ def test_bands_too_narrow_and_too_wide_are_out_of_range(key, share):
     assert not found.low <= 100 * share <= found.high
 
 
-def test_the_range_narrows_with_the_number_of_poses():
-    assert list(out_of_range({"poses": 10, "coverage90_x": 0.8})) == []
-    (found,) = out_of_range({"poses": 1000, "coverage90_x": 0.8})
-    assert (round(found.low), round(found.high)) == (88, 92)
-
-
 @pytest.mark.parametrize(
     "row",
     [

@@ -86,16 +86,6 @@ def test_a_suggestion_of_the_same_time_beats_the_plan_and_the_seed_decides_it(su
     ).read_text()
 
 
-def test_alone_forgets_the_calibrations_data(suggest, tmp_path):
-    for out, option in (("with", ()), ("without", ("--alone",))):
-        ended = suggest("--target", "slip_stiffness", "--out", out, *option)
-        assert ended.code == 0, ended.err
-    assert "fitted alone, from the default priors" in ended.out
-    one, other = rows(tmp_path / "with")[0], rows(tmp_path / "without")[0]
-    assert one["sd_now"] == other["sd_now"]
-    assert float(one["sd_suggested"]) < float(other["sd_suggested"])
-
-
 @pytest.mark.parametrize(
     ("target", "said"),
     [

@@ -9,7 +9,6 @@ from rig.device import iterate
 from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.imu.simulated import GRAVITY, SimulatedImu
 from rig.imu.stream import ImuStream
-from rig.links.faults import Faults
 from rig.links.memory import MemoryLink
 
 PROFILE = load_imu_profile("imu-quaternion-serial")
@@ -57,19 +56,3 @@ def test_a_unit_on_a_body_at_rest_is_still():
     found = decode_orientation(PROFILE, samples)
     assert not np.any([found.roll, found.pitch, found.yaw])
     assert not found.angular_rate.any()
-
-
-def test_a_bad_line_hands_on_nothing_wrong():
-    faults = Faults(flip=1e-3, drop=0.05, truncate=0.05, duplicate=0.05, delay=0.05)
-    samples, counters = read(
-        SimulatedImu(
-            profile=PROFILE, attitude=rocking, faults=faults, rng=np.random.default_rng(0)
-        ),
-        duration=20.0,
-    )
-    perfect, _ = read(
-        SimulatedImu(profile=PROFILE, attitude=rocking, rng=np.random.default_rng(0)), duration=20.1
-    )
-    sent = {sample.sequence: sample.counts for sample in perfect}
-    assert all(sent[sample.sequence] == sample.counts for sample in samples)
-    assert counters.damaged > 50

@@ -53,15 +53,6 @@ def test_counts_numbers_and_device_times_come_out():
     assert reader.counters.received == 2
 
 
-def test_a_packet_in_two_parts_is_one_sample():
-    reader, feed = stream()
-    wire = packet(0)
-    feed.out = wire[:5]
-    assert reader.read(0.0) == []
-    feed.out = wire[5:]
-    assert len(reader.read(0.0)) == 1
-
-
 def test_damaged_impossible_foreign_and_missing_packets_are_counted():
     reader, feed = stream(possible=lambda counts: counts[0] < 100)
     damaged = bytearray(packet(1))

@@ -32,20 +32,6 @@ def test_every_sweep_is_found_and_hardly_anything_is_lost(seconds):
     np.testing.assert_allclose(centre, seconds * (np.arange(4) + 0.5), atol=0.25)
 
 
-def test_a_glide_up_and_down_is_one_sweep():
-    up = np.linspace(0.0, 0.9, 300)
-    assert np.all(sweeps(*recorded(np.concatenate([up, up[::-1], -up, -up[::-1]]))) == 0)
-
-
-def test_stairs_are_one_sweep():
-    stairs = np.repeat(np.linspace(0.0, 0.9, 10), 100)
-    assert np.all(sweeps(*recorded(stairs)) == 0)
-
-
-def test_a_held_slip_is_one_sweep_whatever_the_noise():
-    assert np.all(sweeps(*recorded(np.full(2000, 0.3), noise=0.02)) == 0)
-
-
 def test_a_jump_is_left_out_until_slip_has_settled():
     slip = np.repeat([0.8, 0.1], 300)
     t, leg, ground = recorded(slip, noise=0.0)
@@ -74,5 +60,16 @@ def test_a_disc_that_spins_up_is_left_out():
     assert np.all(found[200:] == 0)
 
 
-def test_a_record_too_short_to_compare_is_one_sweep():
-    assert np.all(sweeps(*recorded(np.linspace(0.0, 0.8, 20))) == 0)
+UP = np.linspace(0.0, 0.9, 300)
+ONE_SWEEP = {
+    "a glide up and down": np.concatenate([UP, UP[::-1], -UP, -UP[::-1]]),
+    "stairs": np.repeat(np.linspace(0.0, 0.9, 10), 100),
+    "a slip that is held": np.full(2000, 0.3),
+    "too short to compare": np.linspace(0.0, 0.8, 20),
+}
+
+
+@pytest.mark.parametrize("slip", ONE_SWEEP.values(), ids=ONE_SWEEP)
+@pytest.mark.parametrize("noise", [0.006, 0.02])
+def test_slip_without_a_jump_back_is_one_sweep(slip, noise):
+    assert np.all(sweeps(*recorded(slip, noise=noise)) == 0)

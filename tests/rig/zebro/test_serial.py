@@ -2,28 +2,14 @@
 """Legs by packets: doubled, late and damaged frames are counted and refused."""
 
 import numpy as np
-import pytest
 
 from rig.backends import leg_driver
 from rig.clock import ManualClock
 from rig.device import iterate
-from rig.links.faults import Faults
 from rig.links.memory import MemoryLink
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
-from support.leg_twins import GAIT, read
-
-
-def test_doubled_frames_are_refused_as_repeated():
-    samples, counters = read(Faults(duplicate=1.0), duration=2.0)
-    assert counters.repeated == len(samples)
-    assert counters.lost == 0
-
-
-def test_a_late_frame_is_counted_as_lost_and_as_repeated():
-    _, counters = read(Faults(delay=0.1))
-    assert counters.lost == pytest.approx(counters.repeated, abs=2)
-    assert counters.lost > 50
+from support.leg_twins import GAIT
 
 
 def test_counts_beyond_the_circle_are_refused():

@@ -79,41 +79,6 @@ def test_an_exception_is_the_reason_and_goes_on(tmp_path):
     assert count_in(run) == 5
 
 
-class FullDisk:
-    """A log file on a disk that is full after a while."""
-
-    def __init__(self, file, room):
-        self._file, self._room = file, room
-
-    def write(self, data):
-        if self._file.tell() + len(data) > self._room:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return self._file.write(data)
-
-    def __getattr__(self, name):
-        return getattr(self._file, name)
-
-
-def test_a_full_disk_ends_the_writing_and_leaves_what_was_written(tmp_path, monkeypatch):
-    original = run_files.LogWriter
-    monkeypatch.setattr(
-        run_files, "LogWriter", lambda file, **given: original(FullDisk(file, 30_000), **given)
-    )
-    with recorder(tmp_path) as run:
-        for first in range(0, 100_000, 20):
-            run.write("legs", some(first, 20))
-            time.sleep(0.005)
-            if run.failure is not None:
-                break
-        until(lambda: run.failure is not None)
-        assert "No space left on device" in run.failure
-    manifest = read_manifest(run.folder)
-    assert manifest.exit_status.startswith("failed: ")
-    assert "No space left" in manifest.exit_status
-    assert manifest.log_sha256 is None
-    assert 0 < count_in(run) < 100_000
-
-
 def test_a_full_queue_is_a_failure_that_says_so_and_what_is_dropped_is_counted(
     tmp_path, monkeypatch
 ):

@@ -3,8 +3,7 @@
 
 import csv
 
-from support.suggestions import suggested
-from zebro_lab.suggest.folder import Expected, points_of, write_expected
+from zebro_lab.suggest.folder import Expected, write_expected
 
 
 def test_numbers_and_names_are_columns(tmp_path):
@@ -16,13 +15,3 @@ def test_numbers_and_names_are_columns(tmp_path):
     assert [row["part"] for row in found] == ["friction", "x"]
     assert found[0]["sd_suggested"] == "0.0333333"
     assert list(found[0]) == ["target", "part", "unit", "sd_now", "sd_plan", "sd_suggested"]
-
-
-def test_numbers_are_those_of_the_proposal():
-    found = suggested()
-    numbers = points_of(found)
-    assert numbers["loads_N"] == [3.0, 9.0]
-    assert [each["slip_ratio"] for each in numbers["slips"]] == found.proposal.slips.tolist()
-    assert [each["points"] for each in numbers["slips"]] == found.proposal.counts.tolist()
-    assert numbers["duration_s"] == found.proposal.seconds
-    assert numbers["expected"][0]["sd_now"] == found.expected[0].sd_now

@@ -2,7 +2,7 @@
 """Overwrite a single output file only if the same command wrote it."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -13,9 +13,6 @@ from zebro_lab.files.picture_format import PictureFormat
 
 _SEARCHED: Final = 1 << 16
 """Number of leading, and of trailing, bytes that are searched for the mark of a command."""
-_PNG: Final = b"\x89PNG\r\n\x1a\n"
-_PDF: Final = b"%PDF-"
-_XML: Final = b"<?xml"
 SOFTWARE: Final = "zebro-lab"
 COMMENT: Final = "Comment"
 """PNG keyword under which a picture names the command that drew it."""
@@ -29,11 +26,11 @@ class OwnFile:
 
     Attributes:
         command: The command, as shown in messages.
-        is_ours: Returns whether the command wrote a file, given its first and its last 64 KiB.
+        marks: Bytes of which the first or last 64 KiB of every such file contain one.
     """
 
     command: str
-    is_ours: Callable[[bytes, bytes], bool]
+    marks: tuple[bytes, ...]
 
 
 def html_page(command: str) -> OwnFile:
@@ -41,26 +38,16 @@ def html_page(command: str) -> OwnFile:
 
     The tag does not name the command, so pages by other commands are recognised as well.
     """
-    mark = b'<meta name="generator" content="zebro-lab '
-    return OwnFile(command, lambda head, _: mark in head)
+    return OwnFile(command, (b'<meta name="generator" content="zebro-lab ',))
 
 
 def picture(command: str) -> OwnFile:
-    """Return the kind of a picture by `command`, recognised by its `picture_metadata`.
-
-    PNG pictures without `Comment`, of an earlier version, count as drawn by any command.
-    """
-    mark = f"{_DRAWN_BY}{command}"
-
-    def is_ours(head: bytes, tail: bytes) -> bool:
-        if head.startswith(_PDF):
-            return f"/Subject ({mark})".encode() in tail
-        if head.lstrip().startswith(_XML):
-            return f"<dc:description>{mark}</dc:description>".encode() in head
-        named = _png_text(COMMENT, command) in head or f"tEXt{COMMENT}".encode() not in head
-        return head.startswith(_PNG) and _png_text("Software", SOFTWARE) in head and named
-
-    return OwnFile(command, is_ours)
+    """Return the kind of a picture by `command`, recognised by its `picture_metadata`."""
+    drawn = f"{_DRAWN_BY}{command}"
+    content = f"{COMMENT}\0{command}".encode("latin-1")
+    png = len(content).to_bytes(4, "big") + b"tEXt" + content
+    svg, pdf = f"<dc:description>{drawn}</dc:description>", f"/Subject ({drawn})"
+    return OwnFile(command, (png, svg.encode(), pdf.encode()))
 
 
 def picture_metadata(form: PictureFormat, command: str | None) -> dict[str, str | None]:
@@ -79,13 +66,13 @@ def picture_metadata(form: PictureFormat, command: str | None) -> dict[str, str 
 
 
 def text_file(command: str, heading: str) -> OwnFile:
-    """Return the kind of a text file, recognised by the text that it begins with.
+    """Return the kind of a text file, recognised by its heading.
 
     Args:
         command: The command that writes the file.
         heading: Text that the file begins with.
     """
-    return OwnFile(command, lambda head, _: head.startswith(heading.encode()))
+    return OwnFile(command, (heading.encode(),))
 
 
 def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Path:
@@ -124,7 +111,8 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
         head = opened.read(_SEARCHED)
         opened.seek(max(file.stat().st_size - _SEARCHED, 0))
         tail = opened.read(_SEARCHED)
-    if head and not kind.is_ours(head, tail):  # an empty file may be overwritten
+    is_ours = any(mark in head or mark in tail for mark in kind.marks)
+    if head and not is_ours:  # an empty file may be overwritten
         raise AlreadyExists(
             f"{out} was not made by {kind.command}; move it away, or choose another --out"
         )
@@ -132,9 +120,3 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
         raise AlreadyExists(
             f"{out} is part of the result in {file.parent} ({MANIFEST}); choose another --out"
         )
-
-
-def _png_text(keyword: str, text: str) -> bytes:
-    """Return a tEXt chunk of a PNG, with its length and without its checksum."""
-    content = f"{keyword}\0{text}".encode("latin-1")
-    return len(content).to_bytes(4, "big") + b"tEXt" + content

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from support.table_runs import slip_rig_run
 from support.written_tracks import content
@@ -114,12 +113,12 @@ def test_a_picture_is_known_by_its_command_and_one_of_a_result_is_kept(run, phot
     draw_grid(photos, "p01.png", grid)
     with pytest.raises(ZebroLabError, match="not made by plot"):
         plot_run(run, out=grid)
-    early = tmp_path / "early.png"
-    words = PngInfo()
-    words.add_text("Software", "zebro-lab")
-    Image.new("RGB", (8, 8)).save(early, pnginfo=words)
-    (tmp_path / "manifest.json").write_text(json.dumps({"outputs": {"early.png": "0"}}))
+    (tmp_path / "manifest.json").write_text(json.dumps({"outputs": {"p.png": "0"}}))
+    plot = tmp_path / "other" / "p.png"
+    plot.parent.mkdir()
+    plot_run(run, out=plot)
+    plot.rename(tmp_path / "p.png")
     with pytest.raises(ZebroLabError, match="is part of the result"):
-        plot_run(run, out=early)
+        plot_run(run, out=tmp_path / "p.png")
     (tmp_path / "manifest.json").unlink()
-    plot_run(run, out=early)
+    plot_run(run, out=tmp_path / "p.png")

@@ -15,7 +15,7 @@ import numpy as np
 from model.arrays import Array
 from tracking.path import Track
 from tracking.shared import HEIGHT, SIDE, TILT
-from tracking.suspect import Suspect, more_or_less
+from tracking.suspect import SuspectValue, more_or_less
 
 REMARKABLE = 1.2
 """Log odds from which a stated value of the robot is suspected [-].
@@ -40,7 +40,7 @@ _WORDS = {
 }
 
 
-def doubts(track: Track) -> tuple[Suspect, ...]:
+def doubts(track: Track) -> tuple[SuspectValue, ...]:
     """Compare alternatives in which the marker's side, the body's height or tilt is far off.
 
     Args:
@@ -68,7 +68,7 @@ def doubts(track: Track) -> tuple[Suspect, ...]:
         mean = log_likelihood + np.log(np.mean(np.exp([log - log_likelihood for log, _ in tried])))
         off = (root @ u)[slot] * scale
         finding = " and ".join(more_or_less(float(each), unit) for each in off)
-        found.append(Suspect(what, finding, float(mean) - plain))
+        found.append(SuspectValue(what, finding, float(mean) - plain))
     return tuple(found)
 
 

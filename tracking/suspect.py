@@ -8,7 +8,7 @@ _AS_LIKELY = 4.0  # log odds
 
 
 @dataclass(frozen=True)
-class Suspect:
+class SuspectValue:
     """A stated value that may be wrong.
 
     Attributes:
@@ -32,7 +32,7 @@ def more_or_less(off: float, unit: str) -> str:
     return f"{abs(off):.1f}{unit} {'more' if off > 0 else 'less'} than stated"
 
 
-def suspicion(suspects: Sequence[Suspect], *, remarkable: float) -> tuple[str, ...]:
+def suspicion(suspects: Sequence[SuspectValue], *, remarkable: float) -> tuple[str, ...]:
     """Format a warning that names the likeliest suspect, and those hardly less likely.
 
     Args:

@@ -12,7 +12,7 @@ DRAWS = 4000  # number of pairs from which quantiles of the difference are compu
 
 
 @dataclass(frozen=True)
-class Difference:
+class PathDifference:
     """Difference of two independently estimated quantities: the second minus the first.
 
     Attributes:
@@ -34,7 +34,7 @@ class Difference:
         return self.low > 0 or self.high < 0
 
 
-def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Difference:
+def difference(first: Array, second: Array, *, rng: np.random.Generator) -> PathDifference:
     r"""Compute quantiles of b - a, and the probability that it is positive, from draws of a and b.
 
     .. math::
@@ -61,4 +61,4 @@ def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Diff
     probability = float((below + not_above).mean() / (2 * len(first)))
     apart = rng.choice(second, DRAWS) - rng.choice(first, DRAWS)
     low, median, high = np.quantile(apart, [0.05, 0.5, 0.95])
-    return Difference(float(median), float(low), float(high), probability)
+    return PathDifference(float(median), float(low), float(high), probability)

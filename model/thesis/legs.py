@@ -14,7 +14,7 @@ from model.gait.reference import LegReference
 from model.robot import N_LEGS
 
 
-class LegMotion(NamedTuple):
+class ThesisLegMotion(NamedTuple):
     """Leg angles and speeds at every step.
 
     Attributes:
@@ -93,7 +93,7 @@ class SwitchedLegs:
             np.reshape(gait.angles(0.0), N_LEGS),
         )  # fmt: skip
 
-    def motion(self, dt: float, steps: int) -> LegMotion:
+    def motion(self, dt: float, steps: int) -> ThesisLegMotion:
         """Integrate leg angles step by step, with the speed that the angle before a step selects.
 
         Args:
@@ -105,10 +105,10 @@ class SwitchedLegs:
             self.start, self.touchdown, self.liftoff, self.ground_speed, self.flight_speed,
             dt, theta, speed,
         )  # fmt: skip
-        return LegMotion(theta, speed, np.tile(self.ground_speed, (steps, 1)))
+        return ThesisLegMotion(theta, speed, np.tile(self.ground_speed, (steps, 1)))
 
 
-def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> LegMotion:
+def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> ThesisLegMotion:
     """Compute leg angles and speeds at every step, from time zero on.
 
     Args:
@@ -121,12 +121,12 @@ def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int)
         return reference.motion(dt, steps)
     t = dt * np.arange(steps)
     speed = reference.speeds(t)
-    return LegMotion(reference.angles(t), speed, speed)
+    return ThesisLegMotion(reference.angles(t), speed, speed)
 
 
 @compiled
 def _switch(start, touchdown, liftoff, ground_speed, flight_speed, dt, theta, speed):
-    """Fill angles and speeds of `LegMotion`, shape (n, 6), for legs that switch speed by angle."""
+    """Fill angles and speeds, shape (n, 6), of legs that switch speed by angle."""
     angle = start.copy()
     for step in range(len(theta)):
         for leg in range(6):

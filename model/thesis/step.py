@@ -183,7 +183,7 @@ def demands(machine, manner, legs, sides, q, v, spin, balance):
     return min(max(weight + machine.mass * up, 0.0), 3 * weight)
 
 
-class Spare(NamedTuple):
+class ThesisSpare(NamedTuple):
     """Preallocated work arrays of a step.
 
     Attributes:
@@ -218,7 +218,7 @@ def _new_spare(machine, q):
         np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 2)), machine.inertia[:2], np.empty(2),
         np.empty((3, 3)),
     )  # fmt: skip
-    return Spare(
+    return ThesisSpare(
         legs, balance, np.zeros(3, np.intp), np.empty(3), np.empty(3), np.empty((3, 2)),
         np.empty(3), q[:3].copy(),
     )  # fmt: skip

@@ -14,7 +14,7 @@ from model.gait.direction import Direction, inner_legs
 from model.gait.reference import LegReference
 from model.leg import hip_height, wrap_angle
 from model.robot import N_LEGS, Robot
-from model.thesis.legs import LegMotion, SwitchedLegs, leg_motion
+from model.thesis.legs import SwitchedLegs, ThesisLegMotion, leg_motion
 from model.thesis.path import ThesisPath
 from model.thesis.record import Record, empty_record
 from model.thesis.step import Machine, Manner, run
@@ -137,7 +137,7 @@ def _apart(theta: Array, pair: tuple[int, int]) -> Array:
     return np.abs(wrap_angle(theta[:, pair[0]] - theta[:, pair[1]]))
 
 
-def _require_tripod(motion: LegMotion, dt: float) -> None:
+def _require_tripod(motion: ThesisLegMotion, dt: float) -> None:
     """Raise `DomainError` where two legs of one tripod and side are more than `APART` apart."""
     for first, other in SAME_SIDE:
         apart = _apart(motion.theta, (first, other))
@@ -182,7 +182,7 @@ def _side_heights(robot: Robot, theta: Array) -> Array:
     )
 
 
-def _path(record: Record, motion: LegMotion, t: Array) -> ThesisPath:
+def _path(record: Record, motion: ThesisLegMotion, t: Array) -> ThesisPath:
     """Convert the record to a path, angles of Eq. (3-7) to roll, pitch and yaw of `attitude`."""
     angles = record.state[:, 3:]
     on_ground = np.where(record.contact, np.nan, 0.0)

@@ -9,7 +9,7 @@ import numpy as np
 from tracking.camera.lens import Camera
 from tracking.floor.adjustment import EDGE_SCALE, EDGE_SPREADS, Adjusted, Adjustment
 from tracking.floor.marks import Mark
-from tracking.suspect import Suspect, more_or_less
+from tracking.suspect import SuspectValue, more_or_less
 
 REMARKABLE = 2.5
 """Log odds from which a stated value of floor or lens is suspected [-].
@@ -31,7 +31,7 @@ class _Weighed:
     log_evidence: float
 
 
-def doubts(problem: Adjustment, found: Adjusted) -> tuple[Suspect, ...]:
+def doubts(problem: Adjustment, found: Adjusted) -> tuple[SuspectValue, ...]:
     """Compare alternatives in which one mark, the prints or the lens may be far off.
 
     Each alternative is averaged over the spread of edges, since a wrong size would widen it.
@@ -46,7 +46,7 @@ def doubts(problem: Adjustment, found: Adjusted) -> tuple[Suspect, ...]:
     return tuple(_suspects(problem, _weighed(problem, found)))
 
 
-def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[Suspect]:
+def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[SuspectValue]:
     for key, mark in problem.floor.marks.items():
         loose = replace(mark, position_sd=_FAR * mark.position_sd)
         other = replace(problem, floor=problem.floor.with_marks({key: loose}))
@@ -54,7 +54,7 @@ def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[Suspect]:
         x, y = (
             fit.found.floor.marks[key].points[:, :2].mean(axis=0) - mark.points[:, :2].mean(axis=0)
         ) * 1e3
-        yield Suspect(
+        yield SuspectValue(
             f"the place of mark {key} in floor.toml",
             f"{x:+.1f} mm in x and {y:+.1f} mm in y from where it is stated",
             fit.log_evidence - plain.log_evidence,
@@ -64,7 +64,7 @@ def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[Suspect]:
     yield _of_lens(problem, plain)
 
 
-def _of_prints(problem: Adjustment, plain: _Weighed) -> Suspect:
+def _of_prints(problem: Adjustment, plain: _Weighed) -> SuspectValue:
     loose: dict[int | str, Mark] = {
         m.marker_id: replace(m, side_sd=_FAR * m.side_sd) for m in problem.floor.markers
     }
@@ -73,18 +73,18 @@ def _of_prints(problem: Adjustment, plain: _Weighed) -> Suspect:
         found.side / stated.side - 1
         for found, stated in zip(fit.found.floor.markers, problem.floor.markers, strict=True)
     ])  # fmt: skip
-    return Suspect(
+    return SuspectValue(
         "the side of the floor's markers", more_or_less(1e2 * float(longer), "%"),
         fit.log_evidence - plain.log_evidence,
     )  # fmt: skip
 
 
-def _of_lens(problem: Adjustment, plain: _Weighed) -> Suspect:
+def _of_lens(problem: Adjustment, plain: _Weighed) -> SuspectValue:
     other = replace(problem, camera=_loose(problem.camera))
     start = replace(other.start(), floor=plain.found.floor, poses=plain.found.poses)
     fit = _weighed(other, start)
     longer = fit.problem.lens(fit.found).matrix[0, 0] / problem.camera.matrix[0, 0] - 1
-    return Suspect(
+    return SuspectValue(
         "the focal length in camera.toml", more_or_less(1e2 * float(longer), "%"),
         fit.log_evidence - plain.log_evidence,
     )  # fmt: skip

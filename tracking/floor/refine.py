@@ -15,7 +15,7 @@ from tracking.floor.doubt import REMARKABLE, doubts
 from tracking.floor.locate import FloorView, locate_camera, seen_keys
 from tracking.floor.marks import FloorMap
 from tracking.shared import SharedErrors, stand_name
-from tracking.suspect import Suspect, suspicion
+from tracking.suspect import SuspectValue, suspicion
 
 JUMP_PX = 0.2
 """Least shift of the floor's marks, beyond 3 standard deviations, that counts as movement [px]."""
@@ -122,7 +122,7 @@ class FloorFit:
     edge_derivative: Callable[[Array, Array, CameraPose], Array]
     edge_spread: EdgeSpread
     shared: SharedErrors
-    find_suspects: Callable[[], tuple[Suspect, ...]]
+    find_suspects: Callable[[], tuple[SuspectValue, ...]]
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -40,7 +40,7 @@ class TapeCheck:
 
 
 @dataclass(frozen=True)
-class Preview:
+class PhotoPreview:
     """Detections, scale and tape checks of a photograph.
 
     Attributes:
@@ -82,7 +82,7 @@ class Preview:
         return float(self.pose.position[2])
 
 
-def preview_photo(scene: Scene, photo: Photo) -> Preview:
+def preview_photo(scene: Scene, photo: Photo) -> PhotoPreview:
     """Detect the marks of floor and robot in one photograph and check distances between marks.
 
     Args:
@@ -102,7 +102,7 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
     pose, marks = fit.stands[0].pose, scene.floor.marks
     seen = [key for key in marks if key in view.pixels]
     tracked = _tracked(scene, fit, look.seen)
-    return Preview(
+    return PhotoPreview(
         look.seen, fit.camera, pose, tuple(map(str, seen)),
         tuple(str(key) for key in marks if key not in view.pixels),
         fit.misfit_px, _scale(scene, view, pose), None if tracked is None else _planar(tracked),

@@ -14,7 +14,7 @@ from model.robot import Robot
 from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
 from zebro_lab.plots.sheet import new_figure, styled
-from zebro_lab.plots.walk_scene import Scene
+from zebro_lab.plots.walk_scene import WalkScene
 
 FRAME_RATE = 20  # frames a second
 _MOST_FRAMES = 400  # a longer walk is shown faster
@@ -54,7 +54,7 @@ def animate(
     figure.texts[0].set_y(0.96)
     beyond = (0.0, -0.2, 1.0, 1.35)  # 3-D axes leave much of their square empty
     axes = cast("Axes3D", figure.add_axes(beyond, projection="3d", computed_zorder=False))
-    scene = Scene(axes, path, robot, ground=ground)
+    scene = WalkScene(axes, path, robot, ground=ground)
     pace = "" if speed_up == 1 else f"   {speed_up:.2g}× real time"
     clock = figure.text(0.03, 0.04, "")
     with writer.saving(figure, str(folder / name), dpi=100):

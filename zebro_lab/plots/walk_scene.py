@@ -21,7 +21,7 @@ _ABOVE = 0.25  # of the view: height of the box that is drawn
 _IN_AIR = "0.35"
 
 
-class Scene:
+class WalkScene:
     """Artists of the robot over a grid on the ground, created once and updated for every sample.
 
     In contact a leg is orange, in the air grey.

@@ -13,7 +13,7 @@ from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
 from zebro_lab.plots.sheet import new_figure, styled, time_texts
 from zebro_lab.plots.walk_path import snapshot_times
-from zebro_lab.plots.walk_scene import Scene
+from zebro_lab.plots.walk_scene import WalkScene
 
 _COLUMNS = 3
 _WIDTH, _HEIGHT = 3.6, 2.6  # inches of a panel
@@ -53,7 +53,7 @@ def snapshots(
         place = grid[divmod(number, columns)]
         axes = cast("Axes3D", figure.add_subplot(place, projection="3d", computed_zorder=False))
         sample = int(np.abs(path.t - t).argmin())
-        Scene(axes, path, robot, ground=ground).show(sample)
+        WalkScene(axes, path, robot, ground=ground).show(sample)
         legs = ", ".join(str(leg + 1) for leg in np.flatnonzero(path.contact[sample]))
         axes.set_title(f"t = {when} s   {{{legs}}}", y=0.95)
     return figure

@@ -9,13 +9,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from zebro_lab.reach.stage import Reached
+from zebro_lab.reach.stage import ReachResult
 from zebro_lab.reach.way import Way, compared, missed, named
 from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.tables import plain_table
 
 
-def print_reached(console: Console, reached: Reached, out: Path) -> None:
+def print_reached(console: Console, reached: ReachResult, out: Path) -> None:
     """Print the table of ways, warnings, which way is faster and cheaper, notes and files.
 
     Args:
@@ -54,7 +54,7 @@ def way_table(ways: Sequence[Way]) -> Table:
     return table
 
 
-def lines(reached: Reached) -> list[str]:
+def lines(reached: ReachResult) -> list[str]:
     """Return warnings of goals that are missed, a sentence for each goal, and notes."""
     warnings = [line for line in map(missed, reached.ways) if line is not None]
     said = [
@@ -64,7 +64,7 @@ def lines(reached: Reached) -> list[str]:
     return [*warnings, *said, *reached.notes]
 
 
-def reach_document(reached: Reached) -> dict[str, object]:
+def reach_document(reached: ReachResult) -> dict[str, object]:
     """Return the ways to each goal for `--json`; keys end in the unit."""
     goals = [
         {

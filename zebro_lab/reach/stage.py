@@ -30,7 +30,7 @@ from zebro_lab.walk.walking import Walked, ground_of, robot_of, speed_warnings, 
 
 
 @dataclass(frozen=True)
-class Reached:
+class ReachResult:
     """Ways to goals.
 
     Attributes:
@@ -60,7 +60,7 @@ class _Walking:
     stride: Stride
 
 
-def reach(request: ReachRequest, watcher: Watcher) -> Reached:
+def reach(request: ReachRequest, watcher: Watcher) -> ReachResult:
     """Plan both ways to each goal, walk them, and write table, programs and picture.
 
     Args:
@@ -85,7 +85,7 @@ def reach(request: ReachRequest, watcher: Watcher) -> Reached:
         content |= _content(request, goals, ways)
         notes = tuple(dict.fromkeys(note for way in ways for note in way.walked.notes))
         title = f"{request.stepping.gait}, model 'dynamics', slip {_slip_title(ways)}"
-        reached = Reached(goals, ways, walking.stride, title, notes)
+        reached = ReachResult(goals, ways, walking.stride, title, notes)
         write_table(draft / TABLE, ways)
         watcher.step("drawing", None)
         draw_ways(

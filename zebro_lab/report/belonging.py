@@ -11,7 +11,7 @@ from zebro_lab.files.folder_manifest import changed_output
 from zebro_lab.files.names import PATH_CSV, TRACK
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.report.pictures import VALIDATION, lies_in
-from zebro_lab.report.sources import Part, ReportedRun, Sources
+from zebro_lab.report.sources import ReportedRun, ReportPart, Sources
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import profile_file
 from zebro_lab.runs.recorded_walk import LEGS
@@ -85,7 +85,7 @@ def _walk(run: ReportedRun) -> Iterator[str]:
         yield from _judged(run, run.parts[VALIDATION])
 
 
-def _predicted(run: ReportedRun, prediction: Part) -> Iterator[str]:
+def _predicted(run: ReportedRun, prediction: ReportPart) -> Iterator[str]:
     """Say which of a run's files with leg angles a prediction was not made from."""
     imported = _mapping(run.recorded.get("inputs"))
     tables = {str(digest) for name, digest in imported.items() if Path(name).suffix != ".toml"}
@@ -96,7 +96,7 @@ def _predicted(run: ReportedRun, prediction: Part) -> Iterator[str]:
             yield f"{run.name}: the prediction was not made from {file} as it is now"
 
 
-def _tracked(run: ReportedRun, track: Part) -> Iterator[str]:
+def _tracked(run: ReportedRun, track: ReportPart) -> Iterator[str]:
     """Say that an imported track was not imported with the run."""
     imported = set(map(str, _mapping(run.recorded.get("inputs")).values()))
     is_imported = "imported" in _mapping(track.manifest.get("settings"))
@@ -104,7 +104,7 @@ def _tracked(run: ReportedRun, track: Part) -> Iterator[str]:
         yield f"{run.name}: the track was imported from other files than the run"
 
 
-def _judged(run: ReportedRun, validation: Part) -> Iterator[str]:
+def _judged(run: ReportedRun, validation: ReportPart) -> Iterator[str]:
     """Say which of a run's prediction and track is not the one that a validation judged."""
     for name, file in ((PREDICTION, PATH_CSV), (TRACK, TRACK_CSV)):
         if not _present(run, name):
@@ -157,17 +157,17 @@ def _present(run: ReportedRun, name: str) -> bool:
     return name in run.parts and not run.parts[name].missing
 
 
-def _named_slip(prediction: Part) -> str:
+def _named_slip(prediction: ReportPart) -> str:
     slip = _mapping(_mapping(prediction.manifest.get("settings")).get("slip"))
     return f"slip '{slip['named']}'" if "named" in slip else "no slip law"
 
 
-def _takes_walks(prediction: Part) -> bool:
+def _takes_walks(prediction: ReportPart) -> bool:
     """Return whether the prediction's model takes legs and floor from fitted walks."""
     return _mapping(prediction.manifest.get("settings")).get("model") == INFORMED_MODEL
 
 
-def _now(part: Part, name: str) -> str | None:
+def _now(part: ReportPart, name: str) -> str | None:
     """Return the hash of a result's file as it is now; else as the manifest states; else None."""
     if lies_in(part.folder, name) and (part.folder / name).is_file():
         return file_hash(part.folder / name)
@@ -175,12 +175,12 @@ def _now(part: Part, name: str) -> str | None:
     return None if part.missing or stated is None else str(stated)
 
 
-def _read(part: Part) -> set[str]:
+def _read(part: ReportPart) -> set[str]:
     """Return the hashes of all files that a result was made from."""
     return set(map(str, _inputs(part).values()))
 
 
-def _inputs(part: Part) -> Mapping[str, object]:
+def _inputs(part: ReportPart) -> Mapping[str, object]:
     return _mapping(part.manifest.get("inputs"))
 
 

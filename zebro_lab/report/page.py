@@ -25,7 +25,7 @@ from zebro_lab.files.units import shown_unit, unit_symbol
 from zebro_lab.report.belonging import belonging
 from zebro_lab.report.numbers import number
 from zebro_lab.report.pictures import Picture, embed
-from zebro_lab.report.sources import Part, ReportedRun, Sources
+from zebro_lab.report.sources import ReportedRun, ReportPart, Sources
 from zebro_lab.runs.manifest import MANIFEST_FILE
 
 PAGES = "pages"
@@ -176,7 +176,7 @@ def _policy(style: str) -> str:
     )
 
 
-def _number(part: Part, file: str, *keys: str | int, **spelling: Any) -> str:
+def _number(part: ReportPart, file: str, *keys: str | int, **spelling: Any) -> str:
     return number(part.documents[file], *keys, file=f"{part.folder}/{file}", **spelling)
 
 
@@ -189,16 +189,16 @@ def _count(run: ReportedRun, topic: str) -> str:
     return number(run.recorded, "streams", topic, file=f"{run.folder}/{MANIFEST_FILE}")
 
 
-def _pictures(part: Part) -> list[Picture]:
+def _pictures(part: ReportPart) -> list[Picture]:
     simulated = is_simulated(part.source)
     return [embed(file, stage=part.name, simulated=simulated) for file in part.pictures]
 
 
-def _coverage_out_of_range(part: Part, name: str) -> list[OutOfRange]:
+def _coverage_out_of_range(part: ReportPart, name: str) -> list[OutOfRange]:
     return list(out_of_range(part.manifest["runs"][name]["prediction"]))
 
 
-def _judged(sources: Sources) -> Iterator[tuple[str, Part, str]]:
+def _judged(sources: Sources) -> Iterator[tuple[str, ReportPart, str]]:
     """Yield name of the run, validation, and the walk's name in this, of every walk validated.
 
     A run's own validation comes before one of several runs together.

@@ -39,7 +39,7 @@ MAKERS: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
-class Part:
+class ReportPart:
     """Result folder of a stage as read for a report; if missing, the command that writes it.
 
     Attributes:
@@ -93,7 +93,7 @@ class ReportedRun:
 
     folder: Path
     recorded: Mapping[str, Any]
-    parts: Mapping[str, Part]
+    parts: Mapping[str, ReportPart]
 
     @property
     def name(self) -> str:
@@ -121,12 +121,12 @@ class Sources:
 
     data: Path
     runs: Sequence[ReportedRun]
-    calibration: Part
-    together: Part | None = None
-    walks: Part | None = None
+    calibration: ReportPart
+    together: ReportPart | None = None
+    walks: ReportPart | None = None
 
     @property
-    def parts(self) -> Sequence[Part]:
+    def parts(self) -> Sequence[ReportPart]:
         """All parts, present or missing: calibration, those of the runs, walks, together."""
         walks = [part for run in self.runs for part in run.parts.values()]
         more = [part for part in (self.walks, self.together) if part is not None]
@@ -138,7 +138,7 @@ class Sources:
         return not all(run.has_track_alone for run in self.runs)
 
     @property
-    def missing(self) -> Sequence[Part]:
+    def missing(self) -> Sequence[ReportPart]:
         """Parts that are missing; the calibration only if there is more than tracks."""
         needed = [p for p in self.parts if p is not self.calibration or self.hold_more_than_tracks]
         return [part for part in needed if part.missing]
@@ -198,11 +198,11 @@ def _run(folder: Path) -> ReportedRun:
     return ReportedRun(folder, recorded, parts)
 
 
-def _part(name: str, folder: Path, data: Path) -> Part:
+def _part(name: str, folder: Path, data: Path) -> ReportPart:
     recover(folder)
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
     if not (folder / MANIFEST).is_file():
-        return Part(name, folder, {}, (), maker)
+        return ReportPart(name, folder, {}, (), maker)
     documents = {MANIFEST: _read(folder / MANIFEST)}
     kind = documents[MANIFEST].get("kind")
     expected = ("predict", "walk") if name == PREDICTION else (name,)
@@ -217,7 +217,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
         raise DataError(f"'outputs' is {listed!r}; expected an object", file=folder / MANIFEST)
     named = [each for each in sorted(listed, key=place_of) if each.endswith(SUFFIXES)]
     inside = {each: folder / each for each in named if lies_in(folder, each)}
-    return Part(
+    return ReportPart(
         name, folder, documents, [each for each in inside.values() if each.is_file()], maker,
         tuple(each for each in named if each not in inside),
     )  # fmt: skip

@@ -7,7 +7,7 @@ from model.poses import Poses
 from model.travel import path_length
 from tracking.contributions import contributions, shared_part
 from tracking.path import Track
-from tracking.photos.preview import Preview
+from tracking.photos.preview import PhotoPreview
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.track.folder import written
 from zebro_lab.track.stage import TrackResult
@@ -71,7 +71,7 @@ def _uncertainty_lines(track: Track) -> list[str]:
     return lines
 
 
-def preview_lines(seen: Preview) -> list[str]:
+def preview_lines(seen: PhotoPreview) -> list[str]:
     """Format a preview as lines: marks, camera height, robot, floor distances by tape measure."""
     lines = [
         f"{seen.photo}: marks {', '.join(seen.marks)} are seen, off by {seen.misfit_px:.2f} px",

@@ -13,7 +13,7 @@ from tracking import Tracked, track_photos
 from tracking.contributions import contributions, shared_part
 from tracking.errors import TimesError
 from tracking.images import PhotoTimes, read_pixels
-from tracking.photos.preview import Preview, preview_photo
+from tracking.photos.preview import PhotoPreview, preview_photo
 from tracking.photos.workers import PROCESSES, Progress
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.own_file import picture, require_own
@@ -39,7 +39,7 @@ from zebro_lab.track.request import TimeRequest, TrackRequest
 PREVIEW = picture("track --preview")
 
 
-def preview(request: TrackRequest, file: Path) -> Preview:
+def preview(request: TrackRequest, file: Path) -> PhotoPreview:
     """Detect marks in the first photograph by time, draw them in a PNG, and return what was found.
 
     Without times it is the first by name. In a composite picture no robot is searched.

@@ -10,7 +10,7 @@ from model.walk.goal import Goal
 from model.walk.reach import Stride
 from support.ways import made_way
 from zebro_lab.reach.screen import lines, reach_document, way_table
-from zebro_lab.reach.stage import Reached
+from zebro_lab.reach.stage import ReachResult
 from zebro_lab.reach.way import CURVE, STOP_TURN_WALK
 
 FAR = Goal(-12.25, 10.75, float(np.radians(-135.0)))
@@ -21,7 +21,7 @@ WAYS = (
     made_way(STOP_TURN_WALK, number=2, goal=FAR, time=123.45, done=45.67),
     made_way(CURVE, number=2, goal=FAR, end=(-12.25, 10.75, -2.3)),
 )
-REACHED = Reached((NEAR, FAR), WAYS, Stride(0.16, 0.13), "tripod", ("a note",))
+REACHED = ReachResult((NEAR, FAR), WAYS, Stride(0.16, 0.13), "tripod", ("a note",))
 
 
 def test_the_table_is_whole_in_80_columns():

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from model.metrics.difference import Difference, difference
+from model.metrics.difference import PathDifference, difference
 from zebro_lab.calibration.curve_argument import EXPECTED_CURVE, is_curve
 from zebro_lab.calibration.folder import SLIP_TOML
 from zebro_lab.files.errors import NotFound, SettingsError
@@ -39,7 +39,7 @@ class Compared:
     """
 
     comparison: Comparison
-    differences: tuple[Difference, ...]
+    differences: tuple[PathDifference, ...]
 
 
 def compare(
@@ -110,7 +110,7 @@ def _kind(path: Path) -> str:
     )
 
 
-def _row(quantity: Quantity, difference: Difference) -> dict[str, object]:
+def _row(quantity: Quantity, difference: PathDifference) -> dict[str, object]:
     row: dict[str, object] = {"quantity": quantity.name, "unit": quantity.unit}
     for which, name in enumerate(("first", "second")):
         median, low, high = quantity.quantiles(which)

@@ -8,13 +8,13 @@ from matplotlib.figure import Figure
 
 from model.robot import Robot
 from zebro_lab.plots.sheet import RED
-from zebro_lab.plots.walk_scene import Scene
+from zebro_lab.plots.walk_scene import WalkScene
 
 
 @pytest.mark.parametrize("sample", [0, 60])
 def test_body_legs_and_trace_are_those_of_the_sample(walked, sample):
     axes = Figure().add_subplot(projection="3d")
-    Scene(axes, walked, Robot()).show(sample)
+    WalkScene(axes, walked, Robot()).show(sample)
     trace, head = (np.array(line.get_data_3d()).T for line in axes.lines)
     position = walked.position[sample]
     np.testing.assert_allclose(trace[-1, :2], position[:2])

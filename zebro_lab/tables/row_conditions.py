@@ -94,22 +94,6 @@ def read_row_conditions(rows: SettingsTable) -> tuple[RowCondition, ...]:
         raise rows.fault(str(error), "keep") from error
 
 
-def meets(raw: RawTable, keep: Sequence[RowCondition]) -> NDArray[np.bool_]:
-    """Return whether each row meets every condition, shape (n,).
-
-    Args:
-        raw: Table as read.
-        keep: The conditions.
-
-    Raises:
-        DataError: A condition names a missing, ambiguous or non-numeric column.
-    """
-    kept = np.ones(len(raw), dtype=bool)
-    for condition in keep:
-        kept &= condition.holds(raw.numbers(condition.column))
-    return kept
-
-
 def kept_rows(raw: RawTable, keep: Sequence[RowCondition], *, where: str = "") -> NDArray[np.intp]:
     """Return the indices of the rows that meet every condition.
 
@@ -125,7 +109,9 @@ def kept_rows(raw: RawTable, keep: Sequence[RowCondition], *, where: str = "") -
         DataError: A condition names a missing, ambiguous or non-numeric column, or no row is left,
             also of a table without rows.
     """
-    kept = meets(raw, keep)
+    kept = np.ones(len(raw), dtype=bool)
+    for condition in keep:
+        kept &= condition.holds(raw.numbers(condition.column))
     if not kept.any():
         conditions = " and ".join(map(str, keep))
         raise DataError(

@@ -218,6 +218,8 @@ def nuts(fit: PreparedFit, *, seed: int) -> tuple[Sampled, float, float]:
     walk.run(walk.post_warmup_state.rng_key)
     z = np.asarray(walk.get_samples(group_by_chain=True))
     ended = time.perf_counter()
-    ess, r_hat = (f(z, chain_axis=0, draw_axis=1) for f in (array_stats.ess, array_stats.rhat))
+    ess, r_hat = (
+        np.asarray(f(z, chain_axis=0, draw_axis=1)) for f in (array_stats.ess, array_stats.rhat)
+    )
     found = Sampled(float(ess.min()), ended - began, f"{float(r_hat.max()):.3f}")
     return found, ended - warm, apart

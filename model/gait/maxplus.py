@@ -167,7 +167,7 @@ def eigenvalue(A: Array) -> float:
     2.0
     """
     n = len(A)
-    heaviest = [np.zeros(n)]  # walks of k steps that end in i, from anywhere
+    heaviest: list[Array] = [np.zeros(n)]  # walks of k steps that end in i, from anywhere
     for _ in range(n):
         heaviest.append(otimes(A, heaviest[-1]))
     ends = np.isfinite(heaviest[n])

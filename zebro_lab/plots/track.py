@@ -146,7 +146,13 @@ def over_floor(
     legend_below(figure, columns=4)
     labelled = [k for k, label in enumerate(labels) if label]
     for k in labelled[:: -(-len(labelled) // _MOST_LABELS) or 1]:
-        axes.annotate(labels[k], poses[k, :2], xytext=(6, -3), textcoords="offset points", va="top")
+        axes.annotate(
+            labels[k],
+            (poses[k, 0], poses[k, 1]),
+            xytext=(6, -3),
+            textcoords="offset points",
+            va="top",
+        )
     return figure
 
 

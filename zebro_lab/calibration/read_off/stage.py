@@ -68,12 +68,13 @@ def _points(request: ReadOffRequest) -> tuple[CurveTable, Array | None]:
         request.data, columns=request.columns, slip_definition=request.slip_definition
     )
     samples, notes = data.samples, data.notes
-    columns = [samples.slip, samples.normal_force, samples.traction_force]
+    slip, load, force = samples.slip, samples.normal_force, samples.traction_force
     levels = load_levels(block_means(samples, max(1, len(samples) // 1000)))
     if samples.n_runs > 1:
-        columns = [_run_means(each, samples.slices()) for each in columns]
+        runs = samples.slices()
+        slip, load, force = (_run_means(each, runs) for each in (slip, load, force))
         notes = (*notes, f"points are the means of {counted(samples.n_runs, 'run')}")
-    return CurveTable(*columns, samples.definition, data.source, data.files, notes), levels
+    return CurveTable(slip, load, force, samples.definition, data.source, data.files, notes), levels
 
 
 def _run_means(values: Array, runs: list[slice]) -> Array:

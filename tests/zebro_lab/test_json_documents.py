@@ -187,7 +187,7 @@ def test_a_recording_that_fails_has_no_document(run_command, tmp_path):
 
 
 def test_an_experiment_lists_its_runs_and_their_results(run_command, tmp_path):
-    given = ("rig", "run", short_plan(tmp_path), "--rig", "sim", "--fast", "--data")
+    given = ("rig", "run", short_plan(tmp_path), "--rig", "sim", "--fast", "--seed", "1", "--data")
     ended = run_command(*given, tmp_path / "data", "--json")
     keys = {"folder", "source", "reason", "finished", "refused", "attempts", "latched", "runs"}
     found = document(ended, "rig run", keys)

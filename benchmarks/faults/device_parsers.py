@@ -24,7 +24,7 @@ from rig.slip_rig.can_simple import ESTIMATES, HEARTBEAT, Command, can_id
 from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.rdt import RECORD, Request, encode_request, parse_configuration
+from rig.slip_rig.rdt import RECORD, Request, encode_request
 from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS, CanLegs
 from rig.zebro.profile import LegProfile, load_leg_profile
 from rig.zebro.registers import SYNC, DumpLegs, PolledLegs
@@ -267,8 +267,6 @@ def of_streams() -> dict[str, Parser]:
     answers = [struct.pack(">6H", *row) for row in rng.integers(0, 910, (40, 6)).tolist()]
     records = [RECORD.pack(n, n, 0, *range(n, n + 6)) for n in range(40)]
     rig_board = stream(RigBoard, BOARD, limits=LIMITS)
-    page = (b"<netft><scfgfu>N</scfgfu><cfgcpf>1000000</cfgcpf><comrdtrate>7000</comrdtrate>"
-            b"</netft>")  # fmt: skip
     return {
         "leg packets": Parser(stream(PacketLegs, LEGS), legs, (RigError,), has_memory=True),
         "IMU packets": Parser(stream(ImuStream, IMU), imu, (RigError,), has_memory=True),
@@ -279,7 +277,6 @@ def of_streams() -> dict[str, Parser]:
         "register dumps": Parser(stream(DumpLegs, DUMP), dumps()),
         "ZebroBus answers": Parser(polled, answers),
         "RDT records": Parser(load_cell, records, has_memory=True),
-        "Net F/T configuration": Parser(whole(parse_configuration), [page], (RigError,)),
     }
 
 

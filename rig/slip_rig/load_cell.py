@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Driver of a Net F/T load cell: records by UDP at up to 7 kHz, bias, and its configuration."""
+"""Driver of a Net F/T load cell: records by UDP at up to 7 kHz."""
 
-import http.client
 from collections.abc import Sequence
 from typing import Final, Self
 
@@ -9,7 +8,6 @@ import numpy as np
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters
-from rig.errors import LinkError
 from rig.links.linked_stream import LinkedStream
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 from rig.links.udp import UdpLink
@@ -20,10 +18,8 @@ from rig.slip_rig.rdt import (
     MOST_IN_ONE,
     RECORD,
     WRAP,
-    CellConfiguration,
     Request,
     encode_request,
-    parse_configuration,
 )
 
 START_AGAIN_AFTER: Final = 0.5
@@ -35,8 +31,6 @@ Farther back it means a restart of the cell.
 """
 WHOLE: Final = frozenset(RECORD.size * count for count in range(1, MOST_IN_ONE + 1))
 """Valid lengths of datagrams [bytes]."""
-LONGEST_PAGE: Final = 1 << 20
-"""Longest part of the configuration page that is read [bytes]."""
 
 
 class NetFtCell(LinkedStream[UdpLink]):
@@ -102,10 +96,6 @@ class NetFtCell(LinkedStream[UdpLink]):
         self._received += len(samples)
         return samples
 
-    def bias(self) -> None:
-        """Request the cell to subtract its present reading from all later ones; not confirmed."""
-        self._link.write(encode_request(Request.BIAS))
-
     def __enter__(self) -> Self:
         super().__enter__()
         self._last_arrival = self._clock.now()
@@ -152,32 +142,3 @@ class NetFtCell(LinkedStream[UdpLink]):
             if not self._received:
                 self._start = Request.START  # which every cell knows
             self._link.write(encode_request(self._start))
-
-
-def read_configuration(host: str, *, port: int = 80, timeout: float = 2.0) -> CellConfiguration:
-    """Read the configuration of a cell over HTTP.
-
-    Args:
-        host: Address of the cell.
-        port: HTTP port of the cell.
-        timeout: Longest wait for connecting, and for each receipt [s].
-
-    Returns:
-        Counts per newton and record rate, for the profile.
-
-    Raises:
-        LinkError: The cell does not answer, or not in HTTP.
-        ProtocolError: The page lacks a value or gives an invalid one.
-    """
-    connection = http.client.HTTPConnection(host, port, timeout=timeout)
-    try:
-        connection.request("GET", "/netftapi2.xml")
-        page = connection.getresponse().read(LONGEST_PAGE)
-    except (OSError, http.client.HTTPException) as problem:
-        raise LinkError(
-            f"load cell {host}:{port} did not give its configuration: {problem!r}; check address "
-            "and network"
-        ) from problem
-    finally:
-        connection.close()
-    return parse_configuration(page)

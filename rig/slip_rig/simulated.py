@@ -12,10 +12,9 @@ from itertools import accumulate, islice
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.slip.brush import Brush
-from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import SlipLaw, Values
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
@@ -35,39 +34,28 @@ MEMORY: Final = 2.0
 SLOWEST: Final = 1e-3
 """Surface speed below which the leg disc counts as standing and transmits no force [m/s]."""
 
-TWIN_LAWS: Final[dict[str, tuple[SlipLaw, Values]]] = {
-    "magic-formula": (THESIS_LAW, THESIS_VALUES),
-    "coulomb-stribeck": (CoulombStribeck(), (12.0, 0.38, 0.75, 0.15)),
-    "brush": (Brush(), (12.0, 0.38)),
-}
-"""Slip laws of a twin with their values, by name."""
-
 
 @dataclass(frozen=True)
 class RigDynamics:
-    """Dynamics of the discs and delay of the force channels; the defaults are a small rig's.
+    """Dynamics of the discs; the defaults are a small rig's.
 
     Attributes:
         speed_lag: Time constant of a disc's exponential approach to its set-point, above 0 [s].
         ripple: Amplitude of the ripple of a disc's speed, as a fraction of the speed [-].
         ripple_order: Periods of the ripple per turn of the disc.
-        force_delay: Time by which the force channels lag behind the speeds [s].
 
     Raises:
-        ProtocolError: `speed_lag` is not above 0, `ripple` or `force_delay` is negative, or
-            `force_delay` is not below half of `MEMORY`.
+        ProtocolError: `speed_lag` is not above 0, or `ripple` is negative.
     """
 
     speed_lag: float = 0.05
     ripple: float = 0.0
     ripple_order: int = 6
-    force_delay: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.speed_lag > 0 and self.ripple >= 0 and 0 <= self.force_delay < MEMORY / 2):
+        if not (self.speed_lag > 0 and self.ripple >= 0):
             raise ProtocolError(
-                f"speed_lag is {self.speed_lag:g} s, ripple {self.ripple:g}, force_delay "
-                f"{self.force_delay:g} s; expected > 0 s, >= 0, and 0 to {MEMORY / 2:g} s"
+                f"speed_lag is {self.speed_lag:g} s, ripple {self.ripple:g}; expected > 0 s, >= 0"
             )
 
 
@@ -103,7 +91,7 @@ class SimulatedRig:
         plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands:
             its slips a `duration` apart, gliding from each to the next.
         imperfections: Sensor errors, noise, slip wander and bump of the ground disc.
-        dynamics: Dynamics of the discs and delay of the force channels.
+        dynamics: Dynamics of the discs.
         rng: Random generator.
 
     Attributes:
@@ -197,8 +185,7 @@ class SimulatedRig:
     def forces(self, times: Array) -> tuple[Array, Array]:
         """Return readings of normal force and traction, each of shape (n,) [N].
 
-        They are the channels' values one `force_delay` earlier; a time before or after the history
-        gives its first or last value.
+        A time before or after the history gives its first or last value.
 
         Args:
             times: Times since switching on, increasing, at least one, shape (n,) [s].
@@ -206,10 +193,7 @@ class SimulatedRig:
         Raises:
             ProtocolError: The rig has not run yet.
         """
-        late = times - self._dynamics.force_delay
-        truth = self.truth(float(late[0]) - GRID)
-        at = np.searchsorted(truth.time, late + GRID / 2) - 1
-        at = np.clip(at, 0, None)
+        truth, at = self._states_at(times)
         return truth.normal[at], truth.traction[at]
 
     def speeds(self) -> dict[str, tuple[float, float]]:
@@ -234,8 +218,7 @@ class SimulatedRig:
         Raises:
             ProtocolError: The rig has not run yet.
         """
-        truth = self.truth(float(times[0]) - GRID)
-        at = np.clip(np.searchsorted(truth.time, times + GRID / 2) - 1, 0, None)
+        truth, at = self._states_at(times)
         noise = self._imperfections.speed_noise * self._rng.standard_normal((2, len(times)))
         return truth.omega_leg[at] + noise[0], truth.omega_ground[at] + noise[1]
 
@@ -248,6 +231,11 @@ class SimulatedRig:
             "dynamics": asdict(self._dynamics),
             "traction_offset": float(self._offset),
         }
+
+    def _states_at(self, times: Array) -> tuple[RigTruth, NDArray[np.intp]]:
+        """Return stored states, and the index among them of the one at each time [s]."""
+        truth = self.truth(float(times[0]) - GRID)
+        return truth, np.clip(np.searchsorted(truth.time, times + GRID / 2) - 1, 0, None)
 
     def _run(self, n: int) -> RigTruth:
         time = np.arange(self._step + 1, self._step + n + 1, dtype=np.float64) * GRID

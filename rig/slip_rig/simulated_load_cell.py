@@ -19,7 +19,7 @@ INT32 = (1 << 31) - 1
 
 
 class SimulatedLoadCell:
-    """Simulated Net F/T cell that answers start, stop and bias; its socket is open while entered.
+    """Simulated Net F/T cell that answers start and stop; its socket is open while entered.
 
     Args:
         rig: Simulated rig whose forces the cell measures.
@@ -58,7 +58,6 @@ class SimulatedLoadCell:
         self._client: tuple[str, int] | None = None
         self._number = 0
         self._reading = 0
-        self._zero = np.zeros(6)
         self._each = 1  # records in a datagram
         self._pending: list[bytes] = []
 
@@ -83,12 +82,12 @@ class SimulatedLoadCell:
             return
         counts = self._counts(readings)
         self._reading = due
-        self._execute(counts[-1])
+        self._execute()
         if self._client is not None:
             for reading, values in zip(readings.tolist(), counts.tolist(), strict=True):
                 self._send(reading, values)
 
-    def _counts(self, readings: "np.ndarray") -> "np.ndarray":
+    def _counts(self, readings: np.ndarray) -> np.ndarray:
         """Compute the counts of readings by their numbers, columns Fx to Tz, shape (n, 6)."""
         normal, traction = self._rig.forces(readings / self._profile.rate)
         counts = np.zeros((len(readings), 6))
@@ -103,8 +102,7 @@ class SimulatedLoadCell:
     def _send(self, reading: int, values: list[int]) -> None:
         self._number += 1
         self.sent += 1
-        biased = [int(v - z) for v, z in zip(values, self._zero.tolist(), strict=True)]
-        record = RECORD.pack(self._number % WRAP, reading % WRAP, self.status, *biased)
+        record = RECORD.pack(self._number % WRAP, reading % WRAP, self.status, *values)
         self._pending.append(record)
         if len(self._pending) >= self._each:
             datagram, self._pending = b"".join(self._pending), []
@@ -116,7 +114,7 @@ class SimulatedLoadCell:
             with contextlib.suppress(OSError):  # the client has closed its socket
                 self._socket.sendto(datagram, self._client)
 
-    def _execute(self, counts: "np.ndarray") -> None:
+    def _execute(self) -> None:
         if self._socket is None:
             return
         with contextlib.suppress(BlockingIOError):
@@ -125,9 +123,9 @@ class SimulatedLoadCell:
                     data, sender = self._socket.recvfrom(64)
                 except ConnectionError:
                     continue
-                self._handle(data, sender, counts)
+                self._handle(data, sender)
 
-    def _handle(self, data: bytes, sender: tuple[str, int], counts: "np.ndarray") -> None:
+    def _handle(self, data: bytes, sender: tuple[str, int]) -> None:
         if len(data) != REQUEST.size:
             return
         magic, request, _ = REQUEST.unpack(data)
@@ -138,5 +136,3 @@ class SimulatedLoadCell:
             self._each = MOST_IN_ONE if request == Request.START_BUFFERED else 1
         elif request == Request.STOP:
             self._client = None
-        elif request == Request.BIAS:
-            self._zero = counts.astype(float)

@@ -21,7 +21,6 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.control import Control
 from rig.experiment.run import run_plan
 from rig.slip_rig.decode import measured_slip
-from rig.slip_rig.imperfections import draw_imperfections
 from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
@@ -51,8 +50,7 @@ def say(line: str) -> None:
 
 def measure(seed: int) -> tuple[SlipSamples, SlipSamples]:
     """Run the plan; return its samples with measured and with commanded slip."""
-    imperfections = draw_imperfections(np.random.default_rng(seed))
-    with rig_at_hand("sim", seed=seed, fast=True, imperfections=imperfections) as rig:
+    with rig_at_hand("sim", seed=seed, fast=True) as rig:
         plan, control, sink = read_plan(PLAN), Control(), MemorySink()
         outcome = run_plan(
             plan, bench=rig.bench, load=rig.load_setter(plan.load, control), sink=sink,

@@ -15,11 +15,6 @@ from rig.slip_rig.sweep import SweepPlan
 from support.board_twins import world
 
 PROFILE = load_rig_profile("rig-odrive-netft").load_cell
-PAGE = (
-    b"<netft><cfgcpf>1000000</cfgcpf><cfgcpt>1000</cfgcpt><scfgfu>N</scfgfu>"
-    b"<comrdtrate>7000</comrdtrate></netft>"
-)
-"""The cell's page of its configuration."""
 
 
 @contextmanager

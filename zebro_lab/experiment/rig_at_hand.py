@@ -9,8 +9,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from model.slip.law import SlipLaw, Values
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.backends import RigDevices, open_rig
 from rig.clock import SYSTEM_CLOCK, Clock, ManualClock
 from rig.experiment.acquire import PERIOD
@@ -21,7 +19,7 @@ from rig.experiment.plan import LoadSetting
 from rig.links.memory import MemoryLink
 from rig.openers import SIMULATED, resolve
 from rig.slip_rig.board import RigBoard
-from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
+from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
@@ -83,20 +81,16 @@ def rig_at_hand(
     seed: int = 0,
     run: str = "",
     fast: bool = False,
-    imperfections: RigImperfections | None = None,
-    law: tuple[SlipLaw, Values] = (THESIS_LAW, THESIS_VALUES),
 ) -> Iterator[RigAtHand]:
     """Open the rig that an address names; a twin is simulated while the context lasts.
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        seed: Seed of a twin: which rig it is, load cell and all.
+        seed: Seed of a twin, from which the errors of its load cell, discs and sensors are drawn:
+            each seed is another rig, and an equal seed the same rig.
         run: Name of this use of a twin; noise, slip wander, the zero at power-on and the first
             angle of the ground disc are drawn anew for another name.
         fast: Run a twin in simulated time, as fast as possible; only a profile with a board.
-        imperfections: Errors of a twin's load cell, discs and sensors; by default drawn from the
-            seed, so that each seed is another rig and an equal seed the same rig.
-        law: Slip law of a twin with its values; by default that of the thesis.
 
     Yields:
         The rig; its bench is not yet entered.
@@ -115,9 +109,8 @@ def rig_at_hand(
         return
     rng = _run_rng(seed, run)
     rig = SimulatedRig(
-        *law,
         plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
-        imperfections=imperfections or draw_imperfections(np.random.default_rng([seed, 1])),
+        imperfections=draw_imperfections(np.random.default_rng([seed, 1])),
         dynamics=RigDynamics(ripple=0.005), rng=rng,
     )  # fmt: skip
     rig.command("leg", 0.0)  # it is commanded from the first: it sweeps nothing by itself

@@ -8,8 +8,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from model.slip.law import SlipLaw, Values
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import InUse
 from rig.exclusive import Exclusive
 from rig.experiment.control import Control
@@ -46,20 +44,13 @@ CONTROL_FILE: Final = "control.json"
 LOCK_FILE: Final = ".experiment.lock"
 
 
-def run_experiment(
-    request: RigRunRequest,
-    watcher: ExperimentWatcher,
-    control: Control,
-    *,
-    law: tuple[SlipLaw, Values] = (THESIS_LAW, THESIS_VALUES),
-) -> Outcome:
+def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:
     """Run a plan on a rig, and record each attempt at a point into a run folder of its own.
 
     Args:
         request: Options of `zebro-lab rig run`.
         watcher: Progress display.
         control: Mailbox for pauses, notes and stops; signals and the control socket feed it.
-        law: Slip law of a simulated rig with its values.
 
     Returns:
         The outcome of the run.
@@ -74,7 +65,7 @@ def run_experiment(
     """
     plan = read_plan(request.plan)
     with rig_at_hand(
-        request.rig, seed=request.seed, run=_run_name(request), fast=request.fast, law=law
+        request.rig, seed=request.seed, run=_run_name(request), fast=request.fast
     ) as rig:
         require_plan_allowed(request.plan, plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)

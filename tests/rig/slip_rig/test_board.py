@@ -3,10 +3,10 @@
 
 import pytest
 
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.device import iterate
 from rig.errors import LimitExceeded
 from rig.slip_rig.decode import decode_board, measured_slip
-from rig.slip_rig.simulated import TWIN_LAWS
 from support.board_twins import PROFILE, board, world
 
 
@@ -21,9 +21,8 @@ def test_a_board_turns_and_weighs():
     forces, speeds = decode_board(PROFILE.board, samples)
     assert speeds.leg[-1] == pytest.approx(12.0, rel=1e-3)
     assert speeds.ground[-1] == pytest.approx(3.0, rel=1e-3)
-    law, values = TWIN_LAWS["magic-formula"]
-    expected = law.force(
-        measured_slip(speeds.leg, speeds.ground, PROFILE)[-1], forces.normal[-1], values
+    expected = THESIS_LAW.force(
+        measured_slip(speeds.leg, speeds.ground, PROFILE)[-1], forces.normal[-1], THESIS_VALUES
     )
     assert forces.traction[-1] == pytest.approx(float(expected), rel=1e-2)
 

@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The load cell's driver against its twin over UDP."""
 
-import http.server
-import threading
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.errors import LinkError
 from rig.links.faults import Faults
 from rig.slip_rig.decode import decode_forces
-from rig.slip_rig.load_cell import NetFtCell, read_configuration
+from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.rdt import (
     MOST_IN_ONE,
     RECORD,
@@ -21,7 +17,7 @@ from rig.slip_rig.rdt import (
     Request,
     describe_status,
 )
-from support.cell_twins import PAGE, PROFILE, OneRead, twin
+from support.cell_twins import PROFILE, OneRead, twin
 
 
 @pytest.mark.parametrize("buffered", [False, True])
@@ -67,10 +63,10 @@ def test_a_cell_that_knows_no_buffered_stream_is_asked_for_single_records(monkey
         handle = cell._handle
         asked = []
 
-        def ignore(data, sender, counts):
+        def ignore(data, sender):
             asked.append(REQUEST.unpack(data)[1])
             if asked[-1] != Request.START_BUFFERED:
-                handle(data, sender, counts)
+                handle(data, sender)
 
         monkeypatch.setattr(cell, "_handle", ignore)
         with stream:
@@ -101,26 +97,3 @@ def test_a_read_keeps_each_record_with_its_own_counts(sent):
     counters = stream.counters
     assert (counters.received, counters.damaged) == (len(samples), sent.count(b"short"))
     assert counters.received + counters.repeated + counters.damaged == len(sent)
-
-
-def test_the_configuration_is_fetched_from_the_cell():
-    class Handler(http.server.BaseHTTPRequestHandler):
-        def do_GET(self):
-            self.send_response(200)
-            self.end_headers()
-            self.wfile.write(PAGE)
-
-        def log_message(self, *_):
-            pass
-
-    with http.server.HTTPServer(("127.0.0.1", 0), Handler) as server:
-        thread = threading.Thread(target=server.handle_request)
-        thread.start()
-        found = read_configuration("127.0.0.1", port=server.server_port)
-        thread.join()
-    assert found.counts_per_force == 1e6
-
-
-def test_a_cell_without_a_page_is_an_error_that_names_it():
-    with pytest.raises(LinkError, match=r"127\.0\.0\.1:9"):
-        read_configuration("127.0.0.1", port=9, timeout=0.5)

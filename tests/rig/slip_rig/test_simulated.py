@@ -6,16 +6,16 @@ import pytest
 
 from rig.errors import ProtocolError
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics
+from rig.slip_rig.simulated import RigDynamics
 from rig.slip_rig.sweep import SweepPlan
-from support.board_twins import PERFECT, world
+from support.board_twins import LAWS, PERFECT, world
 
 
-@pytest.mark.parametrize("law", TWIN_LAWS)
+@pytest.mark.parametrize("law", LAWS)
 def test_a_rig_left_alone_glides_through_its_slips_and_obeys_its_law(law):
     plan = SweepPlan(slips=(0.0, 0.02, 0.1, 0.5), loads=(8.0,), duration=2.0)
     rig = world(law, plan=plan)
-    chosen, values = TWIN_LAWS[law]
+    chosen, values = LAWS[law]
     for hundredth in range(600):
         rig.advance(hundredth / 100)
         if hundredth in (200, 400):
@@ -53,15 +53,6 @@ def test_the_bump_raises_the_load_and_ripple_the_speed():
     assert truth.load.max() == pytest.approx(rig.load * 1.6, rel=1e-3)
     late = truth.omega_leg[-7000:]
     assert np.ptp(late) == pytest.approx(2 * 0.02 * 12.0, rel=0.05)
-
-
-def test_a_delay_shows_the_force_of_before():
-    rig = world(imperfections=TYPICAL_RIG, dynamics=RigDynamics(force_delay=0.1))
-    rig.advance(0.0)
-    rig.advance(1.0)
-    _, late = rig.forces(np.array([0.9]))
-    truth = rig.truth()
-    assert late[0] == truth.traction[np.searchsorted(truth.time, 0.8 + 1e-5) - 1]
 
 
 def test_a_standing_leg_disc_carries_no_force():

@@ -1,21 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The simulated cell forgets clients, and serves its configuration."""
+"""The simulated cell forgets clients, and stops when it is left."""
 
 import time
 
-import numpy as np
-
-from rig.slip_rig.decode import decode_forces
-from support.cell_twins import PROFILE, twin
-
-
-def test_bias_makes_the_present_reading_zero(take):
-    with twin() as (_, stream), stream:
-        take(stream, 1)
-        stream.bias()
-        take(stream, 3000)  # what was under way when the cell took its zero
-        forces = decode_forces(PROFILE, take(stream, 1))
-    assert np.abs(forces.normal).max() < 1e-5
+from support.cell_twins import twin
 
 
 def test_a_cell_that_forgot_its_client_is_asked_again_and_the_gap_is_counted(take):

@@ -3,7 +3,6 @@
 
 import pytest
 
-from model.slip.brush import Brush
 from rig.errors import ProfileError
 from rig.experiment.control import Control
 from rig.experiment.load import HandShaft, SimulatedOperator
@@ -35,12 +34,6 @@ def test_each_seed_is_a_rig_of_its_own_and_one_seed_the_same_again():
         with rig_at_hand("sim", seed=seed, fast=True) as rig:
             truths.append(rig.truth)
     assert truths[0] == truths[1] != truths[2]
-
-
-def test_a_twin_has_the_slip_law_that_it_is_given():
-    values = (20.0, 0.3)
-    with rig_at_hand("sim", fast=True, law=(Brush(), values)) as rig:
-        assert (rig.truth["rig"]["law"], rig.truth["rig"]["values"]) == ("brush", list(values))
 
 
 def test_drives_and_load_cell_have_views_of_their_own():

@@ -31,9 +31,7 @@ from rig.zebro.registers import SYNC, DumpLegs, PolledLegs
 from rig.zebro.serial import PacketLegs
 from rig.zebro.simulated import CanRobot, PacketRobot, PolledRobot
 from rig.zebro.simulated_legs import SimulatedLegs
-from zebro_lab.mcap.cdr import CdrWriter
 from zebro_lab.mcap.raw_log import decode_raw, encode_raw
-from zebro_lab.mcap.slip_rig_log import decode_block
 
 LEGS = load_leg_profile("zebro-100-serial")
 CAN_LEGS = load_leg_profile("zebro-100-can")
@@ -316,21 +314,11 @@ def at_twins() -> dict[str, Parser]:
 
 def of_messages() -> dict[str, Parser]:
     """Return the parsers of a log's messages; of whole files see `file_readers`."""
-    blocks = [rig_message(np.ones((5, n + 1))) for n in range(20)]
     return {
         "raw messages": Parser(
             whole(lambda data: decode_raw(data, dtype="<i4")), raw_messages(), (ValueError,)
         ),
-        "rig messages": Parser(whole(decode_block), blocks, (ValueError,)),
     }
-
-
-def rig_message(columns: np.ndarray) -> bytes:
-    """Return a message of samples as earlier versions wrote them."""
-    message = CdrWriter()
-    for column in columns:
-        message.array(column)
-    return message.message()
 
 
 def raw_messages() -> list[bytes]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from support.table_runs import slip_rig_run
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
 

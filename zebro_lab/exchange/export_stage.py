@@ -54,7 +54,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
             "'parquet' needs pyarrow: pip install 'zebro-lab[parquet]', or --to csv", key="--to"
         )
     manifest = read_manifest(folder)
-    streams = read_raw_log(folder / LOG_FILE).streams if manifest.profiles else {}
+    streams = read_raw_log(folder / LOG_FILE).streams
     tables: dict[str, Columns] = {
         topic.strip("/").replace("/", "_"): _raw_columns(stream)
         for topic, stream in streams.items()
@@ -88,7 +88,7 @@ def unended_notes(folder: Path) -> tuple[str, ...]:
     manifest = read_manifest(folder)
     if manifest.exit_status != RECORDING:
         return ()
-    end = read_raw_log(folder / LOG_FILE).end if manifest.profiles else None
+    end = read_raw_log(folder / LOG_FILE).end
     until = "" if end is None else f"; samples go up to {end:.3f} s"
     state = run_state(folder, manifest)
     why = {

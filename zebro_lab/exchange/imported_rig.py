@@ -17,8 +17,8 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.settings_text import fill_in
 from zebro_lab.files.source_names import stated_source
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.columns_file import prior_entry

@@ -18,7 +18,6 @@ import numpy as np
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
-from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable, read_log
 from zebro_lab.runs.manifest import (
     MANIFEST_FILE,
     RECORDING,
@@ -26,6 +25,7 @@ from zebro_lab.runs.manifest import (
     RunManifest,
     read_manifest,
 )
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 LOG_FILE = "log.mcap"
 RECOVERED: Final = "recovered"
@@ -179,17 +179,10 @@ def require_ended(folder: Path) -> None:
 def _slip_rig_table(
     folder: Path, manifest: RunManifest
 ) -> tuple[SlipRigTable, str | None, tuple[str, ...]]:
-    """Compute the samples from raw counts and the profile; return also log damage and notes.
-
-    A log without profiles, of an early version, has them in SI. The damage is None without one.
-    """
-    path = folder / LOG_FILE
-    if not manifest.profiles:
-        log = read_log(path)
-        return log.table, log.damage, ()
+    """Compute the samples from raw counts and the profile; return also log damage and notes."""
     from zebro_lab.runs.slip_rig_decoding import derive_table  # drivers: not for every table
 
-    raw = read_raw_log(path)
+    raw = read_raw_log(folder / LOG_FILE)
     table, notes = derive_table(folder, raw.streams, zero=manifest.constants)
     return table, raw.damage, notes
 
@@ -223,7 +216,7 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
 
 
 def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) -> str:
-    recorded = manifest.streams.get(_BOARD_TOPIC, manifest.streams.get(TOPIC))
+    recorded = manifest.streams.get(_BOARD_TOPIC)
     of_all = f" of {recorded}" if recorded else ""
     return f"{folder.name}: {LOG_FILE} is incomplete ({damage}); {count}{of_all} samples were read"
 

@@ -24,7 +24,7 @@ from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.log_writer import LOG, WARNING
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
-from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_slip_rig_run, run_state
+from zebro_lab.runs.folder import LOG_FILE, epoch_ns, run_state
 from zebro_lab.runs.manifest import RIG, RunManifest, profile_file, read_manifest
 from zebro_lab.runs.recorded_walk import LEGS
 
@@ -156,15 +156,10 @@ def read_signals(folder: Path) -> RunSignals:
     """
     manifest = read_manifest(folder)
     log = folder / LOG_FILE
-    notes: tuple[str, ...] = ()
-    if manifest.profiles:
-        raw = read_raw_log(log)
-        panels = [p for topic, stream in raw.streams.items()
-                  for p in _panels(folder, manifest, topic, stream)]  # fmt: skip
-        notes = () if raw.damage is None else (f"{log} is incomplete ({raw.damage})",)
-    else:
-        run = read_slip_rig_run(folder)
-        panels, notes = list(_of_table(run.table.rows(), manifest)), run.notes
+    raw = read_raw_log(log)
+    panels = [p for topic, stream in raw.streams.items()
+              for p in _panels(folder, manifest, topic, stream)]  # fmt: skip
+    notes = () if raw.damage is None else (f"{log} is incomplete ({raw.damage})",)
     measured = tuple(panel for panel in map(Panel.measured, panels) if panel.lines)
     if not measured:
         raise DataError("holds no samples to plot that the run's profiles describe", file=log)
@@ -277,16 +272,6 @@ def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> Cur
 
 def _forces(forces: Forces) -> Mapping[str, Array]:
     return {"normal": forces.normal, "traction": forces.traction}
-
-
-def _of_table(rows: Array, manifest: RunManifest) -> Iterator[Panel]:
-    t, leg, ground, normal, traction = rows.T
-    simulated = is_simulated(manifest.source)
-    gaps = find_gaps(t)
-    speeds = {"leg": leg, "ground": ground}
-    yield Panel("rig: speeds of the discs", "rad/s", t, speeds, simulated, gaps)
-    forces = {"normal": normal, "traction": traction}
-    yield Panel("rig: forces", "N", t, forces, simulated, gaps)
 
 
 def _events(log: Path, manifest: RunManifest) -> tuple[Event, ...]:

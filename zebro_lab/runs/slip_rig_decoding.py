@@ -23,8 +23,8 @@ from rig.slip_rig.decode import (
 from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, load_rig_profile
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.manifest import RIG, profile_file
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 _MANY = 3  # fewest forces per speed sample with which forces are averaged
 

@@ -21,10 +21,10 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import WARNING, LogWriter
 from zebro_lab.mcap.raw_log import raw_topic
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, require_new, run_path
 from zebro_lab.runs.manifest import RIG, TABLE, RunManifest, profile_file, write_manifest
 from zebro_lab.runs.profile_streams import stored_streams
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 _BOARD: Final = "board"
 _BLOCKS: Final = {"walk": 100, "slip-rig": 1000}  # samples per chunk; a truncated file loses one

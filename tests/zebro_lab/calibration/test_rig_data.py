@@ -14,7 +14,7 @@ from support.table_runs import slip_rig_run
 from support.written_runs import START, edit, make_run
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 
 def assert_same(found: RigData, expected: RigData) -> None:

@@ -11,8 +11,8 @@ from support.rig_tables import RADII, N, columns, given_slip, speeds, write
 from support.table_runs import slip_rig_run
 from support.written_runs import edit
 from zebro_lab.calibration.rig_part import RigPart, read_part
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.data_paths import DataSource
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.rig_columns import RigColumns
 

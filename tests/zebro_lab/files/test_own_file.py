@@ -13,10 +13,10 @@ from PIL import Image
 from support.table_runs import slip_rig_run
 from support.written_tracks import content
 from zebro_lab.files.errors import ZebroLabError
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
 from zebro_lab.runs.plot_stage import plot_run
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 from zebro_lab.track.annotate_stage import draw_grid
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)

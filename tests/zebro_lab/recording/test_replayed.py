@@ -12,12 +12,12 @@ from support.table_runs import slip_rig_run
 from support.watchers import Onlooker
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.recording.devices import DevicesRequest, open_devices
 from zebro_lab.recording.replayed import read_replay
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 
 @pytest.fixture

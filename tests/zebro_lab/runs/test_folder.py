@@ -6,13 +6,10 @@ from importlib.metadata import version
 
 import numpy as np
 import pytest
-from mcap.writer import Writer
 
 from support.written_runs import START, edit, make_run, make_table
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
-from zebro_lab.mcap.cdr import CdrWriter
-from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, SCHEMA_TEXT, TOPIC
 from zebro_lab.runs.folder import read_slip_rig_run, removing_new_folders
 from zebro_lab.runs.manifest import read_manifest
 
@@ -25,25 +22,6 @@ def test_run_round_trips_to_the_last_bit(tmp_path, n):
     for name in FIELDS:
         np.testing.assert_array_equal(getattr(run.table, name), getattr(make_table(n), name))
     assert run.notes == ()
-
-
-def test_a_run_of_an_earlier_version_is_read_to_the_last_bit(tmp_path):
-    folder, table = make_run(tmp_path, 200), make_table(200)
-    (folder / "profiles" / "rig.toml").unlink()
-    with (folder / "log.mcap").open("wb") as file:
-        log = Writer(file)
-        log.start(profile="ros2")
-        schema = log.register_schema(SCHEMA_NAME, "ros2msg", SCHEMA_TEXT.encode())
-        channel = log.register_channel(TOPIC, "cdr", schema)
-        for block in np.array_split(table.rows(), 4):
-            message = CdrWriter()
-            for column in block.T:
-                message.array(column)
-            log.add_message(channel, 0, message.message(), 0)
-        log.finish()
-    edit(folder, profiles={}, streams={TOPIC: 200}, log_sha256=None)
-    np.testing.assert_array_equal(read_slip_rig_run(folder).table.rows(), table.rows())
-    assert len(read_rig_data([folder]).samples) == 200
 
 
 def test_manifest_tells_what_was_recorded(tmp_path):

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.folder import SlipRigRun
 from zebro_lab.runs.recorded_sweeps import recorded_sweeps
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 T = np.arange(0.0, 6.0, 0.005)
 RADII = {"radius_leg": 0.035, "radius_ground": 0.12}

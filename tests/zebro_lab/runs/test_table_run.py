@@ -10,9 +10,9 @@ from rig.slip_rig.profile import load_rig_profile
 from support.table_runs import slip_rig_run
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 
 def write(folder, table):

@@ -12,7 +12,7 @@ ROOM = "zebro_lab/files"
 
 
 class CommitHook(BuildHookInterface):
-    """Add the file that `zebro_lab.files.commit` reads; nothing is written into the checkout."""
+    """Add the file that `zebro_lab.files.provenance` reads; nothing is written to the checkout."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add the file to a build, except to an editable one, which asks git itself.
@@ -21,7 +21,7 @@ class CommitHook(BuildHookInterface):
             version: "standard" or "editable".
             build_data: What hatchling builds from; changed in place.
         """
-        known = runpy.run_path(str(Path(self.root, ROOM, "commit.py")))
+        known = runpy.run_path(str(Path(self.root, ROOM, "provenance.py")))
         already = Path(self.root, ROOM, known["BUILT_FROM"]).exists()  # an unpacked sdist
         commit = known["commit_of"](Path(self.root))
         if version == "editable" or already or commit.startswith(known["UNKNOWN"]):

@@ -10,9 +10,8 @@ import pandas as pd
 
 from rig.sample_columns import SampleColumns
 from zebro_lab.files.atomic import atomic_folder, atomic_write_text
-from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
-from zebro_lab.files.settings_text import fill_in
-from zebro_lab.files.shown_text import shown
+from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError, shown
+from zebro_lab.files.settings_table import fill_in
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE, RECOVERED, read_slip_rig_run, run_state
 from zebro_lab.runs.manifest import RECORDING, read_manifest

@@ -15,7 +15,7 @@ from zebro_lab.calibration.plausible import require_plausible
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hashes
-from zebro_lab.files.settings_text import fill_in
+from zebro_lab.files.settings_table import fill_in
 from zebro_lab.files.source_names import stated_source
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.runs.slip_rig_table import SlipRigTable

@@ -25,7 +25,7 @@ from rig.experiment.supervision import start_thread
 from rig.experiment.verdict import PointVerdict
 from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.keyboard import Keyboard
-from zebro_lab.files.shown_text import shown
+from zebro_lab.files.errors import shown
 from zebro_lab.terminal.messages import plain
 
 WIDTH = 64

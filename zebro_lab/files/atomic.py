@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Write files and folders atomically: they appear complete or not at all."""
+"""Write files and folders atomically, complete or not at all, with signals put off meanwhile."""
 
 import os
 import secrets
 import shutil
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
 from zebro_lab.files.errors import AlreadyExists
 
@@ -128,3 +131,29 @@ def _require_empty(folder: Path, target: object) -> None:
         raise AlreadyExists(f"{target} is a file, expected a new folder; choose another name")
     if folder.is_dir() and any(folder.iterdir()):
         raise AlreadyExists(f"{target} exists already and is not empty; choose another name")
+
+
+_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Put off SIGINT and SIGTERM until the end of the body.
+
+    Also around imports of C extensions: an exception within their initialisation can abort Python.
+    Python runs handlers of signals in the main thread alone; in other threads, and of signals
+    without a handler, nothing is done.
+    """
+    is_main = threading.current_thread() is threading.main_thread()
+    heard = [number for number in _SIGNALS if is_main and callable(signal.getsignal(number))]
+    came: list[int] = []
+    earlier = {
+        number: signal.signal(number, lambda number, _: came.append(number)) for number in heard
+    }
+    try:
+        yield
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)
+    for number in dict.fromkeys(came):
+        signal.raise_signal(number)

@@ -22,9 +22,8 @@ from pathlib import Path
 from typing import IO, Final
 
 from model.file_lock import try_lock
-from zebro_lab.files.atomic import sync_folder
+from zebro_lab.files.atomic import sync_folder, uninterrupted
 from zebro_lab.files.errors import AlreadyExists, DataError
-from zebro_lab.files.uninterrupted import uninterrupted
 
 PATIENCE: Final = 10.0
 """Timeout for another process that replaces the same folder [s]."""

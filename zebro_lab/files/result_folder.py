@@ -17,11 +17,10 @@ from typing import Any, Final
 
 from model.file_lock import try_lock
 from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
-from zebro_lab.files.commit import software_commit
 from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import MANIFEST, listed_outputs, read_json_object
-from zebro_lab.files.provenance import file_hash, software
+from zebro_lab.files.provenance import file_hash, software, software_commit
 from zebro_lab.files.replacement import recover, replace_folder
 
 _GLOB: Final = "*"

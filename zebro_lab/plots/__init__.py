@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Figures of calibrations, walks, tracks and validations from arrays, without pyplot."""
 
-from zebro_lab.files.uninterrupted import uninterrupted
+from zebro_lab.files.atomic import uninterrupted
 
 with uninterrupted():  # matplotlib has C extensions
     from zebro_lab.plots.laws import slip_laws

@@ -17,9 +17,9 @@ from markupsafe import Markup
 
 from model.bayes.estimate import informed
 from model.metrics.scores import coverage_range
-from zebro_lab.files.commit import software_commit
+from zebro_lab.files.errors import shown
 from zebro_lab.files.opening import parsing
-from zebro_lab.files.shown_text import shown
+from zebro_lab.files.provenance import software_commit
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import shown_unit, unit_symbol
 from zebro_lab.report.belonging import belonging

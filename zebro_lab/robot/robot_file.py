@@ -9,8 +9,7 @@ import numpy as np
 
 from model.errors import DomainError
 from model.robot import N_LEGS, Robot
-from zebro_lab.files.settings_table import SettingsTable, read_settings
-from zebro_lab.files.settings_text import fill_in
+from zebro_lab.files.settings_table import SettingsTable, fill_in, read_settings
 from zebro_lab.robot.marker_print import KIT_PRINT, MarkerPrint
 
 ROBOT_FILE = "robot.toml"

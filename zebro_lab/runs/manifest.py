@@ -13,10 +13,10 @@ from pydantic import AfterValidator, ConfigDict, TypeAdapter, ValidationError
 
 from model.similar_name import nearest
 from zebro_lab.files.atomic import atomic_write_text
-from zebro_lab.files.commit import software_commit
 from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import read_json_object
+from zebro_lab.files.provenance import software_commit
 
 PROFILES = "profiles"
 MANIFEST_FILE = "run.json"
@@ -47,7 +47,7 @@ def profile_file(folder: Path, stream: str) -> Path:
 def software_version() -> dict[str, str]:
     """Return the installed `version` of zebro-lab, "unknown" if it is not installed, and `commit`.
 
-    The commit has the form of `zebro_lab.files.commit.software_commit`.
+    The commit has the form of `zebro_lab.files.provenance.software_commit`.
     """
     try:
         installed = version("zebro-lab")

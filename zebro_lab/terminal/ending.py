@@ -8,8 +8,7 @@ from typing import Final
 
 from model.errors import ModelError
 from rig.errors import RigError, WrongDevice
-from zebro_lab.files.errors import SettingsError, ZebroLabError
-from zebro_lab.files.shown_text import shortened, shown
+from zebro_lab.files.errors import SettingsError, ZebroLabError, shortened, shown
 from zebro_lab.terminal.stopping import StoppedBySignal
 from zebro_lab.terminal.timely_output import leave_at_once, say_in_time
 

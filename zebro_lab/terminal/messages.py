@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from zebro_lab.files.shown_text import shown
+from zebro_lab.files.errors import shown
 
 if TYPE_CHECKING:
     from rich.console import Console

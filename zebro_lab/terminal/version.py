@@ -6,7 +6,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from zebro_lab.files.commit import software_commit
+from zebro_lab.files.provenance import software_commit
 
 
 def _print_version(wanted: bool) -> None:

@@ -13,8 +13,7 @@ from tracking.body import TopPlate
 from tracking.corrections import Correction, correction_from, plain
 from tracking.errors import TrackingError
 from tracking.photos.scene import Click, MarkedTop
-from zebro_lab.files.settings_table import SettingsTable, read_settings
-from zebro_lab.files.settings_text import fill_in
+from zebro_lab.files.settings_table import SettingsTable, fill_in, read_settings
 
 ANNOTATIONS_FILE = "annotations.toml"
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from model.arrays import Array
 from tracking.camera import Camera, CameraCalibration
-from zebro_lab.files.settings_table import SettingsTable, read_settings
-from zebro_lab.files.settings_text import fill_in
+from zebro_lab.files.settings_table import SettingsTable, fill_in, read_settings
 
 CAMERA_FILE = "camera.toml"
 _FOR_PEOPLE = ("lens_model", "rms_px", "corner_noise_px", "smooth_error_px", "coverage", "photos")

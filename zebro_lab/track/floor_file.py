@@ -9,8 +9,7 @@ import numpy as np
 from tracking.errors import TrackingError
 from tracking.floor import FloorMap, FloorMarker, FloorPoint
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.settings_table import SettingsTable, read_settings
-from zebro_lab.files.settings_text import fill_in, inline_table
+from zebro_lab.files.settings_table import SettingsTable, fill_in, inline_table, read_settings
 from zebro_lab.robot.marker_numbers import require_in_dictionary
 from zebro_lab.robot.marker_print import KIT_PRINT
 

@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Files and folders that appear whole or not at all."""
+"""Files and folders that appear whole or not at all; signals come after."""
 
+import signal
+import threading
 from pathlib import Path
 
 import pytest
 
-from zebro_lab.files.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
+from zebro_lab.files.atomic import (
+    atomic_folder,
+    atomic_write_bytes,
+    atomic_write_text,
+    uninterrupted,
+)
 from zebro_lab.files.errors import AlreadyExists
 
 
@@ -72,3 +79,37 @@ def test_file_in_the_way_is_refused(tmp_path):
     with pytest.raises(AlreadyExists, match="is a file"), atomic_folder(tmp_path / "out"):
         pass
     assert (tmp_path / "out").read_text() == "a file"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_handled_after_the_body_once(number):
+    order: list[str] = []
+    earlier = signal.signal(number, lambda *_: order.append("handled"))
+    try:
+        with uninterrupted():
+            signal.raise_signal(number)
+            signal.raise_signal(number)
+            order.append("done")
+    finally:
+        signal.signal(number, earlier)
+    assert order == ["done", "handled"]
+
+
+def test_handlers_are_as_before_also_after_an_error():
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(ZeroDivisionError), uninterrupted():
+        raise ZeroDivisionError
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_another_thread_is_not_refused():
+    ran: list[int] = []
+
+    def act() -> None:
+        with uninterrupted():
+            ran.append(1)
+
+    thread = threading.Thread(target=act)
+    thread.start()
+    thread.join()
+    assert ran == [1]

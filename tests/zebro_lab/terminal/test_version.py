@@ -6,7 +6,7 @@ from importlib.metadata import version
 import pytest
 from typer.testing import CliRunner
 
-from zebro_lab.files.commit import software_commit
+from zebro_lab.files.provenance import software_commit
 from zebro_lab.main import app, slip_app
 
 

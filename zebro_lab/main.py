@@ -11,9 +11,8 @@ from zebro_lab.report import command as report
 from zebro_lab.runs import command as runs
 from zebro_lab.runs import plot_command
 from zebro_lab.suggest import command as suggest
-from zebro_lab.terminal.command_classes import Application
+from zebro_lab.terminal.command_classes import Application, Version
 from zebro_lab.terminal.ending import run
-from zebro_lab.terminal.version import Version
 from zebro_lab.track import annotate_command
 from zebro_lab.track import command as track
 from zebro_lab.track.camera import command as camera

@@ -15,9 +15,9 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.robot.imu_log import IMU_UNITS, is_in_g
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
+from zebro_lab.tables.columns import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_columns import CANONICAL
-from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.track.trajectory.table import MAPPED_UNITS, QUATERNION
 
 UNITS: Final[Mapping[str, Mapping[str, str | None]]] = {

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
+from zebro_lab.tables.columns import IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.header_units import suffix_in_header, unit_in_header
-from zebro_lab.tables.table_kinds import IMU, LEGS, RIG, TRACK
 
 _TIME = (
     r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|(time_?)?stamp|seconds|"

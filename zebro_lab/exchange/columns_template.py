@@ -13,11 +13,10 @@ from zebro_lab.exchange.column_guesses import (
     guess_set_points,
     numbers_or_none,
 )
-from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns import COLUMNS_FILE, IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.columns_sections import DOUBT
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_columns import CANONICAL
-from zebro_lab.tables.table_kinds import IMU, LEGS, RIG, TRACK
 
 _READS: Final = {
     RIG: "calibrate-slip and import --rig read", LEGS: "predict and import --legs read",

@@ -14,11 +14,10 @@ from model.format_distinct import format_distinct
 from model.progress import Watcher
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
-from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
-from zebro_lab.exchange.imu_messages import read_imu_messages
+from zebro_lab.exchange.imported_walk import ImportedWalk, read_imu_messages, write_imported_walk
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
-from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
+from zebro_lab.mcap.ros_log import bag_files, is_ros_log
 from zebro_lab.robot.imu_log import IMU_UNITS, ImuLog, imu_of_table
 from zebro_lab.robot.leg_log import LEG_UNITS, LegLog
 from zebro_lab.robot.leg_warnings import leg_warnings
@@ -26,11 +25,10 @@ from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
-from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns import COLUMNS_FILE, IMU, KINDS, LEGS, TRACK
 from zebro_lab.tables.columns_file import read_mapped_columns, rig_columns
 from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import read_table_file, table_stem
-from zebro_lab.tables.table_kinds import IMU, KINDS, LEGS, TRACK
 from zebro_lab.terminal.leg_options import joint_names
 from zebro_lab.track.foreign import ForeignTrack, PoseSd, read_foreign_track
 from zebro_lab.track.trajectory.request import TrajectoryRequest

@@ -1,18 +1,128 @@
 # SPDX-License-Identifier: MIT
-"""Read messages of some types from a ROS log, up to the first damage."""
+"""Read messages of ROS logs up to the first damage: MCAP; bags in SQLite (.db3) or of ROS 1."""
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, redirect_stdout
 from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mcap.records import Schema
 from mcap.well_known import MessageEncoding
 from mcap_ros2.decoder import DecoderFactory
 
+from zebro_lab.files.errors import NotFound
+from zebro_lab.files.opening import open_file, parsing
 from zebro_lab.mcap.log_records import Decode, read_log_messages
-from zebro_lab.mcap.ros_bags import LoggedMessage, is_bag, read_bag
+
+if TYPE_CHECKING:
+    from rosbags.highlevel import AnyReader
+
+BAG_SUFFIXES = (".db3", ".bag")
+METADATA = "metadata.yaml"
+
+
+class LoggedMessage(NamedTuple):
+    """Decoded ROS message of a log.
+
+    Attributes:
+        topic: Topic of the message.
+        log_time: Time of logging since the Unix epoch [ns].
+        content: The decoded message, an object with the message's fields as attributes.
+        type: Name of its type, such as `sensor_msgs/msg/JointState`.
+    """
+
+    topic: str
+    log_time: int
+    content: Any
+    type: str = ""
+
+
+def is_bag(path: Path) -> bool:
+    """Return whether a path is a bag by its name: .db3, .bag, or the folder of a bag.
+
+    Such a folder holds metadata.yaml, or files .db3 where that is missing.
+    """
+    if path.suffix.lower() in BAG_SUFFIXES or (path / METADATA).is_file():
+        return True
+    return path.is_dir() and any(path.glob("*.db3"))
+
+
+def is_ros_log(path: Path) -> bool:
+    """Return whether a path is a ROS log by its name: .mcap, .db3, .bag, or the folder of a bag."""
+    return path.suffix.lower() == ".mcap" or is_bag(path)
+
+
+def bag_files(path: Path) -> tuple[Path, ...]:
+    """Return the files of a bag: itself, or those in its folder by name.
+
+    Raises:
+        NotFound: There is no such file, or a folder lacks its metadata.yaml.
+        DataError: One of them is not a regular file or cannot be opened.
+    """
+    files = (path,)
+    if path.is_dir():
+        if not (path / METADATA).is_file():
+            raise NotFound(
+                f"{path}: {METADATA} of the bag is missing; copy the whole folder, or write it "
+                f"anew with: ros2 bag reindex {path}"
+            )
+        logs = (f for f in sorted(path.iterdir()) if f.suffix.lower() in (".db3", ".mcap", ".zstd"))
+        files = (path / METADATA, *logs)
+    for file in files:
+        with open_file(file):
+            pass
+    return files
+
+
+def read_bag(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
+    """Read all messages of some types from a bag, by the package `rosbags`.
+
+    Args:
+        path: The bag.
+        types: Names of the types, such as `sensor_msgs/msg/JointState`, also for ROS 1.
+
+    Returns:
+        The messages by the time of their logging, and why reading stopped before the end, or None.
+
+    Raises:
+        NotFound: The bag, or the package, is missing.
+        DataError: The bag cannot be opened.
+    """
+    bag_files(path)
+    messages: list[LoggedMessage] = []
+    problem = "cannot be read as a ROS bag"
+    with (
+        parsing(path, problem, advice="record or copy it again"),
+        redirect_stdout(StringIO()),  # it prints what it does not understand
+        _reader(path) as reader,
+    ):
+        try:
+            messages.extend(_messages(reader, types))
+        except Exception as error:  # damage is answered with whatever went wrong inside
+            return messages, f"{type(error).__name__}: {error}"
+    return messages, None
+
+
+def _messages(reader: "AnyReader", types: Collection[str]) -> Iterator[LoggedMessage]:
+    wanted = [each for each in reader.connections if each.msgtype in types]
+    for connection, time, data in reader.messages(wanted) if wanted else ():
+        content: Any = reader.deserialize(data, connection.msgtype)
+        yield LoggedMessage(connection.topic, time, content, connection.msgtype)
+
+
+def _reader(path: Path) -> "AnyReader":
+    try:
+        from rosbags.highlevel import AnyReader
+        from rosbags.typesys import Stores, get_typestore
+    except ImportError as error:
+        raise NotFound(
+            f"{path}: reading bags other than MCAP needs the package rosbags; install it with "
+            "pip install rosbags, or convert the bag: ros2 bag convert, or the "
+            "command mcap convert"
+        ) from error
+    # Bags of ROS 2 before Iron do not hold the definitions of their messages.
+    return AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
 
 
 def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:

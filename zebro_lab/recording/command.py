@@ -2,14 +2,12 @@
 """`zebro-lab record`: devices into a run folder."""
 
 import json
-from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import typer
 
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.recording.request import RecordRequest
-from zebro_lab.terminal.compiling import announcing_compilation
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.stopping import STOPPED
@@ -39,8 +37,7 @@ def record(request: RecordRequest, output: Output = TEXT) -> None:
     from zebro_lab.recording import stage
     from zebro_lab.recording.screen import record_screen
 
-    announcing = nullcontext() if output.quiet else announcing_compilation()
-    with record_screen(Console(stderr=True, quiet=output.quiet)) as screen, announcing:
+    with record_screen(Console(stderr=True, quiet=output.quiet)) as screen:
         recorded = stage.record(request, screen)
         code = STOPPED if screen.signalled else 0
         told = screen.close() and output.say_in_time(_report(recorded))

@@ -8,7 +8,7 @@ from typing import Annotated, TypeAlias
 from typer import Argument, Option
 
 from zebro_lab.recording.address_argument import require_address
-from zebro_lab.terminal.limits import Range
+from zebro_lab.terminal.request_command import Range
 
 _ADDRESS = "PROFILE@PORT|sim|replay:RUN"
 _DURATION = (

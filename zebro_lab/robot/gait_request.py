@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 from typer import BadParameter, Option
 
 from model.similar_name import nearest
-from zebro_lab.terminal.limits import Range
+from zebro_lab.terminal.request_command import Range
 
 GAIT_NAMES: Final = ("tripod", "suriana", "maxplus", "tetrapod", "buehler")
 """Names of gaits; any other is given by its groups of legs."""

@@ -11,9 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import Columns
+from zebro_lab.tables.columns import Columns, looks_like_other
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.table_kinds import looks_like_other
 
 _QUATERNION: Final = ("qw", "qx", "qy", "qz")
 _ANGLES: Final = ("roll", "pitch", "yaw")

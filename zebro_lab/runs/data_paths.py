@@ -9,12 +9,11 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
-from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.columns import COLUMNS_FILE, RIG
 from zebro_lab.tables.columns_file import read_columns, rig_columns
 from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.rig_columns import RigColumns
 from zebro_lab.tables.table_files import PLAIN_SUFFIXES, is_table_file
-from zebro_lab.tables.table_kinds import RIG
 
 CALIBRATION_FILE = "slip.toml"  # a folder with this file is a calibration folder, not data
 

@@ -17,7 +17,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, SeveralTopics, read_topic
-from zebro_lab.mcap.ros_bags import LoggedMessage
+from zebro_lab.mcap.ros_log import LoggedMessage
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.runs.joined_readings import joined_readings
 from zebro_lab.tables.columns import Columns

@@ -10,16 +10,15 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.folder_manifest import such_folder_in
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import recover
-from zebro_lab.mcap.ros_bags import bag_files, is_ros_log
+from zebro_lab.mcap.ros_log import bag_files, is_ros_log
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.recorded_walk import is_recorded, read_recorded_legs
-from zebro_lab.tables.columns import Columns
+from zebro_lab.tables.columns import LEGS, Columns
 from zebro_lab.tables.columns_file import read_mapped_columns
 from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import read_table_file
-from zebro_lab.tables.table_kinds import LEGS
 
 _IN_A_RUN = (
     "use the part before or after it alone: write the run as tables (zebro-lab export RUN --out "

@@ -8,8 +8,8 @@ from typing import Annotated, Final
 from typer import Argument, Option
 
 from zebro_lab.suggest.target_text import TargetText, WalkText, parse_target
-from zebro_lab.terminal.limits import Range
 from zebro_lab.terminal.picture_options import FormatOption
+from zebro_lab.terminal.request_command import Range
 
 LONGEST_TIME: Final = 360_000.0
 """Longest `--time`, a hundred hours [s]."""

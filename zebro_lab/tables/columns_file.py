@@ -12,7 +12,7 @@ from pathlib import Path
 from zebro_lab.files.errors import UnitError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
-from zebro_lab.tables.columns import Columns, MappedColumn, scaled
+from zebro_lab.tables.columns import RIG, TRACK, Columns, MappedColumn, scaled
 from zebro_lab.tables.columns_sections import read_nearest, read_section, read_source
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.rig_columns import (
@@ -23,7 +23,6 @@ from zebro_lab.tables.rig_columns import (
     parse_definition,
 )
 from zebro_lab.tables.row_conditions import read_row_conditions
-from zebro_lab.tables.table_kinds import RIG, TRACK
 
 _CONSTANTS = {"radius_leg": "m", "radius_ground": "m"}
 LARGEST_LOAD_CELL_ERROR = 0.2

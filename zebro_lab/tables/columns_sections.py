@@ -10,8 +10,7 @@ from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.folder_manifest import result_kind
 from zebro_lab.files.settings_table import SettingsTable
-from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.table_kinds import KINDS, LEGS, RIG
+from zebro_lab.tables.columns import COLUMNS_FILE, KINDS, LEGS, RIG
 
 DOUBT: Final = "?"
 """End of a value that was guessed and that nobody has checked."""

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import MappedColumn
+from zebro_lab.tables.columns import MappedColumn, looks_like_other
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.raw_table import OVERLOAD, RawTable, is_measured, missing_text
 from zebro_lab.tables.rig_columns import CANONICAL, RigColumns
-from zebro_lab.tables.table_kinds import looks_like_other
 
 
 @dataclass(frozen=True)

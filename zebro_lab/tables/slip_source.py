@@ -9,10 +9,9 @@ from model.arrays import Array
 from model.errors import DomainError
 from model.similar_name import nearest
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
-from zebro_lab.tables.columns import MappedColumn
+from zebro_lab.tables.columns import MappedColumn, looks_like_other
 from zebro_lab.tables.rig_columns import CANONICAL, parse_definition
 from zebro_lab.tables.rig_table import RigTable
-from zebro_lab.tables.table_kinds import looks_like_other
 
 _SPEEDS = ("omega_leg", "omega_ground")
 _RANGES = {"material": "1 or less", "travel": "-1 or more", "larger": "from -1 to 1"}

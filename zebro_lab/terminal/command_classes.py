@@ -5,13 +5,15 @@ import inspect
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
+from importlib.metadata import version
 from itertools import pairwise
-from typing import Any, Final
+from typing import Annotated, Any, Final, TypeAlias
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
 from model.similar_name import similar_name
+from zebro_lab.files.provenance import software_commit
 from zebro_lab.terminal.removed import replacement
 
 SETTINGS: Final = {"help_option_names": ["-h", "--help"]}
@@ -162,3 +164,20 @@ def _summary(text: str | None) -> str:
     """Return the first paragraph of a help text in one line, up to its first full stop."""
     paragraph = " ".join(inspect.cleandoc(text or "").split("\n\n")[0].split())
     return paragraph.split(". ")[0].rstrip(".")
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"zebro-lab {version('zebro-lab')}, commit {software_commit()}")
+        raise typer.Exit
+
+
+Version: TypeAlias = Annotated[
+    bool,
+    typer.Option(
+        "--version",
+        callback=_print_version,
+        is_eager=True,
+        help="Print version and commit of the software, and exit.",
+    ),
+]

@@ -12,7 +12,6 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
-from zebro_lab.terminal.compiling import announcing_compilation
 from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.stopping import StoppedBySignal, stop_at_once
 
@@ -177,8 +176,6 @@ def progress_bar(console: Console | None = None, *, quiet: bool = False) -> Iter
     console = console or Console(stderr=True)
     with ExitStack() as stack:
         bar = ProgressBar(*_display(console, stack, quiet=quiet))
-        if not quiet:
-            stack.enter_context(announcing_compilation())
         earlier = {s: signal.signal(s, bar.request_stop) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
             yield bar

@@ -12,8 +12,8 @@ from typer import Argument, BadParameter, Option
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import option_to_si
 from zebro_lab.robot.marker_print import LARGEST_PRINT
-from zebro_lab.terminal.limits import Range
 from zebro_lab.terminal.picture_options import FormatOption
+from zebro_lab.terminal.request_command import Range
 
 KIND = "track"
 VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")

@@ -64,7 +64,7 @@ def validate(request: ValidateRequest, output: Output = TEXT) -> None:
 
 
 def _validate_pair(request: ValidateRequest, output: Output) -> None:
-    from zebro_lab.mcap.ros_bags import is_ros_log
+    from zebro_lab.mcap.ros_log import is_ros_log
     from zebro_lab.validation.trajectories.screen import print_pair
     from zebro_lab.validation.trajectories.stage import validate_trajectories
 

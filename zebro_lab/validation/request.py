@@ -7,9 +7,9 @@ from typing import Annotated
 
 from typer import Argument, Option
 
-from zebro_lab.mcap.ros_bags import is_ros_log
-from zebro_lab.terminal.limits import Range
+from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.terminal.picture_options import FormatOption
+from zebro_lab.terminal.request_command import Range
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
 _OF_RUNS = ("run.json", "prediction", "track")  # in a run folder

@@ -12,7 +12,7 @@ from zebro_lab.calibration.coulomb_argument import coulomb_numbers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
 from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
-from zebro_lab.terminal.limits import Range
+from zebro_lab.terminal.request_command import Range
 from zebro_lab.walk.output_request import BandRequest, ContactRequest, PictureRequest
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]

@@ -8,9 +8,9 @@ import typer
 from zebro_lab.calibration.command import fit_and_report
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.source_names import is_simulated
+from zebro_lab.terminal.command_classes import Version
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
-from zebro_lab.terminal.version import Version
 from zebro_lab.walk_fit.request import WalksRequest
 from zebro_lab.workers import open_executor
 

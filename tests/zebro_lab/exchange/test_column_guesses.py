@@ -14,9 +14,9 @@ from zebro_lab.exchange.column_guesses import (
     numbers_or_none,
 )
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.tables.columns import IMU, TRACK
 from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.table_kinds import IMU, TRACK
 
 
 def one(*headers: str, cells=(1.0, 2.0)) -> RawTable:

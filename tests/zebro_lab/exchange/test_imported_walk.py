@@ -9,7 +9,9 @@ from rig.errors import ProfileError
 from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.zebro.profile import load_leg_profile
 from support.imported_files import COLUMNS, T, everything
-from zebro_lab.files.errors import AlreadyExists
+from support.written_bags import imu, write_bag
+from zebro_lab.exchange.imported_walk import read_imu_messages
+from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.manifest import profile_file, read_manifest
@@ -70,3 +72,31 @@ def test_the_profile_of_a_table_is_no_devices(files, tmp_path):
     profile = load_leg_profile(str(profile_file(folder, "legs")))
     with pytest.raises(ProfileError, match="not a device"):
         leg_driver(profile, None)
+
+
+TIMES = np.arange(0.0, 1.0, 0.1)
+
+
+def test_orientation_rate_and_force_are_read(tmp_path):
+    found = read_imu_messages(write_bag(tmp_path / "bag", imu(TIMES), storage="mcap"))
+    table = found.table
+    assert found.topic == "/imu"
+    assert table.notes == ("bag: topic /imu, sensor_msgs/msg/Imu, 10 messages",)
+    np.testing.assert_allclose(table.numbers("qz"), np.sin(0.05 * TIMES), atol=1e-12)
+    np.testing.assert_allclose(table.numbers("qw"), np.cos(0.05 * TIMES), atol=1e-12)
+    assert set(table.numbers("rate_z")) == {0.1}
+    assert set(table.numbers("force_z")) == {9.81}
+
+
+def test_what_is_not_measured_has_no_column(tmp_path):
+    absent = ("angular_velocity", "linear_acceleration")
+    table = read_imu_messages(
+        write_bag(tmp_path / "bag", imu(TIMES, absent=absent), storage="mcap")
+    ).table
+    assert list(table.columns) == ["t", "qw", "qx", "qy", "qz"]
+
+
+def test_messages_without_orientation_are_refused(tmp_path):
+    bag = write_bag(tmp_path / "bag", imu(TIMES, absent=("orientation",)), storage="mcap")
+    with pytest.raises(DataError, match=r"has no orientation on topic /imu: .* covariance is -1"):
+        read_imu_messages(bag)

@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: MIT
+"""Logs and bags of ROS are read up to their first damage, and say what they need."""
+
+import sys
+
+import numpy as np
 import pytest
 from mcap.writer import Writer
 
+from support.written_bags import BEGAN, imu, joints, write_bag, write_ros1_bag
+from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.mcap.log_writer import LOG, LOG_TEXT
-from zebro_lab.mcap.ros_log import read_messages
+from zebro_lab.mcap.ros_log import bag_files, is_bag, is_ros_log, read_bag, read_messages
 
 
 def log_of(path, text, data=b"\0\1\0\0" + bytes(64)):
@@ -41,3 +48,91 @@ def test_a_message_cut_short_is_damage(tmp_path):
     path = log_of(tmp_path / "log.mcap", LOG_TEXT, data=b"\0\1\0\0")
     messages, damage = read_messages(path, schema=LOG)
     assert (messages, "a message of /events" in damage) == ([], True)
+
+
+T = np.arange(0.0, 1.0, 0.1)
+THETA = T[:, None] + np.arange(6)
+
+
+@pytest.fixture
+def bag(tmp_path):
+    return write_bag(tmp_path / "walk", joints(T, THETA), imu(T))
+
+
+def positions(messages) -> np.ndarray:
+    return np.array([message.content.position for message in messages])
+
+
+@pytest.mark.parametrize("part", ["", "walk.db3"])
+def test_a_bag_is_read_from_its_folder_and_from_its_file_alone(bag, part):
+    messages, damage = read_bag(bag / part, ("sensor_msgs/msg/JointState",))
+    assert damage is None
+    np.testing.assert_array_equal(positions(messages), THETA)
+    np.testing.assert_allclose([m.log_time / 1e9 for m in messages], BEGAN + T)
+    assert {(m.topic, m.type) for m in messages} == {
+        ("/joint_states", "sensor_msgs/msg/JointState")
+    }
+    assert read_bag(bag / part, ("nav_msgs/msg/Odometry",)) == ([], None)
+
+
+def test_a_bag_that_was_copied_without_its_metadata_says_so(bag):
+    (bag / "metadata.yaml").unlink()
+    assert is_ros_log(bag)
+    with pytest.raises(
+        NotFound, match=r"walk: metadata.yaml of the bag is missing; copy .*reindex"
+    ):
+        read_bag(bag, ("sensor_msgs/msg/JointState",))
+
+
+def test_a_ros_1_bag_is_read_too(tmp_path):
+    file = write_ros1_bag(tmp_path / "walk.bag", joints(T, THETA))
+    messages, damage = read_messages(file, schema="sensor_msgs/msg/JointState")
+    assert damage is None
+    np.testing.assert_array_equal(positions(messages), THETA)
+
+
+def test_a_folder_of_mcap_logs_needs_no_package(tmp_path, monkeypatch):
+    folder = write_bag(tmp_path / "walk", joints(T, THETA), storage="mcap")
+    monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
+    messages, _ = read_messages(folder, schema="sensor_msgs/msg/JointState")
+    np.testing.assert_array_equal(positions(messages), THETA)
+
+
+def test_a_missing_package_is_named_with_the_way_to_install_it(bag, monkeypatch):
+    monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
+    with pytest.raises(NotFound, match=r"pip install rosbags"):
+        read_bag(bag, ("sensor_msgs/msg/JointState",))
+
+
+def test_files_that_are_hashed_are_those_of_the_bag(bag):
+    assert [file.name for file in bag_files(bag)] == ["metadata.yaml", "walk.db3"]
+    assert bag_files(bag / "walk.db3") == (bag / "walk.db3",)
+    with pytest.raises(NotFound):
+        bag_files(bag / "other.db3")
+
+
+def test_bags_are_known_by_their_names(bag, tmp_path):
+    assert is_bag(bag)
+    assert is_ros_log(tmp_path / "X.MCAP")
+    assert not is_bag(tmp_path)
+    assert not is_ros_log(tmp_path / "legs.csv")
+
+
+@pytest.mark.parametrize("noise", [b"", b"\0" * 5000, b"SQLite format 3\0" + b"\1" * 5000])
+def test_what_is_no_bag_is_one_line(tmp_path, noise):
+    for name in ("x.db3", "x.bag"):
+        (tmp_path / name).write_bytes(noise)
+        with pytest.raises(DataError, match="cannot be read as a ROS bag") as caught:
+            read_bag(tmp_path / name, ("sensor_msgs/msg/JointState",))
+        assert "\n" not in str(caught.value)
+
+
+def test_a_message_that_cannot_be_decoded_ends_the_reading(tmp_path):
+    import sqlite3
+
+    bag = write_bag(tmp_path / "walk", joints(T, THETA))
+    with sqlite3.connect(bag / "walk.db3") as database:
+        database.execute("UPDATE messages SET data = x'00010000' WHERE id = 4")
+    database.close()
+    messages, damage = read_bag(bag, ("sensor_msgs/msg/JointState",))
+    assert (len(messages), damage is None) == (3, False)

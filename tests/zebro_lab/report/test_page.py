@@ -2,14 +2,17 @@
 """A page is escaped, says what is simulated, and tells its parts to every reader."""
 
 import base64
+import csv
 import hashlib
 import json
 import re
+import tomllib
+from pathlib import Path
 
 import pytest
 
 from support.report_pages import HOSTILE, MADE, change_manifest, made, write_json
-from zebro_lab.report.page import out_of_range, render_report
+from zebro_lab.report.page import ABSENT, number, out_of_range, render_report, spelled
 from zebro_lab.report.sources import find_sources
 
 WALKS = """
@@ -189,3 +192,58 @@ def test_bands_too_narrow_and_too_wide_are_out_of_range(key, share):
 )  # fmt: skip
 def test_what_is_unknown_is_not_judged(row):
     assert list(out_of_range(row)) == []
+
+
+def value_in(file, key):
+    path = Path(file)
+    text = path.read_text()
+    if path.suffix == ".csv":
+        content = {row["parameter"]: row for row in csv.DictReader(text.splitlines())}
+    else:
+        content = tomllib.loads(text) if path.suffix == ".toml" else json.loads(text)
+    for step in key.split("/")[1:]:
+        step = step.replace("~1", "/").replace("~0", "~")
+        content = content[int(step)] if isinstance(content, list) else content[step]
+    return float(content)
+
+
+def test_every_number_is_that_of_the_file_it_names(walk):
+    page = made(walk)
+    assert len(page.numbers) > 80
+    for attrs, text in page.numbers:
+        value = value_in(attrs["data-file"], attrs["data-key"])
+        assert float(attrs["value"]) == value
+        ratio = float(text) / value
+        assert min(abs(ratio / scale - 1) for scale in (1, 100, 1000)) < 0.006, (attrs, text)
+
+
+def test_counts_are_spelled_whole_and_other_numbers_rounded():
+    assert (spelled(62000), spelled(0.012345), spelled(-1234.5, 2)) == ("62000", "0.0123", "-1200")
+
+
+CONTENT = {
+    "runs": {"a/b~c": [0.0123]},
+    "count": 62_001,
+    "poses": 2315.0,
+    "true": True,
+    "nan": float("nan"),
+    "t": "x",
+}
+
+
+def test_a_number_is_marked_with_its_value_file_and_key():
+    found = number(CONTENT, "runs", "a/b~c", 0, file='a"b.json', scale=1000.0)
+    assert found == (
+        '<data value="0.0123" data-file="a&#34;b.json" data-key="/runs/a~1b~0c/0">12.3</data>'
+    )
+
+
+def test_counts_are_shown_whole_also_those_stored_with_a_point():
+    assert ">62001<" in number(CONTENT, "count", file="x", digits=2)
+    assert ">2315<" in number(CONTENT, "poses", file="x", rule=round)
+    assert ">124000<" in number(CONTENT, "count", file="x", scale=2.0)
+
+
+@pytest.mark.parametrize("keys", [("none",), ("runs", "a/b~c", 1), ("true",), ("nan",), ("t", "x")])
+def test_what_is_no_number_is_a_dash(keys):
+    assert number(CONTENT, *keys, file="x") == ABSENT

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Commands and groups of our own: what they add to Typer's. The whole tree is tested above."""
 
+from importlib.metadata import version
 from typing import Annotated
 
 import pytest
 import typer
 from typer.testing import CliRunner
 
+from zebro_lab import main
+from zebro_lab.files.provenance import software_commit
 from zebro_lab.terminal.command_classes import Application
 
 
@@ -102,3 +105,9 @@ def test_the_value_and_what_is_expected_are_named(run_command, option, value, me
     assert ended.code == 2
     assert message in ended.err
     assert "Value error" not in ended.err
+
+
+@pytest.mark.parametrize("program", [main.app, main.slip_app])
+def test_version_is_that_of_package_and_commit(program):
+    ended = CliRunner().invoke(program, ["--version"])
+    assert ended.output == f"zebro-lab {version('zebro-lab')}, commit {software_commit()}\n"

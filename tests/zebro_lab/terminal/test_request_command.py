@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A request's fields are the options of a command."""
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal, get_args
@@ -9,8 +10,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from zebro_lab.terminal.limits import Range
-from zebro_lab.terminal.request_command import completed, request_command, value_types
+from zebro_lab.terminal.request_command import Range, completed, request_command, value_types
 
 
 @dataclass(frozen=True)
@@ -125,3 +125,19 @@ def test_a_callback_is_called_with_what_passed_the_limits():
 
 def test_types_are_found_below_optional_and_repeated_ones():
     assert list(value_types(tuple[Path, ...] | None)) == [Path]
+
+
+@pytest.mark.parametrize(
+    ("limits", "text", "inside", "outside"),
+    [
+        (Range(least=90, below=360), "90 or more and below 360", (90, 359.9), (89.9, 360)),
+        (Range(above=0), "above 0", (5e-324, 1e308), (0, -1)),
+        (Range(least=0, most=1), "0 to 1", (0, 1), (-0.1, 1.1)),
+        (Range(above=0, most=30), "above 0 and at most 30", (1, 30), (0, 30.1)),
+        (Range(), "", (-1e308, 0), ()),
+    ],
+)
+def test_limits_hold_what_they_say(limits, text, inside, outside):
+    assert str(limits) == text
+    assert all(map(limits.hold, inside))
+    assert not any(map(limits.hold, (*outside, math.nan, math.inf, -math.inf)))

@@ -12,7 +12,7 @@ import pandas as pd
 from model.arrays import Array
 from zebro_lab.files.opening import parsing
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, TopicRows, read_topic
-from zebro_lab.mcap.ros_bags import LoggedMessage
+from zebro_lab.mcap.ros_log import LoggedMessage
 from zebro_lab.tables.raw_table import RawTable
 
 ODOMETRY: Final = "nav_msgs/msg/Odometry"

@@ -8,7 +8,7 @@ from model.progress import Watcher
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.settings_table import SettingsTable
-from zebro_lab.tables.columns import COLUMNS_FILE, Columns
+from zebro_lab.tables.columns import COLUMNS_FILE, TRACK, Columns
 from zebro_lab.tables.columns_file import parse_mapped_columns
 from zebro_lab.tables.columns_sections import (
     columns_above,
@@ -16,7 +16,6 @@ from zebro_lab.tables.columns_sections import (
     read_section,
     require_checked,
 )
-from zebro_lab.tables.table_kinds import TRACK
 from zebro_lab.track.trajectory.file import Trajectory, read_trajectory
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 from zebro_lab.validation.request import ValidateRequest

@@ -1,17 +1,38 @@
 # SPDX-License-Identifier: MIT
 """Draws of how legs and floor differ from the description of the robot and its slip law."""
 
+import math
 from dataclasses import dataclass, fields, replace
+from typing import Final
 
 import numpy as np
 
 from model.arrays import Array
-from model.lateral_spread import log_spread
+from model.errors import DomainError
 from model.robot import N_LEGS, Robot
 from model.walk.bend import Bend
 from model.walk.traction import TractionTable
 
 ARCS = (np.pi / 2, np.radians(359.0))  # least and largest angle of a leg's arc [rad]
+ANISOTROPY: Final = 1.3
+"""Factor by which lateral grip and stiffness differ from longitudinal ones if unmeasured [-]."""
+
+
+def log_spread(anisotropy: float) -> float:
+    """Return the standard deviation of the logarithm of a factor that is 1 ×/÷ `anisotropy`.
+
+    Args:
+        anisotropy: The factor, one standard deviation; 1 for none [-].
+
+    Raises:
+        DomainError: It is below 1 or not finite.
+
+    >>> round(log_spread(1.3), 3)
+    0.262
+    """
+    if not (anisotropy >= 1 and math.isfinite(anisotropy)):
+        raise DomainError(f"the anisotropy is {anisotropy:g}; expected a finite factor, 1 or more")
+    return math.log(anisotropy)
 
 
 @dataclass(frozen=True)

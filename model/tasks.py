@@ -1,12 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""Compute independent tasks in order, here or by a `concurrent.futures.Executor`."""
+"""Long computations: independent tasks, by an executor if there is one, and their progress."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
+
+
+class Watcher(Protocol):
+    """Receives progress of a long computation, for example a progress bar, and can stop it."""
+
+    def step(self, what: str, fraction: float | None) -> None:
+        """Report the current step and the fraction of it that is done.
+
+        Args:
+            what: Name of the step.
+            fraction: Share of the step that is done [-]; None where it is unknown.
+        """
+        ...
+
+    def stop_requested(self) -> bool:
+        """Return whether the computation should stop at its next checkpoint."""
+        ...
 
 
 def compute_tasks(

@@ -36,10 +36,10 @@ from model.bayes.preview import Preview, preview, weighted_posterior
 from model.bayes.run_out import RunOut, find_run_out, without_run_out
 from model.bayes.stated_priors import UNSTATED, StatedPriors
 from model.errors import FitError
-from model.progress import Watcher
 from model.slip.law import SlipLaw
 from model.slip.rig_errors import USUAL, RigErrors
 from model.slip.samples import SlipSamples
+from model.tasks import Watcher
 
 THIN = 5  # sampler moves a kept step
 CHUNK = 20  # kept steps between checks for a request to stop

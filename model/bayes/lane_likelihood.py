@@ -15,10 +15,10 @@ from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.averaging.load_rule import load_rule
 from model.bayes.averaging.slip_rule import POINTS, WEIGHTS, slip_rule
 from model.compiled import borrowing, inlined
-from model.elementary import log_of
-from model.lanes import LANES, put, row, select, size
 from model.slip.definition import slip_per_radius_error
+from model.slip.elementary import log_of
 from model.slip.lane_force import ROWS, LaneLaw, law_at_load, side_at_slip
+from model.slip.lanes import LANES, put, row, select, size
 
 (
     GAIN_T, GAIN_N, BIAS, CROSSTALK, RADIUS, ROLLING, SCALE, SCATTER, FLOOR, GROWTH, RHO, TAU,

@@ -12,10 +12,10 @@ import numpy as np
 
 from model.arrays import Array
 from model.compiled import inlined
-from model.elementary import arctan, exp_of, log_of, minus_arctan, sin_half_turn
-from model.lanes import row, select, size
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
+from model.slip.elementary import arctan, exp_of, log_of, minus_arctan, sin_half_turn
+from model.slip.lanes import row, select, size
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import N_SIDES, SidedLaw, side_factors

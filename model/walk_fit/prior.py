@@ -9,8 +9,7 @@ import numpy as np
 
 from model.arrays import Array
 from model.errors import DomainError
-from model.lateral_spread import ANISOTROPY, log_spread
-from model.leg_state import LegState
+from model.leg_state import ANISOTROPY, LegState, log_spread
 from model.predict import ModelSpread
 from model.robot import N_LEGS
 

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
+import math
+
 import numpy as np
 import pytest
 
-from model.leg_state import LegState, law_in, scaled_table
+from model.errors import DomainError
+from model.leg_state import ANISOTROPY, LegState, law_in, log_spread, scaled_table
 from model.slip.magic_formula import MagicFormula
 from model.walk.traction import VelocityCoulomb, law_table
 from model.walk.traction_lookup import table_value
@@ -64,3 +67,14 @@ def test_draws_of_lateral_traction_are_lognormal_and_change_no_other_draw():
     drawn = law_in(TABLE, spread, 5)
     assert drawn.lateral_grip == spread.lateral_grip[5]
     assert drawn.lateral_stiffness == spread.lateral_stiffness[5]
+
+
+def test_a_factor_of_one_is_no_spread():
+    assert log_spread(1.0) == 0.0
+    assert math.exp(log_spread(ANISOTROPY)) == pytest.approx(ANISOTROPY)
+
+
+@pytest.mark.parametrize("factor", [0.9, -1.0, math.inf, math.nan])
+def test_a_factor_below_one_or_infinite_is_an_error(factor):
+    with pytest.raises(DomainError, match="anisotropy"):
+        log_spread(factor)

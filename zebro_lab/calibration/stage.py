@@ -13,7 +13,7 @@ from model.bayes.calibration import Calibration
 from model.bayes.drawing.sampler import Chains
 from model.bayes.fit import scaled_load_cell
 from model.bayes.preview import Preview
-from model.progress import Watcher
+from model.tasks import Watcher
 from zebro_lab.calibration.candidates import candidates
 from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
 from zebro_lab.calibration.checkpoint import load_checkpoint, save_checkpoint

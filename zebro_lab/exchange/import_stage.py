@@ -11,7 +11,7 @@ import numpy as np
 
 from model.arrays import Array
 from model.format_distinct import format_distinct
-from model.progress import Watcher
+from model.tasks import Watcher
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, read_imu_messages, write_imported_walk

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from model.bayes.calibration import Calibration
 from model.bayes.verdict import Verdict
-from model.progress import Watcher
 from model.slip.curve import SlipCurve
+from model.tasks import Watcher
 from zebro_lab.calibration import folder as calibration_folder
 from zebro_lab.calibration import stage as calibration_stage
 from zebro_lab.calibration.draws import posterior_tree

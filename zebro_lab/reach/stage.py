@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from model.errors import DomainError
-from model.progress import Watcher
+from model.tasks import Watcher
 from model.walk.goal import Goal
 from model.walk.manoeuvre import Fitted, Stepping, Surroundings
 from model.walk.reach import NOTHING, Stride, curve, measured_stride, stop_turn_walk

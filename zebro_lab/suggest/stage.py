@@ -10,8 +10,8 @@ import numpy as np
 from model.arrays import Array
 from model.bayes.posterior import SlipPosterior
 from model.design.targets import Target, force_target, parameter_target
-from model.progress import Watcher
 from model.similar_name import similar_name
+from model.tasks import Watcher
 from rig.experiment.plan import Plan
 from rig.slip_rig.profile import RigProfile
 from zebro_lab.calibration.draws import read_draws_of

@@ -7,7 +7,7 @@ import numpy as np
 
 from model.errors import InsufficientData
 from model.judgement import judge_tilt
-from model.progress import Watcher
+from model.tasks import Watcher
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable

@@ -9,12 +9,11 @@ import numpy as np
 
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
-from model.lateral_spread import ANISOTROPY
-from model.leg_state import LegState
+from model.leg_state import ANISOTROPY, LegState
 from model.poses import Poses
 from model.predict import ModelSpread, predict_paths, walk_draws
-from model.progress import Watcher
 from model.robot import GRAVITY
+from model.tasks import Watcher
 from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.folder import INFORMED_MODEL

@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from model.gait.cyclic import CyclicReference
-from model.progress import Watcher
 from model.robot import Robot
+from model.tasks import Watcher
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.terminal.picture_options import Window

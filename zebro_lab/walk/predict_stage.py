@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from model.gait.inexact_log import InexactLog
-from model.progress import Watcher
 from model.robot import N_LEGS
+from model.tasks import Watcher
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import require_replaceable

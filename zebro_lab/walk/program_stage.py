@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from model.leg_state import corrected
-from model.progress import Watcher
 from model.robot import GRAVITY
+from model.tasks import Watcher
 from model.walk.bend import STRAIGHT
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ground import FLAT, Ground

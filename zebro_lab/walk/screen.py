@@ -13,7 +13,7 @@ from model.arrays import Array
 from model.counted import counted
 from model.errors import DomainError
 from model.gait import CyclicReference, EventSystem
-from model.progress import Watcher
+from model.tasks import Watcher
 from model.walk.leg_work import LegWork, leg_work
 from model.walk.support import SLIDES, Support, support_of
 from zebro_lab.files.result_folder import MANIFEST

@@ -4,7 +4,7 @@
 from concurrent.futures import Executor
 from dataclasses import replace
 
-from model.progress import Watcher
+from model.tasks import Watcher
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.robot.gait_argument import make_gait

@@ -16,8 +16,8 @@ from model.gait.reference import LegReference
 from model.gait.stance import Intervals
 from model.poses import Poses
 from model.predict import FINE
-from model.progress import Watcher
 from model.robot import Robot
+from model.tasks import Watcher
 from model.walk.ground import FLAT, Ground, beyond_grid
 from model.walk.path import WalkPath
 from model.walk_models import (

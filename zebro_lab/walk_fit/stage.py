@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from model.lateral_spread import ANISOTROPY, log_spread
-from model.progress import Watcher
+from model.leg_state import ANISOTROPY, log_spread
+from model.tasks import Watcher
 from model.walk_fit.posterior import WalkPosterior
 from model.walk_fit.prior import WalkPrior
 from zebro_lab.calibration.folder import CALIBRATION, SLIP_TOML

@@ -5,9 +5,9 @@ import pytest
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.lane_likelihood import lane_log_likelihood
 from model.bayes.likelihood import NUISANCE, filter_runs, predict_blocks, run_log_likelihood
-from model.lanes import LANES
 from model.slip import Brush, CoulombStribeck, MagicFormula, SlipDefinition
 from model.slip.lane_force import lane_law
+from model.slip.lanes import LANES
 
 LAWS = [
     MagicFormula(),

@@ -3,9 +3,9 @@ import numpy as np
 import pytest
 
 from model.compiled import compiled
-from model.lanes import LANES, put, row
 from model.slip import Brush, CoulombStribeck, MagicFormula, SidedLaw
 from model.slip.lane_force import lane_law, law_at_load, side_at_slip
+from model.slip.lanes import LANES, put, row
 
 LAWS = [
     MagicFormula(),

@@ -10,7 +10,7 @@ import pytest
 
 from model.gait import tripod_angles, tripod_reference
 from model.gait.inexact_log import InexactLog
-from model.lateral_spread import ANISOTROPY
+from model.leg_state import ANISOTROPY
 from model.poses import Poses
 from support.validated_walks import predicted, write_walk_data
 from support.watchers import Nobody

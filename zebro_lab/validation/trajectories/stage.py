@@ -4,7 +4,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from model.progress import Watcher
+from model.tasks import Watcher
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.settings_table import SettingsTable

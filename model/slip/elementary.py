@@ -9,7 +9,7 @@ Results are within some units in the last place of the exact ones.
 import math
 
 from model.compiled import inlined
-from model.lanes import exponent_and_mantissa, nearest, power_of_two, select, size
+from model.slip.lanes import exponent_and_mantissa, nearest, power_of_two, select, size
 
 HALF_PI = 1.5707963267948966
 LN2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)  # high and low part

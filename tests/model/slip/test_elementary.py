@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from model.compiled import compiled
-from model.elementary import arctan, exp_of, log_of, minus_arctan, sin_half_turn
-from model.lanes import LANES, put, row, size
+from model.slip.elementary import arctan, exp_of, log_of, minus_arctan, sin_half_turn
+from model.slip.lanes import LANES, put, row, size
 
 
 def points():

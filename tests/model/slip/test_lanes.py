@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.compiled import compiled
-from model.lanes import (
+from model.slip.lanes import (
     LANES,
     exponent_and_mantissa,
     nearest,

@@ -12,20 +12,78 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from model.arrays import Array
 from tracking.camera.lens import CameraPose, to_floor
-from tracking.errors import PhotoError
+from tracking.errors import MarkerError, PhotoError
 from tracking.floor import FloorFit, FloorMap, FloorView
 from tracking.markers import (
     Sighting,
     edge_growth,
     find_markers,
     guess_dictionary,
+    marker_corners,
     marker_family,
     neighbourhood,
 )
 from tracking.path import PoseObservation
-from tracking.pose import BodyPose, BodyPrior, RobotMarker, fit_pose
-from tracking.shared import EDGES
+from tracking.pose import BodyPose, BodyPrior, fit_pose
+from tracking.shared import EDGES, PLACE, SIDE, TURN
+
+
+@dataclass(frozen=True)
+class RobotMarker:
+    """The marker on the robot's back.
+
+    Attributes:
+        marker_id: Number of the marker in its dictionary.
+        side: Side of the black square, above 0, else MarkerError is raised [m].
+        dictionary: Name of the dictionary.
+        position: Centre of the marker in the body frame: forward, left, up [m].
+        yaw: Turn of the print's left-to-right direction from the body's x, counter-clockwise
+            [rad]; -pi/2 when the print's top points ahead.
+        side_sd: Standard deviation of `side`, 0 if taken as exact, as of the next two [m].
+        position_sd: Standard deviation of x and of y of `position` [m].
+        yaw_sd: Standard deviation of `yaw` [rad].
+    """
+
+    marker_id: int
+    side: float
+    dictionary: str
+    position: tuple[float, float, float]
+    yaw: float = -np.pi / 2
+    side_sd: float = 0.0
+    position_sd: float = 0.0
+    yaw_sd: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.side > 0:
+            raise MarkerError(f"the robot's marker has side {self.side} m; expected more than 0 m")
+
+    @property
+    def points_body(self) -> Array:
+        """Corners of the marker in the body frame, OpenCV's order, shape (4, 3) [m]."""
+        return marker_corners(self.side, self.position, self.yaw)
+
+    def derivatives_at(self, points_body: Array) -> dict[str, Array]:
+        """Compute how points that are printed on the marker move with what is stated of it.
+
+        Args:
+            points_body: The points in the body frame, shape (n, 3) [m].
+
+        Returns:
+            By cause, derivative of the points by the side, the place (x, y) and the turn of the
+            marker, shape (n, 3, k).
+        """
+        arm = points_body - np.asarray(self.position)
+        turned = np.column_stack((-arm[:, 1], arm[:, 0], np.zeros(len(arm))))
+        along = np.tile(np.eye(3)[:, :2], (len(arm), 1, 1))
+        return {SIDE: arm[:, :, None] / self.side, PLACE: along, TURN: turned[:, :, None]}
+
+    @property
+    def spreads(self) -> dict[str, Array]:
+        """Covariance of side, place and turn by cause, shape (k, k) [m², m², rad²]."""
+        variance = {SIDE: [self.side_sd], PLACE: 2 * [self.position_sd], TURN: [self.yaw_sd]}
+        return {cause: np.diag(np.square(sd)) for cause, sd in variance.items()}
 
 
 @dataclass(frozen=True)

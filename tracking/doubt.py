@@ -13,9 +13,9 @@ standard deviations of one value, along W: u then has the covariance
 import numpy as np
 
 from model.arrays import Array
+from tracking.floor.doubt import SuspectValue, more_or_less
 from tracking.path import Track
 from tracking.shared import HEIGHT, SIDE, TILT
-from tracking.suspect import SuspectValue, more_or_less
 
 REMARKABLE = 1.2
 """Log odds from which a stated value of the robot is suspected [-].

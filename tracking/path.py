@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.joint_covariance import JointCovariance
+from tracking.chain_fit import SharedInput
 from tracking.constant_twist import Process
 from tracking.errors import PathError
 from tracking.pose import HELD, PLANAR, BodyPose, BodyPrior
@@ -21,7 +22,7 @@ from tracking.shared import (
     annotation_name,
     stand_name,
 )
-from tracking.smooth import SharedInput, SmoothPath, smooth
+from tracking.smooth import SmoothPath, smooth
 
 TRACK_COLUMNS = (
     "t_s", "t_sigma", "x_m", "y_m", "yaw_rad", "cov_xx", "cov_xy", "cov_xyaw", "cov_yy",

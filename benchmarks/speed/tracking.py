@@ -33,10 +33,10 @@ from support.synthetic import (
 )
 from tracking.camera import Camera
 from tracking.constant_twist import Process
-from tracking.detect import Detection, MarkedRobot, detect, observe
+from tracking.detect import Detection, MarkedRobot, RobotMarker, detect, observe
 from tracking.floor import FloorMap, FloorMarker, refine_floor
 from tracking.path import assemble_track
-from tracking.pose import BodyPrior, RobotMarker
+from tracking.pose import BodyPrior
 from tracking.smooth import smooth
 
 SIZE = (4000, 3000)

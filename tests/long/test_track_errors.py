@@ -10,7 +10,7 @@ import pytest
 from support.drawn_tracks import track_marked, track_unmarked
 from support.drawn_walks import PLAIN, WIDE, Spreads, draw_walk
 from tracking.floor import EDGE_SPREADS
-from tracking.floor.adjustment import EDGE_SCALE
+from tracking.floor.edge_spread import EDGE_SCALE
 
 DISTANCES = (2.0, 2.6, 3.4, 4.4, 5.7)  # m
 WALKS = 60

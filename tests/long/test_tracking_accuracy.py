@@ -27,11 +27,11 @@ from support.synthetic import (
     take_photo,
 )
 from tracking.camera import Camera
-from tracking.detect import MarkedRobot, detect, observe
+from tracking.detect import MarkedRobot, RobotMarker, detect, observe
 from tracking.errors import PhotoError
 from tracking.floor import FloorMap, FloorMarker, refine_floor
 from tracking.markers import find_markers
-from tracking.pose import BodyPrior, RobotMarker
+from tracking.pose import BodyPrior
 
 pytestmark = pytest.mark.long
 

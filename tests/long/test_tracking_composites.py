@@ -30,10 +30,11 @@ from support.synthetic import (
 from tracking.body import TopPlate
 from tracking.camera import Camera, CameraPose, project
 from tracking.composite import find_exposures, find_exposures_like, order_exposures
+from tracking.detect import RobotMarker
 from tracking.errors import CompositeError
 from tracking.markers import Sighting
 from tracking.pose import BodyPose as FoundPose
-from tracking.pose import BodyPrior, RobotMarker, fit_pose
+from tracking.pose import BodyPrior, fit_pose
 
 pytestmark = pytest.mark.long
 

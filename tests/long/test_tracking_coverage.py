@@ -37,7 +37,7 @@ from support.synthetic import (
 )
 from tracking.body import BodyTemplate, TopPlate, find_body, make_template
 from tracking.camera import Camera
-from tracking.detect import Detection, MarkedRobot, observe
+from tracking.detect import Detection, MarkedRobot, RobotMarker, observe
 from tracking.floor import (
     EDGE_SPREADS,
     FloorFit,
@@ -46,10 +46,11 @@ from tracking.floor import (
     FloorView,
     refine_floor,
 )
-from tracking.floor.adjustment import EDGE_REACH, EDGE_SCALE
+from tracking.floor.adjustment import EDGE_REACH
+from tracking.floor.edge_spread import EDGE_SCALE
 from tracking.markers import Sighting, edge_growth, find_markers
 from tracking.path import PoseObservation
-from tracking.pose import PLANAR, BodyPose, BodyPrior, RobotMarker
+from tracking.pose import PLANAR, BodyPose, BodyPrior
 from tracking.shared import SIDE as PRINTED_SIDE
 from tracking.shared import SharedErrors
 

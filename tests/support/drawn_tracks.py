@@ -9,7 +9,7 @@ from support.drawn_walks import TOP_HEIGHT, DrawnWalk, places_on_top, top_in_pho
 from tracking.body import Alignment, AnnotatedPose, TopPlate
 from tracking.body.align import SCALE_SD
 from tracking.camera import Camera, CameraPose, project
-from tracking.detect import Detection, MarkedRobot, observe
+from tracking.detect import Detection, MarkedRobot, RobotMarker, observe
 from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.markers import Sighting
 from tracking.photos.by_look import nearest_of, pose_of_top
@@ -17,7 +17,7 @@ from tracking.photos.by_marker import edge_spread
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.result import Times, Tracked, finish, observation_of, shared_errors
 from tracking.photos.scene import MarkedTop, Scene
-from tracking.pose import BodyPose, BodyPrior, RobotMarker, body_to_floor, fit_pose
+from tracking.pose import BodyPose, BodyPrior, body_to_floor, fit_pose
 
 OUTLINE_SD = 0.15
 """Standard deviation of a corner of the robot's outline as found again [px]."""

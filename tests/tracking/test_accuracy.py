@@ -20,11 +20,11 @@ from support.synthetic import (
     take_photo,
 )
 from tracking.camera import Camera
-from tracking.detect import MarkedRobot, pose_of_marker
+from tracking.detect import MarkedRobot, RobotMarker, pose_of_marker
 from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.markers import find_markers
 from tracking.path import PoseObservation
-from tracking.pose import PLANAR, BodyPrior, RobotMarker
+from tracking.pose import PLANAR, BodyPrior
 from tracking.shared import SIDE
 
 PLACES = [(0.1, -0.1), (1.5, -0.1), (1.6, 1.2), (0.0, 1.3)]

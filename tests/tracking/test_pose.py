@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from tracking.camera import Camera, CameraPose, project
+from tracking.detect import RobotMarker
 from tracking.errors import MarkerError
 from tracking.markers import edge_growth
 from tracking.pose import (
     BodyPrior,
-    RobotMarker,
     body_to_floor,
     fit_pose,
     rotation_with_derivatives,

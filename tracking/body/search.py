@@ -28,6 +28,7 @@ LEAST_MATCH = 0.3
 """Least correlation of a coarse match to align it [-]."""
 
 _TURNS = 24
+_PEAK_CELLS = 3  # half the width in which a peak of `match_whole` is the highest
 _CELLS = 14
 
 
@@ -200,6 +201,39 @@ def match_turned(
             peaks.append((float(match[row, column]), planar))
             match[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7] = -1.0
     return _apart(peaks, most, template.plate.length)
+
+
+def match_whole(
+    picture: NDArray[np.float32], plane: Plane, *, template: BodyTemplate, least: float
+) -> list[Array]:
+    """Find local maxima of the normalised cross-correlation with the whole template.
+
+    Of overlapping exposures half of each is hidden. The correlation that remains is lost unless the
+    heading is right to a few degrees: headings are twice as many as in `match_turned`.
+
+    Args:
+        picture: The photograph on the plane, shape (rows, columns, channels).
+        plane: The plane of the robot's top.
+        template: The template, of which are used as many channels as the picture has.
+        least: Least correlation of a match [-].
+
+    Returns:
+        x, y [m] and yaw [rad] of the matches, the best first, shape (3,) each.
+    """
+    best = yaws = None
+    for yaw, score in correlations(picture, template, plane.cell, turns=2 * _TURNS):
+        if best is None or yaws is None:
+            best, yaws = np.full_like(score, -1.0), np.zeros(score.shape)
+        better = score > best
+        best[better], yaws[better] = score[better], yaw
+    if best is None or yaws is None:
+        return []
+    around = np.ones((2 * _PEAK_CELLS + 1,) * 2, np.uint8)
+    peaks = np.argwhere((best >= cv2.dilate(best, around)) & (best >= least)).tolist()
+    return [
+        pose_of_match(template, plane, row, column, float(yaws[row, column]))
+        for row, column in sorted(peaks, key=lambda peak: -best[peak[0], peak[1]])
+    ]
 
 
 def correlations(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from tracking.dictionaries import dictionary_named
+from tracking.markers.dictionaries import dictionary_named
 
 
 @dataclass(frozen=True)

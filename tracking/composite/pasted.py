@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from tracking.body.search import match_whole
 from tracking.body.template import sample
 from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
 from tracking.composite.known import LEAST_SCORE, Exposure
-from tracking.composite.match import match_whole
 from tracking.composite.reading import BodyRaster, Reading
 from tracking.composite.steps import (
     CLIMB,
@@ -186,8 +186,7 @@ class PastedReading(Reading):
         gains, _ = self.gains(pose[None], robot, self.shown([]), self.body)
         found = self.stack_under(Pasted(pose, float(gains[0]), robot), [])
         template = self.body.template(robot, self.known.plate.height)
-        matches = match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
-        beyond = [match.planar for match in matches]
+        beyond = match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
         while beyond:
             poses = np.array([each.pose for each in found])
             beyond.sort(key=lambda pose: -distances(poses, pose).min())

@@ -20,9 +20,10 @@ from tracking.composite.known import Exposure, KnownExposure
 from tracking.composite.order import order_exposures
 from tracking.composite.pasted import PastedReading
 from tracking.composite.steps import LEAST_STEP, is_apart
+from tracking.detect import RobotMarker
 from tracking.errors import CompositeError
 from tracking.markers import Sighting, find_markers
-from tracking.pose import BodyPose, BodyPrior, RobotMarker
+from tracking.pose import BodyPose, BodyPrior
 
 CLEAR_SCORE = 0.85
 """Least correlation of the marker of a fully visible exposure [-]."""

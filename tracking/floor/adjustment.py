@@ -31,6 +31,7 @@ from scipy.stats import chi2
 
 from model.arrays import Array
 from tracking.camera.lens import Camera, CameraPose, project_with_derivatives
+from tracking.floor.edge_spread import EDGE_SCALE, EDGE_SPREADS, EdgeSpread
 from tracking.floor.locate import FloorView, seen_keys
 from tracking.floor.marks import FloorMap
 from tracking.markers import edge_growth
@@ -41,36 +42,8 @@ _CHANCE = 0.95
 
 _REWEIGHINGS = 5
 
-EDGE_SCALE = 0.1
-"""Scale of the half-Cauchy prior of the edges' spread [px]."""
-
 EDGE_REACH = 0.3
 """Logarithm of distance over which the common error of edges changes as much as it is large [-]."""
-
-EDGE_SPREADS = np.geomspace(5e-3, 0.4, 10)
-"""Spreads of edges that are compared [px]."""
-
-
-@dataclass(frozen=True)
-class EdgeSpread:
-    """What is known of the spread of edges.
-
-    Attributes:
-        log_weights: Log posterior of each of `EDGE_SPREADS`, up to a constant, shape (m,).
-    """
-
-    log_weights: Array
-
-    @property
-    def weights(self) -> Array:
-        """Posterior probability of each of `EDGE_SPREADS`, shape (m,)."""
-        weights = np.exp(self.log_weights - self.log_weights.max())
-        return weights / weights.sum()
-
-    @property
-    def sd(self) -> float:
-        """Root of the posterior mean of the variance [px]."""
-        return float(np.sqrt(self.weights @ EDGE_SPREADS**2))
 
 
 @dataclass(frozen=True)
@@ -364,13 +337,10 @@ class Adjustment:
             key: found.floor.marks[key].moved(step[slot])
             for key, slot in self._mark_slots().items()
         }
+        by_stand = step[: 6 * len(found.poses)].reshape(-1, 2, 3)
         poses = [
-            CameraPose(
-                pose.rotation_vector + step[6 * i : 6 * i + 3],
-                pose.translation + step[6 * i + 3 : 6 * i + 6],
-                pose.covariance,
-            )
-            for i, pose in enumerate(found.poses)
+            CameraPose(pose.rotation_vector + turn, pose.translation + shift, pose.covariance)
+            for pose, (turn, shift) in zip(found.poses, by_stand, strict=True)
         ]
         return Adjusted(
             found.floor.with_marks(marks),

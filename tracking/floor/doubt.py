@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Which stated value of floor or lens does not fit: alternatives in which one may be far off."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tracking.camera.lens import Camera
-from tracking.floor.adjustment import EDGE_SCALE, EDGE_SPREADS, Adjusted, Adjustment
+from tracking.floor.adjustment import Adjusted, Adjustment
+from tracking.floor.edge_spread import EDGE_SCALE, EDGE_SPREADS
 from tracking.floor.marks import Mark
-from tracking.suspect import SuspectValue, more_or_less
 
 REMARKABLE = 2.5
 """Log odds from which a stated value of floor or lens is suspected [-].
@@ -20,6 +20,58 @@ Of 160 simulated sound walks two reach it (`benchmarks.accuracy.planted_track_fa
 _FAR = 6.0  # times its standard deviation that a suspected mark may be off
 _LENS = 0.02  # standard deviation of the focal length of a suspected lens, of itself
 _SPREADS = EDGE_SPREADS[::3]
+_AS_LIKELY = 4.0  # log odds between values that explain the photographs about as well
+
+
+@dataclass(frozen=True)
+class SuspectValue:
+    """A stated value that may be wrong.
+
+    Attributes:
+        what: The value in words, such as "the side of the robot's marker".
+        finding: What it would have to be, as by `more_or_less`.
+        log_odds: Log of how much likelier the photographs are if this value alone is off by far
+            more than its standard deviation [-].
+    """
+
+    what: str
+    finding: str
+    log_odds: float
+
+
+def more_or_less(off: float, unit: str) -> str:
+    """Format how far a value would be from the stated one.
+
+    >>> more_or_less(-2.44, " mm")
+    '2.4 mm less than stated'
+    """
+    return f"{abs(off):.1f}{unit} {'more' if off > 0 else 'less'} than stated"
+
+
+def suspicion(suspects: Sequence[SuspectValue], *, remarkable: float) -> tuple[str, ...]:
+    """Format a warning that names the likeliest suspect, and those hardly less likely.
+
+    Args:
+        suspects: All values that were tried.
+        remarkable: Log odds from which a suspect is named. The more values are tried, the higher
+            they rise by chance [-].
+
+    Returns:
+        One sentence; none where no suspect is remarkable.
+    """
+    ranked = sorted(suspects, key=lambda each: -each.log_odds)
+    if not ranked or ranked[0].log_odds < remarkable:
+        return ()
+    best, *others = ranked
+    text = f"{best.what} does not fit the photographs: it seems to be {best.finding}"
+    rivals = [
+        f"{each.what} ({each.finding})"
+        for each in others
+        if each.log_odds > best.log_odds - _AS_LIKELY
+    ]
+    if rivals:
+        text += f"; this cannot be told apart from {', or '.join(rivals)}"
+    return (f"{text}; measure again",)
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,12 @@ import numpy as np
 from model.arrays import Array
 from tracking.camera.lens import Camera, CameraPose
 from tracking.errors import FloorError
-from tracking.floor.adjustment import Adjustment, EdgeSpread
-from tracking.floor.doubt import REMARKABLE, doubts
+from tracking.floor.adjustment import Adjustment
+from tracking.floor.doubt import REMARKABLE, SuspectValue, doubts, suspicion
+from tracking.floor.edge_spread import EdgeSpread
 from tracking.floor.locate import FloorView, locate_camera, seen_keys
 from tracking.floor.marks import FloorMap
 from tracking.shared import SharedErrors, stand_name
-from tracking.suspect import SuspectValue, suspicion
 
 JUMP_PX = 0.2
 """Least shift of the floor's marks, beyond 3 standard deviations, that counts as movement [px]."""

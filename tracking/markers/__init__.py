@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Square markers (ArUco, AprilTag): geometry, and detection to a few hundredths of a pixel."""
 
-from tracking.dictionaries import (
+from tracking.markers.dictionaries import (
     DICTIONARIES,
     dictionary_named,
     guess_dictionary,

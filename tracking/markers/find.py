@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from model.arrays import Array
-from tracking.dictionaries import dictionary_named, marker_family
 from tracking.markers.apriltags import apriltag_quads
+from tracking.markers.dictionaries import dictionary_named, marker_family
 from tracking.markers.refine import Sighting, refine_corners
 from tracking.markers.square import marker_picture
 

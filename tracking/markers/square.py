@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from model.arrays import Array
-from tracking.dictionaries import marker_family
+from tracking.markers.dictionaries import marker_family
 
 UNIT_SQUARE: Array = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 """Corners in the marker's own coordinates: across to the right, down, side 1."""

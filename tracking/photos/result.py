@@ -9,12 +9,12 @@ import numpy as np
 from tracking.body import Alignment, AnnotatedPose, RefinedCorners
 from tracking.corrections import Correction, Move, replay
 from tracking.doubt import REMARKABLE, doubts, heading_doubts
+from tracking.floor.doubt import suspicion
 from tracking.images import PhotoTimes
 from tracking.path import PoseObservation, Track, assemble_track
 from tracking.photos.floor_seen import FloorSeen
 from tracking.photos.scene import Scene
 from tracking.shared import ANNOTATION, SharedErrors, annotation_name
-from tracking.suspect import suspicion
 
 Times = Mapping[str, tuple[float, float]]
 """By name of photograph or exposure, its time and the standard deviation of the time [s]."""

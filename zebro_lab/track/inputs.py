@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracking import Scene
-from tracking.detect import MarkedRobot
+from tracking.detect import MarkedRobot, RobotMarker
 from tracking.errors import TrackingError
-from tracking.pose import BodyPrior, RobotMarker
+from tracking.pose import BodyPrior
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_numbers import require_apart, require_in_dictionary
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from tracking.body.plane import Plane
 from tracking.camera import Camera, CameraPose
 from tracking.errors import TrackingError
 from tracking.floor import FloorMap, locate_camera
 from tracking.images import read_pixels
 from tracking.photos.scene import Photo
 from tracking.photos.search import Wanted, look_at
-from tracking.pictures import rectify_floor
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.files.source_names import is_simulated
@@ -54,12 +54,13 @@ class PlacedPhoto:
             height: Height of the rectangle above the floor [m].
 
         Returns:
-            BGR picture, x to the right and y up, as from `rectify_floor`.
+            BGR picture, x to the right and y up; black outside the photograph, meaningless behind
+            the camera. What is not at that height is displaced.
         """
-        return rectify_floor(
-            self.pixels, self.camera, self.pose, low=low, high=high,
-            pixels_per_metre=pixels_per_metre, height=height,
-        )  # fmt: skip
+        raster = Plane.over(
+            self.camera, self.pose, height=height, low=low, high=high, cell=1 / pixels_per_metre
+        )
+        return np.clip(np.round(raster.read(self.pixels)), 0, 255).astype(np.uint8)
 
 
 @dataclass(frozen=True)

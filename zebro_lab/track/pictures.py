@@ -12,7 +12,6 @@ from tracking.camera import project
 from tracking.detect import Detection
 from tracking.floor import FloorMap
 from tracking.path import Track
-from tracking.pictures import ellipse_90
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.plots import save
 from zebro_lab.plots import track as draw
@@ -148,3 +147,19 @@ def _time_labels(track: Track, poses: Array) -> Sequence[str]:
     every = max(1, round(len(track.t) / _MOST_LABELS))
     labels = iter(f"{t:.1f} s" if k % every == 0 else "" for k, t in enumerate(track.t))
     return ["" if np.isnan(pose[0]) else next(labels) for pose in poses]
+
+
+def ellipse_90(covariance: Array) -> Array:
+    """Compute the ellipse that holds 90 % of a planar normal density of mean zero.
+
+    Args:
+        covariance: Covariance of x and y, shape (2, 2) [m²].
+
+    Returns:
+        Points x, y on the ellipse, the last equal to the first, shape (33, 2) [m].
+    """
+    values, vectors = np.linalg.eigh(covariance)
+    angle = np.linspace(0, 2 * np.pi, 33)
+    # -2 ln(1 - 0.9) is the 90 % point of chi-squared with two degrees of freedom.
+    radii = np.sqrt(np.maximum(values, 0) * -2 * np.log(0.1))
+    return np.column_stack((np.cos(angle), np.sin(angle))) * radii @ vectors.T

@@ -6,9 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from support.drawn_board import composite, likeness
 from support.drawn_plate import LENS, PLATE, PRIOR, VIEW, annotated, picture_of
 from tracking.body import find_body, make_template
+from tracking.body.search import match_whole
 from tracking.camera import CameraPose
+from tracking.composite.pasted import PastedReading
 from tracking.errors import FloorError
 
 
@@ -65,3 +68,17 @@ def test_a_camera_that_sees_no_floor_near_it_is_refused_with_what_to_do(up, temp
     picture = np.zeros((480, 640, 3), np.uint8)
     with pytest.raises(FloorError, match=r"0\.50 m high.*within 1\.50 m.*tilt"):
         find_body(picture, LENS, view, template=template, prior=PRIOR)
+
+
+def test_whole_matches_are_where_the_robot_is_best_first_and_none_is_on_an_empty_floor():
+    planar = np.array([0.05, 0.0, 2 * np.pi * 3 / 48])
+    known = likeness(composite(planar[None]), planar, reach=0.3)
+    template, plane = known.body_template(), PastedReading.of(known, cells=22).plane
+
+    def matches(pixels, least):
+        return match_whole(plane.read_smooth(pixels), plane, template=template, least=least)
+
+    found = matches(composite(planar[None], seed=1), 0.5)
+    np.testing.assert_allclose(found[0], planar, atol=0.01)
+    assert abs(found[0][2] - planar[2]) < 1e-9
+    assert matches(composite(np.array([[5.0, 5.0, 0.0]])), 0.6) == []

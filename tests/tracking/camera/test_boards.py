@@ -5,7 +5,7 @@ import cv2
 import numpy as np
 
 from tracking.camera import CharucoBoard, Checkerboard, find_board
-from tracking.dictionaries import dictionary_named
+from tracking.markers.dictionaries import dictionary_named
 
 
 def test_a_charuco_board_is_found_in_part():

@@ -8,9 +8,10 @@ import pytest
 from support.drawn_board import composite, found_in, steady_walk
 from tracking.camera import Camera, CameraPose, project
 from tracking.composite import find_exposures, order_exposures
+from tracking.detect import RobotMarker
 from tracking.errors import CompositeError
 from tracking.markers import marker_picture, square_homography
-from tracking.pose import BodyPrior, RobotMarker, fit_pose, rotation_with_derivatives
+from tracking.pose import BodyPrior, fit_pose, rotation_with_derivatives
 
 LENS = Camera((800, 500), np.array([[900.0, 0, 400], [0, 900, 250], [0, 0, 1]]), np.zeros(5))
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])

@@ -9,7 +9,8 @@ import pytest
 from support.drawn_floor import FLOOR, LENS, camera_pose, see
 from tracking.camera import Camera
 from tracking.floor import FloorMap, FloorView
-from tracking.floor.adjustment import EDGE_SPREADS, Adjustment, EdgeSpread
+from tracking.floor.adjustment import Adjustment
+from tracking.floor.edge_spread import EDGE_SPREADS, EdgeSpread
 from tracking.markers import edge_growth
 from tracking.shared import LENS as LENS_ERROR
 from tracking.shared import mark_name, stand_name

@@ -10,8 +10,7 @@ import pytest
 
 from tracking.errors import MarkerError
 from tracking.markers import dictionary_named, find_markers, marker_family
-from tracking.markers.apriltags import apriltag_quads
-from tracking.tag_families import FAMILIES, STANDARD, tag_family
+from tracking.markers.apriltags import FAMILIES, STANDARD, apriltag_quads, tag_family
 
 
 def picture(dictionary: str, number: int, *, side: float = 90.0, turn: float = 0.3):

@@ -21,9 +21,9 @@ from support.synthetic import (
 from tracking import MarkedTop, Photo, Scene
 from tracking.body import TopPlate
 from tracking.camera import Camera, CameraPose, project
-from tracking.detect import MarkedRobot
+from tracking.detect import MarkedRobot, RobotMarker
 from tracking.floor import FloorMap, FloorMarker
-from tracking.pose import BodyPrior, RobotMarker, rotation_with_derivatives
+from tracking.pose import BodyPrior, rotation_with_derivatives
 
 PLACES = ((0.1, -0.1, 0.3), (1.1, -0.1, -0.4), (1.2, 0.8, 0.5), (0.0, 0.9, -0.2))
 WALK = ((0.45, 0.2, 0.2), (0.55, 0.23, 0.3), (0.64, 0.27, 0.4))

@@ -13,7 +13,7 @@ from tracking.path import PoseObservation, assemble_track
 from tracking.pose import BodyPose, BodyPrior
 from tracking.shared import SharedErrors
 from zebro_lab.track.photographs import PlacedPhoto
-from zebro_lab.track.pictures import draw_track, seen_marks
+from zebro_lab.track.pictures import draw_track, ellipse_90, seen_marks
 
 LENS = Camera((320, 240), np.array([[300.0, 0, 160], [0, 300, 120], [0, 0, 1]]), np.zeros(5))
 DOWN = CameraPose.from_matrix(np.diag([1.0, -1.0, -1.0]), np.array([-0.5, 0.3, 2.0]))
@@ -58,3 +58,10 @@ def test_marks_are_outlined_where_the_map_has_them_and_the_robots_where_it_is_se
     both = seen_marks(PHOTO, FLOOR, Detection("p.jpg", FloorView.of("p.jpg"), sighting))
     assert both[1].labels == ["robot 3"]
     np.testing.assert_array_equal(both[1].outlines_px[0], corners)
+
+
+def test_the_region_of_ninety_percent_holds_ninety_percent():
+    covariance = np.array([[2.0, 0.8], [0.8, 1.0]])
+    ring = ellipse_90(covariance)
+    distance = np.einsum("ni,ij,nj->n", ring, np.linalg.inv(covariance), ring)
+    np.testing.assert_allclose(distance, 4.605, atol=1e-3)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from model.similar_name import similar_name
 from tracking.errors import MarkerError
-from tracking.tag_families import STANDARD, TagFamily, tag_family
+from tracking.markers.apriltags import STANDARD, TagFamily, key_of, tag_family
 
 DICTIONARIES = {
     name.removeprefix("DICT_").lower(): int(getattr(cv2.aruco, name))
@@ -88,15 +88,6 @@ def marker_family(name: str) -> MarkerFamily:
             "install zebro-lab with its extra 'apriltag' (pip install '.[apriltag]')"
         )
     return MarkerFamily(tags)
-
-
-def key_of(name: str) -> str:
-    """Return a dictionary's name without OpenCV's prefix, in lower case.
-
-    >>> key_of("DICT_4X4_50")
-    '4x4_50'
-    """
-    return name.lower().removeprefix("dict_")
 
 
 def dictionary_named(name: str) -> cv2.aruco.Dictionary:

@@ -5,6 +5,7 @@ import typer
 
 from model.counted import counted
 from zebro_lab.files.source_names import is_simulated
+from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.validation.request import ValidateRequest
@@ -42,12 +43,22 @@ _ONLY_RUNS = ("predicted", "track", "anchor", "estimate_offset")
 @request_command()
 def validate(request: ValidateRequest, output: Output = TEXT) -> None:
     """Compute the errors of predicted paths against tracked ones, with baselines."""
-    from zebro_lab.validation import stage
+    from zebro_lab.files.documents import read_json_document
+    from zebro_lab.validation import stage, trajectory_stage
     from zebro_lab.validation.screen import print_validated
 
-    if request.is_pair:
-        _validate_pair(request, output)
-        return
+    (_require_pair if request.is_pair else _require_runs)(request)
+    run = trajectory_stage.validate_pair if request.is_pair else stage.validate
+    with output.progress() as watcher:
+        validated = run(request, watcher)
+    print_validated(output.console(), validated, request.folder)
+    manifest = read_json_document(request.folder / "manifest.json")
+    content = {"folder": request.folder, "simulated": is_simulated(validated.source)}
+    output.document("validate", {**content, "validation": manifest})
+
+
+def _require_runs(request: ValidateRequest) -> None:
+    """Check that options are those of runs, and that there are as many predictions as tracks."""
     _require_no_options(request, _ONLY_PAIRS, "belongs to two trajectories; give their files")
     n_predicted, n_tracks = len(request.predicted), len(request.track)
     if n_predicted != n_tracks or not (request.runs or n_predicted):
@@ -57,17 +68,10 @@ def validate(request: ValidateRequest, output: Output = TEXT) -> None:
         )
     if request.estimate_offset and request.time_offset:
         raise typer.BadParameter("give --time-offset, or let --estimate-offset find it; not both")
-    with output.progress() as watcher:
-        validated = stage.validate(request, watcher)
-    print_validated(output.console(), validated, request.folder)
-    _print_document(request, output)
 
 
-def _validate_pair(request: ValidateRequest, output: Output) -> None:
-    from zebro_lab.mcap.ros_log import is_ros_log
-    from zebro_lab.validation.trajectories.screen import print_pair
-    from zebro_lab.validation.trajectories.stage import validate_trajectories
-
+def _require_pair(request: ValidateRequest) -> None:
+    """Check that there are two files, and that options are those of trajectories."""
     logs = [path for path in request.runs if is_ros_log(path)]
     folders = [path for path in request.runs if path.is_dir() and path not in logs]
     if folders or len(request.runs) != 2:
@@ -79,20 +83,6 @@ def _validate_pair(request: ValidateRequest, output: Output) -> None:
     if request.topic and not logs:
         raise typer.BadParameter("belongs to ROS logs; no file is one", param_hint="--topic")
     _require_no_options(request, _ONLY_RUNS, "belongs to predicted walks, not to trajectories")
-    with output.progress() as watcher:
-        judged = validate_trajectories(request, watcher)
-    print_pair(output.console(), judged, request.folder)
-    _print_document(request, output)
-
-
-def _print_document(request: ValidateRequest, output: Output) -> None:
-    """Print the manifest of the written folder, which has all errors."""
-    from zebro_lab.files.documents import read_json_document
-
-    manifest = read_json_document(request.folder / "manifest.json")
-    simulated = is_simulated(str(manifest.get("source", "")))
-    content = {"folder": request.folder, "simulated": simulated, "validation": manifest}
-    output.document("validate", content)
 
 
 def _require_no_options(request: ValidateRequest, names: tuple[str, ...], problem: str) -> None:

@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from model.arrays import Array
 from model.errors import InsufficientData
 from model.judgement import Judged, TiltJudged
 from model.metrics.bootstrap import Interval, bootstrap_mean
 from model.metrics.path_errors import pose_errors
+from model.poses import Poses
 from zebro_lab.files.picture_format import PictureFormat, in_every_format
 from zebro_lab.files.result_folder import ResultKind, result_folder
 from zebro_lab.files.source_names import is_simulated
@@ -181,21 +183,32 @@ def write_validation(
 
 def _write_tables(draft: Path, runs: Sequence[JudgedRun]) -> None:
     table = [{"run": run.name, "model": r.name, **metrics(r)} for run in runs for r in run.rows]
-    _to_csv(pd.DataFrame(table), draft / METRICS)
+    to_csv(pd.DataFrame(table), draft / METRICS)
     parts = []
     for run in runs:
         for row in run.rows:
-            errors = pose_errors(row.path.at(run.track.t), run.track)
-            columns = {
-                "t": errors.t, "x_m": errors.translation[:, 0], "y_m": errors.translation[:, 1],
-                "along_m": errors.along, "cross_m": errors.cross, "yaw_rad": errors.rotation,
-            }  # fmt: skip
+            columns = error_columns(row.path.at(run.track.t), run.track)
             parts.append(pd.DataFrame({"run": run.name, "model": row.name, **columns}))
         (draft / f"{run.name}.track.tum").write_text(tum_lines(run.track))
         matched = run.rows[0].path.at(run.track.t)
         (draft / f"{run.name}.predicted.tum").write_text(tum_lines(matched))
-    _to_csv(pd.concat(parts), draft / ERRORS)
+    to_csv(pd.concat(parts), draft / ERRORS)
 
 
-def _to_csv(table: pd.DataFrame, file: Path) -> None:
+def error_columns(path: Poses, track: Poses) -> dict[str, Array]:
+    """Return the errors of each pose of a path by column of `errors.csv`, shape (n,) each.
+
+    Args:
+        path: Predicted or estimated poses.
+        track: Tracked poses at the same times.
+    """
+    errors = pose_errors(path, track)
+    return {
+        "t": errors.t, "x_m": errors.translation[:, 0], "y_m": errors.translation[:, 1],
+        "along_m": errors.along, "cross_m": errors.cross, "yaw_rad": errors.rotation,
+    }  # fmt: skip
+
+
+def to_csv(table: pd.DataFrame, file: Path) -> None:
+    """Write a table as CSV, numbers with 8 digits."""
     table.to_csv(file, index=False, float_format="%.8g", lineterminator="\n")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Pictures of a validation: errors, roll and pitch, and the photographs of the walk."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from tracking.errors import TrackingError
 from zebro_lab.files.picture_format import PictureFormat
+from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots import save
 from zebro_lab.plots.path_validation import path_validation
 from zebro_lab.plots.photo_poses import Shot, band_over_floor, photos_beside_poses
@@ -16,6 +18,7 @@ from zebro_lab.plots.tilt import tilt
 from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.predicted_walks import ShownRun
+from zebro_lab.validation.trajectory_pair import JudgedPair
 from zebro_lab.walk.prediction_file import WalkedPath
 
 SHOTS = 4
@@ -56,6 +59,27 @@ def draw_validation(
     except TrackingError as error:
         return (f"photographs are not shown: {error}",)
     return ()
+
+
+def draw_pair(file: Path, judged: JudgedPair) -> None:
+    """Draw two trajectories and the estimate aligned with the reference, and their errors.
+
+    Args:
+        file: File to write.
+        judged: The errors.
+    """
+    row = judged.rows[0]
+    turn = row.errors.alignment.rotation[:, 0]
+    aligned = replace(
+        judged.estimated, position=row.errors.alignment.apply(row.estimate.position),
+        yaw=judged.estimated.yaw + np.arctan2(turn[1], turn[0]),
+    )  # fmt: skip
+    figure = path_validation(
+        {"estimate": judged.estimated, "estimate, aligned": aligned}, judged.tracked, band=None,
+        title=judged.title, simulated=is_simulated(judged.source), of="Estimate and reference",
+        plane=judged.reference.plane, timed=judged.reference.timed,
+    )  # fmt: skip
+    save(figure, file)
 
 
 def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos, form: PictureFormat) -> None:

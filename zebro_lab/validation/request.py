@@ -119,10 +119,6 @@ class ValidateRequest:
 
     form: FormatOption = "png"
 
-    def topic_of(self, which: int) -> str | None:
-        """Return the topic stated for the first (0) or second (1) file; None if not stated."""
-        return self.topic[min(which, len(self.topic) - 1)] if self.topic else None
-
     @property
     def folder(self) -> Path:
         """`--out` if given, else by what is validated, see its help."""

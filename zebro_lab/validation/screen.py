@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Terminal output of `validate`: errors of each walk, consistency of its band, means over walks."""
+"""Terminal output of `validate`: errors of walks, or of two trajectories."""
 
 from pathlib import Path
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from rich.text import Text
 
 from model.metrics.consistency import Consistency
 from model.metrics.scores import coverage_range
-from zebro_lab.files.source_names import is_simulated
-from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.result import print_result, warnings_first
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.stage import Validated
+from zebro_lab.validation.trajectory_pair import JudgedPair
+from zebro_lab.validation.trajectory_stage import pair_metrics
 
 _STATISTICS = {
     "nees": ("error relative to predicted uncertainty (NEES)", 1.0, ""),
@@ -24,30 +24,62 @@ _STATISTICS = {
 }  # meaning, scale and unit of each statistic of the band's consistency
 
 
-def print_validated(console: Console, validated: Validated, out: Path) -> None:
-    """Print warnings, errors, coverage, tilt, notes of each walk, means over walks, and the folder.
+_PAIR = {
+    "length_m": "length of the reference",
+    "ate_m": "absolute error (ATE), rms",
+    "ate_aligned_m": "aligned ATE, rms",
+    "alignment_deg": "turn of the alignment",
+    "rotation_rms_deg": "error of rotation, rms",
+}
+"""Names of metrics of two trajectories for people, where their column does not say enough."""
+
+
+def print_validated(console: Console, validated: Validated | JudgedPair, out: Path) -> None:
+    """Print warnings, errors and notes of walks or of two trajectories, and the folder.
+
+    Of walks these are errors, coverage and tilt of each, and the means over several.
 
     Args:
         console: Console to print to.
         validated: Results of the validation.
         out: Folder that was written.
     """
-    if is_simulated(validated.source):
-        console.print(plain(f"SIMULATED: {validated.source}"))
+    parts = _pair(validated) if isinstance(validated, JudgedPair) else _walks(validated)
+    print_result(console, parts, source=validated.source, out=out)
+
+
+def _pair(judged: JudgedPair) -> list[str | Table]:
+    warnings, notes = warnings_first(judged.notes)
+    table = plain_table(judged.title, ("", "unit"), [row.where for row in judged.rows])
+    rows = [pair_metrics(row) for row in judged.rows]
+    for key in rows[0]:
+        name, unit, values = _PAIR.get(key), "", [row[key] for row in rows]
+        if key not in ("poses", "scale"):
+            what, _, unit = key.rpartition("_")
+            over = what.removeprefix("rpe_")
+            of = "consecutive poses" if over == "step" else f"over {over.removesuffix('m')} m"
+            relative = f"relative error (RPE), {of}, rms" if over != what else None
+            which = "aligned ATE" if "aligned" in what else "ATE"
+            name = name or relative or f"{which}, {what.rpartition('_')[2]}"
+        if unit == "pairs" or (key == "scale" and all(value == 1 for value in values)):
+            continue
+        shown = ["" if np.isnan(value) else f"{value:.6g}" for value in values]
+        table.add_row(name or key, unit, *shown)
+    return [*warnings, table, *notes]
+
+
+def _walks(validated: Validated) -> list[str | Table]:
+    parts: list[str | Table] = []
     for run in validated.runs:
-        warnings = [note for note in run.notes if note.startswith("WARNING")]
-        for line in warnings:
-            console.print(plain(f"{run.name}: {line}"))
-        console.print(_table(run))
-        notes = [note for note in run.notes if note not in warnings]
-        for line in (*_verdict(run), *_tilt(run), *notes):
-            console.print(plain(line))
+        warnings, notes = warnings_first(run.notes)
+        parts += [f"{run.name}: {line}" for line in warnings]
+        parts += [_table(run), *_verdict(run), *_tilt(run), *notes]
     for each in validated.summary:
         mean, low, high = each.interval
-        console.print(plain(f"{each.model}: {each.metric} {mean:.4g} ({low:.4g} to {high:.4g})"))
+        parts.append(f"{each.model}: {each.metric} {mean:.4g} ({low:.4g} to {high:.4g})")
     if validated.summary:
-        console.print(plain(f"means over {len(validated.runs)} walks, 90 % intervals over walks"))
-    console.print(Text(f"\nwritten to {out}"))
+        parts.append(f"means over {len(validated.runs)} walks, 90 % intervals over walks")
+    return parts
 
 
 def _table(run: JudgedRun) -> Table:

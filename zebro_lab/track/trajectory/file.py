@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Read a trajectory of another program: TUM, KITTI, EuRoC, a table or a ROS log."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,12 +20,11 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.trajectory.layouts import read_number_lines, read_number_table
 from zebro_lab.track.trajectory.logged_poses import read_logged_poses
-from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest
+from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest, of_file
 from zebro_lab.track.trajectory.table import (
     COVARIANCE,
     MAPPED_UNITS,
     QUATERNION,
-    TableColumns,
     read_table_columns,
 )
 
@@ -122,7 +122,7 @@ def read_trajectory(
     topic: str | None = None,
     topics: Collection[str] = (),
 ) -> Trajectory:
-    """Read a trajectory; its layout is found by its content where the request does not state it.
+    """Read a trajectory; its layout is found by its content where the request does not name it.
 
     Args:
         path: The file.
@@ -139,68 +139,71 @@ def read_trajectory(
             pose, or earlier than the one before.
         SettingsError: An option does not fit the file.
     """
-    stated = request.layout_of(which)
     mapping = mapping or Columns(MAPPED_UNITS)
-    plain = replace(mapping, columns={}, keep=())
-    if is_ros_log(path):
-        _require_no_other(path, request, stated)
-        logged = read_logged_poses(path, topic=topic, topics=topics)
-        found = _trajectory(path, Layout.ROS, logged.table, plain, request)
-        kept = found.rows.kept
-        covariance = logged.covariance if kept is None or logged.covariance is None else (
-            logged.covariance[kept]
-        )  # fmt: skip
-        found = replace(
-            found, topic=logged.topic, covariance=covariance, files=tuple(bag_files(path))
-        )
-        return _with_all_rows(found, mapping)
-    if stated is Layout.ROS:
-        raise DataError("is no ROS log by its name; expected .mcap, .db3, .bag or a bag's folder, "
-                        "or another --layout", file=path)  # fmt: skip
-    numbers = read_number_table(path, stated, plane=request.plane)
-    if numbers is None:
-        table = read_table_file(path, sheet=mapping.sheet)
-        return _trajectory(path, Layout.TABLE, table, mapping, request)
-    layout, table = numbers
-    times = request.times if layout is Layout.KITTI else None
-    if times is not None:
-        table = _with_times(table, times)
-    found = _trajectory(path, layout, table, plain, request)
-    timed = layout is not Layout.KITTI or times is not None
-    files = (path, *((times,) if times is not None else ()))
-    return _with_all_rows(replace(found, timed=timed, files=files), mapping)
-
-
-def _trajectory(
-    path: Path, layout: Layout, table: RawTable, mapping: Columns, request: TrajectoryRequest
-) -> Trajectory:
-    """Convert a table of poses to a trajectory, with notes on what is doubtful."""
+    layout, rows, more = _rows(path, request, of_file(request.layout, which), mapping,
+                               {"topic": topic, "topics": topics})  # fmt: skip
+    is_table = layout is Layout.TABLE
+    read = read_table_columns(rows, mapping if is_table else replace(mapping, columns={}, keep=()))
+    columns, kept, covariance = read.columns, read.table.kept, more.get("covariance")
     plane = request.plane or (Plane.XZ if layout is Layout.KITTI else Plane.XY)
-    forward = request.forward or (Axis.Z if "z" in plane else Axis.X)
-    read = read_table_columns(table, mapping, MAPPED_UNITS)
-    columns = read.columns
     if "z_m" not in columns and plane is not Plane.XY:
         raise SettingsError(f"{path} has no column z; leave --plane out", key="--plane")
+    if covariance is not None and kept is not None:
+        more["covariance"] = covariance[kept]
     zero = np.zeros(len(read.table))
     position = np.column_stack([columns.get(name, zero) for name in ("x_m", "y_m", "z_m")])
     trajectory = Trajectory(
         file=path,
         layout=layout,
-        path=RigidPath(columns["t_s"], position, _rotation(read)),
+        path=RigidPath(columns["t_s"], position, _rotation(columns)),
         columns=columns,
         rows=read.table,
         plane=plane,
-        forward=forward,
-        source=mapping.source or table.source or "unknown",
-        notes=_named(path, (*table.notes, *read.notes)),
-        files=(path, *([mapping.file] if mapping.file and layout is Layout.TABLE else [])),
+        forward=request.forward or (Axis.Z if "z" in plane else Axis.X),
+        source=mapping.source or rows.source or "unknown",
+        **more,
     )
-    return _with_doubts(trajectory)
+    notes = [*rows.notes, *read.notes, *_doubts(trajectory)]
+    if mapping.keep and not is_table:
+        notes.append(
+            f"all poses are read; [{mapping.where}rows] keep in {mapping.stated_in} applies to "
+            f"tables only, not to {layout}"
+        )
+    named = (each if each.startswith(path.name) else f"{path.name}: {each}" for each in notes)
+    return replace(trajectory, notes=tuple(named))
 
 
-def _rotation(read: TableColumns) -> Array | None:
+def _rows(
+    path: Path,
+    request: TrajectoryRequest,
+    layout: Layout | None,
+    mapping: Columns,
+    topics: Mapping[str, Any],
+) -> tuple[Layout, RawTable, dict[str, Any]]:
+    """Read layout, table of poses, and what else the file gives of a `Trajectory`, by attribute."""
+    if is_ros_log(path):
+        for key, wrong in (("--times", request.times is not None),
+                           ("--layout", layout not in (None, Layout.ROS))):  # fmt: skip
+            if wrong:
+                raise SettingsError(f"{path} is a ROS log; leave the option out", key=key)
+        logged = read_logged_poses(path, **topics)
+        more = {"topic": logged.topic, "covariance": logged.covariance}
+        return Layout.ROS, logged.table, {**more, "files": tuple(bag_files(path))}
+    if layout is Layout.ROS:
+        raise DataError("is no ROS log by its name; expected .mcap, .db3, .bag or a bag's folder, "
+                        "or another --layout", file=path)  # fmt: skip
+    numbers = read_number_table(path, layout, plane=request.plane)
+    if numbers is None:
+        files = (path, *([mapping.file] if mapping.file else []))
+        return Layout.TABLE, read_table_file(path, sheet=mapping.sheet), {"files": files}
+    layout, table = numbers
+    if layout is not Layout.KITTI or request.times is None:
+        return layout, table, {"files": (path,), "timed": layout is not Layout.KITTI}
+    return layout, _with_times(table, request.times), {"files": (path, request.times)}
+
+
+def _rotation(columns: Mapping[str, Array]) -> Array | None:
     """Return rotations by the quaternion, else by the heading; None without either."""
-    columns = read.columns
     if set(QUATERNION) <= set(columns):
         return rotations_of_quaternions(np.column_stack([columns[name] for name in QUATERNION]))
     if "yaw_rad" not in columns:
@@ -222,35 +225,14 @@ def _with_times(table: RawTable, file: Path) -> RawTable:
             key="--times",
         )
     t = pd.Series(times.rows[:, 0])
-    own = RawTable(file, {"t_s": t}, header_line=times.line - 1)
-    own.require_increasing("t_s", t.to_numpy())
+    RawTable(file, {"t_s": t}, header_line=times.line - 1).require_increasing("t_s", t.to_numpy())
     return replace(table, columns={**table.columns, "t_s": t}, units={})
 
 
-def _require_no_other(path: Path, request: TrajectoryRequest, stated: Layout | None) -> None:
-    """Raise `SettingsError` for options that do not fit a ROS log."""
-    if request.times is not None:
-        raise SettingsError(f"{path} is a ROS log, whose messages have times; leave the option out",
-                            key="--times")  # fmt: skip
-    if stated not in (None, Layout.ROS):
-        raise SettingsError(f"{path} is a ROS log; leave the option out", key="--layout")
-
-
-def _with_all_rows(trajectory: Trajectory, mapping: Columns | None) -> Trajectory:
-    """Add a note that rows are chosen from tables only, where `[rows] keep` is stated."""
-    if mapping is None or not mapping.keep:
-        return trajectory
-    note = (
-        f"all poses are read; [{mapping.where}rows] keep in {mapping.stated_in} applies to tables "
-        f"only, not to {trajectory.layout}"
-    )
-    return replace(trajectory, notes=(*trajectory.notes, *_named(trajectory.file, [note])))
-
-
-def _with_doubts(trajectory: Trajectory) -> Trajectory:
-    """Add notes where rotations leave the plane, and where the path extends across it."""
-    path, plane, notes = trajectory.path, trajectory.plane, []
-    tilt = float(path.tilt(plane).max())
+def _doubts(trajectory: Trajectory) -> list[str]:
+    """Return notes where rotations leave the plane, and where the path extends across it."""
+    plane, notes = trajectory.plane, []
+    tilt = float(trajectory.path.tilt(plane).max())
     if tilt > _TILTED:
         notes.append(
             f"rotations leave the plane {plane} by up to {np.degrees(tilt):.1f} deg; the heading "
@@ -263,8 +245,4 @@ def _with_doubts(trajectory: Trajectory) -> Trajectory:
             f"the path extends {across:.3g} m across the plane {plane} and {first:.3g} m by "
             f"{second:.3g} m in it; is another --plane meant?"
         )
-    return replace(trajectory, notes=(*trajectory.notes, *_named(trajectory.file, notes)))
-
-
-def _named(path: Path, notes: Sequence[str]) -> tuple[str, ...]:
-    return tuple(note if note.startswith(path.name) else f"{path.name}: {note}" for note in notes)
+    return notes

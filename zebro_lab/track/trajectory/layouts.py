@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read text files of lines of numbers as tables of poses: TUM, KITTI and EuRoC trajectories."""
 
-import math
 import re
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -16,6 +14,7 @@ from model.counted import counted
 from model.rigid_path import plane_axes
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import read_text
+from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import has_table_name
 from zebro_lab.track.trajectory.request import Layout
@@ -33,6 +32,7 @@ _EXPECTED: Final = {
     Layout.EUROC: "8 or more (time, position, quaternion)",
     Layout.KITTI: "12 (three rows of a matrix)",
 }  # fmt: skip
+_PLACE_OF_W: Final = "give --layout tum (w last) or --layout euroc (w first)"
 
 
 class NumberLines(NamedTuple):
@@ -64,50 +64,42 @@ def read_number_lines(path: Path) -> NumberLines | None:
             numbers than the first, a word that is none, or one that is not finite.
     """
     # Not splitlines: it also splits at characters that editors do not count as line ends.
-    lines = [line.strip() for line in re.split(r"\r\n|\n|\r", read_text(path))]
-    kept = [k for k, line in enumerate(lines) if line and not line.startswith("#")]
-    if not kept:
+    lines = pd.Series(re.split(r"\r\n|\n|\r", read_text(path))).str.strip()
+    comments = lines.str.startswith("#")
+    kept = lines[(lines != "") & ~comments]
+    if kept.empty:
         raise DataError("has no pose; expected lines of numbers, or a table", file=path)
-    first = kept[0]
+    first = int(kept.index[0])
     separator = next((sign for sign in (";", ",") if sign in lines[first]), None)
-    if _numbers(lines[first], separator) is None:
+    words = kept.str.rstrip(separator).str.split(separator, expand=True)
+    count = int(words.iloc[0].notna().sum())
+    rows = words.apply(pd.to_numeric, errors="coerce").to_numpy(dtype=float)
+    finite = np.isfinite(rows)
+    if not finite[0, :count].all():
         return None
-    rows = [_numbers(lines[k], separator) for k in kept]
-    count = len(_words(lines[first], separator))
-    for row, (k, numbers) in enumerate(zip(kept, rows, strict=True), start=1):
-        if numbers is None or len(numbers) != count or not all(map(math.isfinite, numbers)):
-            raise DataError(
-                f"found '{lines[k][:60]}'; expected {counted(count, 'finite number')} as in the "
-                "first line; correct or delete the line",
-                file=path, row=row, line=k + 1,
-            )  # fmt: skip
-    comment = next((line for line in lines[:first][::-1] if line.startswith("#")), "")
+    wrong = np.flatnonzero(finite.sum(axis=1) != count)
+    if len(wrong):
+        line = int(kept.index[wrong[0]])
+        raise DataError(
+            f"found '{lines[line][:60]}'; expected {counted(count, 'finite number')} as in the "
+            "first line; correct or delete the line",
+            file=path, row=int(wrong[0]) + 1, line=line + 1,
+        )  # fmt: skip
+    comment = next(iter(lines[:first][comments[:first]].iloc[::-1]), "").lstrip("# ")
     # A unit in brackets belongs to the word before it.
-    header = tuple(_words(re.sub(r"\s+(?=[\[(])", "", comment.lstrip("# ")), separator))
-    matching = header if len(header) == count else ()
-    return NumberLines(np.array(rows), first + 1, separator is not None, matching)
-
-
-def _words(text: str, separator: str | None) -> list[str]:
-    words = [word.strip() for word in text.split(separator)]
-    return words[:-1] if separator and not words[-1] else words
-
-
-def _numbers(text: str, separator: str | None) -> list[float] | None:
-    try:
-        return [float(word) for word in _words(text, separator)]
-    except ValueError:
-        return None
+    header = [word.strip() for word in re.sub(r"\s+(?=[\[(])", "", comment).split(separator)]
+    matching = tuple(header) if len(header) == count else ()
+    return NumberLines(rows, first + 1, separator is not None, matching)
 
 
 def read_number_table(
-    path: Path, stated: Layout | None, *, plane: str | None
+    path: Path, layout: Layout | None, *, plane: str | None
 ) -> tuple[Layout, RawTable] | None:
     """Read lines of numbers as a table with canonical headers; None for another file.
 
     Args:
         path: The file, a table of any kind or lines of numbers.
-        stated: The layout that the user states; None to find it by header and count of numbers.
+        layout: The layout that the user gives; None to find it by header and count of numbers.
         plane: Axes of the floor, None for xy; a body that is upright on it shows whether w is first
             or last.
 
@@ -118,7 +110,7 @@ def read_number_table(
         NotFound: There is no such file.
         DataError: The file is damaged, or its layout is not known or does not fit.
     """
-    if stated is Layout.TABLE or path.suffix.lower() in (".parquet", ".xlsx", ".gz"):
+    if layout is Layout.TABLE or path.suffix.lower() in (".parquet", ".xlsx", ".gz"):
         return None
     try:
         numbers = read_number_lines(path)
@@ -126,43 +118,42 @@ def read_number_table(
         if has_table_name(path) and isinstance(error.__cause__, UnicodeDecodeError):
             return None  # a table in another encoding
         raise
-    if numbers is None and (stated is not None or not has_table_name(path)):
+    if numbers is None and (layout is not None or not has_table_name(path)):
         raise DataError("has a line of words; expected lines of 8 (TUM) or 12 (KITTI) numbers, or "
                         "a table with a suffix such as .csv", file=path)  # fmt: skip
-    return None if numbers is None else _ordered(path, numbers, stated, plane or "xy")
+    return None if numbers is None else _ordered(path, numbers, layout, plane or "xy")
 
 
 def _ordered(
-    path: Path, numbers: NumberLines, stated: Layout | None, plane: str
+    path: Path, numbers: NumberLines, given: Layout | None, plane: str
 ) -> tuple[Layout, RawTable]:
-    """Name the columns by the layout stated, by the header, or by their number."""
+    """Name the columns by the layout given, by the header, or by their number."""
     count = numbers.rows.shape[1]
-    if stated is Layout.KITTI or (stated is None and count == _MATRIX and not numbers.header):
+    if given is Layout.KITTI or (given is None and count == _MATRIX and not numbers.header):
         return Layout.KITTI, _of_matrices(path, numbers)
-    named = {} if stated else named_columns(numbers.header)
+    named = {} if given else named_columns(numbers.header)
+    units = {}
     if set(_TUM) <= set(named):
-        place = {name: numbers.header.index(named[name].header) for name in _TUM}
+        place = {name: numbers.header.index(named[name]) for name in _TUM}
         layout = Layout.EUROC if place["qw"] < place["qx"] else Layout.TUM
-        units = {name: unit for name in _TUM if (unit := named[name].unit)}
+        units = {name: unit for name in _TUM if (unit := unit_in_header(named[name]))}
     else:
-        layout = stated or (Layout.TUM if count == len(_TUM) and not numbers.separated else None)
+        layout = given or (Layout.TUM if count == len(_TUM) and not numbers.separated else None)
         if layout is None or count < len(_TUM) or (layout is Layout.TUM and count > len(_TUM)):
-            raise _unknown(path, count, stated)
+            raise _unknown(path, count, given)
         names = _EUROC if layout is Layout.EUROC else _TUM
-        place, units = {name: names.index(name) for name in names}, {}
-        if stated is None:
+        place = {name: names.index(name) for name in names}
+        if given is None:
             _require_w_last(path, numbers.rows[:, 4:], plane)
-    columns = {name: numbers.rows[:, place[name]] for name in _TUM}
-    if layout is Layout.EUROC and np.all(columns["t_s"] == np.round(columns["t_s"])):
+    rows = numbers.rows[:, [place[name] for name in _TUM]]
+    if layout is Layout.EUROC and np.all(rows[:, 0] == np.round(rows[:, 0])):
         units.setdefault("t_s", "ns")
-    return layout, _table(path, columns, numbers.line, units)
+    return layout, _table(path, rows, numbers.line, units)
 
 
-def _table(
-    path: Path, columns: Mapping[str, Array], line: int, units: Mapping[str, str]
-) -> RawTable:
-    series = {name: pd.Series(values) for name, values in columns.items()}
-    return RawTable(path, series, header_line=line - 1, units=units)
+def _table(path: Path, rows: Array, line: int, units: dict[str, str]) -> RawTable:
+    columns = {name: pd.Series(values) for name, values in zip(_TUM, rows.T, strict=True)}
+    return RawTable(path, columns, header_line=line - 1, units=units)
 
 
 def _of_matrices(path: Path, numbers: NumberLines) -> RawTable:
@@ -176,16 +167,15 @@ def _of_matrices(path: Path, numbers: NumberLines) -> RawTable:
         right = np.abs(product).max(axis=(1, 2)) <= _ROTATION_TOLERANCE
         right &= np.linalg.det(rotation) > 0
     if not right.all():
-        row = int(np.argmin(right))
-        raise _table(path, {}, numbers.line, {}).fault(
+        raise RawTable(path, {}, header_line=numbers.line - 1).fault(
             "numbers 1-3, 5-7 and 9-11 are no rotation matrix; expected lines of a KITTI "
             "trajectory, the first three rows of a 4x4 matrix",
             "rotation",
-            row,
+            int(np.argmin(right)),
         )
     quaternion = Rotation.from_matrix(rotation).as_quat()
-    values = np.column_stack((np.arange(len(matrix)), matrix[:, :, 3], quaternion))
-    return _table(path, dict(zip(_TUM, values.T, strict=True)), numbers.line, {"t_s": "s"})
+    rows = np.column_stack((np.arange(len(matrix)), matrix[:, :, 3], quaternion))
+    return _table(path, rows, numbers.line, {"t_s": "s"})
 
 
 def _require_w_last(path: Path, quaternion: Array, plane: str) -> None:
@@ -194,20 +184,16 @@ def _require_w_last(path: Path, quaternion: Array, plane: str) -> None:
     if size[:, in_plane].max() > _UPRIGHT >= size[:, 1 + in_plane].max():
         raise DataError(
             "quaternions are upright if their first number is w, and upside down or tilted if the "
-            "last is w as in TUM files; give --layout euroc (w first) or --layout tum (w last)",
+            f"last is w as in TUM files; {_PLACE_OF_W}",
             file=path,
         )
 
 
-def _unknown(path: Path, count: int, stated: Layout | None) -> DataError:
-    if count in (len(_TUM), 17) and stated is None:
-        return DataError(
-            f"has {count} numbers a line and no header that names them, so that the place of the "
-            "quaternion's w is open; give --layout tum (w last) or --layout euroc (w first)",
-            file=path,
-        )
-    return DataError(
-        f"has {count} numbers a line; expected {_EXPECTED[stated]}, or a table with a header line "
-        "(t, x, y, perhaps yaw, or z and qx, qy, qz, qw)",
-        file=path,
+def _unknown(path: Path, count: int, given: Layout | None) -> DataError:
+    problem = (
+        f"expected {_EXPECTED[given]}, or a table with a header line (t, x, y, perhaps yaw, or z "
+        "and qx, qy, qz, qw)"
     )
+    if count in (len(_TUM), 17) and given is None:  # 17: EuRoC with speeds and biases
+        problem = f"no header names them, so that the place of w is open; {_PLACE_OF_W}"
+    return DataError(f"has {count} numbers a line; {problem}", file=path)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Options that say how the trajectory of another program is read."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from typer import Option
 
@@ -73,6 +74,15 @@ class TrajectoryRequest:
         Option(metavar="FILE", help="Times of a trajectory without times, one a line [s]."),
     ] = None
 
-    def layout_of(self, which: int) -> Layout | None:
-        """Return the layout stated for the first (0) or second (1) file; None if not stated."""
-        return self.layout[min(which, len(self.layout) - 1)] if self.layout else None
+
+T = TypeVar("T")
+
+
+def of_file(given: Sequence[T], which: int) -> T | None:
+    """Return the value of a repeatable option for a file; the last holds for those after it.
+
+    Args:
+        given: The values given.
+        which: 0 for the first file of a command, 1 for the second.
+    """
+    return given[min(which, len(given) - 1)] if given else None

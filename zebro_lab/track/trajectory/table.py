@@ -57,35 +57,21 @@ _HEADERS: Final = {
     "yaw_rad": r"yaw|yaw_rad",
 }  # fmt: skip
 """Regular expression of each canonical column's header, in lower case and without its unit."""
-_WITH_UNIT: Final = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]")
+_UNIT: Final = re.compile(r"[\[(][^\])]*[\])]\s*$")
 
 
-class NamedColumn(NamedTuple):
-    """A recognised column.
-
-    Attributes:
-        header: Its header.
-        unit: The unit in brackets after its name; None without one.
-    """
-
-    header: str
-    unit: str | None
-
-
-def named_columns(headers: Sequence[str]) -> Mapping[str, NamedColumn]:
-    """Recognise the columns of a trajectory, by canonical name; of several that fit, the first.
+def named_columns(headers: Sequence[str]) -> Mapping[str, str]:
+    """Return the header of each column of a trajectory by canonical name; of several the first.
 
     >>> named_columns(["#timestamp [ns]", "p_RS_R_x [m]"])["t_s"]
-    NamedColumn(header='#timestamp [ns]', unit='ns')
+    '#timestamp [ns]'
     """
-    found: dict[str, NamedColumn] = {}
+    found: dict[str, str] = {}
     for header in headers:
-        match = _WITH_UNIT.fullmatch(header.strip())
-        name, unit = (match[1], match[2].strip()) if match else (header, None)
-        word = name.strip("# ").lower()
+        word = _UNIT.sub("", header).strip("# ").lower()
         for canonical, pattern in _HEADERS.items():
             if re.fullmatch(pattern, word):
-                found.setdefault(canonical, NamedColumn(header, unit))
+                found.setdefault(canonical, header)
     return found
 
 
@@ -104,18 +90,14 @@ class TableColumns(NamedTuple):
     table: RawTable
 
 
-def read_table_columns(
-    table: RawTable, mapping: Columns, units: Mapping[str, str], *, what: str = "trajectory"
-) -> TableColumns:
-    """Convert the columns of a path to SI, and check its stamps.
+def read_table_columns(table: RawTable, mapping: Columns) -> TableColumns:
+    """Convert the columns of a trajectory to SI, and check its stamps.
 
     Rows without any number of a pose are gaps, as motion-capture systems write them: left out.
 
     Args:
         table: The table.
-        mapping: Headers and units of its columns, see `recognised`.
-        units: Canonical names to look for; time, x and y are needed.
-        what: Description of the path, for error messages.
+        mapping: Headers and units of its columns, see `recognised`; time, x and y are needed.
 
     Raises:
         DataError: Time, x or y is missing, a cell is no finite number, or a stamp is earlier than
@@ -123,17 +105,21 @@ def read_table_columns(
             fit the path in degrees alone.
     """
     mapping = recognised(table, mapping)
-    table, empty = _with_poses(table, mapping)
-    columns = {
-        name: mapping.numbers(
-            table, name, what=f"{name} of the {what}", advice=_advice(mapping, name)
-        )
-        for name in units
-        if name in NEEDED or mapping.has(table, name)
-    }
-    notes = (*empty, *mapping.conversions(table), *_in_seconds(table, mapping, columns))
+    table, notes = _with_poses(table, mapping)
+    columns = {}
+    for name in MAPPED_UNITS:
+        if name in NEEDED or mapping.has(table, name):
+            advice = (
+                "leave such poses out, as by "
+                f'[{mapping.where}rows] keep = ["`{mapping.mapped[name].name}` > -1e9"] in '
+                f"{mapping.stated_in}"
+            )
+            columns[name] = mapping.numbers(
+                table, name, what=f"{name} of the trajectory", advice=advice
+            )
+    notes += [*mapping.conversions(table), *_in_seconds(table, mapping, columns)]
     _require_radians(table, mapping, columns)
-    notes = (*notes, *_require_metres(table, mapping, columns))
+    notes += _require_metres(table, mapping, columns)
     kept, repeated = _kept_stamps(table, mapping, columns)
     columns = {name: column[kept] for name, column in columns.items()}
     table = table.part(kept)
@@ -141,7 +127,7 @@ def read_table_columns(
     return TableColumns(columns, (*notes, *repeated), table)
 
 
-def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) -> tuple[str, ...]:
+def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) -> list[str]:
     """Convert stamps whose unit nobody states to seconds if they are times since 1970; note it.
 
     Raises:
@@ -150,13 +136,13 @@ def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) ->
     """
     time, t = mapping.mapped["t_s"], columns["t_s"]
     stated = time.in_unit_of(table, "s")
-    notes = ()
+    notes = []
     if stated.factor == 1.0 and time.name not in table.units:
         low, high = _SINCE_1970
         for unit, factor in _UNITS.items():
             if low <= float(np.abs(t).max(initial=0.0)) * factor <= high and factor != 1.0:
                 columns["t_s"] = t = t * factor
-                notes = (f"{table.path.name}: stamps are read as times since 1970 in {unit}",)
+                notes = [f"{table.path.name}: stamps are read as times since 1970 in {unit}"]
     gap = abs(float(np.median(np.diff(t)))) if len(t) > 1 else 0.0
     if gap and not _GAPS[0] < gap < _GAPS[1]:
         raise table.fault(
@@ -170,7 +156,7 @@ def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) ->
 
 def _kept_stamps(
     table: RawTable, mapping: Columns, columns: Mapping[str, Array]
-) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+) -> tuple[NDArray[np.intp], list[str]]:
     """Return the rows to keep, the first of each stamp, and a note on those that are left out.
 
     Raises:
@@ -191,24 +177,18 @@ def _kept_stamps(
         )
     same = step == 0
     moved = same & np.any(np.diff(poses, axis=0, prepend=poses[:1]) != 0, axis=1)
-    first = int(np.argmax(moved))
-    other = (
-        f"the stamp {float(t[first])!r} s is that of row {table.row(first - 1)}, with another pose"
-    )
-    if moved.sum() > _MOST_REPEATED * len(t) + 1:
-        raise table.fault(
-            f"{other}, as in {moved.sum()} rows; expected increasing stamps: write them with more "
-            "digits",
-            header,
-            first,
-        )
+    at, count = int(np.argmax(moved)), int(moved.sum())
+    other = f"{counted(count, 'row')} with another pose than the row before with the same stamp"
+    if count > _MOST_REPEATED * len(t) + 1:
+        problem = f"{other}; expected increasing stamps: write them with more digits"
+        raise table.fault(problem, header, at)
     notes = []
     if same.any():
         rows = counted(int(same.sum()), "row")
-        notes.append(f"{table.path.name}: {rows} left out whose stamp is that of the row before")
-    if moved.any():
-        notes.append(f"{table.path.name}: row {table.row(first)}: {other}, which is kept")
-    return np.flatnonzero(~same), tuple(notes)
+        notes = [f"{table.path.name}: {rows} left out whose stamp is that of the row before"]
+    if count:
+        notes.append(f"{table.path.name}: left out, {other}, the first row {table.row(at)}")
+    return np.flatnonzero(~same), notes
 
 
 def _require_unit_quaternions(
@@ -230,7 +210,7 @@ def _require_unit_quaternions(
         )
 
 
-def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, tuple[str, ...]]:
+def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, list[str]]:
     """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on the rest."""
     if mapping.keep:
         table = table.part(kept_rows(table, mapping.keep, where=mapping.where))
@@ -239,26 +219,16 @@ def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, tuple[str,
     cells = [table.columns[header].isna() for header in headers if header in table.columns]
     empty = np.all(cells, axis=0) if cells else np.zeros(len(table), dtype=bool)
     if not empty.any() or empty.all():
-        return table, ()
+        return table, []
     gaps = int(np.count_nonzero(np.diff(empty.astype(int), prepend=0) > 0))
     where = f"in {counted(gaps, 'gap')}, the first from row {table.row(int(np.argmax(empty)))}"
     note = f"{table.path.name}: {counted(int(empty.sum()), 'empty pose')} left out {where}"
-    return table.part(np.flatnonzero(~empty)), (note,)
-
-
-def _advice(mapping: Columns, name: str) -> str:
-    header = mapping.mapped[name].name
-    return (
-        f'leave such poses out, as by [{mapping.where}rows] keep = ["`{header}` > -1e9"] in '
-        f"{mapping.stated_in}"
-    )
+    return table.part(np.flatnonzero(~empty)), [note]
 
 
 def _require_radians(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> None:
-    heading = mapping.mapped.get("yaw_rad")
-    if "yaw_rad" not in columns or heading is None:
-        return
-    if heading.unit_stated or heading.name in table.units:
+    heading = mapping.mapped["yaw_rad"]
+    if "yaw_rad" not in columns or heading.unit_stated or heading.name in table.units:
         return
     position = np.column_stack([columns["x_m"], columns["y_m"]])
     if are_degrees(columns["yaw_rad"], position):
@@ -271,9 +241,7 @@ def _require_radians(table: RawTable, mapping: Columns, columns: Mapping[str, Ar
         )
 
 
-def _require_metres(
-    table: RawTable, mapping: Columns, columns: Mapping[str, Array]
-) -> tuple[str, ...]:
+def _require_metres(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> list[str]:
     """Return a note on positions whose unit nobody states: they are taken in metres.
 
     Raises:
@@ -281,7 +249,7 @@ def _require_metres(
     """
     east, t = mapping.mapped["x_m"], columns["t_s"]
     if east.name == "x_m" or mapping.states_unit(table, "x_m"):
-        return ()
+        return []
     at = np.linspace(0, len(t) - 1, _LEGS_OF_PATH).astype(int)
     position = np.column_stack([columns["x_m"], columns["y_m"]])[at]
     way = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum())
@@ -294,15 +262,14 @@ def _require_metres(
             "right",
             east.name,
         )
-    return (f"positions ('{east.name}', …) are taken in m, since no unit of them is stated",)
+    return [f"positions ('{east.name}', …) are taken in m, since no unit of them is stated"]
 
 
 def recognised(table: RawTable, mapping: Columns) -> Columns:
     """Map columns that are missing and not mapped in a file to headers that are recognised."""
-    for name, seen in named_columns(list(table.columns)).items():
-        free = name in mapping.mapped and mapping.mapped[name].name == name
-        if free and not mapping.has(table, name):
-            mapping = mapping.called(name, seen.header)
+    for name, header in named_columns(list(table.columns)).items():
+        if mapping.mapped[name].name == name and not mapping.has(table, name):
+            mapping = mapping.called(name, header)
     return mapping
 
 

@@ -96,7 +96,7 @@ def judge_pair(
         DataError: Only one has times, both have none and not equally many poses, or fewer than
             `FEWEST` poses match.
     """
-    seen, found, notes = _matched(reference, estimate, max_difference, time_offset)
+    seen, found, note = _matched(reference, estimate, max_difference, time_offset)
     tracked = seen.in_plane(reference.plane, forward=reference.forward)
     estimated = replace(found, t=seen.t).in_plane(estimate.plane, forward=estimate.forward)
     flat = RigidPath.of_poses(tracked)
@@ -106,19 +106,12 @@ def judge_pair(
         pairs.append(("space", found, seen))
     rows = tuple(_errors(*pair, distances=distances, correct_scale=correct_scale) for pair in pairs)
     scaled = replace(estimated, position=rows[0].estimate.position)
-    sizes = () if correct_scale else _sizes(reference, estimate, seen, found)
-    notes = (*sizes, *reference.notes, *estimate.notes, *notes)
-    return JudgedPair(reference, estimate, rows, tracked, scaled, notes)
-
-
-def _sizes(
-    reference: Trajectory, estimate: Trajectory, seen: RigidPath, found: RigidPath
-) -> tuple[str, ...]:
-    """Return a question if the extents of both differ by about the factor between two units."""
-    said = unit_warning(
+    sizes = () if correct_scale else unit_warning(
         (seen.position, str(reference.file)), (found.position, str(estimate.file)), near=_NEAR
-    )
-    return tuple(f"{each}, or add --correct-scale" for each in said)
+    )  # fmt: skip
+    sizes = (f"{each}, or add --correct-scale" for each in sizes)
+    notes = (*sizes, *reference.notes, *estimate.notes, note)
+    return JudgedPair(reference, estimate, rows, tracked, scaled, notes)
 
 
 def _errors(
@@ -135,7 +128,7 @@ def _errors(
 
 def _matched(
     reference: Trajectory, estimate: Trajectory, max_difference: float, time_offset: float
-) -> tuple[RigidPath, RigidPath, tuple[str, ...]]:
+) -> tuple[RigidPath, RigidPath, str]:
     """Return the matched poses of the reference and of the estimate, and a note on the others."""
     if reference.timed != estimate.timed:
         without = estimate if reference.timed else reference
@@ -151,23 +144,21 @@ def _matched(
                 "expected as many of both, or the file of their times with --times",
                 file=estimate.file,
             )
-        return a, b, ("poses are matched by their number: the files have no times",)
+        return a, b, "poses are matched by their number: the files have no times"
     a = replace(a, t=a.t + time_offset)
     chosen, found = match_times(a.t, b.t, most=max_difference)
     if len(chosen) < FEWEST:
-        raise DataError(_too_few(len(chosen), a, b, max_difference), file=estimate.file)
+        raise DataError(
+            f"poses with a reference pose within {max_difference:g} s: {len(chosen)}; expected "
+            f"{FEWEST} or more: the reference has times from {a.t[0]:.10g} to {a.t[-1]:.10g} s, "
+            f"this file from {b.t[0]:.10g} to {b.t[-1]:.10g} s; try --max-difference, or "
+            "--time-offset for another clock",
+            file=estimate.file,
+        )
     a, b = a.part(chosen), b.part(found)
     widest = float(np.abs(a.t - b.t).max())
     note = (
         f"{len(a)} of {len(reference.path)} reference and {len(estimate.path)} estimated poses are "
         f"matched, at most {widest:.3g} s apart"
     )
-    return a, b, (note,)
-
-
-def _too_few(count: int, a: RigidPath, b: RigidPath, most: float) -> str:
-    return (
-        f"poses with a reference pose within {most:g} s: {count}; expected {FEWEST} or more: the "
-        f"reference has times from {a.t[0]:.10g} to {a.t[-1]:.10g} s, this file from {b.t[0]:.10g} "
-        f"to {b.t[-1]:.10g} s; try --max-difference, or --time-offset for another clock"
-    )
+    return a, b, note

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Ensembles of walks, each with its own law and robot, for the spread of a path."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -16,15 +16,14 @@ from model.robot import Robot
 from model.tasks import compute_tasks
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
-    ORIGIN,
     DynamicsOptions,
-    Start,
     integrate,
     start_state,
     step_times,
 )
-from model.walk.ground import FLAT, Ground
+from model.walk.ground import FLAT, Ground, is_level
 from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
+from model.walk.stride import repeated_strides, strides_until_alike
 from model.walk.traction import TractionTable
 
 
@@ -39,7 +38,6 @@ class WalkDraw:
         stiffness: Factor on the contact stiffness of an ensemble's options [-].
         damping: Factor on the contact damping of an ensemble's options [-].
         ground: The ground.
-        start: Initial pose.
     """
 
     robot: Robot
@@ -48,7 +46,6 @@ class WalkDraw:
     stiffness: float = 1.0
     damping: float = 1.0
     ground: Ground = FLAT
-    start: Start = ORIGIN
 
     def options(self, common: DynamicsOptions) -> DynamicsOptions:
         """Return the common options, contact stiffness and damping times this draw's factors."""
@@ -113,7 +110,7 @@ def walk_ensemble(
         progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
     Returns:
-        The paths of all draws, from their starts, interpolated linearly at `t`, constant after
+        The paths of all draws, from the origin, interpolated linearly at `t`, constant after
         a walk's last step.
 
     Raises:
@@ -181,7 +178,10 @@ def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
 def planar_walk(
     draw: WalkDraw, *, duration: float, options: DynamicsOptions = DEFAULT_OPTIONS
 ) -> PlanarWalk:
-    """Compute the planar path of one draw from its start, at every step.
+    """Compute the planar path of one draw from the origin, at every step.
+
+    A constant gait on level ground is walked until its strides are alike, see `model.walk.stride`;
+    its steps are shortened to fit the gait's period.
 
     Args:
         draw: The draw to walk.
@@ -193,9 +193,32 @@ def planar_walk(
         WalkError: The robot cannot stand at the start, or a step diverged.
     """
     options = draw.options(options)
+    period = draw.reference.period if is_level(draw.ground) else None
+    if period is not None:
+        options = replace(options, dt=period / np.ceil(period / options.dt - 1e-9))
     t = step_times(duration, options.dt)
-    theta = draw.reference.angles(t) + draw.robot.leg_offset
-    state = start_state(draw.robot, theta[0], options, ground=draw.ground, start=draw.start)
-    pose, _ = integrate(draw.robot, draw.table, state, theta, options, ground=draw.ground)
-    q = pose[:, 3:]
-    return PlanarWalk(Poses(t, pose[:, :2], unwrapped_yaw(q)), roll_pitch_yaw(q)[:, :2])
+    steps = len(t) - 1
+    steps_a_stride = steps if period is None else min(round(period / options.dt), steps)
+    theta = draw.reference.angles(t[: steps_a_stride + 1]) + draw.robot.leg_offset
+    walked = strides_until_alike(
+        _strides(draw, theta, options, count=-(-steps // steps_a_stride)),
+        least_length=draw.robot.leg_radius,
+    )
+    states = repeated_strides(walked, steps)
+    yaw = np.unwrap(states[:, 2])
+    return PlanarWalk(Poses(t, states[:, :2], yaw), states[:, 3:])
+
+
+def _strides(
+    draw: WalkDraw, theta: Array, options: DynamicsOptions, *, count: int
+) -> Iterator[Array]:
+    """Walk `count` times through leg angles: x, y, yaw, roll and pitch of each time, (n + 1, 5)."""
+    state = start_state(draw.robot, theta[0], options, ground=draw.ground)
+    steps = len(theta) - 1
+    for stride in range(count):
+        pose, _ = integrate(
+            draw.robot, draw.table, state, theta, options, ground=draw.ground,
+            began=stride * steps * options.dt,
+        )  # fmt: skip
+        roll_pitch, yaw = roll_pitch_yaw(pose[:, 3:])[:, :2], unwrapped_yaw(pose[:, 3:])
+        yield np.column_stack([pose[:, :2], yaw, roll_pitch])

@@ -12,7 +12,7 @@ from model.slip import MagicFormula
 from model.walk.anisotropy import effective_size, find_across, sideways
 from model.walk.arrays import new_work
 from model.walk.dynamics import DynamicsOptions, Start, walk
-from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
+from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.traction import law_table
 from model.walk.traction_lookup import traction_secant
 
@@ -114,9 +114,7 @@ def test_a_turn_to_the_left_is_the_mirror_image_of_one_to_the_right():
 def test_directions_are_those_of_the_leg_wherever_the_body_heads():
     law, options = directed(0.6, 1.5), DynamicsOptions(dt=0.002)
     ahead, turned = (
-        planar_walk(
-            WalkDraw(ROBOT, gait(), law, start=Start(yaw=yaw)), duration=1.5, options=options
-        ).poses.states
+        walk(ROBOT, gait(), law, duration=1.5, start=Start(yaw=yaw), options=options).poses.states
         for yaw in (0.0, 2.0)
     )
     c, s = np.cos(2.0), np.sin(2.0)

@@ -11,7 +11,7 @@ from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import MagicFormula
-from model.walk.dynamics import DynamicsOptions, Start, walk
+from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
 from model.walk.ground import FLAT, with_slope
 from model.walk.traction import law_table
@@ -21,6 +21,7 @@ SOURCE = np.array([34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066])
 SLIP = law_table(MagicFormula("peak"), SOURCE, weight=ROBOT.mass * GRAVITY)
 OPTIONS = DynamicsOptions(dt=0.005)
 TURN = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0)
+ROCK = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
 
 
 def draws(n=6, *, gait=TURN):
@@ -103,16 +104,40 @@ def test_times_that_do_not_increase_are_refused(t):
         walk_ensemble(draws(1), np.array(t))
 
 
+# --- strides of a constant gait
+
+
+@pytest.mark.parametrize(("gait", "duration"), [(TURN, 31.0), (ROCK, 40.0)])
+def test_repeated_strides_end_where_every_step_does(gait, duration):
+    path = walk(ROBOT, gait, SLIP, duration=duration, options=OPTIONS)
+    found = planar_walk(WalkDraw(ROBOT, gait, SLIP), duration=duration, options=OPTIONS)
+    np.testing.assert_allclose(found.poses.t, path.t, atol=1e-9)
+    distance = np.linalg.norm(found.poses.position - path.position[:, :2], axis=1)
+    assert distance.max() < 0.002 * path.length
+    assert np.abs(found.poses.yaw - path.yaw).max() < np.radians(0.5)
+
+
+def test_strides_are_as_long_as_whole_steps_that_fit_the_period():
+    odd = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 1.0037)
+    t = planar_walk(WalkDraw(ROBOT, odd, SLIP), duration=3.0, options=OPTIONS).poses.t
+    steps = odd.period / np.diff(t)
+    np.testing.assert_allclose(steps, round(steps[0]), rtol=1e-9)
+    assert np.diff(t)[0] <= OPTIONS.dt
+
+
+@pytest.mark.parametrize("duration", [0.0, -1.0, np.nan, np.inf])
+def test_a_walk_of_no_time_is_refused(duration):
+    with pytest.raises(DomainError, match="duration"):
+        planar_walk(draws(1)[0], duration=duration, options=OPTIONS)
+
+
 # --- other ground
 
 
-def test_on_a_slope_a_draw_walks_step_by_step_from_its_start():
+def test_on_a_slope_every_step_of_a_draw_is_walked():
     uphill = with_slope(FLAT, np.radians(5.0), 0.0)
-    start = Start(x=0.3, y=-0.2, yaw=1.0)
-    draw = WalkDraw(ROBOT, TURN, SLIP, ground=uphill, start=start)
-    found = planar_walk(draw, duration=2.0, options=OPTIONS).poses
-    path = walk(
-        ROBOT, TURN, SLIP, duration=2.0, ground=uphill, start=start, options=OPTIONS
-    )  # fmt: skip
+    draw = WalkDraw(ROBOT, TURN, SLIP, ground=uphill)
+    found = planar_walk(draw, duration=4.5, options=OPTIONS).poses
+    path = walk(ROBOT, TURN, SLIP, duration=4.5, ground=uphill, options=OPTIONS)
     np.testing.assert_allclose(found.position, path.position[:, :2], atol=1e-12)
     np.testing.assert_allclose(found.yaw, path.yaw, atol=1e-12)

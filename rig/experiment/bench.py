@@ -19,8 +19,8 @@ from rig.errors import ProfileError
 from rig.experiment.readings import Batch, HostTime, Readings, join
 from rig.sample_columns import SampleColumns
 from rig.slip_rig.board import RigBoard
-from rig.slip_rig.decode import decode_board, decode_forces, decode_further_loads
-from rig.slip_rig.drives import DriveBus, disc_speed
+from rig.slip_rig.decode import decode_board, decode_forces, decode_further_loads, disc_speed
+from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import RigProfile
 from rig.slip_rig.rdt import describe_status

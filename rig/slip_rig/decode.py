@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Convert raw samples of a rig to speeds, forces and instantaneous slip ratio, in SI."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -12,7 +13,6 @@ from model.slip.definition import SlipDefinition, slip_ratio
 from rig.device import Sample
 from rig.errors import LimitExceeded, ProtocolError
 from rig.sample_columns import SampleColumns, as_columns
-from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import (
     BoardProfile,
     DiscDrive,
@@ -53,6 +53,19 @@ class DiscSpeeds:
     time: Array
     leg: Array
     ground: Array
+
+
+def disc_speed(drive: DiscDrive, velocity: float) -> float:
+    """Compute the angular speed of a disc from its motor's, positive driving [rad/s].
+
+    Args:
+        drive: Drive of the disc, with gear and sign.
+        velocity: Speed of the motor, the second count of a sample [rev/s].
+
+    >>> round(disc_speed(DiscDrive(node=0, gear=10.0, sign=-1), -20.0), 3)
+    12.566
+    """
+    return drive.sign * velocity * 2 * math.pi / drive.gear
 
 
 def measured_slip(omega_leg: Array, omega_ground: Array, profile: RigProfile) -> Array:

@@ -305,16 +305,3 @@ class OdriveDrive:
 
     def _send(self, command: Command, data: bytes) -> None:
         self._bus._link.write(can_id(self.place.node, command), data)
-
-
-def disc_speed(drive: DiscDrive, velocity: float) -> float:
-    """Compute the angular speed of a disc from its motor's, positive driving [rad/s].
-
-    Args:
-        drive: Drive of the disc, with gear and sign.
-        velocity: Speed of the motor, the second count of a sample [rev/s].
-
-    >>> round(disc_speed(DiscDrive(node=0, gear=10.0, sign=-1), -20.0), 3)
-    12.566
-    """
-    return drive.sign * velocity * 2 * math.pi / drive.gear

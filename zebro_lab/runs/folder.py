@@ -25,6 +25,7 @@ from zebro_lab.runs.manifest import (
     RunManifest,
     read_manifest,
 )
+from zebro_lab.runs.slip_rig_decoding import derive_table
 from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 LOG_FILE = "log.mcap"
@@ -78,10 +79,11 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
     path = folder / LOG_FILE
     if not path.is_file():
         raise NotFound(f"{path}: missing; copy it from the computer where the run was recorded")
-    table, damage, notes = _slip_rig_table(folder, manifest)
+    raw = read_raw_log(path)
+    table, notes = derive_table(folder, raw.streams, zero=manifest.constants)
     _require_radii(manifest, folder / MANIFEST_FILE)
-    if damage is not None:
-        notes = (_salvage_note(folder, manifest, len(table), damage), *notes)
+    if raw.damage is not None:
+        notes = (_salvage_note(folder, manifest, len(table), raw.damage), *notes)
     else:
         require_recorded(path, manifest)
     return SlipRigRun(folder, manifest, table, (folder / MANIFEST_FILE, path), notes)
@@ -174,17 +176,6 @@ def require_ended(folder: Path) -> None:
     """
     if run_state(folder, read_manifest(folder)) == RECORDING:
         raise RecordingError(f"{folder} is being recorded; wait until it has ended")
-
-
-def _slip_rig_table(
-    folder: Path, manifest: RunManifest
-) -> tuple[SlipRigTable, str | None, tuple[str, ...]]:
-    """Compute the samples from raw counts and the profile; return also log damage and notes."""
-    from zebro_lab.runs.slip_rig_decoding import derive_table  # drivers: not for every table
-
-    raw = read_raw_log(folder / LOG_FILE)
-    table, notes = derive_table(folder, raw.streams, zero=manifest.constants)
-    return table, raw.damage, notes
 
 
 def _require_radii(manifest: RunManifest, file: Path) -> None:

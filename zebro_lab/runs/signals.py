@@ -15,8 +15,7 @@ from rig.clock_watch import sample_times
 from rig.errors import RigError
 from rig.imu.profile import ImuProfile, decode_orientation, load_imu_profile
 from rig.sample_columns import SampleColumns
-from rig.slip_rig.decode import Forces, decode_board, decode_forces
-from rig.slip_rig.drives import disc_speed
+from rig.slip_rig.decode import Forces, decode_board, decode_forces, disc_speed
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.zebro.profile import LegProfile, decode_angles, load_leg_profile
 from zebro_lab.files.errors import DataError, SettingsError

@@ -12,10 +12,10 @@ from rig.slip_rig.decode import (
     decode_disc_angles,
     decode_forces,
     decode_speeds,
+    disc_speed,
     require_zero,
     tare,
 )
-from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import load_rig_profile
 
 RIG = load_rig_profile("rig-odrive-netft")

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.bayes.approximation import starting_points
+from model.bayes.autoregression import centred, memory_of, run_variances, whitened
 from model.bayes.averaging.blocks import block_means
 from model.bayes.checks.raw import raw_residuals
 from model.bayes.drawing.laplace import Laplace, find_mode
@@ -279,14 +280,14 @@ def _solved(system: _System, before: Array, prior_sd: float) -> _Solution:
     memory, size = np.zeros(MEMORY), np.ones(int(system.run.max()) + 1)
     left, run = columns, system.run
     for _ in range(3):
-        left, run = _whitened(columns, system.run, memory)
+        left, run = whitened(columns, system.run, memory)
         scaled = left / np.sqrt(size[run])[:, None]
         fit = np.linalg.lstsq(scaled[:, :-1], scaled[:, -1], rcond=1e-9)[0]
-        rest = _centred(columns[:, -1] - columns[:, :-1] @ fit, system.run)
-        size = _sizes(left[:, -1] - left[:, :-1] @ fit, run, len(size))
-        telling = np.bincount(system.run, np.sum(_centred(system.waves, system.run) ** 2, axis=1))
-        memory = _memory(rest, system.run, telling / size**2)
-    left, run = _whitened(columns, system.run, memory)
+        rest = centred(columns[:, -1] - columns[:, :-1] @ fit, system.run)
+        size = run_variances(left[:, -1] - left[:, :-1] @ fit, run, len(size))
+        telling = np.bincount(system.run, np.sum(centred(system.waves, system.run) ** 2, axis=1))
+        memory = memory_of(rest, system.run, telling / size**2, order=MEMORY)
+    left, run = whitened(columns, system.run, memory)
     scaled = left / np.sqrt(size[run])[:, None]
     prior = np.append(np.full(m, prior_sd), np.ones(columns.shape[1] - m - 1))
     found = _with_prior(scaled, run, prior, m)
@@ -303,9 +304,8 @@ def _with_prior(columns: Array, run: NDArray[np.intp], prior_sd: Array, m: int) 
         m: Number of waves.
     """
     starts = np.flatnonzero(np.diff(run, prepend=-1))
-    products = np.stack(
-        [part.T @ part for part in np.split(columns, starts[1:])]
-    )  # of each run, (runs, k + 1, k + 1)
+    by_run = np.split(columns, starts[1:])
+    products = np.stack([part.T @ part for part in by_run])  # (runs, k + 1, k + 1)
     whole, prior = products.sum(axis=0), np.diag(prior_sd**-2)
     covariance = np.linalg.inv(prior + whole[:-1, :-1])
     mean = covariance @ whole[:-1, -1]
@@ -338,63 +338,6 @@ def _fit_of(products: Array, known: Array, prior: Array, used: NDArray[np.bool_]
     return products[:, :-1, -1] @ mean - 0.5 * np.einsum(
         "i,kij,j->k", mean, products[:, :-1, :-1], mean
     )
-
-
-def _centred(values: Array, run: NDArray[np.intp]) -> Array:
-    """Take the mean of its run from each value, shape (n,) or (n, k)."""
-    starts = np.flatnonzero(np.diff(run, prepend=-1))
-    size = np.diff(np.append(starts, len(run)))
-    mean = (np.add.reduceat(values, starts, axis=0).T / size).T
-    return values - np.repeat(mean, size, axis=0)
-
-
-def _whitened(
-    columns: Array, run: NDArray[np.intp], memory: Array
-) -> tuple[Array, NDArray[np.intp]]:
-    """Take from each row what `memory` expects by those before, and the run's mean.
-
-    Returns:
-        The rows that have as many before them in their run, and their runs.
-    """
-    n = len(memory)
-    white = columns[n:] - sum(
-        each * columns[n - lag : len(columns) - lag] for lag, each in enumerate(memory, 1)
-    )
-    inside = run[n:] == run[:-n]
-    return _centred(white[inside], run[n:][inside]), run[n:][inside]
-
-
-def _sizes(rest: Array, run: NDArray[np.intp], n_runs: int) -> Array:
-    """Estimate the variance of the noise in each run, shape (n_runs,) [N^2]."""
-    count = np.bincount(run, minlength=n_runs)
-    own = np.bincount(run, rest**2, minlength=n_runs) / np.maximum(count - 1, 1)
-    typical = float(np.median(own[count > 1])) if (count > 1).any() else 1.0
-    return np.maximum(own, 1e-3 * typical + 1e-300)
-
-
-def _memory(rest: Array, run: NDArray[np.intp], weight: Array) -> Array:
-    """Estimate how noise follows that before, from centred residuals of runs by weight, (MEMORY,).
-
-    What taking the mean has taken from the covariances of short runs is added again.
-    """
-    lags = range(MEMORY + 1)
-    pairs = [(np.flatnonzero(run[lag:] == run[: len(run) - lag]), lag) for lag in lags]
-    raw = np.array([
-        np.sum(weight[run[i]] * rest[i] * rest[i + lag]) / np.sum(weight[run[i]])
-        for i, lag in pairs
-    ])  # fmt: skip
-    length = float(np.sum(weight[run]) / np.sum(weight[np.unique(run)]))
-    memory, covariance = np.zeros(MEMORY), raw
-    for _ in range(5):
-        if covariance[0] <= 0:
-            return np.zeros(MEMORY)
-        matrix = covariance[np.abs(np.subtract.outer(lags[:-1], lags[:-1]))]
-        ridge = 1e-9 * covariance[0] * np.eye(MEMORY)
-        memory = np.linalg.solve(matrix + ridge, covariance[1:])
-        fresh = covariance[0] - memory @ covariance[1:]
-        of_mean = fresh / max(1 - memory.sum(), 0.1) ** 2 / length
-        covariance = raw + max(float(of_mean), 0.0)
-    return memory
 
 
 def _remaining(angles: DiscAngles, discs: tuple[DiscRunOut, ...], errors: RigErrors) -> float:

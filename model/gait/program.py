@@ -23,7 +23,7 @@ from model.gait.maxplus import oplus, otimes, solve_implicit
 from model.gait.notation import Gait
 from model.gait.reference import SampledReference
 from model.gait.stance import Intervals, event_intervals
-from model.gait.steering import ideal_liftoff, touchdown_of_stance
+from model.gait.steering import ideal_liftoff, scaled_stance
 from model.gait.swing import TURN, landing_angles, swing
 from model.gait.turning import turning_system
 from model.robot import N_LEGS
@@ -113,28 +113,6 @@ def cycle_gait(
     return CycleGait(
         system, np.where(forwards, down, up), np.where(forwards, up, down), sense, leg_arc
     )
-
-
-def scaled_stance(
-    touchdown: float, liftoff: float, share: float, leg_arc: float
-) -> tuple[float, float]:
-    """Return touchdown and lift-off angles of a share of a stance [rad].
-
-    They differ from those of equal hip height by the share of the whole stance's difference: at 1
-    they are the given ones, at 0 both are that of the highest hip.
-
-    Args:
-        touchdown: Touchdown angle of the whole stance [rad].
-        liftoff: Its lift-off angle [rad].
-        share: Share of the stance angle, from 0 to 1 [-].
-        leg_arc: Angle of the legs' arc [rad].
-    """
-    if share == 1:
-        return touchdown, liftoff
-    stance = liftoff - touchdown
-    later = touchdown - touchdown_of_stance(stance, leg_arc=leg_arc)
-    down = touchdown_of_stance(share * stance, leg_arc=leg_arc) + share * later
-    return down, down + share * stance
 
 
 @dataclass(frozen=True, eq=False)

@@ -197,6 +197,28 @@ def touchdown_of_stance(stance: float, *, leg_arc: float = np.pi) -> float:
     return (low + high) / 2
 
 
+def scaled_stance(
+    touchdown: float, liftoff: float, share: float, leg_arc: float
+) -> tuple[float, float]:
+    """Return touchdown and lift-off angles of a share of a stance [rad].
+
+    They differ from those of equal hip height by the share of the whole stance's difference: at 1
+    they are the given ones, at 0 both are that of the highest hip.
+
+    Args:
+        touchdown: Touchdown angle of the whole stance [rad].
+        liftoff: Its lift-off angle [rad].
+        share: Share of the stance angle, from 0 to 1 [-].
+        leg_arc: Angle of the legs' arc [rad].
+    """
+    if share == 1:
+        return touchdown, liftoff
+    stance = liftoff - touchdown
+    later = touchdown - touchdown_of_stance(stance, leg_arc=leg_arc)
+    down = touchdown_of_stance(share * stance, leg_arc=leg_arc) + share * later
+    return down, down + share * stance
+
+
 def tripod_angles(
     inner_touchdown: float,
     steering_factor: float = 1.0,

@@ -10,8 +10,8 @@ from model.arrays import Array
 from model.errors import DomainError
 from model.gait.direction import Direction
 from model.gait.notation import TRIPOD, Gait
-from model.gait.program import CycleGait, ProgramLegs, cycle_gait, scaled_stance
-from model.gait.steering import ideal_liftoff
+from model.gait.program import CycleGait, ProgramLegs, cycle_gait
+from model.gait.steering import ideal_liftoff, scaled_stance
 from model.robot import Robot
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.dynamics import DynamicsOptions

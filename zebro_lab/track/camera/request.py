@@ -31,9 +31,3 @@ class CameraRequest:
             "Terms that a named model leaves out are taken to be zero."
         ),
     ] = "auto"
-
-    def __post_init__(self) -> None:
-        """Raise `SettingsError` for a board that does not exist."""
-        from zebro_lab.track.camera.board_argument import parse_board
-
-        parse_board(self.board)

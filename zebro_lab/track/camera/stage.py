@@ -12,20 +12,22 @@ from pathlib import Path
 from tracking.camera import (
     Board,
     CameraCalibration,
+    CharucoBoard,
     Checkerboard,
     SeenBoard,
     calibrate,
     find_board,
 )
-from tracking.errors import CalibrationError, PhotoError
+from tracking.errors import CalibrationError, PhotoError, TrackingError
 from tracking.images import find_photos, read_pixels
+from tracking.markers import dictionary_named
 from tracking.photos.workers import PROCESSES, WORTH_WORKERS, Progress, run_batches
 from zebro_lab.files.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
-from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.own_file import require_own, text_file
 from zebro_lab.files.provenance import file_hash
-from zebro_lab.track.camera.board_argument import parse_board
-from zebro_lab.track.camera.kit import kit_pages, starter_floor
+from zebro_lab.files.units import option_to_si
+from zebro_lab.track.camera.kit import BOARD, kit_pages, starter_floor
 from zebro_lab.track.camera.request import CameraRequest
 from zebro_lab.track.camera_file import HEADING, render_camera_file
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
@@ -35,6 +37,13 @@ KIT_FILE = "kit.pdf"
 FEWEST_VIEWS = 3
 _TRIED = 6  # photographs in which another board is looked for
 LENS = text_file("camera calibrate", HEADING)
+
+
+_BOARD_EXPECTED = (
+    "expected kit, checkerboard:COLUMNSxROWS:SQUARE (inner corners) such as "
+    "checkerboard:9x6:25mm, or charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY (squares) such as "
+    "charuco:7x5:35mm:26mm:5x5_50"
+)
 
 
 @dataclass(frozen=True)
@@ -50,6 +59,55 @@ class CameraResult:
     file: Path
     fit: CameraCalibration
     left_out: dict[str, str]
+
+
+def parse_board(text: str) -> Board:
+    """Parse `--board`: `kit`, `checkerboard:COLUMNSxROWS:SQUARE`, or a ChArUco board.
+
+    A ChArUco board is `charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY`.
+
+    Raises:
+        SettingsError: The form, a number, a length (above 0, below 1 m), its unit or the dictionary
+            is invalid, or markers are not smaller than squares.
+
+    >>> parse_board("checkerboard:9x6:25mm")
+    Checkerboard(columns=9, rows=6, square=0.025)
+    """
+    kind, *parts = text.split(":")
+    if kind == "kit" and not parts:
+        return BOARD
+    if kind == "checkerboard" and len(parts) == 2:
+        columns, rows = _board_grid(text, parts[0])
+        return Checkerboard(columns, rows, _board_length(text, parts[1]))
+    if kind == "charuco" and len(parts) == 4:
+        columns, rows = _board_grid(text, parts[0])
+        square, marker = _board_length(text, parts[1]), _board_length(text, parts[2])
+        if marker >= square:
+            raise _board_error(text, f"markers of {parts[2]} do not fit into squares of {parts[1]}")
+        try:
+            dictionary_named(parts[3])
+        except TrackingError as error:
+            raise SettingsError(str(error), key="--board") from error
+        return CharucoBoard(columns, rows, square, marker, parts[3])
+    raise _board_error(text, "is not a board")
+
+
+def _board_grid(text: str, part: str) -> tuple[int, int]:
+    columns, _, rows = part.partition("x")
+    if not (columns.isdigit() and rows.isdigit() and int(columns) > 1 and int(rows) > 1):
+        raise _board_error(text, f"'{part}' is not COLUMNSxROWS, 2 or more each")
+    return int(columns), int(rows)
+
+
+def _board_length(text: str, part: str) -> float:
+    length = option_to_si(part, "m", key="--board")
+    if not 0 < length < 1:
+        raise _board_error(text, f"'{part}' is not above 0 and below 1 m; give a unit, as in 25mm")
+    return length
+
+
+def _board_error(text: str, problem: str) -> SettingsError:
+    return SettingsError(f"'{text}': {problem}; {_BOARD_EXPECTED}", key="--board")
 
 
 def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult:

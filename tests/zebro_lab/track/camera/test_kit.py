@@ -13,7 +13,6 @@ from tracking.camera import find_board
 from tracking.markers import find_markers
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_print import KIT_PRINT
-from zebro_lab.track.camera.board_argument import parse_board
 from zebro_lab.track.camera.kit import (
     BOARD,
     FLOOR_MARKERS,
@@ -24,6 +23,7 @@ from zebro_lab.track.camera.kit import (
     starter_floor,
 )
 from zebro_lab.track.camera.pictures import draw_page, save_pages
+from zebro_lab.track.camera.stage import parse_board
 
 POINT = 25.4 / 72  # mm
 ROBOT_PAGE, BOARD_PAGE = 1, -1

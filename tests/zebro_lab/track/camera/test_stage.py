@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from tracking.camera import CharucoBoard, Checkerboard
 from tracking.errors import CalibrationError
-from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.track.camera.request import CameraRequest
-from zebro_lab.track.camera.stage import calibrate_camera, write_kit
+from zebro_lab.track.camera.stage import calibrate_camera, parse_board, write_kit
 from zebro_lab.track.camera_file import read_camera_file
 from zebro_lab.track.floor_file import read_floor_file
 
@@ -84,3 +85,18 @@ def test_real_checkerboards_give_the_published_focal_length(shared, tmp_path):
     result = calibrate_camera(request, Nobody())
     assert result.fit.camera.matrix[0, 0] == pytest.approx(535.9, rel=0.005)
     assert result.fit.rms <= 0.42
+
+
+@pytest.mark.parametrize(
+    "text", ["9x6", "checkerboard:9:25mm", "charuco:7x5:26mm:35mm:4x4_50", "checkerboard:9x6:25",
+             "charuco:7x5:35mm:26mm:4x4_51", "kit:a4"],
+)  # fmt: skip
+def test_what_is_no_board_is_refused(text):
+    with pytest.raises(SettingsError, match="--board"):
+        parse_board(text)
+
+
+def test_boards_are_what_their_description_says():
+    assert parse_board("checkerboard:9x6:25mm") == Checkerboard(9, 6, 0.025)
+    assert parse_board("charuco:7x5:35mm:25mm:5x5_50") == CharucoBoard(7, 5, 0.035, 0.025, "5x5_50")
+    assert isinstance(parse_board("kit"), CharucoBoard)

@@ -9,7 +9,7 @@ with uninterrupted():  # matplotlib has C extensions
     from zebro_lab.plots.posterior import corner, traces
     from zebro_lab.plots.sheet import add_to_title, parameter_labels, save
     from zebro_lab.plots.slip import slip_curves
-    from zebro_lab.plots.surface import slip_surface
+    from zebro_lab.plots.slip_law import slip_surface
 
 __all__ = [
     "add_to_title",

@@ -12,23 +12,14 @@ from numpy.typing import ArrayLike
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.law import SlipLaw
-from zebro_lab.plots.sheet import (
-    CYCLE,
-    TRACTION_LABEL,
-    legend_below,
-    new_figure,
-    point_alpha,
-    slip_grid,
-    slip_label,
-    styled,
-)
+from zebro_lab.plots import sheet
 
 _BINS = 16  # of slip at each load, whose means are drawn beside the differences of the laws
 _TICKS = (-1.0, -0.3, -0.1, -0.03, 0.0, 0.03, 0.1, 0.3, 1.0)
 _STYLES = ("-", "--", "-.", ":")
 
 
-@styled
+@sheet.styled
 def slip_laws(
     blocks: SlipBlocks,
     laws: Mapping[str, tuple[SlipLaw, Array]],
@@ -59,14 +50,16 @@ def slip_laws(
     """
     levels = np.sort(np.ravel(np.asarray(load_levels, dtype=float)))
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
-    figure = new_figure("Slip laws compared", simulated, width=9.0, height=1.6 + 2.3 * len(levels))
+    figure = sheet.new_figure(
+        "Slip laws compared", simulated, width=9.0, height=1.6 + 2.3 * len(levels)
+    )
     panels = figure.subplots(len(levels), 2, squeeze=False)
     for row, (load, (whole, beside)) in enumerate(zip(levels, panels, strict=True)):
         mine = nearest == row
-        slip = slip_grid(blocks.slip[mine] if mine.any() else blocks.slip, 250)
+        slip = sheet.slip_grid(blocks.slip[mine] if mine.any() else blocks.slip, 250)
         whole.scatter(
             blocks.slip[mine], blocks.traction_force[mine], s=9, color="0.35", linewidths=0,
-            alpha=point_alpha(int(mine.sum())), label="block means",
+            alpha=sheet.point_alpha(int(mine.sum())), label="block means",
         )  # fmt: skip
         _draw_means(beside, blocks.slip[mine], residual[mine])
         base = _median(laws[reference], slip, load)
@@ -74,7 +67,7 @@ def slip_laws(
             force = _median(law, slip, load)
             fitted = name == reference
             style = {
-                "color": CYCLE[index % len(CYCLE)],
+                "color": sheet.CYCLE[index % len(sheet.CYCLE)],
                 "ls": "-" if fitted else _STYLES[index % len(_STYLES)],
                 "lw": 2.0 if fitted else 1.2,
             }
@@ -82,15 +75,15 @@ def slip_laws(
             beside.plot(slip, force - base, **style)
         whole.set_title(f"load {load:.4g} N", loc="left")
         beside.set_title(f"less '{reference}'", loc="left")
-        whole.set_ylabel(TRACTION_LABEL)
+        whole.set_ylabel(sheet.TRACTION_LABEL)
         beside.set_ylabel("difference [N]")
     for axes in panels[-1]:
-        axes.set_xlabel(slip_label(blocks.definition))
+        axes.set_xlabel(sheet.slip_label(blocks.definition))
     for axes in panels.flat:
         axes.set_xscale("function", functions=(_root, _square))
         axes.xaxis.set_major_locator(FixedLocator(_TICKS))
         axes.axhline(0, color="0.6", lw=0.5, zorder=0)
-    legend_below(figure, columns=2)
+    sheet.legend_below(figure, columns=2)
     return figure
 
 

@@ -1,19 +1,58 @@
 # SPDX-License-Identifier: MIT
-"""Plot a predicted path with its track and the baselines, and their errors over time."""
+"""Plot a predicted path: its band, errors against a track, roll and pitch beside an IMU's."""
 
 from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from model.arrays import Array
 from model.metrics.path_errors import pose_errors
+from model.path_draws import quantiles
 from model.poses import Poses
-from zebro_lab.plots.sheet import BLUE, CYCLE, draw_band, legend_below, map_and_panels, styled
+from model.walk.ground import FLAT, Ground, is_level
+from zebro_lab.plots import sheet
+from zebro_lab.plots.walk_path import draw_ground
+
+_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+@sheet.styled
+def path_band(paths: Poses, *, title: str, ground: Ground = FLAT) -> Figure:
+    """Draw a predicted path's band from above, and quantiles of x, y and yaw over time.
+
+    Args:
+        paths: Draws of the predicted path.
+        title: Title of the figure; "(simulated)" is appended.
+        ground: The ground, drawn below the paths as `draw_ground` does.
+
+    Returns:
+        The figure: the first 60 draws and the median of all from above; over time the median and
+        the central 50 and 90 % of the draws.
+    """
+    names = ("x [m]", "y [m]", "yaw [deg]")
+    figure, above, panels = sheet.map_and_panels(title, simulated=True, height=5.6, names=names)
+    sheet.draw_band(above, paths, label="draws", color=sheet.BLUE, lw=0.6, alpha=0.2)
+    bands = quantiles(paths, _LEVELS) * [1.0, 1.0, 180 / np.pi]
+    above.plot(*bands[2, :, :2].T, color="black", lw=1.2)
+    if not is_level(ground):
+        low, high = paths.position.min(axis=(0, 1)), paths.position.max(axis=(0, 1))
+        beyond = 0.6 * float(max(high - low))  # axes of one scale show more than the paths
+        draw_ground(above, ground, low - beyond, high + beyond)
+    for axes, (low, lower, median, upper, high) in zip(
+        panels, bands.transpose(2, 0, 1), strict=True
+    ):
+        axes.fill_between(paths.t, low, high, color=sheet.tint(0.2), lw=0, label="90 % of draws")
+        axes.fill_between(paths.t, lower, upper, color=sheet.tint(0.5), lw=0, label="50 % of draws")
+        axes.plot(paths.t, median, color="black", lw=1.0, label="median")
+    sheet.legend_below(figure, columns=4)
+    return figure
+
 
 _MOST_DOTS = 200  # of a track; of more poses the dots would hide the paths
 
 
-@styled
+@sheet.styled
 def path_validation(
     paths: Mapping[str, Poses],
     track: Poses,
@@ -49,13 +88,15 @@ def path_validation(
     errors = {name: pose_errors(path.at(track.t), track) for name, path in moving.items()}
     far = max((np.abs(each.translation).max() for each in errors.values()), default=0.0)
     scale, unit = (1.0, "m") if far > 1 else (1e3, "mm")
-    figure, above, panels = map_and_panels(
+    figure, above, panels = sheet.map_and_panels(
         f"{of}: {title}", simulated=simulated, height=5.8,
         names=(f"ahead [{unit}]", f"to the left [{unit}]", "yaw [deg]"),
     )  # fmt: skip
-    draw_band(above, band, label="draws of the prediction", color=BLUE, lw=0.5, alpha=0.15)
+    sheet.draw_band(
+        above, band, label="draws of the prediction", color=sheet.BLUE, lw=0.5, alpha=0.15
+    )
     dots = {"marker": ".", "ms": 3} if len(track) <= _MOST_DOTS else {}
-    for (name, path), colour in zip(moving.items(), CYCLE, strict=False):
+    for (name, path), colour in zip(moving.items(), sheet.CYCLE, strict=False):
         above.plot(*path.position.T, color=colour, lw=1.2, label=name)
         each = errors[name]
         values = (scale * each.along, scale * each.cross, np.degrees(each.rotation))
@@ -68,5 +109,41 @@ def path_validation(
         axes.axhline(0, color="0.5", lw=0.6)
     panels[0].set_title(f"error: {of.split()[0].lower()} minus {of.split()[-1]}", loc="left")
     panels[-1].set_xlabel("time [s]" if timed else "number of the pose")
-    legend_below(figure, columns=6)
+    sheet.legend_below(figure, columns=6)
+    return figure
+
+
+_SHOWN = 6.0  # s: longer, and the strides run into each other
+
+
+@sheet.styled
+def tilt(t: Array, predicted: Array, measured: Array, *, title: str, simulated: bool) -> Figure:
+    """Draw predicted and measured roll and pitch [deg] over the middle 6 s of the walk, or all.
+
+    Args:
+        t: Times, increasing, shape (n,) [s].
+        predicted: Predicted roll and pitch, shape (n, 2) [rad].
+        measured: Measured roll and pitch, shape (n, 2) [rad].
+        title: Name of the walk.
+        simulated: Whether to append "(simulated)" to the title.
+
+    Returns:
+        The figure; the IMU's bias is not removed.
+    """
+    figure = sheet.new_figure(f"Roll and pitch: {title}", simulated, width=8.5, height=4.6)
+    middle = 0.5 * (t[0] + t[-1])
+    shown = np.abs(t - middle) <= _SHOWN / 2
+    names = ("roll [deg]\n(left side up)", "pitch [deg]\n(nose down)")
+    panels = figure.subplots(2, 1, sharex=True)
+    for axes, name, expected, seen in zip(panels, names, predicted.T, measured.T, strict=True):
+        axes.plot(t[shown], np.degrees(seen[shown]), color="0.6", lw=0.9, label="IMU")
+        axes.plot(
+            t[shown], np.degrees(expected[shown]), color=sheet.BLUE, lw=1.2, label="predicted"
+        )
+        axes.set_ylabel(name)
+        axes.grid(color="0.92", lw=0.6)
+    part = "" if shown.all() else f", the middle {_SHOWN:g} s of the walk"
+    panels[-1].set_xlabel(f"time [s]{part}")
+    figure.align_ylabels(panels)
+    sheet.legend_below(figure, columns=2)
     return figure

@@ -13,17 +13,7 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.poses import Poses
 from model.robot import Robot
-from zebro_lab.plots.sheet import (
-    BLUE,
-    RED,
-    draw_band,
-    few_ticks,
-    legend_below,
-    new_figure,
-    photograph_axes,
-    styled,
-    with_minus,
-)
+from zebro_lab.plots import sheet
 from zebro_lab.plots.walk_robot import leg_arcs, outline, to_world
 
 _COLUMN = 1.75  # inches: the text of four columns is legible at the width of a page
@@ -56,7 +46,7 @@ class Shot:
     contact: NDArray[np.bool_]
 
 
-@styled
+@sheet.styled
 def photos_beside_poses(
     shots: Sequence[Shot], robot: Robot, *, title: str, simulated_photos: bool
 ) -> Figure:
@@ -72,7 +62,7 @@ def photos_beside_poses(
         The figure: photographs above; predicted robots below, with the tracked outline, the
         distance from it [mm], and yaw predicted minus tracked [deg].
     """
-    figure = new_figure(
+    figure = sheet.new_figure(
         f"Photographs and predicted poses: {title}", False,
         width=max(_COLUMN * len(shots) + 0.6, 5.0), height=2 * _COLUMN + 1.4,
     )  # fmt: skip
@@ -85,17 +75,17 @@ def photos_beside_poses(
         _draw_robot(drawn, shot, robot)
         off = 1e3 * np.linalg.norm(shot.position[:2] - shot.tracked[:2])
         turned = np.degrees(np.angle(np.exp(1j * (shot.orientation[2] - shot.tracked[2]))))
-        error = with_minus(f"{off:.0f} mm, {turned:+.1f} deg")
+        error = sheet.with_minus(f"{off:.0f} mm, {turned:+.1f} deg")
         drawn.set_title(f"off {error}", loc="left", fontsize=8)
         for axes in (photograph, drawn):
             axes.set(xlim=shot.extent[:2], ylim=shot.extent[2:], aspect="equal")
             axes.tick_params(labelsize=7)
-            axes.xaxis.set_major_locator(few_ticks(4))
-            axes.yaxis.set_major_locator(few_ticks(4))
+            axes.xaxis.set_major_locator(sheet.few_ticks(4))
+            axes.yaxis.set_major_locator(sheet.few_ticks(4))
         drawn.set_xlabel("x [m]")
     panels[0, 0].set_ylabel(f"{taken}\ny [m]")
     panels[1, 0].set_ylabel("predicted (simulated)\ny [m]")
-    legend_below(figure, columns=4)
+    sheet.legend_below(figure, columns=4)
     return figure
 
 
@@ -103,10 +93,10 @@ def _draw_robot(axes: Axes, shot: Shot, robot: Robot) -> None:
     body = to_world(outline(robot), shot.position, shot.orientation)
     legs = to_world(leg_arcs(robot, shot.theta), shot.position, shot.orientation)
     for leg, stands in zip(legs, shot.contact, strict=True):
-        colour, label = (RED, "leg on the ground") if stands else (_IN_AIR, "leg in the air")
+        colour, label = (sheet.RED, "leg on the ground") if stands else (_IN_AIR, "leg in the air")
         axes.plot(*leg[:, :2].T, color=colour, lw=3.0, solid_capstyle="butt", label=label)
-    axes.fill(*body[:, :2].T, facecolor=BLUE, alpha=0.3, lw=0)
-    axes.plot(*body[:, :2].T, color=BLUE, lw=1.2, label="predicted body")
+    axes.fill(*body[:, :2].T, facecolor=sheet.BLUE, alpha=0.3, lw=0)
+    axes.plot(*body[:, :2].T, color=sheet.BLUE, lw=1.2, label="predicted body")
     x, y, yaw = shot.tracked
     seen = to_world(outline(robot), np.array([x, y, 0.0]), np.array([0.0, 0.0, yaw]))
     axes.plot(*seen[:, :2].T, color="black", ls="--", lw=1.0, label="tracked body")
@@ -114,7 +104,7 @@ def _draw_robot(axes: Axes, shot: Shot, robot: Robot) -> None:
     axes.set_axisbelow(True)
 
 
-@styled
+@sheet.styled
 def band_over_floor(
     floor: NDArray[np.uint8],
     *,
@@ -142,16 +132,16 @@ def band_over_floor(
         The figure, x to the right and y up, both to one scale.
     """
     kind = "simulated prediction and photograph" if simulated_photos else "simulated prediction"
-    axes = photograph_axes(
+    axes = sheet.photograph_axes(
         f"Predicted and tracked path: {title} ({kind})", floor, extent, simulated=False,
         note=f"photograph at {photo_at:.1f} s; raised objects are displaced",
     )  # fmt: skip
-    draw_band(axes, band, label="draws", color=BLUE, lw=0.5, alpha=0.25)
-    axes.plot(*path.position.T, color=BLUE, lw=1.6, label="predicted path")
+    sheet.draw_band(axes, band, label="draws", color=sheet.BLUE, lw=0.5, alpha=0.25)
+    axes.plot(*path.position.T, color=sheet.BLUE, lw=1.6, label="predicted path")
     axes.plot(
         *track.position.T, ls="none", marker="o", ms=4.5, color="black", mec="white", mew=0.6,
         label="track",
     )  # fmt: skip
     figure = cast("Figure", axes.figure)
-    legend_below(figure, columns=3)
+    sheet.legend_below(figure, columns=3)
     return figure

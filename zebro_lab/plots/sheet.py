@@ -27,8 +27,8 @@ from zebro_lab.files.own_file import picture_metadata
 from zebro_lab.files.picture_format import PictureFormat, format_of
 from zebro_lab.files.units import unit_symbol
 
-BLUE, RED, GREEN = "#0072B2", "#D55E00", "#009E73"
-CYCLE = (BLUE, "#E69F00", GREEN, RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
+BLUE, RED, GREEN, PALE_BLUE = "#0072B2", "#D55E00", "#009E73", "#56B4E9"
+CYCLE = (BLUE, "#E69F00", GREEN, RED, "#CC79A7", PALE_BLUE, "#000000", "#999999")
 _SHOWN_DRAWS = 60
 _TIME_MARGIN = 0.01  # of the time shown
 _TITLE = 10.0  # letters of a title in each inch of a figure's width
@@ -269,19 +269,6 @@ def slip_label(definition: str) -> str:
 def point_alpha(count: int) -> float:
     """Compute the opacity of n scatter points, 12 / sqrt(n) limited to 0.15 to 0.8 [-]."""
     return float(np.clip(12 / math.sqrt(max(count, 1)), 0.15, 0.8))
-
-
-def time_texts(t: Array) -> list[str]:
-    """Format times [s] with the fewest decimals, at most three, that rounding does not show.
-
-    It shows where a time moves by more than a fiftieth of the least difference between two times.
-
-    >>> time_texts(np.array([0.002, 6.0, 12.04])), time_texts(np.array([0.5, 1.25]))
-    (['0', '6', '12'], ['0.50', '1.25'])
-    """
-    least = float(np.diff(np.unique(t)).min()) if np.ptp(t) > 0 else 1.0
-    digits = next((n for n in range(3) if np.abs(t - t.round(n)).max() <= 0.02 * least), 3)
-    return [with_minus(f"{each + 0.0:.{digits}f}") for each in t.round(digits)]
 
 
 def plain(value: float) -> str:

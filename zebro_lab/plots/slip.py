@@ -12,26 +12,13 @@ from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.slip.law import SlipLaw
 from model.slip.sided import braking_peak_slip
-from zebro_lab.plots.sheet import (
-    BLUE,
-    NARROW,
-    RED,
-    TRACTION_LABEL,
-    legend_below,
-    new_figure,
-    plain,
-    point_alpha,
-    slip_grid,
-    slip_label,
-    styled,
-    tint,
-)
+from zebro_lab.plots import sheet
 
 _QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CURVES = 400  # draws whose curves make the bands
 
 
-@styled
+@sheet.styled
 def slip_curves(
     blocks: SlipBlocks,
     law: SlipLaw,
@@ -58,16 +45,16 @@ def slip_curves(
         The figure.
     """
     curves = _load_curves(blocks, law, draws, np.sort(np.ravel(np.asarray(load_levels, float))))
-    reach = NARROW * float(np.abs(blocks.slip).max())
+    reach = sheet.NARROW * float(np.abs(blocks.slip).max())
     columns = 1 + any(abs(curve.peaks[0, 0]) < reach for curve in curves if len(curve.peaks))
-    figure = new_figure(
+    figure = sheet.new_figure(
         "Slip curve by load", simulated, width=3.5 + 2.9 * columns, height=1.6 + 1.5 * len(curves)
     )
     panels = figure.subplots(len(curves), columns, squeeze=False, sharey="row")
     for row, curve in zip(panels, curves, strict=True):
         for axes in row:
             _draw_curve(axes, blocks, curve)
-        row[0].set_ylabel(TRACTION_LABEL)
+        row[0].set_ylabel(sheet.TRACTION_LABEL)
         row[0].set_title(_load_text(blocks, curve), loc="left")
         row[-1].set_title(_peak_text(curve), loc="right" if columns == 1 else "left")
         if columns > 1:
@@ -75,8 +62,8 @@ def slip_curves(
             margin = 0.02 * (high - low)
             row[1].set_xlim(low - margin, high + margin)
     for axes in panels[-1]:
-        axes.set_xlabel(slip_label(blocks.definition))
-    legend_below(figure, columns=3)
+        axes.set_xlabel(sheet.slip_label(blocks.definition))
+    sheet.legend_below(figure, columns=3)
     return figure
 
 
@@ -97,7 +84,7 @@ def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) 
     curves = []
     for index, load in enumerate(levels):
         rows = nearest == index
-        slip = slip_grid(blocks.slip[rows] if rows.any() else blocks.slip, 250)
+        slip = sheet.slip_grid(blocks.slip[rows] if rows.any() else blocks.slip, 250)
         bands = np.quantile(law.force(slip, load, values), _QUANTILES, axis=0)
         peaks = _peaks(law, draws, float(load), slip)
         curves.append(_LoadCurve(float(load), rows, slip, bands, peaks))
@@ -125,16 +112,16 @@ def _peaks(law: SlipLaw, draws: Array, load: float, slip: Array) -> Array:
 def _draw_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
     """Draw block means, median, bands and peaks of the curve at one load."""
     low, lower, median, upper, high = curve.bands
-    axes.fill_between(curve.slip, low, high, color=tint(0.25), lw=0, label="90 % of curves")
-    axes.fill_between(curve.slip, lower, upper, color=tint(0.6), lw=0, label="50 % of curves")
+    axes.fill_between(curve.slip, low, high, color=sheet.tint(0.25), lw=0, label="90 % of curves")
+    axes.fill_between(curve.slip, lower, upper, color=sheet.tint(0.6), lw=0, label="50 % of curves")
     axes.scatter(
         blocks.slip[curve.rows], blocks.traction_force[curve.rows], s=12, color="0.35",
-        alpha=point_alpha(int(curve.rows.sum())), linewidths=0,
+        alpha=sheet.point_alpha(int(curve.rows.sum())), linewidths=0,
         label="block means" if curve.rows.any() else None,
     )  # fmt: skip
-    axes.plot(curve.slip, median, color=BLUE, lw=1.4, label="posterior median")
+    axes.plot(curve.slip, median, color=sheet.BLUE, lw=1.4, label="posterior median")
     if len(curve.peaks):
-        axes.plot(*curve.peaks.T, "D", ms=5, color=RED, mec="white", mew=0.6, label="peak")
+        axes.plot(*curve.peaks.T, "D", ms=5, color=sheet.RED, mec="white", mew=0.6, label="peak")
     axes.axhline(0, color="0.6", lw=0.5, zorder=0)
 
 
@@ -142,7 +129,9 @@ def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:
     loads = blocks.normal_force[curve.rows]
     if not len(loads):
         return f"load {curve.load:.4g} N (no blocks)"
-    ends = dict.fromkeys((plain(loads.min()), plain(loads.max())))  # one where they round alike
+    ends = dict.fromkeys(
+        (sheet.plain(loads.min()), sheet.plain(loads.max()))
+    )  # one where they round alike
     return f"load {curve.load:.4g} N ({len(loads)} blocks, {'–'.join(ends)} N)"
 
 
@@ -150,4 +139,4 @@ def _peak_text(curve: _LoadCurve) -> str:
     if not len(curve.peaks):
         return "no peak in the tested slip"
     slip, force = curve.peaks[0]
-    return f"peak {plain(force)} N at slip {plain(slip)}"
+    return f"peak {sheet.plain(force)} N at slip {sheet.plain(slip)}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plot a track over a photograph and over the floor from above, and its residuals over time."""
+"""Plot a track over photographs and the floor, its residuals over time, and a grid of pixels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,22 +8,55 @@ from typing import cast
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from zebro_lab.plots.sheet import (
-    BLUE,
-    CYCLE,
-    RED,
-    few_ticks,
-    legend_below,
-    new_figure,
-    photograph_axes,
-    styled,
-)
+from zebro_lab.plots import sheet
+
+_GRID_WIDTH = 11.0  # inches
+
+
+@sheet.styled
+def pixel_grid(
+    pixels: NDArray[np.uint8], *, title: str, around: tuple[float, float] | None = None,
+    reach: int = 100,
+) -> Figure:  # fmt: skip
+    """Draw a photograph with a pixel grid; the centre of the top left pixel is (0, 0).
+
+    Args:
+        pixels: The photograph, BGR, shape (height, width, 3).
+        title: Title of the figure.
+        around: Column u and row v of the centre of an enlarged region [px]; None for the whole
+            photograph.
+        reach: Half the side of the enlarged region [px]; it is cut at the photograph's edges.
+
+    Returns:
+        The figure.
+    """
+    rows, columns = pixels.shape[:2]
+    low, high = np.array([-0.5, -0.5]), np.array([columns, rows]) - 0.5
+    if around is not None:
+        low = np.maximum(low, np.subtract(around, reach))
+        high = np.minimum(high, np.add(around, reach))
+    width, height = high - low
+    figure = sheet.new_figure(
+        title, simulated=False, width=_GRID_WIDTH, height=_GRID_WIDTH * height / width + 0.4
+    )
+    axes = figure.add_subplot()
+    axes.imshow(pixels[:, :, ::-1], interpolation="nearest")
+    axes.set(xlim=(low[0], high[0]), ylim=(high[1], low[1]), xlabel="u [px]", ylabel="v [px]")
+    for axis, length in ((axes.xaxis, width), (axes.yaxis, height)):
+        axis.set_major_locator(MaxNLocator(round(24 * length / max(width, height)) + 2,
+                                           integer=True, steps=[1, 2, 5, 10]))  # fmt: skip
+    axes.tick_params(labelsize=7, right=True, top=True, labelright=True, labeltop=True)
+    axes.tick_params(axis="x", rotation=90)
+    axes.grid(color="yellow", lw=0.5, alpha=0.6)  # rare on floors and robots
+    return figure
+
 
 _WIDTH = 9.0  # inches
-_GREEN = CYCLE[2]
+_GREEN = sheet.CYCLE[2]
 _MOST_ARROWS = 24
 _MOST_LABELS = 12
 _ORIGIN, _HEADING = "body's origin", "heading"
@@ -48,7 +81,7 @@ class SeenMarks:
     colour: str
 
 
-@styled
+@sheet.styled
 def over_photo(
     pixels: NDArray[np.uint8], *, title: str, simulated: bool, path_px: Array | None = None,
     headings_px: Array | None = None, marks: Sequence[SeenMarks] = (),
@@ -68,7 +101,7 @@ def over_photo(
         The figure.
     """
     rows, columns = pixels.shape[:2]
-    figure = new_figure(title, simulated, width=_WIDTH, height=_WIDTH * rows / columns + 0.5)
+    figure = sheet.new_figure(title, simulated, width=_WIDTH, height=_WIDTH * rows / columns + 0.5)
     axes = figure.add_subplot()
     axes.imshow(pixels[:, :, ::-1], interpolation="antialiased")
     for group in marks:
@@ -77,7 +110,7 @@ def over_photo(
         _path(axes, path_px, headings_px)
     axes.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5))
     axes.set_axis_off()
-    legend_below(figure, columns=3)
+    sheet.legend_below(figure, columns=3)
     return figure
 
 
@@ -98,7 +131,7 @@ def _outline(axes: Axes, group: SeenMarks) -> None:
 
 
 def _path(axes: Axes, path: Array, ahead: Array) -> None:
-    axes.plot(*path.T, color=RED, lw=1.2, marker="o", ms=2.5, label=_ORIGIN)
+    axes.plot(*path.T, color=sheet.RED, lw=1.2, marker="o", ms=2.5, label=_ORIGIN)
     _arrows(axes, path, ahead - path)
 
 
@@ -113,7 +146,7 @@ def _arrows(axes: Axes, start: Array, step: Array) -> None:
     )  # fmt: skip
 
 
-@styled
+@sheet.styled
 def over_floor(
     floor: NDArray[np.uint8], *, extent: tuple[float, float, float, float], poses: Array,
     ellipses: Sequence[Array], labels: Sequence[str], title: str, note: str, simulated: bool,
@@ -133,17 +166,17 @@ def over_floor(
     Returns:
         The figure, x to the right and y up, both to one scale.
     """
-    axes = photograph_axes(title, floor, extent, simulated=simulated, note=note)
-    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=2.5, label=_ORIGIN)
+    axes = sheet.photograph_axes(title, floor, extent, simulated=simulated, note=note)
+    axes.plot(*poses[:, :2].T, color=sheet.RED, lw=1.3, marker="o", ms=2.5, label=_ORIGIN)
     for ellipse in ellipses:
-        axes.plot(*ellipse.T, color=BLUE, lw=0.9, zorder=5, label="90 % region of the origin")
+        axes.plot(*ellipse.T, color=sheet.BLUE, lw=0.9, zorder=5, label="90 % region of the origin")
     reach = 0.03 * max(extent[1] - extent[0], extent[3] - extent[2])
     _arrows(axes, poses[:, :2],
             reach * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2]))))  # fmt: skip
     if np.any(np.all(floor == 0, axis=2)):
         axes.fill_between([], [], color=_UNSEEN, lw=0, label="outside the photograph")
     figure = cast("Figure", axes.figure)
-    legend_below(figure, columns=4)
+    sheet.legend_below(figure, columns=4)
     labelled = [k for k, label in enumerate(labels) if label]
     for k in labelled[:: -(-len(labelled) // _MOST_LABELS) or 1]:
         axes.annotate(
@@ -156,7 +189,7 @@ def over_floor(
     return figure
 
 
-@styled
+@sheet.styled
 def residual_page(
     t: Array, residuals: Array, *, sd: Array, score: Array, height: Array, source: Sequence[str],
     title: str, simulated: bool,
@@ -177,7 +210,7 @@ def residual_page(
         The figure: residuals of x, y and yaw with the 90 % bands of the observation noise, then
         height and score.
     """
-    figure = new_figure(title, simulated, width=8.5, height=8.5)
+    figure = sheet.new_figure(title, simulated, width=8.5, height=8.5)
     panels = figure.subplots(5, 1, sharex=True)
     names = ("x [mm]", "y [mm]", "yaw [deg]")
     units = (1e3, 1e3, np.degrees(1.0))
@@ -194,16 +227,16 @@ def residual_page(
     _by_source(panels[4], t, score, source)
     panels[4].set(ylabel="score [-]", xlabel="time [s]")
     for axes in panels:
-        axes.yaxis.set_major_locator(few_ticks(5))
+        axes.yaxis.set_major_locator(sheet.few_ticks(5))
         axes.grid(color="0.93", lw=0.6)
         axes.set_axisbelow(True)
     figure.align_ylabels(panels)
-    legend_below(figure, columns=4)
+    sheet.legend_below(figure, columns=4)
     return figure
 
 
 def _by_source(axes: Axes, t: Array, values: Array, source: Sequence[str]) -> None:
-    shapes = {"marker": ("o", BLUE), "body": ("s", _GREEN), "hand": ("D", RED)}
+    shapes = {"marker": ("o", sheet.BLUE), "body": ("s", _GREEN), "hand": ("D", sheet.RED)}
     for name in dict.fromkeys(source):
         chosen = np.array([each == name for each in source])
         shape, colour = shapes.get(name, ("x", "black"))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Plot slip ratio, normal force, traction and contact of each leg over time."""
+"""Plot slip ratio, normal force, traction and angle of each leg over time."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,28 +9,64 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.robot import LEFT, N_LEGS
 from model.walk.path import WalkPath
-from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
-from zebro_lab.plots.sheet import (
-    BLUE,
-    GREEN,
-    RED,
-    few_ticks,
-    legend_below,
-    new_figure,
-    styled,
-    time_axis,
-)
+from zebro_lab.plots import sheet
+from zebro_lab.plots.walk_contacts import NAMES, stances
 
-_NAMES = ("left front", "right front", "left middle", "right middle", "left rear", "right rear")
+_APART = 0.01  # of the time shown; excursions closer than this share a mark
+
+
+def limits_without_tips(
+    values: Array, *, cut: float, margin: float, least: float
+) -> tuple[float, float]:
+    """Compute axis limits that leave out the tips of impacts, which would flatten all else.
+
+    Args:
+        values: Values to draw, any shape; those that are not finite do not count.
+        cut: Share of the values left out at either end; 0 for none [-].
+        margin: Margin at either end, as a share of the range [-].
+        least: Least range of the limits, so that rounding errors look like zero [unit of values].
+
+    Returns:
+        Lower and upper limit; around zero if no value is finite.
+    """
+    finite = values[np.isfinite(values)]
+    low, high = np.quantile(finite, (cut, 1 - cut)) if len(finite) else (0.0, 0.0)
+    wider = max(margin * (high - low), 0.5 * (least - (high - low)))
+    return float(low - wider), float(high + wider)
+
+
+def mark_beyond(
+    axes: Axes, t: Array, values: Array, limits: tuple[float, float], *, label: str
+) -> None:
+    """Draw a triangle at the edge of the axes for each excursion of a curve beyond its limits.
+
+    Args:
+        axes: Axes with the curve.
+        t: Times, shape (n,) [s].
+        values: Values of the curve, shape (n,).
+        limits: Limits of the vertical axis; they are set.
+        label: Label of the marks in a legend.
+    """
+    axes.set_ylim(limits)
+    for outside, edge, shape in ((values < limits[0], 0.0, "v"), (values > limits[1], 1.0, "^")):
+        at = t[outside]
+        if not len(at):
+            continue
+        begins = at[np.diff(at, prepend=-np.inf) > _APART * (t[-1] - t[0])]
+        axes.plot(
+            begins, np.full(len(begins), edge), transform=axes.get_xaxis_transform(),
+            ls="none", marker=shape, ms=3.5, color="0.25", mew=0, clip_on=False, zorder=5,
+            label=label,
+        )  # fmt: skip
+
+
 _STANCE = "0.93"
-_PALE_BLUE = "#56B4E9"
 _HALF = 0.05  # s, before and after a sample, over which a leg's speed is taken
 _AT_REST = np.radians(3.0)  # rad/s; a slower leg rests, and its slip ratio is 0/0
 
 
-@styled
+@sheet.styled
 def slip_ratios(path: WalkPath, *, title: str) -> Figure:
     """Draw the longitudinal slip ratio of each leg over time (Fig. 5-16).
 
@@ -52,7 +88,7 @@ def slip_ratios(path: WalkPath, *, title: str) -> Figure:
     )
 
 
-@styled
+@sheet.styled
 def normal_forces(path: WalkPath, *, title: str) -> Figure:
     """Draw the normal force on each leg over time (Fig. 5-17).
 
@@ -67,7 +103,7 @@ def normal_forces(path: WalkPath, *, title: str) -> Figure:
     return load_panels(path, {"normal force": path.normal_force}, title=title)
 
 
-@styled
+@sheet.styled
 def traction_forces(path: WalkPath, *, title: str) -> Figure:
     """Draw the traction force of the ground on each leg over time (Fig. 5-18).
 
@@ -83,7 +119,7 @@ def traction_forces(path: WalkPath, *, title: str) -> Figure:
     return draw_traction(path.t, path.traction_force, path.contact, title, label="traction force")
 
 
-@styled
+@sheet.styled
 def leg_angles(path: WalkPath, *, title: str) -> Figure:
     """Draw the angle of each leg over time, modulo a turn (Fig. 2-2).
 
@@ -98,68 +134,6 @@ def leg_angles(path: WalkPath, *, title: str) -> Figure:
     return turn_panels(
         path, path.theta, "angle; 0 ahead, 90 down", label="leg angle", least=0, title=title
     )
-
-
-@styled
-def gantt(path: WalkPath, *, title: str) -> Figure:
-    """Draw when each leg was in contact as a bar chart over time (Fig. 2-1).
-
-    Args:
-        path: Part of a walk to draw.
-        title: Title of the figure, which names the model; "(simulated)" is appended.
-
-    Returns:
-        The figure: a row for each leg, leg 1 on top; bars are contact, left legs darker. Times
-        without any contact are shaded, those with the body on the ground hatched.
-    """
-    figure = new_figure(title, True, width=7.5, height=3.0)
-    axes = figure.add_subplot()
-    for start, end in stances(path.t, path.in_flight):
-        axes.axvspan(start, end, color=RED, alpha=0.2, lw=0, label="flight")
-    for start, end in stances(path.t, path.on_body):
-        axes.axvspan(
-            start, end, facecolor="none", edgecolor="0.6", hatch="////", lw=0,
-            label="body on the ground",
-        )  # fmt: skip
-    for leg in range(N_LEGS):
-        bars = [(start, end - start) for start, end in stances(path.t, path.contact[:, leg])]
-        colour, side = (BLUE, "left") if leg in LEFT else (_PALE_BLUE, "right")
-        axes.broken_barh(
-            bars, (leg + 0.6, 0.8), facecolors=colour, lw=0, label=f"{side} leg on the ground"
-        )
-    axes.set(
-        ylim=(N_LEGS + 0.7, 0.3),
-        yticks=range(1, N_LEGS + 1),
-        yticklabels=[f"{leg}  {name}" for leg, name in enumerate(_NAMES, start=1)],
-    )  # fmt: skip
-    time_axis(axes, path.t)
-    axes.tick_params(axis="y", length=0)
-    axes.grid(axis="x", color="0.9", lw=0.6)
-    axes.set_axisbelow(True)
-    legend_below(figure, columns=2)
-    return figure
-
-
-def stances(t: Array, contact: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """Compute the intervals in which a leg was in contact.
-
-    Args:
-        t: Times, shape (n,) [s].
-        contact: Whether the leg pressed on the ground, shape (n,).
-
-    Returns:
-        Start and end of each interval [s]: time of the first sample in contact, and of the next
-        sample without contact or, if there is none, of the last sample.
-
-    >>> stances(np.arange(5.0), np.array([True, True, False, False, True]))
-    [(0.0, 2.0), (4.0, 4.0)]
-    """
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], contact, [False]]).astype(int)))
-    last = len(t) - 1
-    return [
-        (float(t[start]), float(t[min(end, last)]))
-        for start, end in zip(edges[::2], edges[1::2], strict=True)
-    ]
 
 
 def _turning(t: Array, theta: Array) -> NDArray[np.bool_]:
@@ -210,18 +184,20 @@ def leg_panels(
         unit: Its unit.
         title: Title of the figure; "(simulated)" is appended.
     """
-    figure = new_figure(title, True, width=8.0, height=6.4)
+    figure = sheet.new_figure(title, True, width=8.0, height=6.4)
     for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
-        axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
-        axes.yaxis.set_major_locator(few_ticks(5))
+        axes.set_title(f"leg {leg + 1}, {NAMES[leg]}", loc="left")
+        axes.yaxis.set_major_locator(sheet.few_ticks(5))
         _shade(axes, t, contact[:, leg])
-        for (name, values), colour in zip(lines.items(), (BLUE, RED, GREEN), strict=False):
+        for (name, values), colour in zip(
+            lines.items(), (sheet.BLUE, sheet.RED, sheet.GREEN), strict=False
+        ):
             axes.plot(t, values[:, leg], color=colour, lw=0.9, label=name)
             mark_beyond(axes, t, values[:, leg], limits, label="beyond the axes")
     drawn = contact if contact.any() else np.ones_like(contact)  # in the air forces are zero
     computed = any(np.isfinite(each[drawn]).any() for each in lines.values())
     _label(figure, t, f"{label} [{unit}]", computed=computed)
-    legend_below(figure, columns=4)
+    sheet.legend_below(figure, columns=4)
     return figure
 
 
@@ -273,6 +249,41 @@ def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
     axes.axhline(0, color="0.6", lw=0.5, zorder=1)
 
 
+def time_grid(
+    t: Array, rows: Sequence[Array], titles: Sequence[str], *, least: Array, cut: float,
+    width: float, title: str,
+) -> Figure:  # fmt: skip
+    """Draw each column over time in a panel, below it those of further arrays, as its rates.
+
+    Args:
+        t: Times, shape (n,) [s].
+        rows: Values, their rates and so on, shape (n, k) each.
+        titles: Title of each column, k of them.
+        least: Least range of each panel's axis, shape (len(rows), k): what the solver leaves of a
+            quantity that is zero is not blown up.
+        cut: Share of the values left out at either end, but of the first row, which is marked [-].
+        width: Width of the figure [inch].
+        title: Title of the figure; "(simulated)" is appended.
+    """
+    figure = sheet.new_figure(title, True, width=width, height=0.6 + 1.9 * len(rows))
+    panels = figure.subplots(len(rows), len(titles), sharex=True)
+    for (row, column), axes in np.ndenumerate(panels):
+        values = rows[row][:, column]
+        limits = limits_without_tips(
+            values, cut=cut if row else 0.0, margin=0.05, least=float(least[row, column])
+        )
+        axes.plot(t, values, color=sheet.BLUE, lw=0.8)
+        mark_beyond(axes, t, values, limits, label="beyond the axes")
+        axes.yaxis.set_major_locator(sheet.few_ticks(5))
+        axes.grid(color="0.92", lw=0.6)
+    for top, bottom, name in zip(panels[0], panels[-1], titles, strict=True):
+        top.set_title(name, loc="left")
+        sheet.time_axis(bottom, t)
+    figure.align_ylabels(panels[:, 0])
+    sheet.legend_below(figure, columns=2)
+    return figure
+
+
 def leg_limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
     """Compute axis limits that hold zero and all finite values but a share `cut` at either end."""
     low, high = limits_without_tips(values, cut=cut, margin=0.0, least=0.0)
@@ -285,7 +296,7 @@ def _label(figure: Figure, t: Array, what: str, *, computed: bool) -> None:
     """Label the axes; write a note in each panel if the model does not compute the quantity."""
     figure.supylabel(what, fontsize=9.0)
     for axes in figure.axes[-2:]:
-        time_axis(axes, t)
+        sheet.time_axis(axes, t)
     for axes in () if computed else figure.axes:
         axes.text(
             0.5, 0.7, "this model computes none", ha="center", color="0.4",

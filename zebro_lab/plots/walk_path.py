@@ -5,24 +5,51 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from model.arrays import Array
 from model.robot import Robot
-from model.walk.ground import FLAT, Ground
+from model.walk.ground import FLAT, Ground, heights_on, is_level
 from model.walk.path import WalkPath
-from zebro_lab.plots.beyond import limits_without_tips
-from zebro_lab.plots.ground import draw_ground
-from zebro_lab.plots.sheet import (
-    BLUE,
-    few_ticks,
-    legend_below,
-    new_figure,
-    styled,
-    time_axis,
-    time_texts,
-)
+from zebro_lab.plots import sheet
+from zebro_lab.plots.walk_legs import time_grid
 from zebro_lab.plots.walk_robot import outline, to_world
+
+_SAMPLES = 400  # along the longer side
+_LEVELS = 8
+_SHADES = LinearSegmentedColormap.from_list("ground", ["#f7f3ea", "#d9c39a", "#9c7b48"])
+
+
+def draw_ground(axes: Axes, ground: Ground, low: Array, high: Array) -> None:
+    """Draw heights of the ground on a map, below all else; nothing of level ground.
+
+    Limits of the axes are kept. Heights have a colour bar in millimetres.
+
+    Args:
+        axes: The map, x to the right and y up [m].
+        ground: The ground.
+        low: Smallest x and y to draw, shape (2,) [m].
+        high: Largest x and y to draw, shape (2,) [m].
+    """
+    if is_level(ground):
+        return
+    limits = axes.get_xlim(), axes.get_ylim()
+    step = float(max(high - low)) / _SAMPLES
+    x, y = (np.arange(first, last + step, step) for first, last in zip(low, high, strict=True))
+    height = 1000 * heights_on(ground, x, y).T
+    edges = (x[0] - step / 2, x[-1] + step / 2, y[0] - step / 2, y[-1] + step / 2)
+    shading = axes.imshow(
+        height, origin="lower", extent=edges, cmap=_SHADES, aspect="equal", zorder=-2,
+        interpolation="bilinear",
+    )  # fmt: skip
+    if np.ptp(height) > 0:
+        axes.contour(x, y, height, levels=_LEVELS, colors="0.45", linewidths=0.4, zorder=-1)
+    bar = axes.figure.colorbar(shading, ax=axes, fraction=0.03, pad=0.02, aspect=25)
+    bar.set_label("height of the ground [mm]")
+    axes.set(xlim=limits[0], ylim=limits[1])
+
 
 _SNAPSHOTS = 6
 _LONGEST_SIDE = 8.5  # inches
@@ -33,7 +60,25 @@ _TWICE = f"mean of that in {_WINDOW:g} s"
 _MARGIN = 0.25  # of the body's length, around everything
 
 
-@styled
+def ground_axes(axes: Axes, ground: Ground, low: Array, high: Array) -> None:
+    """Set labels, grid and limits of a map of a walk, and draw the ground as `draw_ground` does.
+
+    Args:
+        axes: The map, x to the right and y up, both to one scale [m].
+        ground: The ground.
+        low: Smallest x and y, shape (2,) [m].
+        high: Largest x and y, shape (2,) [m].
+    """
+    axes.set(
+        xlabel="x [m]", ylabel="y [m]", aspect="equal",
+        xlim=(low[0], high[0]), ylim=(low[1], high[1]),
+    )  # fmt: skip
+    draw_ground(axes, ground, low, high)
+    axes.grid(color="0.92", lw=0.6)
+    axes.set_axisbelow(True)
+
+
+@sheet.styled
 def path_with_snapshots(
     path: WalkPath,
     robot: Robot,
@@ -58,29 +103,24 @@ def path_with_snapshots(
     t = path.t
     wanted = snapshot_times(t, at)
     shots = np.abs(t[:, None] - wanted).argmin(axis=0)
-    bodies = [_body(path, robot, int(shot)) for shot in shots]
+    bodies = [body_outline(path, robot, int(shot)) for shot in shots]
     low, high = _extent(path, bodies, robot)
     width, height = _sides(high - low)
-    figure = new_figure(title, True, width=width, height=height)
+    figure = sheet.new_figure(title, True, width=width, height=height)
     axes = figure.add_subplot()
     colours = colormaps["viridis"](np.linspace(0, 0.9, len(shots)))
-    for when, body, colour in zip(time_texts(wanted), bodies, colours, strict=True):
-        axes.fill(*body[:, :2].T, facecolor=colour, alpha=0.18, lw=0, zorder=1)
-        axes.plot(*body[:, :2].T, color=colour, lw=1.2, zorder=2, label=f"t = {when} s")
+    for when, body, colour in zip(wanted, bodies, colours, strict=True):
+        axes.fill(*body.T, facecolor=colour, alpha=0.18, lw=0, zorder=1)
+        label = f"t = {round(when, 2):g} s"
+        axes.plot(*body.T, color=colour, lw=1.2, zorder=2, label=label)
     axes.plot(*path.position[:, :2].T, color="black", lw=1.2, zorder=3, label="body's centre")
     if 2 <= t[-1] - t[0] <= 60:
         seconds = np.interp(np.arange(np.ceil(t[0]), t[-1] + 1e-9), t, np.arange(len(t)))
         dots = path.position[seconds.round().astype(int), :2]
         axes.plot(*dots.T, ls="none", marker="o", ms=2.4, color="black", zorder=3,
                   label="whole seconds")  # fmt: skip
-    axes.set(
-        xlabel="x [m]", ylabel="y [m]", aspect="equal",
-        xlim=(low[0], high[0]), ylim=(low[1], high[1]),
-    )  # fmt: skip
-    draw_ground(axes, ground, low, high)
-    axes.grid(color="0.92", lw=0.6)
-    axes.set_axisbelow(True)
-    legend_below(figure, columns=8)
+    ground_axes(axes, ground, low, high)
+    sheet.legend_below(figure, columns=8)
     return figure
 
 
@@ -94,7 +134,7 @@ def snapshot_times(t: Array, at: Sequence[float]) -> Array:
     return np.asarray(at, dtype=float) if len(at) else np.linspace(t[0], t[-1], _SNAPSHOTS)
 
 
-@styled
+@sheet.styled
 def motion(path: WalkPath, *, title: str) -> Figure:
     """Draw position, velocity and acceleration of the body's centre over time (Fig. 5-2, 5-7).
 
@@ -112,7 +152,7 @@ def motion(path: WalkPath, *, title: str) -> Figure:
     return _over_time(path.t, path.position, names, units, title)
 
 
-@styled
+@sheet.styled
 def orientation(path: WalkPath, *, title: str) -> Figure:
     """Draw roll, pitch and yaw with their rates and accelerations over time (Fig. 5-7, 5-23).
 
@@ -137,24 +177,14 @@ def _over_time(
     """Draw the columns of `values`, shape (n, 3), over time, below them their two derivatives.
 
     `units` are the labels of the rows, values, first and second derivative, with the least range of
-    their axes: what the solver leaves of a quantity that is zero is not blown up.
+    their axes.
     """
-    figure = new_figure(title, True, width=8.5, height=6.2)
-    panels = figure.subplots(3, 3, sharex=True)
-    rows = [values]
-    for _ in range(2):
-        rows.append(mean_rate(t, rows[-1]))
-    for row, (each, (unit, least)) in enumerate(zip(rows, units.items(), strict=True)):
-        for axes, column in zip(panels[row], each.T, strict=True):
-            axes.plot(t, column, color=BLUE, lw=0.9)
-            axes.set_ylim(limits_without_tips(column, cut=0.0, margin=0.05, least=least))
-            axes.yaxis.set_major_locator(few_ticks(5))
-            axes.grid(color="0.92", lw=0.6)
-        panels[row, 0].set_ylabel(unit)
-    for top, bottom, name in zip(panels[0], panels[-1], names, strict=True):
-        top.set_title(name, loc="left")
-        time_axis(bottom, t)
-    figure.align_ylabels(panels[:, 0])
+    rows = [values, mean_rate(t, values)]
+    rows.append(mean_rate(t, rows[-1]))
+    least = np.repeat(np.array(list(units.values()))[:, None], 3, axis=1)
+    figure = time_grid(t, rows, names, least=least, cut=0.0, width=8.5, title=title)
+    for row, unit in enumerate(units):
+        figure.axes[3 * row].set_ylabel(unit)
     return figure
 
 
@@ -174,12 +204,13 @@ def mean_rate(t: Array, values: Array) -> Array:
     return (late - early) / time[:, None]
 
 
-def _body(path: WalkPath, robot: Robot, index: int) -> Array:
-    return to_world(outline(robot), path.position[index], path.orientation[index])
+def body_outline(path: WalkPath, robot: Robot, sample: int) -> Array:
+    """Return the outline of the body at a sample of a path from above, shape (6, 2) [m]."""
+    return to_world(outline(robot), path.position[sample], path.orientation[sample])[:, :2]
 
 
 def _extent(path: WalkPath, bodies: Sequence[Array], robot: Robot) -> tuple[Array, Array]:
-    points = np.vstack([path.position[:, :2], *(body[:, :2] for body in bodies)])
+    points = np.vstack([path.position[:, :2], *bodies])
     margin = _MARGIN * robot.body_size[0]
     return points.min(axis=0) - margin, points.max(axis=0) + margin
 

@@ -1,20 +1,60 @@
 # SPDX-License-Identifier: MIT
-"""The walking robot in 3-D, over a grid on the ground."""
+"""The walking robot in 3-D over a grid on the ground, and a picture of it at some times."""
 
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
+from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3D, Line3DCollection, Poly3DCollection
 from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.robot import N_LEGS, Robot
-from model.walk.ground import FLAT, Ground
+from model.walk.ground import FLAT, Ground, height_and_slopes, is_level
 from model.walk.path import WalkPath
-from zebro_lab.plots.scene_ground import ground_lines, heights_along
-from zebro_lab.plots.sheet import BLUE, RED
+from zebro_lab.plots.sheet import BLUE, RED, new_figure, styled
+from zebro_lab.plots.walk_path import snapshot_times
 from zebro_lab.plots.walk_robot import FACES, body_corners, leg_arcs, to_world
+
+_GRID = 0.05  # distance of the lines on the ground [m]
+_FINE = 0.01  # distance of points of a line on ground that is not level [m]
+
+
+def heights_along(ground: Ground, position: Array) -> Array:
+    """Return places with the height of the ground there, shape (n, 3) [m].
+
+    Args:
+        ground: The ground.
+        position: x and y of the places, shape (n, 2) [m].
+    """
+    if is_level(ground):
+        height = np.full(len(position), ground.height[0, 0])
+    else:
+        height = np.array([height_and_slopes(ground, x, y)[0] for x, y in position])
+    return np.column_stack([position, height])
+
+
+def ground_lines(ground: Ground, low: Array, high: Array) -> list[Array]:
+    """Return lines along x and y that lie on the ground, shape (m, 3) each [m].
+
+    Args:
+        ground: The ground.
+        low: Smallest x and y, shape (2,) [m].
+        high: Largest x and y, shape (2,) [m].
+    """
+    lines = []
+    for axis in (0, 1):
+        along = np.array([low[1 - axis], high[1 - axis]])
+        if not is_level(ground):
+            along = np.linspace(along[0], along[1], round(float(np.ptp(along)) / _FINE) + 1)
+        for at in np.arange(np.ceil(low[axis] / _GRID), high[axis] / _GRID) * _GRID:
+            place = np.empty((len(along), 2))
+            place[:, axis], place[:, 1 - axis] = at, along
+            lines.append(heights_along(ground, place))
+    return lines
+
 
 _VIEW = 0.55  # side of the ground that is seen [m]
 _ABOVE = 0.25  # of the view: height of the box that is drawn
@@ -97,3 +137,47 @@ class WalkScene:
         self._axes.set(
             xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(base, base + _ABOVE * _VIEW)
         )  # fmt: skip
+
+
+_COLUMNS = 3
+_WIDTH, _HEIGHT = 3.6, 2.6  # inches of a panel
+
+
+@styled
+def snapshots(
+    path: WalkPath,
+    robot: Robot,
+    *,
+    title: str,
+    at: Sequence[float] = (),
+    ground: Ground = FLAT,
+) -> Figure:
+    """Draw the robot in 3-D at some times (Fig. 2-1 above, 5-20 to 5-22, 5-24 and 5-25).
+
+    Args:
+        path: The walk.
+        robot: The robot, for the size of body and legs.
+        title: Title of the figure, which names the model; "(simulated)" is appended.
+        at: Times [s]; empty for six, evenly spaced from start to end.
+        ground: The ground.
+
+    Returns:
+        The figure: a panel for each time, with the legs in contact named in its title and drawn in
+        orange, those in the air grey; the head's edge is orange, too, and the path blue.
+    """
+    wanted = snapshot_times(path.t, at)
+    rows, columns = -(-len(wanted) // _COLUMNS), min(len(wanted), _COLUMNS)
+    figure = new_figure(title, True, width=max(_WIDTH * columns, 5.0), height=0.5 + _HEIGHT * rows)
+    figure.set_layout_engine("none")
+    top = 1 - 0.6 / figure.get_figheight()
+    grid = figure.add_gridspec(
+        rows, columns, left=0.0, right=1.0, bottom=0.02, top=top, wspace=0.0, hspace=0.05
+    )
+    for number, t in enumerate(wanted):
+        place = grid[divmod(number, columns)]
+        axes = cast("Axes3D", figure.add_subplot(place, projection="3d", computed_zorder=False))
+        sample = int(np.abs(path.t - t).argmin())
+        WalkScene(axes, path, robot, ground=ground).show(sample)
+        legs = ", ".join(str(leg + 1) for leg in np.flatnonzero(path.contact[sample]))
+        axes.set_title(f"t = {round(t, 2):g} s   {{{legs}}}", y=0.95)
+    return figure

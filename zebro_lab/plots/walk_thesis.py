@@ -2,28 +2,18 @@
 """Plot quantities of the thesis's model: coordinates, legs, speeds and loads over time."""
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from model.arrays import Array
 from model.robot import LEFT, RIGHT
 from model.thesis.path import ThesisPath
 from model.thesis.traction import paired_sum
-from zebro_lab.plots.beyond import limits_without_tips, mark_beyond
-from zebro_lab.plots.sheet import (
-    BLUE,
-    RED,
-    few_ticks,
-    legend_below,
-    new_figure,
-    styled,
-    time_axis,
-)
+from zebro_lab.plots import sheet
 from zebro_lab.plots.walk_legs import (
     draw_traction,
     leg_limits,
     leg_panels,
     load_panels,
+    time_grid,
     turn_panels,
 )
 
@@ -31,7 +21,7 @@ _COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 _LEAST = np.array([[0.002, 0.01, 0.1], [0.1, 1.0, 10.0]])  # range of an axis: m, deg; rates of it
 
 
-@styled
+@sheet.styled
 def coordinates(path: ThesisPath, *, title: str) -> Figure:
     """Draw the model's coordinates with rates and accelerations over time (Fig. 5-2, 5-5, 5-7).
 
@@ -45,26 +35,19 @@ def coordinates(path: ThesisPath, *, title: str) -> Figure:
         may lie beyond the limits, which is marked. Of kinematics there are no accelerations.
     """
     values = np.column_stack([path.position, path.angles])
-    rows = np.stack([values, path.rates, path.acceleration])
+    rows = np.stack([values, path.rates, path.acceleration])[: 2 if path.is_kinematic else 3]
     rows[:, :, 3:] = np.degrees(rows[:, :, 3:])
-    drawn = 2 if path.is_kinematic else 3
-    figure = new_figure(title, True, width=13.0, height=0.6 + 1.95 * drawn)
-    panels = figure.subplots(drawn, 6, sharex=True)
-    for (row, column), axes in np.ndenumerate(panels):
-        least = float(_LEAST[column // 3, row])
-        _draw_line(axes, path.t, rows[row, :, column], least=least, cut=0.0 if row == 0 else 0.01)
-    units = ("[{}]", "rate [{}/s]", "acceleration [{}/s²]")
-    for row, text in enumerate(units[:drawn]):
-        panels[row, 0].set_ylabel(text.format("m"))
-        panels[row, 3].set_ylabel(text.format("deg"))
-    for top, bottom, name in zip(panels[0], panels[-1], _COORDINATES, strict=True):
-        top.set_title(name, loc="left")
-        time_axis(bottom, path.t)
-    legend_below(figure, columns=2)
+    least = np.repeat(_LEAST, 3, axis=0).T
+    figure = time_grid(
+        path.t, list(rows), _COORDINATES, least=least, cut=0.01, width=13.0, title=title
+    )
+    for row, text in enumerate(("[{}]", "rate [{}/s]", "acceleration [{}/s²]")[: len(rows)]):
+        for column, unit in ((0, "m"), (3, "deg")):
+            figure.axes[6 * row + column].set_ylabel(text.format(unit))
     return figure
 
 
-@styled
+@sheet.styled
 def lowest_angles(path: ThesisPath, *, title: str) -> Figure:
     """Draw the angle phi of the lowest point of each leg's circle over time (section 3-4).
 
@@ -82,7 +65,7 @@ def lowest_angles(path: ThesisPath, *, title: str) -> Figure:
     )  # fmt: skip
 
 
-@styled
+@sheet.styled
 def hip_heights(path: ThesisPath, *, title: str) -> Figure:
     """Draw the hip heights by which contacts change, of each side over time (Table 3-1).
 
@@ -95,7 +78,7 @@ def hip_heights(path: ThesisPath, *, title: str) -> Figure:
         step together, and that of its middle hip; thick while these legs are on the ground. The
         legs on the ground change where the lines cross.
     """
-    figure = new_figure(title, True, width=8.0, height=5.0)
+    figure = sheet.new_figure(title, True, width=8.0, height=5.0)
     panels = figure.subplots(2, 1, sharex=True, sharey=True)
     for axes, legs, side in zip(panels, (LEFT, RIGHT), ("left", "right"), strict=True):
         front, middle, rear = legs
@@ -103,20 +86,20 @@ def hip_heights(path: ThesisPath, *, title: str) -> Figure:
         pair = height[:, [front, rear]].mean(axis=1)
         axes.set_title(f"{side} side", loc="left")
         for values, leg, colour, name in (
-            (pair, front, BLUE, "front and rear legs, mean"),
-            (height[:, middle], middle, RED, "middle leg"),
+            (pair, front, sheet.BLUE, "front and rear legs, mean"),
+            (height[:, middle], middle, sheet.RED, "middle leg"),
         ):
             axes.plot(path.t, values, color=colour, lw=0.8, label=name)
             down = np.where(path.contact[:, leg], values, np.nan)
             axes.plot(path.t, down, color=colour, lw=2.8, label=f"{name}, on the ground")
         axes.grid(color="0.92", lw=0.6)
         axes.set_ylabel("hip height [mm]")
-    time_axis(panels[-1], path.t)
-    legend_below(figure, columns=2)
+    sheet.time_axis(panels[-1], path.t)
+    sheet.legend_below(figure, columns=2)
     return figure
 
 
-@styled
+@sheet.styled
 def contact_velocities(path: ThesisPath, *, title: str) -> Figure:
     """Draw the speeds that a leg's slip ratio compares over time, Eq. (4-31) and (4-36).
 
@@ -138,7 +121,7 @@ def contact_velocities(path: ThesisPath, *, title: str) -> Figure:
     )
 
 
-@styled
+@sheet.styled
 def static_loads(path: ThesisPath, *, title: str) -> Figure:
     """Draw each leg's normal force and its load in static equilibrium over time, section 4-4.
 
@@ -156,7 +139,7 @@ def static_loads(path: ThesisPath, *, title: str) -> Figure:
     return load_panels(path, lines, title=title)
 
 
-@styled
+@sheet.styled
 def paired_traction(path: ThesisPath, *, title: str) -> Figure:
     """Draw the sum of traction force over pairs of time steps, of each leg over time (Fig. 5-19).
 
@@ -176,12 +159,3 @@ def paired_traction(path: ThesisPath, *, title: str) -> Figure:
     return draw_traction(
         path.t[first], net, path.contact[first], title, label="sum of two steps' traction force"
     )
-
-
-def _draw_line(axes: Axes, t: Array, values: Array, *, least: float, cut: float) -> None:
-    limits = limits_without_tips(values, cut=cut, margin=0.05, least=least)
-    axes.plot(t, values, color=BLUE, lw=0.7)
-    mark_beyond(axes, t, values, limits, label="beyond the axes")
-    axes.set_ylim(limits)
-    axes.yaxis.set_major_locator(few_ticks(5))
-    axes.grid(color="0.92", lw=0.6)

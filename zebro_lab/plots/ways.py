@@ -8,13 +8,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from model.arrays import Array
 from model.robot import Robot
 from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath
-from zebro_lab.plots.ground import draw_ground
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
-from zebro_lab.plots.walk_robot import outline, to_world
+from zebro_lab.plots.walk_path import body_outline, ground_axes
 
 _COLOURS = (BLUE, RED)
 _COLUMNS = 3
@@ -75,23 +73,20 @@ def _draw_goal(axes: Axes, goal: DrawnGoal, robot: Robot, ground: Ground) -> Non
     for (name, path), colour, dashes in zip(
         goal.paths.items(), _COLOURS, ("-", "--"), strict=False
     ):
-        end = _body(path, robot, -1)
+        end = body_outline(path, robot, -1)
         axes.plot(*path.position[:, :2].T, color=colour, ls=dashes, lw=1.5, label=name, zorder=4)
         axes.fill(*end.T, facecolor=colour, alpha=0.15, lw=0, zorder=2)
         axes.plot(*end.T, color=colour, ls=dashes, lw=1.0, zorder=3)
         corners += [path.position[:, :2], end]
-    start = _body(next(iter(goal.paths.values())), robot, 0)
+    start = body_outline(next(iter(goal.paths.values())), robot, 0)
     axes.plot(*start.T, color="0.5", lw=1.0, label="start", zorder=1)
-    low, high = _square(np.concatenate([*corners, start]))
+    points = np.concatenate([*corners, start])
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    half = (0.5 + _MARGIN) * float(np.ptp(points, axis=0).max())
+    low, high = middle - half, middle + half
     _mark_goal(axes, goal, arrow=0.12 * float(high[0] - low[0]))
-    axes.set(
-        xlabel="x [m]", ylabel="y [m]", aspect="equal",
-        xlim=(low[0], high[0]), ylim=(low[1], high[1]),
-    )  # fmt: skip
     axes.set_title(goal.title, loc="left")
-    draw_ground(axes, ground, low, high)
-    axes.grid(color="0.92", lw=0.6)
-    axes.set_axisbelow(True)
+    ground_axes(axes, ground, low, high)
 
 
 def _mark_goal(axes: Axes, goal: DrawnGoal, *, arrow: float) -> None:
@@ -103,17 +98,3 @@ def _mark_goal(axes: Axes, goal: DrawnGoal, *, arrow: float) -> None:
         axes.annotate(
             "", xy=to, xytext=(x, y), arrowprops={"arrowstyle": "->", "lw": 1.5}, zorder=5
         )
-
-
-def _square(points: Array) -> tuple[Array, Array]:
-    """Return the corners of a square around points, shape (n, 2), with a margin [m]."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    half = (0.5 + _MARGIN) * float((high - low).max())
-    middle = (low + high) / 2
-    return middle - half, middle + half
-
-
-def _body(path: WalkPath, robot: Robot, sample: int) -> Array:
-    """Return the outline of the body at a sample from above, shape (6, 2) [m]."""
-    pose = path.position[sample], path.orientation[sample]
-    return to_world(outline(robot), *pose)[:, :2]

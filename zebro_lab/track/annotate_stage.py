@@ -90,7 +90,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
         PhotoError: The photograph cannot be read.
     """
     from zebro_lab.plots import save
-    from zebro_lab.plots.pixel_grid import pixel_grid
+    from zebro_lab.plots.track import pixel_grid
 
     middle = None if around is None else _pair(around, "--around")
     _require_photo(photo, photo_names(origin))

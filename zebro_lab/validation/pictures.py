@@ -12,9 +12,8 @@ from tracking.errors import TrackingError
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots import save
-from zebro_lab.plots.path_validation import path_validation
+from zebro_lab.plots.path_validation import path_validation, tilt
 from zebro_lab.plots.photo_poses import Shot, band_over_floor, photos_beside_poses
-from zebro_lab.plots.tilt import tilt
 from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.predicted_walks import ShownRun

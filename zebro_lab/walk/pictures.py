@@ -57,7 +57,7 @@ def draw_walk(
         save,
         slip_law,
         walk_path,
-        walk_snapshots,
+        walk_scene,
         walk_stance,
     )
 
@@ -71,7 +71,7 @@ def draw_walk(
     figures["path"] = walk_path.path_with_snapshots(
         path, robot, title=f"Path: {title}", at=asked.snapshots, ground=ground
     )
-    figures["snapshots"] = walk_snapshots.snapshots(
+    figures["snapshots"] = walk_scene.snapshots(
         path, robot, title=f"Snapshots: {title}", at=asked.snapshots, ground=ground
     )
     if gait is not None:
@@ -86,7 +86,7 @@ def draw_walk(
 
 def _over_time(end: WalkPath, whole: WalkPath) -> _Drawers:
     """Return the pictures over time of every walk: legs of its end, the body's motion of it all."""
-    from zebro_lab.plots import walk_legs, walk_path
+    from zebro_lab.plots import walk_contacts, walk_legs, walk_path
 
     return {
         "motion": ("Motion of the body", walk_path.motion, whole),
@@ -95,7 +95,7 @@ def _over_time(end: WalkPath, whole: WalkPath) -> _Drawers:
         "normal_force": ("Normal forces", walk_legs.normal_forces, end),
         "traction_force": ("Traction forces", walk_legs.traction_forces, end),
         "leg_angles": ("Leg angles", walk_legs.leg_angles, end),
-        "gantt": ("Contact", walk_legs.gantt, end),
+        "gantt": ("Contact", walk_contacts.gantt, end),
     }
 
 
@@ -159,7 +159,7 @@ def draw_band(
         form: Format of the picture.
         ground: The ground, which is drawn below the paths.
     """
-    from zebro_lab.plots import path_band, save  # matplotlib takes most of a second
+    from zebro_lab.plots import path_validation, save  # matplotlib takes most of a second
 
-    figure = path_band.path_band(paths, title=f"Predicted path: {title}", ground=ground)
+    figure = path_validation.path_band(paths, title=f"Predicted path: {title}", ground=ground)
     save(figure, folder / f"{BAND_PICTURE}.{form}")

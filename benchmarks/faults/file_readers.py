@@ -43,7 +43,7 @@ from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.calibration.slip_draws import law_draws
 from zebro_lab.calibration.walks_folder import SCHEMA, describe_legs, read_stored_walks
 from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_stage import read_plan
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.raw_log import read_raw_log

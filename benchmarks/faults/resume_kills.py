@@ -23,7 +23,7 @@ from typing import Final
 import numpy as np
 
 from rig.experiment.control import Control
-from rig.experiment.watcher import ExperimentWatcher
+from rig.experiment.sink import ExperimentWatcher
 from zebro_lab.experiment.journal import JournalWriter
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.stage import run_experiment

@@ -15,10 +15,9 @@ from rig.experiment.load import LoadSetter
 from rig.experiment.measure import record, settle, take_zero
 from rig.experiment.plan import Plan
 from rig.experiment.readings import Batch
-from rig.experiment.sink import RunSink, RunStart, SinkFailed
+from rig.experiment.sink import ExperimentWatcher, RunSink, RunStart, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out, steps_left
 from rig.experiment.verdict import PointVerdict, judge_point
-from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory, StopRequested
 from rig.slip_rig.decode import Zero, require_zero
 

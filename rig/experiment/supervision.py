@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Report uncaught exceptions of any thread to the running experiment, which then stops."""
+"""Request stops of a running experiment: by signals, and at uncaught exceptions of any thread."""
 
+import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
+from typing import Final
 
 from rig.errors import PartFailed
+from rig.experiment.condition import next_stop
 from rig.experiment.control import Control
+from rig.safety import StopCategory, StopSwitch
 
 
 @contextmanager
@@ -56,3 +61,44 @@ def start_thread(work: Callable[[], None], *, name: str, control: Control) -> th
         control.fail(name, error)
         raise PartFailed(name, error) from error
     return thread
+
+
+ENDING: Final = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGTSTP")
+"""Signals that request a safe stop: termination, a lost connection or closed terminal, Ctrl-\\, and
+Ctrl-Z, because a suspended program reads no samples and checks no limits."""
+
+
+@contextmanager
+def signal_stops(switch: StopSwitch) -> Iterator[None]:
+    """Install handlers: SIGINT requests a stop harder than the pending one, others a safe stop.
+
+    The first SIGINT requests a soft stop; the other signals are `ENDING`: SIGTERM, SIGHUP, SIGQUIT
+    and SIGTSTP. The previous handlers are restored afterwards. A signal that is ignored stays
+    ignored, as under `nohup`, which lets a run outlive its terminal.
+
+    Args:
+        switch: Receiver of the stop requests.
+
+    Raises:
+        ValueError: This is not the main thread.
+    """
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        category = next_stop(None if switch.pending is None else switch.pending.category)
+        switch.request(category, "Ctrl-C")
+
+    def end(number: int, _frame: FrameType | None) -> None:
+        switch.request(StopCategory.SAFE, signal.Signals(number).name)
+
+    handlers = {signal.SIGINT: interrupt}
+    handlers |= {getattr(signal, name): end for name in ENDING if hasattr(signal, name)}
+    earlier = {
+        number: signal.signal(number, handler)
+        for number, handler in handlers.items()
+        if signal.getsignal(number) is not signal.SIG_IGN
+    }
+    try:
+        yield
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)

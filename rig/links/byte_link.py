@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Protocols of a byte stream to a device, and of the simulated device at its other end."""
+"""Protocols of a link to a device and of its twin at the other end; streams over a link."""
 
-from typing import Protocol
+from typing import Generic, Protocol, Self, TypeVar
+
+from rig.clock import Clock
 
 
 class Link(Protocol):
@@ -72,3 +74,35 @@ class ByteTwin(Protocol):
             Bytes to the host since the last poll.
         """
         ...
+
+
+LinkT = TypeVar("LinkT", bound=Link)
+
+
+class LinkedStream(Generic[LinkT]):
+    """A stream over one link, as a context manager.
+
+    Args:
+        link: Link to the device, opened on entering and closed on leaving.
+        name: Name of the stream.
+        clock: Host time.
+
+    Attributes:
+        name: Name of the stream.
+        source: Origin of the samples: `real` or `sim:WHAT`.
+    """
+
+    def __init__(self, link: LinkT, *, name: str, clock: Clock) -> None:
+        self.name = name
+        self.source = link.source
+        self._link = link
+        self._clock = clock
+        self._received = 0
+        self._refused = 0
+
+    def __enter__(self) -> Self:
+        self._link.open()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._link.close()

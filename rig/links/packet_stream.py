@@ -8,9 +8,8 @@ from typing import Final
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.errors import DeviceMismatch
-from rig.links.byte_link import ByteLink
+from rig.links.byte_link import ByteLink, LinkedStream
 from rig.links.framing import CobsFramer
-from rig.links.linked_stream import LinkedStream
 from rig.links.packet import (
     CHECKSUM,
     HEADER,

@@ -15,8 +15,8 @@ import can
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Limits, Sample
 from rig.errors import DeviceFault, RigError, RigTimeout
+from rig.links.byte_link import LinkedStream
 from rig.links.can import CanLink
-from rig.links.linked_stream import LinkedStream
 from rig.safety import require_within
 from rig.slip_rig.can_simple import (
     AXIS_STATE,

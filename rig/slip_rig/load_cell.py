@@ -8,7 +8,7 @@ import numpy as np
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters
-from rig.links.linked_stream import LinkedStream
+from rig.links.byte_link import LinkedStream
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 from rig.links.udp import UdpLink
 from rig.sample_columns import SampleColumns

@@ -8,8 +8,8 @@ import can
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
+from rig.links.byte_link import LinkedStream
 from rig.links.can import CanLink
-from rig.links.linked_stream import LinkedStream
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 from rig.zebro.commands import leave_still, milliseconds
 from rig.zebro.profile import LegProfile

@@ -11,9 +11,8 @@ from typing import Final
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.errors import ProtocolError
-from rig.links.byte_link import ByteLink
+from rig.links.byte_link import ByteLink, LinkedStream
 from rig.links.framing import TrailerFramer
-from rig.links.linked_stream import LinkedStream
 from rig.zebro.commands import leave_still, milliseconds
 from rig.zebro.profile import DUMP_REGISTERS, LegProfile
 

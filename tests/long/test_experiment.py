@@ -22,7 +22,7 @@ from rig.experiment.control import Control
 from rig.experiment.run import run_plan
 from rig.slip_rig.decode import measured_slip
 from support.memory_sink import MemorySink
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_stage import read_plan
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
 
 pytestmark = pytest.mark.long

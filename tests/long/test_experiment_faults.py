@@ -10,8 +10,7 @@ import pytest
 
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout
 from rig.experiment.control import Control
-from rig.experiment.sink import SinkFailed
-from rig.experiment.watcher import ExperimentWatcher
+from rig.experiment.sink import ExperimentWatcher, SinkFailed
 from rig.links.can import CanLink
 from rig.slip_rig.rdt import SATURATED
 from rig.slip_rig.simulated import SimulatedRig

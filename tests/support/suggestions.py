@@ -11,7 +11,7 @@ from model.design.targets import parameter_target
 from rig.experiment.plan import Plan
 from support.experiment_plans import THESIS_PLAN
 from support.small_layouts import posterior as posterior_of
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_stage import read_plan
 from zebro_lab.suggest.folder import Expected, Suggested
 from zebro_lab.suggest.proposal import (
     Knowledge,

@@ -23,8 +23,8 @@ from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
 from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.recording.place import identity
 from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.recording.run_files import identity
 from zebro_lab.runs.manifest import RunManifest
 
 MOST_WAITING: Final = 20_000

@@ -9,7 +9,7 @@ from typing import Annotated, Final, TypeAlias
 
 from typer import Argument, BadParameter, Option
 
-from zebro_lab.recording.address_argument import require_address
+from zebro_lab.recording.request import require_address
 from zebro_lab.terminal.request_command import Range
 
 STANDARD_GRAVITY: Final = 9.80665

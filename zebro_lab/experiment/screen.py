@@ -20,10 +20,10 @@ from rich.text import Text
 
 from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
+from rig.experiment.sink import ExperimentWatcher
 from rig.experiment.steps import Point
 from rig.experiment.supervision import start_thread
 from rig.experiment.verdict import PointVerdict
-from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.keyboard import Keyboard
 from zebro_lab.files.errors import shown
 from zebro_lab.terminal.messages import plain

@@ -14,9 +14,8 @@ from rig.experiment.control import Control
 from rig.experiment.control_server import ControlServer, send_command
 from rig.experiment.plan import Plan
 from rig.experiment.run import Outcome, run_plan
-from rig.experiment.signal_stops import signal_stops
-from rig.experiment.supervision import supervised
-from rig.experiment.watcher import ExperimentWatcher
+from rig.experiment.sink import ExperimentWatcher
+from rig.experiment.supervision import signal_stops, supervised
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import (
     JOURNAL_FILE,
@@ -24,7 +23,7 @@ from zebro_lab.experiment.journal import (
     begin_or_resume,
     plan_fingerprint,
 )
-from zebro_lab.experiment.plan_file import read_plan, require_plan_allowed
+from zebro_lab.experiment.plan_stage import read_plan, require_plan_allowed
 from zebro_lab.experiment.points import Finished, finished_points, holds_points, point_sources
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand

@@ -59,7 +59,7 @@ def _print_document(recorded: "Recorded", output: Output, code: int) -> None:
 
 
 def _report(recorded: "Recorded") -> str:
-    from zebro_lab.recording.clock_text import clock_in_words
+    from zebro_lab.recording.drawing import clock_in_words
 
     manifest = recorded.manifest
     lines = []

@@ -25,13 +25,13 @@ from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_legs, simulated_rig_devices
+from rig.zebro.commands import GaitPlayer
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.simulated_body import SimulatedBody
 from rig.zebro.simulated_legs import SimulatedLegs
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.replayed import IMU, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
-from zebro_lab.robot.gait_player import GaitPlayer
 from zebro_lab.runs.manifest import RIG
 from zebro_lab.runs.recorded_walk import LEGS
 

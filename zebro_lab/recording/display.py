@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import Final
 
 from zebro_lab.files.errors import RecordingError
+from zebro_lab.recording.recorder import needing_threads
 from zebro_lab.recording.status import RecordStatus
-from zebro_lab.recording.threads import needing_threads
 
 PATIENCE: Final = 1.0
 """Timeout of one call of the display, after which the display is abandoned [s]."""

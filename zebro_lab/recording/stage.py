@@ -12,16 +12,15 @@ from model.gait.reference import SampledReference
 from rig.acquisition import Acquisition, acquiring
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import RigError
+from rig.zebro.commands import LEAD_IN
 from zebro_lab.files.errors import RecordingError, SettingsError
 from zebro_lab.files.source_names import is_twin, joined_source
 from zebro_lab.mcap.log_writer import WARNING
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
-from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.recording.recorder import RunRecorder, needing_threads
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.status import COUNT_EVERY, RecordStatus, StreamWatch, reading_failure
-from zebro_lab.recording.threads import needing_threads
-from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.robot.leg_warnings import WARNING as SUSPECTED
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.runs.legs import read_leg_log

@@ -16,8 +16,7 @@ from rig.experiment.plan import Plan
 from rig.slip_rig.profile import RigProfile
 from zebro_lab.calibration.draws import read_draws_of
 from zebro_lab.calibration.folder import POSTERIOR, SlipFile
-from zebro_lab.experiment.plan_file import require_plan_allowed
-from zebro_lab.experiment.plan_stage import Foreseen, foresee
+from zebro_lab.experiment.plan_stage import Foreseen, foresee, require_plan_allowed
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import read_text
 from zebro_lab.files.provenance import file_hashes

@@ -5,7 +5,7 @@ import pytest
 
 from rig.errors import RigError
 from rig.experiment.load import HandShaft
-from rig.experiment.watcher import ExperimentWatcher
+from rig.experiment.sink import ExperimentWatcher
 
 
 def keep_turning(twin, monkeypatch, slowest):

@@ -4,7 +4,7 @@
 from types import SimpleNamespace
 
 from rig.experiment.load import LEAST, HandShaft, SimulatedOperator
-from rig.experiment.watcher import ExperimentWatcher
+from rig.experiment.sink import ExperimentWatcher
 
 
 def test_a_person_is_asked_and_believed_only_within_the_tolerance(lab):

@@ -7,8 +7,7 @@ import pytest
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
 from rig.experiment.condition import RigState
-from rig.experiment.sink import SinkFailed
-from rig.experiment.watcher import ExperimentWatcher
+from rig.experiment.sink import ExperimentWatcher, SinkFailed
 from rig.safety import StopCategory
 from rig.slip_rig.decode import measured_slip
 from support.memory_sink import MemorySink

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
 """The end of any thread by an exception reaches the run, which stops."""
 
+import os
+import signal
 import threading
 
 import pytest
 
 from rig.errors import PartFailed
 from rig.experiment.control import Control
-from rig.experiment.supervision import start_thread, supervised
-from rig.safety import StopCategory
+from rig.experiment.supervision import signal_stops, start_thread, supervised
+from rig.safety import StopCategory, StopSwitch
 
 
 def test_a_part_that_fails_asks_for_a_safe_stop_and_is_named():
@@ -54,3 +56,22 @@ def test_any_thread_is_supervised_and_only_for_as_long_as_the_run_lasts():
         thread.join()
     assert "stranger" in control.stop.pending.reason
     assert threading.excepthook is before
+
+
+def test_ctrl_c_asks_for_a_softer_stop_first():
+    switch = StopSwitch()
+    before = signal.getsignal(signal.SIGINT)
+    with signal_stops(switch):
+        found = []
+        for _ in range(4):
+            os.kill(os.getpid(), signal.SIGINT)
+            found.append(switch.pending.category)
+    assert found == [*StopCategory, StopCategory.EMERGENCY]
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_sigterm_asks_for_a_safe_stop():
+    switch = StopSwitch()
+    with signal_stops(switch):
+        os.kill(os.getpid(), signal.SIGTERM)
+    assert (switch.pending.category, switch.pending.reason) == (StopCategory.SAFE, "SIGTERM")

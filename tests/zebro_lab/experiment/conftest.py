@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from rig.experiment.control import Control
-from rig.experiment.watcher import ExperimentWatcher
+from rig.experiment.sink import ExperimentWatcher
 from support.experiment_plans import LENIENT, short_plan
 from zebro_lab.experiment.journal import JOURNAL_FILE
 from zebro_lab.experiment.request import RigRunRequest

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A plan is foreseen: its points, time, guards that are off, and every step."""
 
+import pytest
 from typer.testing import CliRunner
 
 from support.experiment_plans import THESIS_PLAN
+from zebro_lab.experiment.plan_stage import read_plan
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.main import app
 
 
@@ -32,3 +35,12 @@ def test_every_step_is_listed_where_asked(short):
         "point-0002 Fn 8 N slip 0.0500",
         "point-0003 Fn 8 N slip 0.6000",
     ]
+
+
+def test_an_unknown_key_names_file_key_and_the_nearest(plan):
+    plan.write_text(plan.read_text().replace("acceleration =", "aceleration ="))
+    with pytest.raises(SettingsError, match=r"plan\.toml, limits\.acceleration: is missing"):
+        read_plan(plan)
+    plan.write_text(plan.read_text() + "acceleration = 40.0\n")
+    with pytest.raises(SettingsError, match="aceleration: unknown key; did you mean 'accelera"):
+        read_plan(plan)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from rig.zebro.profile import load_leg_profile
 from support.bounded_reading import error_on_fifo, refusal
 from zebro_lab.calibration.folder import read_slip
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_stage import read_plan
 from zebro_lab.files.documents import json_text, read_json_document, read_toml_document
 from zebro_lab.files.errors import NotFound
 from zebro_lab.robot.robot_file import read_robot_file

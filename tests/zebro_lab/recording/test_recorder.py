@@ -19,7 +19,7 @@ from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording import recorder as module
 from zebro_lab.recording import run_files
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.recording.recorder import RunRecorder, needing_threads
 from zebro_lab.runs.folder import run_state
 from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
 
@@ -224,3 +224,17 @@ def test_the_beginning_of_a_run_waits_for_no_disk(tmp_path, monkeypatch):
     manifest = read_manifest(run.folder)
     start, stop = map(datetime.fromisoformat, (manifest.start, manifest.stop))
     assert (stop - start).total_seconds() < ended - began + 0.1
+
+
+def test_a_refused_thread_says_what_to_do():
+    with pytest.raises(RecordingError, match=r"can't start new thread: .*ulimit") as caught:  # noqa: SIM117
+        with needing_threads():
+            raise RuntimeError("can't start new thread")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("error", [RuntimeError("torn"), ValueError("can't start new thread")])
+def test_other_errors_pass_unchanged(error):
+    with pytest.raises(type(error)) as caught, needing_threads():
+        raise error
+    assert caught.value is error

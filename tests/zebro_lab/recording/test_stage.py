@@ -11,6 +11,7 @@ from rig.acquisition import Device, acquiring
 from rig.backends import leg_driver, leg_link
 from rig.links.serve import PortServer
 from rig.twins import robot_twin
+from rig.zebro.commands import LEAD_IN
 from rig.zebro.profile import load_leg_profile
 from support.leg_motions import T, tripod
 from support.leg_tables import table_of
@@ -23,7 +24,6 @@ from zebro_lab.recording.devices import default_gait, open_devices, profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
-from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest, profile_file

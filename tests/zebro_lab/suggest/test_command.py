@@ -10,7 +10,7 @@ import pytest
 from support.short_calibration import calibration_folder
 from support.suggestions import write_plan
 from support.walk_requests import write_log
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_stage import read_plan
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
 

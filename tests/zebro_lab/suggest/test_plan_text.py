@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from support.suggestions import write_plan
-from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.plan_stage import read_plan
 from zebro_lab.files.errors import DataError
 from zebro_lab.suggest.plan_text import with_points
 

@@ -15,7 +15,7 @@ from model.walk.ground import FLAT, Ground, with_slope
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import MOST_TEXT, read_bytes
 from zebro_lab.files.settings_table import SettingsTable, read_settings
-from zebro_lab.tables.text_encoding import decoded, possible_encodings
+from zebro_lab.tables.csv_files import decoded, possible_encodings
 
 _MAP_KEYS: Final = ("step", "origin", "unit")
 _GONE: Final = ("roughness", "area")  # of earlier versions

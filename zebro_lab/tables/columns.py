@@ -13,7 +13,7 @@ import numpy as np
 from model.arrays import Array
 from model.similar_name import nearest
 from model.slip.definition import SlipDefinition
-from zebro_lab.files.errors import UnitError
+from zebro_lab.files.errors import DataError, UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
 from zebro_lab.tables.header_units import unit_in_header
@@ -262,18 +262,29 @@ class Columns:
         """
         mapped = self.mapped[name]
         if not self.has(table, name):
-            other = looks_like_other(table.columns, self.mapped)
-            known = nearest(mapped.name, list(table.columns))
-            frames = _frames(table) if self.units[name] == "s" else ""
-            raise table.fault(
-                f"the column of the {what} is missing{other}; {known}; if its header differs, map "
-                f"it in {self.stated_in}: [{self.where}columns.{name}]{frames}",
-                mapped.name,
-            )
+            raise self.missing(table, name, what=what)
         mapped = mapped.in_unit_of(table, self.units[name])
         values = mapped.in_si(table)
         table.require_finite(mapped.name, values, f"a number in {mapped.unit}: {advice}")
         return values
+
+    def missing(self, table: RawTable, name: str, *, what: str) -> DataError:
+        """Return, without raising, an error that a table lacks a column, and how to map it.
+
+        Args:
+            table: The table.
+            name: Canonical name.
+            what: Description of the column.
+        """
+        header = self.mapped[name].name
+        other = looks_like_other(table.columns, self.mapped)
+        frames = _frames(table) if self.units[name] == "s" else ""
+        return table.fault(
+            f"the column of the {what} is missing{other}; {nearest(header, list(table.columns))}; "
+            f"if its header differs, map it in {self.stated_in}: [{self.where}columns.{name}] "
+            f"(zebro-lab init writes that file){frames}",
+            header,
+        )
 
     def times(self, table: RawTable, name: str, *, advice: str) -> Array:
         """Return the times of samples, as `numbers`; their unit must fit if it is not stated.

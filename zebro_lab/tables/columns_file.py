@@ -25,8 +25,8 @@ from zebro_lab.tables.rig_columns import (
 from zebro_lab.tables.row_conditions import read_row_conditions
 
 _CONSTANTS = {"radius_leg": "m", "radius_ground": "m"}
-LARGEST_LOAD_CELL_ERROR = 0.2
-"""Largest relative error or crosstalk of a load cell that a number without a unit can state [-]."""
+LARGEST_LOAD_CELL_ERROR = {"dimensionless": 0.2}
+"""Largest relative error or crosstalk of a load cell that a number without a unit can state."""
 _LOAD_CELL = {
     "zero_stability": "N",
     "gain_sd": "dimensionless",
@@ -83,12 +83,16 @@ def parse_columns(table: SettingsTable) -> RigColumns:
         source=read_source(table),
         sheet=table.text("sheet") if "sheet" in table else None,
         columns=_mapped_columns(table, units),
-        constants=_quantities(table.table("constants"), _CONSTANTS),
+        constants=_quantities(table.table("constants"), _CONSTANTS, {}),
         runs=_runs(table),
         keep=read_row_conditions(table.table("rows")),
-        load_cell=_load_cell(table.table("load_cell")),
+        load_cell=_quantities(
+            table.table("load_cell"), _LOAD_CELL, LARGEST_LOAD_CELL_ERROR, least=0.0
+        ),
         priors=_priors(table.table("priors")),
-        rig_errors=_rig_errors(table.table("rig_errors")),
+        rig_errors=RigErrorsStated(
+            **_quantities(table.table("rig_errors"), _RIG_ERRORS, LARGEST_RIG_ERROR, above=0.0)
+        ),
     )
     table.finish()
     return columns_file
@@ -230,15 +234,20 @@ def _runs(table: SettingsTable) -> RunRule:
     )
 
 
-def _quantities(table: SettingsTable, units: Mapping[str, str]) -> dict[str, float]:
-    return {key: table.quantity(key, unit) for key, unit in units.items() if key in table}
+def _quantities(
+    table: SettingsTable, units: Mapping[str, str], usual: Mapping[str, float], **limit: float
+) -> dict[str, float]:
+    """Read the quantities that are stated, in SI.
 
-
-def _load_cell(table: SettingsTable) -> dict[str, float]:
-    usual = {"dimensionless": LARGEST_LOAD_CELL_ERROR}
+    Args:
+        table: Section of the file.
+        units: SI unit of each known key.
+        usual: Largest number without a unit, by SI unit.
+        limit: `above` or `least` of `SettingsTable.quantity`.
+    """
     return {
-        key: table.quantity(key, unit, least=0.0, usual=usual.get(unit, math.inf))
-        for key, unit in _LOAD_CELL.items()
+        key: table.quantity(key, unit, usual=usual.get(unit, math.inf), **limit)
+        for key, unit in units.items()
         if key in table
     }
 
@@ -255,12 +264,3 @@ def prior_entry(text: str) -> tuple[str, str]:
     """Return a prior as key and text of `[priors]`, from one text of `RigColumns.priors`."""
     name, value = re.split(r" [=~] ", text, maxsplit=1)
     return name, value
-
-
-def _rig_errors(table: SettingsTable) -> RigErrorsStated:
-    stated = {
-        key: table.quantity(key, unit, above=0.0, usual=LARGEST_RIG_ERROR[unit])
-        for key, unit in _RIG_ERRORS.items()
-        if key in table
-    }
-    return RigErrorsStated(**stated)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Read text tables: CSV and its relatives, with any separator, encoding and header."""
 
+import codecs
 import io
 import re
 import warnings
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -13,16 +13,16 @@ import pandas as pd
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing, read_unpacked
-from zebro_lab.tables.cells import NO_VALUE
+from zebro_lab.tables.cells import NO_VALUE, kind_of
 from zebro_lab.tables.raw_table import RawTable, differing_headers
-from zebro_lab.tables.row_checks import require_full_rows, words_between_numbers
-from zebro_lab.tables.text_encoding import WINDOWS, decoded, possible_encodings
 from zebro_lab.tables.text_layout import (
     BLANKS,
     SEPARATORS,
     Line,
     TextLayout,
     find_layout,
+    split_line,
+    uneven_row,
 )
 
 _HEAD_BYTES: Final = 1 << 16  # enough to see the layout, little enough to decode twice
@@ -57,8 +57,8 @@ def read_csv_file(path: Path) -> RawTable:
     layout = _layout(path, _head(path, data[:_HEAD_BYTES], encoding))
     table = _table(path, layout, _frame(path, layout, data, encoding), encoding)
     if layout.separator == BLANKS:
-        require_full_rows(table)
-    return replace(table, notes=(*table.notes, *words_between_numbers(table)))
+        _require_full_rows(table)
+    return table
 
 
 def _encoding(path: Path, data: bytes) -> str:
@@ -164,7 +164,6 @@ def _table(path: Path, layout: TextLayout, frame: pd.DataFrame, encoding: str) -
         path,
         columns,
         differing_headers(layout.header.repeated, columns),
-        decimal_comma=True,
         decimal="," if layout.separator == ";" and not layout.decimal else layout.decimal,
         notes=tuple(f"{path.name}: {note}" for note in (*said, *layout.header.notes)),
         header_line=layout.last_line,
@@ -183,10 +182,116 @@ def _without_empty_ends(
         frame = frame.drop(columns=last)
     elif last == _SURPLUS:
         row = int(frame[last].notna().argmax()) + 1
-        names = len(frame.columns) - 1
-        problem = f"the row has {names + 1} cells, the header has {names}; correct it"
+        problem = uneven_row(len(frame.columns), len(frame.columns) - 1, "correct it")
         raise DataError(problem, file=path, row=row)
     if len(frame) and bool(frame.iloc[-1].isna().to_numpy().all()):
         filled = frame.notna().any(axis=1).to_numpy().nonzero()[0]
         frame = frame.iloc[: int(filled.max(initial=-1)) + 1]
     return {str(name): cells for name, cells in frame.items()}
+
+
+WINDOWS: Final = "cp1252"
+_MARKS: Final = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+_ZEROS = 0.3  # share of zero bytes at even or odd places from which on text is UTF-16
+
+
+def possible_encodings(head: bytes) -> tuple[str, ...]:
+    """Return the encodings that fit the first bytes of a file, the likelier first.
+
+    Several only where all bytes are ASCII, so that what follows has to tell. Empty if none fits, or
+    if the bytes are no text.
+    """
+    marked = next((name for mark, name in _MARKS if head.startswith(mark)), None)
+    tried = (marked,) if marked else _by_zeros(head) or ("utf-8", WINDOWS)
+    fitting = tuple(name for name in tried if _is_text(head, name))
+    return fitting if head.isascii() else fitting[:1]
+
+
+def decoded(head: bytes, encoding: str) -> str:
+    """Return the first bytes of a file as text; a character cut at their end is left out.
+
+    Raises:
+        UnicodeDecodeError: The bytes have another encoding.
+    """
+    return codecs.getincrementaldecoder(encoding)().decode(head)
+
+
+def _by_zeros(head: bytes) -> tuple[str, ...]:
+    half = max(len(head) // 2, 1)
+    if head[1::2].count(0) > _ZEROS * half:
+        return ("utf-16-le",)
+    return ("utf-16-be",) if head[::2].count(0) > _ZEROS * half else ()
+
+
+def _is_text(head: bytes, encoding: str) -> bool:
+    try:
+        text = decoded(head, encoding)
+    except UnicodeDecodeError:
+        return False
+    return not any(ord(c) < 32 and c not in "\t\r\n\f" for c in text)
+
+
+_FOOTER = re.compile(
+    r"(?:mean|average|avg|std|sd|stdev|sum|total|minimum|min|maximum|max|median|count|end|eof|"
+    r"mittel\w*|summe|stabw|standardabweichung|anzahl|ende)\b.*",
+    re.IGNORECASE,
+)
+_NO_STATISTIC: Final = re.compile(r"(?:count|end|eof|anzahl|ende)\b.*", re.IGNORECASE)
+"""Words that a column of remarks may well end with."""
+_FOOTER_ROWS: Final = 10
+
+
+def _require_full_rows(table: RawTable) -> None:
+    """Check that no row between blanks has fewer cells than the header: which is empty is unknown.
+
+    Raises:
+        DataError: A row has fewer cells.
+    """
+    short = list(table.columns.values())[-1].isna().to_numpy(dtype=bool)
+    if not short.any():
+        return
+    for row, line, text in table.text_rows():
+        found = len(split_line(text, BLANKS)) if row <= len(short) and short[row - 1] else 0
+        if found not in (0, len(table.columns)):
+            advice = "write nan where a value is missing, or separate cells by tabs or commas"
+            problem = uneven_row(found, len(table.columns), advice)
+            raise DataError(problem, file=table.path, row=row, line=line)
+
+
+def require_no_footer(table: RawTable) -> None:
+    """Check that no column ends with a word such as "Mean": that row is no sample.
+
+    In a column of numbers, or of texts where the last rows alone have such words, each once.
+
+    Raises:
+        DataError: One does.
+    """
+    for name, cells in table.columns.items():
+        if cells.dtype.kind in "ifbMm" or len(cells) < 2 or name in table.unreadable:
+            continue
+        first = max(1, len(cells) - _FOOTER_ROWS)
+        last = ["" if cell is None else str(cell).strip() for cell in cells.iloc[first:]]
+        found = [i for i, text in enumerate(last) if _FOOTER.fullmatch(text)]
+        known = cells.iloc[: first + found[0]].dropna() if found else cells.iloc[:0]
+        if not found or not (_are_values(known) or _are_statistics(last[found[0] :], known)):
+            continue
+        below = "numbers" if _are_values(known) else "the rows"
+        problem = f"'{last[found[0]]}' stands below {below}; delete the lines below the table"
+        raise table.fault(problem, name, first + found[0])
+
+
+def _are_values(cells: pd.Series) -> bool:
+    return len(cells) > 0 and kind_of(str(cells.iloc[0])) == "value"
+
+
+def _are_statistics(last: Sequence[str], above: pd.Series) -> bool:
+    """Return whether the last texts of a column are statistics, each once, and none above is."""
+    return (
+        len(set(last)) == len(last)
+        and all(_FOOTER.fullmatch(text) and not _NO_STATISTIC.fullmatch(text) for text in last)
+        and not any(_FOOTER.fullmatch(text.strip()) for text in set(map(str, above)))
+    )

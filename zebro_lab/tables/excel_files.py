@@ -53,7 +53,6 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
         path,
         columns,
         differing_headers(header.repeated, columns),
-        decimal_comma=True,
         decimal=decimal_sign([c for row in cells[:_HEAD_ROWS] for c in row if isinstance(c, str)]),
         notes=tuple(f"{path.name}: {note}" for note in notes),
         rows_from=above + 1 + header.first,

@@ -3,7 +3,7 @@
 
 import io
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -36,7 +36,6 @@ class RawTable:
         repeated: Headers that columns with different cells have in the file, which are therefore
             ambiguous.
         source: Source stated in the file; None if not stated.
-        decimal_comma: Whether numbers may be written with a decimal comma, e.g. 0,5.
         decimal: Decimal sign of the table, "," or ".", where it is known; then a number such as
             1.234 or 1,234 is not ambiguous.
         notes: Notes on how the file was read, one line each.
@@ -52,7 +51,6 @@ class RawTable:
     columns: Mapping[str, pd.Series]
     repeated: frozenset[str] = frozenset()
     source: str | None = None
-    decimal_comma: bool = False
     decimal: str | None = None
     notes: tuple[str, ...] = ()
     header_line: int | None = None
@@ -115,7 +113,7 @@ class RawTable:
     def numbers(self, name: str) -> Array:
         """Return a column as numbers in the file's unit, NaN for empty cells, shape (n,).
 
-        A decimal comma is understood if the table may have them and no cell has a point. Thousands
+        A decimal comma is understood if no cell has a point. Thousands
         separators are not: of 1,234 and 1.234 the decimal sign must be known from other numbers.
 
         Raises:
@@ -132,7 +130,7 @@ class RawTable:
             empty = cells.isna().to_numpy(dtype=bool)
             values = _as_numbers(cells)
             bad = np.isnan(values) & ~empty
-            if bad.any() and self.decimal_comma and not _has_points(cells):
+            if bad.any() and not _has_points(cells):
                 values = _as_numbers(cells.astype(str).str.replace(",", ".", regex=False))
                 bad = np.isnan(values) & ~empty
                 if not bad.any() and self.decimal != ",":
@@ -213,33 +211,35 @@ class RawTable:
         """Return the data row of the file, counted from 1, that a row of the columns is."""
         return 1 + (index if self.kept is None else int(self.kept[index]))
 
-    def _line(self, row: int) -> int | None:
-        """Return the line of a data row in a text file or the row of a sheet; None for others.
+    def text_rows(self) -> Iterator[tuple[int, int, str]]:
+        """Yield data row, line and text of each line of a text file below its header.
 
-        Rows and lines count from 1. The file is read again, as this is only called for error
-        messages.
+        Rows and lines count from 1; blank lines are left out. The file is read again.
         """
+        file = io.BytesIO(read_unpacked(self.path))
+        lines = enumerate(io.TextIOWrapper(file, encoding=self.encoding, errors="replace"), start=1)
+        header = self.header_line or 0
+        filled = ((line, text) for line, text in lines if line > header and text.strip())
+        for row, (line, text) in enumerate(filled, start=1):
+            yield row, line, text
+
+    def _line(self, row: int) -> int | None:
+        """Return the line of a data row in a text file or the row of a sheet; None for others."""
         if self.rows_from is not None:
             return self.rows_from + row - 1
         if self.header_line is None:
             return None
-        file = io.BytesIO(read_unpacked(self.path))
-        text = io.TextIOWrapper(file, encoding=self.encoding, errors="replace")
-        for number, line in enumerate(text, start=1):
-            row -= number > self.header_line and bool(line.strip())
-            if row == 0:
-                return number
-        return None
+        return next((line for each, line, _ in self.text_rows() if each == row), None)
 
     def _not_a_number(self, name: str, index: int) -> DataError:
         text = str(self.column(name).iloc[index])
-        if index and self.is_line_of_words(index):
+        if index and self._is_line_of_words(index):
             return self.fault(
                 f"'{text}' is not a number, but in a line of words between the numbers: delete the "
                 "line, or, if another table or recording begins there, make a file of each",
                 name, index, value=text,
             )  # fmt: skip
-        if may_be_thousands(text) and self.decimal_comma:
+        if may_be_thousands(text):
             return self.fault(
                 f"'{text}' has a decimal sign or a thousands separator; write all numbers without "
                 "thousands separators, decimals with a point",
@@ -261,12 +261,8 @@ class RawTable:
             advice = "; correct or delete the row"
         return self.fault(f"'{text}' is not a number{advice}", name, index, value=text)
 
-    def is_line_of_words(self, index: int) -> bool:
-        """Return whether a row holds words alone, in all cells or in one, the others empty.
-
-        Args:
-            index: Data row, counted from 0.
-        """
+    def _is_line_of_words(self, index: int) -> bool:
+        """Return whether a row, counted from 0, holds words alone, or one word and empty cells."""
         kinds = [kind_of(_cell_text(cells.iloc[index])) for cells in self.columns.values()]
         words = kinds.count("text")
         return len(kinds) > 1 and "value" not in kinds and words in (1, len(kinds))

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import MappedColumn, looks_like_other
+from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.raw_table import OVERLOAD, RawTable, is_measured, missing_text
 from zebro_lab.tables.rig_columns import CANONICAL, RigColumns
@@ -59,13 +58,7 @@ class RigTable:
         """
         source = self.source_of(name)
         if source is None:
-            other = looks_like_other(self.raw.columns, CANONICAL)
-            raise self.raw.fault(
-                f"is missing{other}; {nearest(name, list(self.raw.columns))}; if it has another "
-                f"header, map it in {self.columns.stated_in}: [columns.{name}] (zebro-lab init "
-                "writes that file)",
-                name,
-            )
+            raise self.columns.missing(self.raw, name, what=CANONICAL[name].meaning.split(",")[0])
         return source
 
     def si(self, name: str) -> Array:
@@ -77,7 +70,20 @@ class RigTable:
         """
         source = self.required(name)
         values = source.in_si(self.raw)[self.rows]
-        self._require_finite(name, source, values)
+        lost = ~is_measured(values)
+        if lost.any():
+            first = int(np.argmax(lost))
+            negative = np.any(values[lost] * source.factor < 0)  # in the file
+            bound = f"> -{OVERLOAD:g}" if negative else f"< {OVERLOAD:g}"
+            raise self.raw.fault(
+                f"is {missing_text(values[first])}; expected finite numbers, which {lost.sum()} of "
+                f"{len(lost)} rows do not have, this row first. Delete these rows, or skip them "
+                f'with [rows] keep = ["`{source.name}` {bound}"] in {self.columns.stated_in}',
+                source.name,
+                int(self.rows[first]),
+                value=float(values[first]),
+                unit=CANONICAL[name].unit,
+            )
         return values
 
     def texts(self, name: str) -> NDArray[np.object_]:
@@ -154,23 +160,6 @@ class RigTable:
         unit = "" if unit == "dimensionless" else unit
         text = problem(f"{value:g} {unit}".rstrip())
         return self.raw.fault(text, source.name, row, value=value, unit=unit or source.unit)
-
-    def _require_finite(self, name: str, source: MappedColumn, values: Array) -> None:
-        good = is_measured(values)
-        if good.all():
-            return
-        index = int(np.argmin(good))
-        negative = np.any(values[~good] * source.factor < 0)  # in the file
-        bound = f"> -{OVERLOAD:g}" if negative else f"< {OVERLOAD:g}"
-        raise self.raw.fault(
-            f"is {missing_text(values[index])}; expected finite numbers, which {np.sum(~good)} of "
-            f"{len(good)} rows do not have, this row first. Delete these rows, or skip them with "
-            f'[rows] keep = ["`{source.name}` {bound}"] in {self.columns.stated_in}',
-            source.name,
-            int(self.rows[index]),
-            value=float(values[index]),
-            unit=CANONICAL[name].unit,
-        )
 
 
 def normal_force(table: RigTable) -> Array:

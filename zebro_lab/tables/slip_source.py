@@ -6,11 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.arrays import Array
-from model.errors import DomainError
-from model.similar_name import nearest
-from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
-from zebro_lab.tables.columns import MappedColumn, looks_like_other
-from zebro_lab.tables.rig_columns import CANONICAL, parse_definition
+from model.slip.definition import SlipDefinition, convert_slip, is_possible, slip_ratio
+from zebro_lab.tables.columns import MappedColumn
+from zebro_lab.tables.rig_columns import parse_definition
 from zebro_lab.tables.rig_table import RigTable
 
 _SPEEDS = ("omega_leg", "omega_ground")
@@ -58,14 +56,8 @@ def slip(table: RigTable) -> SlipColumn:
     if any(table.source_of(name) for name in _SPEEDS):
         for name in _SPEEDS:
             table.required(name)
-    other = looks_like_other(table.raw.columns, CANONICAL)
-    raise table.raw.fault(
-        f"is missing{other}; expected 'slip_ratio' with its definition, or 'omega_leg' and "
-        "'omega_ground' with the radii; "
-        f"{nearest('slip_ratio', list(table.raw.columns))}; if they have other "
-        f"headers, map them in {table.columns.stated_in} (zebro-lab init writes that file)",
-        "slip_ratio",
-    )
+    what = "slip ratio with its definition, or of omega_leg and omega_ground with the radii,"
+    raise table.columns.missing(table.raw, "slip_ratio", what=what)
 
 
 def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) -> SlipColumn:
@@ -82,23 +74,26 @@ def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) 
     ratio, source, column = slip_column.ratio, slip_column.definition, slip_column.column
     if source is target:
         return slip_column
-    try:
-        values = convert_slip(ratio, source, target)
-    except DomainError as error:
-        message = str(error)
-        index = _first_rejected(ratio, source, target)
-        raise table.error_at(column, index, lambda _: message) from error
-    infinite = ~np.isfinite(values)
-    if infinite.any():
-        index = int(np.argmax(infinite))
-        raise table.error_at(
-            column,
-            index,
-            lambda _: (
-                f"the '{source}' slip ratio {ratio[index]:g} is infinite in the definition "
-                f"'{target}'; skip such rows with [rows] keep in {table.columns.stated_in}"
-            ),
-        )
+    possible = is_possible(ratio, source)
+    first = float(ratio[np.argmin(possible)])
+    table.require(
+        column,
+        possible,
+        lambda _: (
+            f"the slip ratio {first:.4g} is impossible for '{source}' ({_RANGES[source]}); "
+            "check the definition, or leave such rows out"
+        ),
+    )
+    values = convert_slip(ratio, source, target)
+    infinite = float(ratio[np.argmin(np.isfinite(values))])
+    table.require(
+        column,
+        np.isfinite(values),
+        lambda _: (
+            f"the '{source}' slip ratio {infinite:g} is infinite in the definition "
+            f"'{target}'; skip such rows with [rows] keep in {table.columns.stated_in}"
+        ),
+    )
     return SlipColumn(values, target, column, f"{slip_column.origin}, converted to {target}")
 
 
@@ -149,19 +144,15 @@ def _given_slip(
 def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
     # Noise may put a measured slip ratio past its limit: only values beyond a margin are errors.
     inner = np.sign(ratio) * np.maximum(np.abs(ratio) - _SLIP_NOISE, 0)
-    other = next(d for d in SlipDefinition if d is not definition)
-    try:
-        convert_slip(inner, definition, other)
-    except DomainError as error:
-        raise table.error_at(
-            "slip_ratio",
-            _first_rejected(inner, definition, other),
-            lambda value: (
-                f"the slip ratio is {value}, impossible for the definition '{definition}' "
-                f"({_RANGES[definition]}); check in {table.columns.stated_in} definition, sign and "
-                'unit = "%"'
-            ),
-        ) from error
+    table.require(
+        "slip_ratio",
+        is_possible(inner, definition),
+        lambda value: (
+            f"the slip ratio is {value}, impossible for the definition '{definition}' "
+            f"({_RANGES[definition]}); check in {table.columns.stated_in} definition, sign and "
+            'unit = "%"'
+        ),
+    )
 
 
 def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipColumn:
@@ -181,16 +172,3 @@ def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipCo
     if unused:
         origin += f"; '{unused.name}' is not used, because its definition is not stated"
     return SlipColumn(ratio, SlipDefinition.MATERIAL, "omega_leg", origin)
-
-
-def _first_rejected(values: Array, source: SlipDefinition, target: SlipDefinition) -> int:
-    """Return the index of the first slip ratio that `convert_slip` rejects, by bisection."""
-    accepted, refused = 0, len(values)
-    while refused - accepted > 1:
-        middle = (accepted + refused) // 2
-        try:
-            convert_slip(values[accepted:middle], source, target)
-            accepted = middle
-        except DomainError:
-            refused = middle
-    return accepted

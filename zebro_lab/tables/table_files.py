@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Final
 
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.tables.csv_files import read_csv_file
+from zebro_lab.tables.csv_files import read_csv_file, require_no_footer
 from zebro_lab.tables.excel_files import read_excel_file
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.row_checks import require_no_footer
 
 
 def _read_parquet(path: Path) -> RawTable:

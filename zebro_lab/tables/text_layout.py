@@ -125,6 +125,11 @@ def split_line(line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in cells]
 
 
+def uneven_row(cells: int, names: int, advice: str) -> str:
+    """Return the problem of a row with another number of cells than the header has names."""
+    return f"the row has {counted(cells, 'cell')}, the header has {names}; {advice}"
+
+
 def _require_no_receipt(lines: Sequence[Line]) -> None:
     """Raise if a serial monitor put the time of receipt before each line."""
     found = [match[0] for _, line in lines if (match := _RECEIPT.match(line))]
@@ -195,11 +200,13 @@ def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
     if best.rank[:2] == (True, True):
         same = [each for each in same if each.separator != BLANKS]
         if same:
-            names = " or by ".join(SEPARATORS[each.separator] for each in (best, *same))
-            raise DataError(
-                f"cells may be separated by {names}; save the file with one of these only"
-            )
+            raise _several([each.separator for each in (best, *same)])
     return best
+
+
+def _several(separators: Sequence[str]) -> DataError:
+    names = " or by ".join(SEPARATORS[each] for each in separators)
+    return DataError(f"cells may be separated by {names}; save the file with one of these only")
 
 
 def _no_header(best: _Candidate, body: Sequence[Line]) -> DataError:
@@ -224,10 +231,7 @@ def _no_header(best: _Candidate, body: Sequence[Line]) -> DataError:
             "its own for each column; delete it, or fill its cells"
         )
     advice = "write decimals with a point" if best.separator == "," else "correct it"
-    return DataError(
-        f"the row has {data.width} cells, the header has {len(above)}; {advice}",
-        row=1, line=body[data.first][0],
-    )  # fmt: skip
+    return DataError(uneven_row(data.width, len(above), advice), row=1, line=body[data.first][0])
 
 
 def _is_transposed(rows: Sequence[Sequence[str]]) -> bool:
@@ -263,12 +267,9 @@ def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequenc
         )
     for row, cells in enumerate(best.rows[data.first : data.stop], start=1):
         if any(cells[len(header.names) :]) or len(cells) > len(header.names) + 1:
-            advice = "; write decimals with a point" if best.separator == "," else "; correct it"
-            raise DataError(
-                f"the row has {counted(len(cells), 'cell')}, the header has "
-                f"{len(header.names)}{advice}",
-                row=row, line=body[data.first + row - 1][0],
-            )  # fmt: skip
+            advice = "write decimals with a point" if best.separator == "," else "correct it"
+            problem = uneven_row(len(cells), len(header.names), advice)
+            raise DataError(problem, row=row, line=body[data.first + row - 1][0])
 
 
 def _without_numbers(body: Sequence[Line]) -> TextLayout:
@@ -276,18 +277,12 @@ def _without_numbers(body: Sequence[Line]) -> TextLayout:
     split = {s: [split_line(line, s) for _, line in body] for s in SEPARATORS if s != BLANKS}
     regular = [s for s, rows in split.items() if len(rows[0]) > 1 and len(set(map(len, rows))) == 1]
     if len(regular) > 1:
-        raise DataError(
-            f"cells may be separated by {' or by '.join(SEPARATORS[s] for s in regular)}; save the "
-            "file with one of these only"
-        )
+        raise _several(regular)
     separator = regular[0] if regular else max(split, key=lambda s: len(split[s][0]))
     rows = split[separator]
     for row, (cells, (line, _)) in enumerate(zip(rows[1:], body[1:], strict=True), start=1):
         if len(cells) > len(rows[0]):
-            raise DataError(
-                f"the row has {counted(len(cells), 'cell')}, the header has "
-                f"{len(rows[0])}; correct it",
-                row=row, line=line,
-            )  # fmt: skip
+            problem = uneven_row(len(cells), len(rows[0]), "correct it")
+            raise DataError(problem, row=row, line=line)
     names = [name or f"column {i}" for i, name in enumerate(rows[0], start=1)]
     return TextLayout(separator, made_header(names, 1), body[0][0], None, len(names))

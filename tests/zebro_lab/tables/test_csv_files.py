@@ -5,11 +5,13 @@ import gzip
 from collections.abc import Callable
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from support.bounded_reading import refusal
 from support.rig_tables import N, given_slip
-from zebro_lab.tables.csv_files import read_csv_file
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.csv_files import decoded, possible_encodings, read_csv_file
 from zebro_lab.tables.table_files import read_table_file
 
 SEPARATORS = {";": "semicolons", "\t": "tabs"}
@@ -87,7 +89,6 @@ def _truncated_gzip() -> bytes:
 
 RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "empty": ("a.csv", lambda: b"", "is empty"),
-    "blank": ("a.csv", lambda: b"\n\n", "is empty"),
     "binary": ("a.csv", lambda: bytes(range(256)) * 8, "binary file"),
     "broken utf-8": (
         "a.csv",
@@ -104,26 +105,7 @@ RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "gzip named csv": ("a.csv", _truncated_gzip, "a gzip file; rename it to end in .csv.gz"),
     "csv named gzip": ("a.csv.gz", lambda: b"t,F\n1,2\n", "is not a complete gzip file"),
     "truncated gzip": ("a.csv.gz", _truncated_gzip, "is not a complete gzip file"),
-    "csv named parquet": ("a.parquet", lambda: b"t,F\n1,2\n", "is not a complete Parquet file"),
-    "no header": ("a.csv", lambda: b"0.1,0.2\n0.3,0.4\n", "has no header"),
-    "decimal commas between commas": (
-        "a.csv",
-        lambda: b"t,normal_force\n0,1,5,2\n0,2,5,3\n",
-        "row 1 (line 2): the row has 4 cells, the header has 2; write decimals with a point",
-    ),
-    "ambiguous separators": ("a.csv", lambda: b"a,b;c\nx,y;z\n", "commas or by semicolons"),
-    "two headers": (
-        "a.csv",
-        lambda: b"Zeit,Kraft\ntime,force\n1,2\n",
-        "two rows above the numbers that may be",
-    ),
-    "names of rows": (
-        "a.csv",
-        lambda: b'"a" "b"\n"1" 0.5 0.6\n"2" 0.5 0.6\n',
-        "has 3 cells, the header has 2",
-    ),
     "JSON": ("a.csv", lambda: b'{"t": [0, 1]}', "is not a table but JSON, HTML or XML"),
-    "footer": ("a.csv", lambda: b"n,F\n1,2\n2,3\nMean,2.5\n", "'n', row 3 (line 4): 'Mean' stands"),
     "surplus cell far down": (
         "a.csv",
         lambda: b"t,F\n" + b"1,2\n" * 20_000 + b"1,2,3\n",
@@ -140,3 +122,53 @@ def test_file_that_is_no_table_is_named(tmp_path, fault):
     message = refusal(read_table_file, tmp_path / name)
     assert expected in message
     assert message.startswith(str(tmp_path / name))
+
+
+def test_a_row_between_blanks_that_lacks_a_cell_is_named(tmp_path):
+    file = tmp_path / "a.dat"
+    file.write_text("t Fn Ft\n\n0 6.63 1.25\n1      1.30\n")
+    with pytest.raises(DataError, match=r"row 2 \(line 4\): the row has 2 cells, the header has 3"):
+        read_table_file(file)
+    file.write_text("t Fn Ft\n\n0 6.63 1.25\n1 nan 1.30\n2 6.7 nan\n")
+    np.testing.assert_array_equal(read_table_file(file).numbers("Ft"), [1.25, 1.3, np.nan])
+
+
+@pytest.mark.parametrize("footer", ["Mean", "Mittelwert", "std:", "Total (2)", "END"])
+def test_a_line_of_means_below_the_numbers_is_named(tmp_path, footer):
+    file = tmp_path / "a.csv"
+    file.write_text(f"n;F\n1;2\n2;3\n{footer};2,5\n")
+    with pytest.raises(DataError, match=r"column 'n', row 3 \(line 4\): .* stands below numbers"):
+        read_table_file(file)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".xlsx", ".parquet"])
+@pytest.mark.parametrize("words", [["a", None, "b", "Mittelwert"], [None, None, "Mean", "std"]])
+def test_a_row_of_means_is_refused_by_its_word_in_a_column_of_texts(tmp_path, suffix, words):
+    if suffix == ".xlsx":
+        pytest.importorskip("openpyxl")
+    table = pd.DataFrame({"F": [1.0, 2.0, 3.0, 2.0], "Bemerkung": words})
+    write = {".csv": table.to_csv, ".xlsx": table.to_excel, ".parquet": table.to_parquet}[suffix]
+    write(tmp_path / f"a{suffix}", index=False)
+    with pytest.raises(DataError, match=r"column 'Bemerkung', row [34].*stands below the rows"):
+        read_table_file(tmp_path / f"a{suffix}")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["start", None, "x", "end"], ["low", "max", "low", "max"], ["a", "b", "mean", "mean"],
+     ["mean", "min", "max", "sum"], [None, None, None, None], ["mean", "x", None, "mean"]],
+)  # fmt: skip
+def test_remarks_that_end_otherwise_are_no_footer(tmp_path, words):
+    table = pd.DataFrame({"F": [1.0, 2.0, 3.0, 2.0], "what": words})
+    table.to_parquet(tmp_path / "a.parquet", index=False)
+    assert len(read_table_file(tmp_path / "a.parquet")) == 4
+
+
+def test_a_character_cut_at_the_end_is_no_fault():
+    assert decoded("aµ".encode()[:-1], "utf-8") == "a"
+    assert possible_encodings("bµµ".encode()[:-1]) == ("utf-8",)
+
+
+def test_bytes_that_are_no_text_have_no_encoding():
+    assert possible_encodings(bytes(range(256))) == ()
+    assert possible_encodings(b"\x81\x8d") == ()

@@ -22,12 +22,6 @@ def test_titles_above_the_names_are_left_out(above):
     assert len(header.notes) == bool(above)
 
 
-def test_rows_of_data_are_described():
-    data = data_rows([["t", "x"], ["1", "a"], ["2", ""]])
-    assert (data.first, data.stop, data.width, data.values) == (1, 3, 2, 2 / 3)
-    assert data_rows([["a", "b"]]) is None
-
-
 def test_without_names_there_is_no_header():
     rows = [["title"], *DATA]
     with pytest.raises(NoHeader):

@@ -137,37 +137,6 @@ def test_a_table_of_the_reference_data_is_marked_or_refused(name, shared, tmp_pa
     assert all(np.isfinite(values).all() for values in found.values())
 
 
-VERDICTS = {
-    "realdata/*/*.csv": ("rig", "track", "fits no kind of table"),
-    "realdata/*/*.txt": ("fits no kind of table", "has no header"),
-    "reference/listing/*.csv.gz": ("may be of the kinds legs or imu or track",),
-    "virtual-world/*/*.csv.gz": ("rig", "may be of the kinds legs or imu or track"),
-    "virtual-world/photos/*/*.csv": ("may be of the kinds legs or imu or track",),
-}
-"""What `init` says of the tables that fit each pattern: a kind, or a part of the refusal."""
-WORDS = ("license", "readme")
-
-
-@pytest.mark.reference
-def test_every_table_of_the_reference_data_has_a_verdict(shared, tmp_path):
-    walked = {
-        file: verdicts for pattern, verdicts in VERDICTS.items() for file in shared.glob(pattern)
-        if not file.name.lower().startswith(WORDS)
-    }  # fmt: skip
-    tables = {file for part in ("realdata", "reference", "virtual-world")
-              for file in (shared / part).rglob("*.csv*")}  # fmt: skip
-    assert tables <= walked.keys()
-    for i, (file, verdicts) in enumerate(walked.items()):
-        folder = tmp_path / str(i)
-        folder.mkdir()
-        try:
-            found = write_columns_template(Path(shutil.copy(file, folder))).kind
-        except ZebroLabError as error:
-            found = str(error)
-        assert any(verdict in found for verdict in verdicts), found
-        assert "\n" not in found
-
-
 @pytest.mark.reference
 @pytest.mark.parametrize("kind", ["legs", "imu", "track"])
 def test_a_walk_of_the_reference_data_is_read_as_each_kind(kind, shared, tmp_path):

@@ -11,7 +11,6 @@ import pyarrow.parquet as pq
 import pytest
 
 from support.bounded_reading import refusal
-from support.rig_tables import given_slip
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.tables.table_files import read_table_file
 
@@ -48,13 +47,6 @@ def test_wrong_statistics_of_a_parquet_column_are_an_error_and_no_end_of_the_pro
     done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True)
     assert (done.returncode, done.stdout.count("\n")) == (0, 1), done.stderr
     assert "is not a complete Parquet file" in done.stdout
-
-
-def test_truncated_parquet_is_named(tmp_path):
-    path = tmp_path / "rig.parquet"
-    given_slip().to_parquet(path)
-    path.write_bytes(path.read_bytes()[:-100])
-    assert f"{path}: is not a complete Parquet file" in refusal(read_table_file, path)
 
 
 def test_without_pyarrow_the_line_says_how_to_get_it(tmp_path, monkeypatch):

@@ -57,7 +57,7 @@ def refused_as_travel(folder: Path, slip: float) -> tuple[Path, str]:
 
 def test_slip_outside_what_conversion_allows_names_file_and_row(tmp_path):
     path, message = refused_as_travel(tmp_path, 1.05)
-    assert message.startswith(f"{path}, column 'slip_ratio', row 8 (line 9): slip ratio 1.05 is")
+    assert message.startswith(f"{path}, column 'slip_ratio', row 8 (line 9): the slip ratio 1.05 ")
 
 
 def test_slip_infinite_in_the_asked_definition_names_the_row(tmp_path):

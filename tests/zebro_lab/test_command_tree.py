@@ -8,7 +8,10 @@ example of what it refuses in `REFUSED_TEXTS`, if its metavar is no plain word o
 import inspect
 import io
 import re
+import subprocess
+import sys
 from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
 from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 import pytest
@@ -93,6 +96,30 @@ def test_short_and_long_help_are_the_same_and_end_well(found):
     assert (short.code, long.code) == (0, 0)
     assert short.out == long.out
     assert short.out.startswith(f"Usage: {named(found)} ")
+
+
+HELP_OF_ALL = """
+import sys
+from contextlib import suppress
+from support.command_tree import ROOTS, TREE
+for found in TREE:
+    with suppress(SystemExit):
+        ROOTS[found.words[0]].main([*found.words[1:], "--help"], prog_name=found.words[0])
+print("modules:", *sys.modules)
+"""
+
+
+def test_help_of_every_command_loads_nothing_heavy():
+    done = subprocess.run(
+        [sys.executable, "-c", HELP_OF_ALL], cwd=Path(__file__).parents[1],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    printed, _, modules = done.stdout.rpartition("modules:")
+    assert printed.count("Usage: ") == len(TREE)
+    assert not {
+        "numpy", "scipy", "pandas", "numba", "matplotlib", "cv2", "PIL", "emcee", "pint",
+        "pyarrow", "mcap", "serial", "rich.console",
+    } & set(modules.split())  # fmt: skip
 
 
 @pytest.mark.parametrize("found", TREE, ids=named)

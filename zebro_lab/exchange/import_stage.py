@@ -16,8 +16,9 @@ from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, read_imu_messages, write_imported_walk
 from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.names import is_ros_log
 from zebro_lab.files.source_names import joined_source, stated_source
-from zebro_lab.mcap.ros_log import bag_files, is_ros_log
+from zebro_lab.mcap.ros_log import bag_files
 from zebro_lab.robot.imu_log import IMU_UNITS, ImuLog, imu_of_table
 from zebro_lab.robot.leg_log import LEG_UNITS, LegLog
 from zebro_lab.robot.leg_warnings import leg_warnings

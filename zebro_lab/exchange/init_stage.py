@@ -11,9 +11,10 @@ from zebro_lab.exchange.columns_template import render_columns
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import AlreadyExists, DataError
+from zebro_lab.files.names import is_ros_log
 from zebro_lab.files.opening import read_text
 from zebro_lab.ground.ground_file import TEMPLATE
-from zebro_lab.mcap.ros_log import is_ros_log, read_messages
+from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.robot.robot_file import RobotFile, render_robot_file
 from zebro_lab.tables.columns import COLUMNS_FILE, RIG
 from zebro_lab.tables.columns_sections import is_sectioned

@@ -12,14 +12,12 @@ from mcap.well_known import MessageEncoding
 from mcap_ros2.decoder import DecoderFactory
 
 from zebro_lab.files.errors import NotFound
+from zebro_lab.files.names import BAG_METADATA, is_bag
 from zebro_lab.files.opening import open_file, parsing
 from zebro_lab.mcap.log_records import Decode, read_log_messages
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
-
-BAG_SUFFIXES = (".db3", ".bag")
-METADATA = "metadata.yaml"
 
 
 class LoggedMessage(NamedTuple):
@@ -38,21 +36,6 @@ class LoggedMessage(NamedTuple):
     type: str = ""
 
 
-def is_bag(path: Path) -> bool:
-    """Return whether a path is a bag by its name: .db3, .bag, or the folder of a bag.
-
-    Such a folder holds metadata.yaml, or files .db3 where that is missing.
-    """
-    if path.suffix.lower() in BAG_SUFFIXES or (path / METADATA).is_file():
-        return True
-    return path.is_dir() and any(path.glob("*.db3"))
-
-
-def is_ros_log(path: Path) -> bool:
-    """Return whether a path is a ROS log by its name: .mcap, .db3, .bag, or the folder of a bag."""
-    return path.suffix.lower() == ".mcap" or is_bag(path)
-
-
 def bag_files(path: Path) -> tuple[Path, ...]:
     """Return the files of a bag: itself, or those in its folder by name.
 
@@ -62,13 +45,13 @@ def bag_files(path: Path) -> tuple[Path, ...]:
     """
     files = (path,)
     if path.is_dir():
-        if not (path / METADATA).is_file():
+        if not (path / BAG_METADATA).is_file():
             raise NotFound(
-                f"{path}: {METADATA} of the bag is missing; copy the whole folder, or write it "
+                f"{path}: {BAG_METADATA} of the bag is missing; copy the whole folder, or write it "
                 f"anew with: ros2 bag reindex {path}"
             )
         logs = (f for f in sorted(path.iterdir()) if f.suffix.lower() in (".db3", ".mcap", ".zstd"))
-        files = (path / METADATA, *logs)
+        files = (path / BAG_METADATA, *logs)
     for file in files:
         with open_file(file):
             pass

@@ -8,9 +8,9 @@ from pathlib import Path
 from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.folder_manifest import such_folder_in
-from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.names import PATH_CSV, is_ros_log
 from zebro_lab.files.replacement import recover
-from zebro_lab.mcap.ros_log import bag_files, is_ros_log
+from zebro_lab.mcap.ros_log import bag_files
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.joint_log import joint_table, read_joint_log
 from zebro_lab.runs.manifest import MANIFEST_FILE

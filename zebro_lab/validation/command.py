@@ -4,8 +4,8 @@
 import typer
 
 from model.counted import counted
+from zebro_lab.files.names import is_ros_log
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.validation.request import ValidateRequest

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from typer import Argument, Option
 
-from zebro_lab.mcap.ros_log import is_ros_log
+from zebro_lab.files.names import is_ros_log
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.terminal.request_command import Range
 from zebro_lab.track.trajectory.request import TrajectoryRequest

@@ -10,11 +10,10 @@ import numpy as np
 from model.gait.inexact_log import InexactLog
 from model.robot import N_LEGS
 from model.tasks import Watcher
-from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.names import PATH_CSV, is_ros_log
 from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.mcap.ros_log import is_ros_log
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import LegNames, read_leg_log

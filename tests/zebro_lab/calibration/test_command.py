@@ -3,7 +3,6 @@
 
 import json
 import subprocess
-import sys
 import tomllib
 from hashlib import sha256
 from pathlib import Path
@@ -146,34 +145,6 @@ def test_bad_usage_exits_2(tmp_path, arguments):
     assert (process.returncode, process.stdout) == (2, "")
     assert "Usage: calibrate-slip" in process.stderr
     assert names(tmp_path) == set()
-
-
-@pytest.mark.parametrize(
-    ("entry", "arguments"),
-    [
-        ("calibrate_slip", ["--help"]),
-        ("main", ["--help"]),
-        ("main", ["calibrate", "--help"]),
-        ("main", ["init", "--help"]),
-    ],
-)
-def test_help_imports_nothing_heavy(entry, arguments):
-    code = f"""
-import sys
-from zebro_lab.main import {entry}
-sys.argv = ["command", *{arguments}]
-try:
-    {entry}()
-finally:
-    print("modules:", *sys.modules)
-"""
-    process = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    printed, _, modules = process.stdout.partition("modules:")
-    assert "Usage:" in printed
-    heavy = {"numpy", "scipy", "pandas", "numba", "matplotlib", "emcee", "pyarrow", "pint"}
-    assert not heavy & set(modules.split())
 
 
 def test_help_names_every_slip_law():

@@ -11,7 +11,6 @@ from zebro_lab.exchange.column_guesses import (
     guess_columns,
     guess_kind,
     guess_set_points,
-    numbers_or_none,
 )
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.tables.columns import IMU, TRACK
@@ -87,35 +86,6 @@ def test_ros_fields_are_in_si_and_others_are_to_check():
     assert {guess.doubts for guess in other.values()} == {("unit", "sign")}
 
 
-@pytest.mark.parametrize(
-    ("cell", "unit"),
-    [
-        ("2026-03-04T05:06:07Z", "date"), ("2026-03-04 05:06:07.5+01:00", "date"),
-        ("04.03.2026 05:06:07", "date UTC?"), ("05:06:07.5", "h:m:s"),
-    ],
-)  # fmt: skip
-def test_dates_of_a_time_column_are_recognised(cell, unit):
-    guess = guess_columns(one("Zeit", cells=[cell, cell]))["t"]
-    assert guess.unit.unit + "?" * bool(guess.unit.doubt) == unit
-
-
-@pytest.mark.parametrize(
-    ("largest", "unit"), [(1.7e18, "ns"), (1.7e15, "us"), (1.7e12, "ms"), (1.7e9, "s")]
-)
-def test_the_size_of_unix_times_suggests_their_unit(largest, unit):
-    guess = guess_columns(one("timestamp", cells=[largest, largest]))["t"].unit
-    assert (guess.unit, bool(guess.doubt)) == (unit, True)
-
-
-def test_canonical_header_is_recognised_whole():
-    names = ["t", "omega_leg", "omega_ground", "radius_leg", "radius_ground", "normal_force",
-             "traction_force", "run"]  # fmt: skip
-    table = RawTable(Path("a.csv"), {name: pd.Series([1.0, 2.0]) for name in names})
-    assert {canonical: guess.name for canonical, guess in guess_columns(table).items()} == {
-        name: name for name in names
-    }
-
-
 def test_names_that_everybody_uses_are_in_si_only_beside_our_own():
     assert guess_columns(one("t", "Fn"))["t"].doubts == ("unit",)
     assert guess_columns(one("t", "normal_force"))["t"].doubts == ()
@@ -168,14 +138,6 @@ def test_the_canonical_name_wins_and_other_matches_and_signs_are_kept():
     assert (guess.name, guess.name_doubt) == ("FZ", "could also be 'Fn'")
 
 
-def test_numbers_are_none_for_texts_and_empty_columns():
-    table = RawTable(Path("a.csv"), {"a": pd.Series(["x"]), "b": pd.Series([np.nan]),
-                                     "c": pd.Series([np.nan, 1.0])})  # fmt: skip
-    assert numbers_or_none(table, "a") is None
-    assert numbers_or_none(table, "b") is None
-    np.testing.assert_array_equal(numbers_or_none(table, "c"), [np.nan, 1.0])
-
-
 def test_a_quaternion_of_motion_capture_is_found_whole_or_not(tmp_path):
     names = ["Time (Seconds)", *(f"Body Position {a}" for a in "XYZ")]
     turned = [f"Body Rotation {a}" for a in "XYZW"]
@@ -210,12 +172,3 @@ def test_a_specific_force_that_averages_one_is_taken_for_multiples_of_g(up, unit
     raw = RawTable(Path("a.csv"), {name: pd.Series(values) for name, values in cells.items()})
     found = [guess_columns(raw, IMU)[f"force_{axis}"].unit for axis in "xyz"]
     assert {each.unit + "?" * bool(each.doubt) for each in found if each} == {unit}
-
-
-def test_units_that_a_file_states_for_a_force_are_no_doubt():
-    cells = {"ax_g": [0.0, 0.1], "ay_g": [0.0, 0.0], "az_g": [1.0, 1.0], "gx_dps": [12.5, 12.5]}
-    raw = RawTable(Path("a.csv"), {name: pd.Series(values) for name, values in cells.items()})
-    units = {name: guess.unit for name, guess in guess_columns(raw, IMU).items()}
-    assert {name: (each.unit, each.doubt) for name, each in units.items() if each} == {
-        "rate_x": ("deg/s", ""), **{f"force_{axis}": ("g", "") for axis in "xyz"},
-    }  # fmt: skip

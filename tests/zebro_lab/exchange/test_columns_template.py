@@ -4,7 +4,6 @@
 import tomllib
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from zebro_lab.exchange.column_guesses import guess_columns
@@ -26,11 +25,6 @@ def test_a_section_holds_all_entries_of_its_kind():
     assert set(read["rig"]) == {"sheet", *tables}
     assert read["rig"]["columns"]["normal_force"]["sign"] == "-1?"
     assert '#   "set": first 1, from 1 to 1' in text
-
-
-def test_runs_of_times_that_restart_are_a_guess_to_check():
-    columns = {"t": np.tile(np.arange(30.0), 2), "load": np.repeat([1.0, 2.0], 30)}
-    assert tomllib.loads(rendered("rig", columns))["runs"] == {"by": ["load?"]}
 
 
 def test_zero_and_order_of_leg_angles_are_to_check():

@@ -4,7 +4,6 @@
 import sys
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from support.watchers import Onlooker
@@ -37,17 +36,6 @@ def test_tables_hold_what_stages_read(recorded, tmp_path, form):
     assert set(rig.numbers("radius_leg")) == {0.035}
     legs = read_leg_log(tmp_path / "out" / f"legs.{form}").reference
     np.testing.assert_allclose(legs.theta, read_leg_log(recorded).reference.theta, atol=1e-9)
-
-
-def test_csv_opens_in_pandas_without_arguments(recorded, tmp_path):
-    *tables, columns = export_run(recorded, to="csv", out=tmp_path / "csv")
-    assert columns.name == "columns.toml"
-    for table in tables:
-        frame = pd.read_csv(table)
-        assert len(frame) > 10, table.name
-        assert all(pd.api.types.is_numeric_dtype(column) for _, column in frame.items())
-    legs = pd.read_csv(tmp_path / "csv" / "legs.csv")
-    np.testing.assert_array_equal(legs["theta3"], read_leg_log(recorded).reference.theta[:, 2])
 
 
 def test_a_table_says_that_it_is_simulated(recorded, tmp_path):

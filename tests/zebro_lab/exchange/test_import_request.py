@@ -1,38 +1,33 @@
 # SPDX-License-Identifier: MIT
-"""The time of an import is a moment, or a fault of usage."""
+"""Options of an import are checked before a file is opened."""
 
-from datetime import UTC, datetime
-from typing import Annotated
+from datetime import datetime
+from pathlib import Path
 
 import pytest
-import typer
-from typer.testing import CliRunner
 
 from zebro_lab.exchange.import_request import ImportRequest
-from zebro_lab.terminal.request_command import request_command
+from zebro_lab.files.errors import SettingsError
 
 
-def run(*arguments):
-    taken = []
-    app = typer.Typer()
+@pytest.mark.parametrize(
+    ("given", "option"),
+    [
+        ({"start": datetime(2026, 1, 1)}, "--start: .* no time zone"),
+        *(({"start": datetime.fromisoformat(text)}, "--start: .* 1970 to 2038-01-19")
+          for text in ("0001-01-01T00:00:00+14:00", "1969-12-31T23:59:59+00:00",
+                       "9999-12-31T23:59:59-14:00", "2038-01-19T00:00:00+00:00")),
+        ({"track_sd_yaw": "1 deg"}, "--track-sd: needs that of the position"),
+        ({"track_sd": "0 mm"}, "--track-sd: found 0 mm; expected above 0"),
+        ({"track_sd": "1 km"}, "--track-sd: found 1 km; .* at most 0.5 m"),
+        ({"joints": "a,b"}, "--joints: found 2 different names"),
+    ],
+)  # fmt: skip
+def test_what_no_import_can_take_is_wrong_usage(given, option):
+    with pytest.raises(SettingsError, match=f"^{option}"):
+        ImportRequest(Path("data"), **given)
 
-    @app.command()
-    @request_command()
-    def take(request: ImportRequest, _: Annotated[bool, typer.Option("--dry")] = False) -> None:
-        taken.append(request)
 
-    return CliRunner().invoke(app, ["--data", "data", *arguments]), taken
-
-
-def test_a_start_is_read_as_a_moment():
-    _, [request] = run("--start", "2026-03-04T05:06:07+00:00")
-    assert request.start == datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
-    _, [request] = run()
-    assert request.start is None
-
-
-@pytest.mark.parametrize("start", ["yesterday", "2026-13-01"])
-def test_another_text_is_wrong_usage(start):
-    result, taken = run("--start", start)
-    assert (result.exit_code, taken) == (2, [])
-    assert f"found '{start}'" in result.output
+def test_standard_deviations_are_in_si():
+    found = ImportRequest(Path("data"), track_sd="2 mm", track_sd_yaw="0.1 rad").pose_sd
+    assert found == pytest.approx((0.002, 0.1))

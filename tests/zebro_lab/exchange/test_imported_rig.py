@@ -65,17 +65,6 @@ def test_angles_lateral_force_and_what_is_stated_come_along(sweep, tmp_path):
     assert ours.load_cell == theirs.load_cell
 
 
-def test_an_angle_in_another_unit_is_refused(sweep, tmp_path):
-    table = pd.read_csv(sweep / "sweep.csv").assign(pressure=80.0)
-    dt = table.t.iloc[1] - table.t.iloc[0]
-    table["angle_leg"] = np.degrees((table.omega_leg * dt).cumsum())
-    table.to_csv(tmp_path / "own.csv", index=False)
-    by_run = '[runs]\nby = ["run"]\n'
-    (tmp_path / "columns.toml").write_text(by_run)
-    with pytest.raises(DataError, match=r"57\.3 times is deg"):
-        taken(tmp_path, rig=tmp_path / "own.csv")
-
-
 def test_a_rig_without_speeds_or_with_trials_is_left_to_the_calibration(sweep, tmp_path):
     table = pd.read_csv(sweep / "sweep.csv")
     given = table.drop(columns=["omega_leg"]).assign(slip_ratio=0.1)

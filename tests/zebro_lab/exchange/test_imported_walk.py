@@ -4,14 +4,11 @@
 import numpy as np
 import pytest
 
-from rig.backends import leg_driver
-from rig.errors import ProfileError
 from rig.imu.profile import decode_orientation, load_imu_profile
-from rig.zebro.profile import load_leg_profile
 from support.imported_files import COLUMNS, T, everything
 from support.written_bags import imu, write_bag
 from zebro_lab.exchange.imported_walk import read_imu_messages
-from zebro_lab.files.errors import AlreadyExists, DataError
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.manifest import profile_file, read_manifest
@@ -57,21 +54,6 @@ def test_nobody_stated_a_source_so_that_the_file_is_it(files, tmp_path):
     (files / "columns.toml").write_text(COLUMNS.replace('source = "sim:other-lab"', ""))
     folder, _ = everything(files, tmp_path)
     assert read_manifest(folder).source == "import:legs.csv+imu.csv"
-
-
-def test_a_run_that_is_there_is_not_written_over(files, tmp_path):
-    folder, _ = everything(files, tmp_path)
-    before = (folder / "run.json").read_bytes()
-    with pytest.raises(AlreadyExists, match="another name with --label"):
-        everything(files, tmp_path)
-    assert (folder / "run.json").read_bytes() == before
-
-
-def test_the_profile_of_a_table_is_no_devices(files, tmp_path):
-    folder, _ = everything(files, tmp_path)
-    profile = load_leg_profile(str(profile_file(folder, "legs")))
-    with pytest.raises(ProfileError, match="not a device"):
-        leg_driver(profile, None)
 
 
 TIMES = np.arange(0.0, 1.0, 0.1)

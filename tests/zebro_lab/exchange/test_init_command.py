@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab init FILE`."""
 
-import subprocess
-import sys
-
 import typer
 from typer.testing import CliRunner
 
@@ -43,9 +40,3 @@ def test_init_lists_the_units_of_columns_that_it_does_not_use_and_every_column_o
     assert '#   "Temp [°C]": first 20, from 20 to 20, in °C' in text
     for name in ("qw", "rate_z", "force_x", "roll"):
         assert f"# [imu.columns.{name}]" in text
-
-
-def test_init_is_imported_without_its_heavy_dependencies():
-    code = "import sys, zebro_lab.exchange.init_command; print(*sys.modules)"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"pandas", "pyarrow", "pint", "numpy", "scipy"} & set(run.stdout.split())

@@ -15,7 +15,7 @@ from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.exchange.column_guesses import guess_columns
 from zebro_lab.exchange.columns_template import render_columns
 from zebro_lab.exchange.init_stage import write_columns_template
-from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
+from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.raw_table import RawTable
@@ -86,19 +86,6 @@ def test_a_template_is_refused_until_its_guesses_are_checked(tmp_path):
         read_rig_data([tmp_path])
 
 
-def test_a_row_of_units_is_used_and_not_dropped(tmp_path):
-    units = {"ET": "ms", "FX": "kN", "FZ": "N", "SL": "%"}
-    tyre().rename(columns={}).to_csv(tmp_path / "a.csv", index=False)
-    head, *rows = (tmp_path / "a.csv").read_text().splitlines()
-    row = ",".join(units.get(name, "-") for name in head.split(","))
-    (tmp_path / "a.csv").write_text("\n".join([head, row, *rows]))
-    text = write_columns_template(tmp_path / "a.csv").file.read_text()
-    assert [line for line in text.splitlines() if line.startswith("unit")] == [
-        'unit = "ms"', 'unit = "%"', 'unit = "N"', 'unit = "kN"',
-    ]  # fmt: skip
-    assert 'sign = "-1?"' in text
-
-
 def test_tables_of_several_kinds_share_one_file(tmp_path):
     pd.DataFrame({"t": [0, 1], "x": [0, 1], "y": [0, 1]}).to_csv(tmp_path / "a.csv", index=False)
     names = ["t", *(f"theta{leg}" for leg in range(1, 7))]
@@ -167,14 +154,3 @@ def test_a_ros_log_is_told_with_its_joints_and_the_command_that_reads_it(tmp_pat
     assert f"joints {', '.join(names)}; name those of legs 1 to 6" in str(told.value)
     assert f"zebro-lab import --legs {log} --joints NAME1," in str(told.value)
     assert not list(tmp_path.rglob("columns.toml"))
-
-
-def test_what_is_no_table_leaves_no_template(tmp_path):
-    with pytest.raises(NotFound):
-        write_columns_template(tmp_path / "absent.csv")
-    with pytest.raises(DataError, match="is not a table file"):
-        write_columns_template(tmp_path)
-    (tmp_path / "a.csv").write_bytes(b"")
-    with pytest.raises(DataError, match="is empty"):
-        write_columns_template(tmp_path / "a.csv")
-    assert not (tmp_path / "columns.toml").exists()

@@ -10,7 +10,6 @@ import pytest
 from zebro_lab.files.atomic import (
     atomic_folder,
     atomic_write_bytes,
-    atomic_write_text,
     uninterrupted,
 )
 from zebro_lab.files.errors import AlreadyExists
@@ -22,12 +21,6 @@ class Interrupted(Exception):
 
 def names(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
-
-
-def test_file_is_written_whole_and_alone(tmp_path):
-    path = atomic_write_text(tmp_path / "slip.toml", "mu = 0.38\n")
-    assert path.read_bytes() == b"mu = 0.38\n"
-    assert names(tmp_path) == ["slip.toml"]
 
 
 def test_failed_write_keeps_the_old_file_and_no_draft(tmp_path, monkeypatch):
@@ -72,13 +65,6 @@ def test_a_folder_that_holds_something_is_refused(tmp_path):
     with pytest.raises(AlreadyExists, match="is not empty"), atomic_folder(tmp_path / "out"):
         pass
     assert names(tmp_path) == ["out/notes.txt"]
-
-
-def test_file_in_the_way_is_refused(tmp_path):
-    (tmp_path / "out").write_text("a file")
-    with pytest.raises(AlreadyExists, match="is a file"), atomic_folder(tmp_path / "out"):
-        pass
-    assert (tmp_path / "out").read_text() == "a file"
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -9,8 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from rig.zebro.profile import load_leg_profile
 from support.bounded_reading import error_on_fifo, refusal
@@ -101,13 +99,6 @@ def test_what_is_no_document_is_named_and_what_is_missing_comes_with_advice(read
         read(tmp_path / "x", advice="make one")
     (tmp_path / "x").write_text("{")
     assert f"cannot be read as {kind}" in refusal(read, tmp_path / "x")
-
-
-@given(st.binary(max_size=20))
-def test_a_file_name_of_any_bytes_can_be_written(name):
-    text = name.decode("utf-8", "surrogateescape")
-    written = json_text({text: [text, (text,)]})
-    assert isinstance(json.loads(written.encode()), dict)
 
 
 def test_what_json_does_not_know_is_written_plainly():

@@ -62,14 +62,6 @@ def test_a_report_does_not_replace_its_input_through_a_link(run, tmp_path, link)
     assert out.samefile(run / "log.mcap")
 
 
-def test_a_foreign_page_is_kept(run, tmp_path):
-    out = tmp_path / "index.html"
-    out.write_text("<!DOCTYPE html>\n<html><body>My thesis</body></html>")
-    with pytest.raises(ZebroLabError, match=r"index\.html"):
-        report(ReportRequest(run, run / "none", out), made=START)
-    assert "My thesis" in out.read_text()
-
-
 @pytest.mark.timeout(60)
 def test_a_manifest_that_is_a_fifo_beside_a_page_is_not_waited_for(run, tmp_path):
     page = tmp_path / "r.html"
@@ -85,13 +77,6 @@ def test_a_plot_keeps_a_foreign_picture(run, tmp_path):
     with pytest.raises(ZebroLabError, match=r"robot\.png"):
         plot_run(run, out=out)
     assert out.read_bytes() == before
-
-
-def test_a_grid_does_not_replace_its_photograph(photos):
-    before = content(photos)
-    with pytest.raises(ZebroLabError, match=r"p01\.png"):
-        draw_grid(photos, "p01.png", photos / "p01.png")
-    assert content(photos) == before
 
 
 def test_a_grid_is_not_written_among_the_photographs_that_are_tracked(photos):

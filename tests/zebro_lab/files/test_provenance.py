@@ -19,7 +19,6 @@ from zebro_lab.files.provenance import (
     UNKNOWN,
     commit_of,
     file_hash,
-    file_hashes,
     fingerprint,
     software,
     software_commit,
@@ -32,13 +31,6 @@ HASHES = {"a.csv": "1" * 64, "b.csv": "2" * 64}
 def test_file_hash_is_sha_256_of_the_content(tmp_path):
     (tmp_path / "a").write_bytes(b"slip\x00" * 100_000)
     assert file_hash(tmp_path / "a") == hashlib.sha256(b"slip\x00" * 100_000).hexdigest()
-
-
-def test_hashes_are_by_path_as_given(tmp_path, monkeypatch):
-    (tmp_path / "a").write_bytes(b"1")
-    monkeypatch.chdir(tmp_path)
-    relative = (tmp_path / "a").relative_to(tmp_path)
-    assert file_hashes([relative]) == {"a": file_hash(tmp_path / "a")}
 
 
 def test_fingerprint_ignores_names_and_order():

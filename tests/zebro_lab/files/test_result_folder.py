@@ -48,15 +48,6 @@ def test_another_commands_result_is_kept(tmp_path, compared):
     assert json.loads(before["manifest.json"])["kind"] == "track"
 
 
-def test_a_manifest_that_names_a_file_of_a_foreign_encoding_is_read_back(tmp_path):
-    with track_folder(
-        tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
-        report={},
-    ):  # fmt: skip
-        pass
-    assert read_track_manifest(tmp_path / "track")["inputs"] == {r"caf\udce9": "0"}
-
-
 @pytest.mark.parametrize("out", ["file/result", "file/deep/result", "broken", "broken/result"])
 def test_a_place_that_can_hold_no_folder_is_refused_before_anything_is_computed(out, tmp_path):
     (tmp_path / "file").write_text("mine")

@@ -9,8 +9,9 @@ from mcap.writer import Writer
 
 from support.written_bags import BEGAN, imu, joints, write_bag, write_ros1_bag
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.names import is_bag, is_ros_log
 from zebro_lab.mcap.log_writer import LOG, LOG_TEXT
-from zebro_lab.mcap.ros_log import bag_files, is_bag, is_ros_log, read_bag, read_messages
+from zebro_lab.mcap.ros_log import bag_files, read_bag, read_messages
 
 
 def log_of(path, text, data=b"\0\1\0\0" + bytes(64)):

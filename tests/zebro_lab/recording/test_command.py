@@ -5,41 +5,13 @@ import json
 import os
 import re
 import signal
-import subprocess
 import sys
 
 import pytest
 
-from support.commands import COMMAND, started
+from support.commands import started
 from support.recorders import growing
 from zebro_lab.mcap.raw_log import read_raw_log
-
-HEAVY = {"numpy", "scipy", "pandas", "can", "serial", "mcap", "matplotlib", "numba", "rig.device",
-         "rich.live"}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "command",
-    [
-        "record",
-        "import",
-        "runs",
-        "plot",
-        "exclude",
-        "doctor",
-        "sim zebro",
-        "zebro check",
-        "rig run",
-    ],
-)
-def test_help_loads_nothing_heavy(command):
-    process = subprocess.run(
-        [sys.executable, "-X", "importtime", COMMAND, *command.split(), "--help"],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    assert f"zebro-lab {command}" in process.stdout
-    loaded = {line.rsplit("|", 1)[-1].strip() for line in process.stderr.splitlines()}
-    assert not loaded & HEAVY
 
 
 def test_a_recording_prints_counts_clocks_and_folder_and_is_listed(run_command, tmp_path):

@@ -2,7 +2,6 @@
 """`zebro-lab track` as its user meets it."""
 
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -11,19 +10,6 @@ from support.bundled_walk import PHOTOS, WALK
 from support.commands import COMMAND
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
-
-
-@pytest.mark.parametrize(
-    "command", [("track",), ("annotate",), ("camera",), ("camera", "calibrate"), ("camera", "kit")]
-)
-def test_help_loads_nothing_heavy(command):
-    process = subprocess.run(
-        [sys.executable, "-X", "importtime", COMMAND, *command, "--help"],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    assert "Usage: " in process.stdout
-    loaded = {line.rsplit("|", 1)[-1].strip() for line in process.stderr.splitlines()}
-    assert not loaded & {"numpy", "scipy", "pandas", "matplotlib", "cv2", "PIL", "tracking"}
 
 
 def test_preview_in_a_pipe_says_what_is_seen_and_draws_it(files):

@@ -3,23 +3,10 @@
 
 import json
 import subprocess
-import sys
 
 import pytest
 
 from support.commands import COMMAND
-
-
-@pytest.mark.parametrize("command", ["walk", "predict"])
-def test_help_has_examples_and_loads_nothing_heavy(command):
-    process = subprocess.run(
-        [sys.executable, "-X", "importtime", COMMAND, command, "--help"],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    assert "Examples:" in process.stdout
-    assert f"zebro-lab {command}" in process.stdout
-    loaded = {line.rsplit("|", 1)[-1].strip() for line in process.stderr.splitlines()}
-    assert not loaded & {"numpy", "numba", "scipy", "pandas", "matplotlib", "cv2"}
 
 
 def test_walk_in_a_pipe_prints_gait_and_end_and_writes_its_folder(tmp_path):

@@ -14,7 +14,8 @@ from model.counted import counted
 from model.poses import Poses
 from model.rigid_path import RigidPath, plane_axes, rotations_of_quaternions
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.mcap.ros_log import bag_files, is_ros_log
+from zebro_lab.files.names import is_ros_log
+from zebro_lab.mcap.ros_log import bag_files
 from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file

@@ -25,8 +25,8 @@ class Backend:
 
 LEGS: Final = {
     "packet": Backend("serial", "rig.zebro.serial:PacketLegs", "rig.zebro.simulated:PacketRobot"),
-    "dump": Backend("serial", "rig.zebro.registers:DumpLegs", "rig.zebro.simulated:DumpRobot"),
-    "poll": Backend("serial", "rig.zebro.registers:PolledLegs", "rig.zebro.simulated:PolledRobot"),
+    "dump": Backend("serial", "rig.zebro.serial:DumpLegs", "rig.zebro.simulated:DumpRobot"),
+    "poll": Backend("serial", "rig.zebro.serial:PolledLegs", "rig.zebro.simulated:PolledRobot"),
     "can": Backend("can", "rig.zebro.can:CanLegs", "rig.zebro.simulated:CanRobot"),
     "table": Backend("table"),
 }

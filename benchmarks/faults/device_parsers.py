@@ -27,8 +27,7 @@ from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.rdt import RECORD, Request, encode_request
 from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS, CanLegs
 from rig.zebro.profile import LegProfile, load_leg_profile
-from rig.zebro.registers import SYNC, DumpLegs, PolledLegs
-from rig.zebro.serial import PacketLegs
+from rig.zebro.serial import SYNC, DumpLegs, PacketLegs, PolledLegs
 from rig.zebro.simulated import CanRobot, PacketRobot, PolledRobot
 from rig.zebro.simulated_legs import SimulatedLegs
 from zebro_lab.mcap.raw_log import decode_raw, encode_raw

@@ -23,8 +23,7 @@ from typing import Any, Final, NoReturn
 from rig.links import can, serial, slcan, udp  # noqa: F401 - forked with it
 from rig.slip_rig import board, drives, load_cell  # noqa: F401
 from zebro_lab.experiment import stage as rig_run  # noqa: F401
-from zebro_lab.experiment.keyboard import Keyboard
-from zebro_lab.experiment.screen import ExperimentScreen
+from zebro_lab.experiment.screen import ExperimentScreen, Keyboard
 from zebro_lab.main import main
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.recording.recorder import RunRecorder

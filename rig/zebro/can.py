@@ -11,7 +11,7 @@ from rig.device import Counters, Sample
 from rig.links.byte_link import LinkedStream
 from rig.links.can import CanLink
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
-from rig.zebro.commands import leave_still, milliseconds
+from rig.zebro.commands import LeftStill, milliseconds
 from rig.zebro.profile import LegProfile
 
 # Layouts written by hand: cantools decodes about 20 times slower. It serves tests and tools.
@@ -29,7 +29,7 @@ TICK: Final = 1e-6
 """One tick of the device time [s]."""
 
 
-class CanLegs(LinkedStream[CanLink]):
+class CanLegs(LeftStill, LinkedStream[CanLink]):
     """Stream of the layout `can`; implements the protocols `Stream` and `LegCommands`.
 
     CAN protects each frame with a checksum. The device time arrives in a separate frame before the
@@ -49,12 +49,6 @@ class CanLegs(LinkedStream[CanLink]):
         self._tracker = SequenceTracker(modulus=SEQUENCE_WRAP, rate=profile.rate)
         self._device_time = TimeUnwrapper(modulus=TICKS_WRAP, tick=TICK)
         self._stamp: tuple[int, int] | None = None
-        self._moved = False
-
-    def __exit__(self, *exception: object) -> None:
-        if self._moved:
-            leave_still(self)
-        super().__exit__(*exception)
 
     @property
     def counters(self) -> Counters:

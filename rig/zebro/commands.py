@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Commands to the robot: leg set-points of a gait, and stop."""
 
+from abc import abstractmethod
 from contextlib import suppress
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
 from model.gait.reference import LegReference
 from rig.errors import LimitExceeded, RigError
+from rig.links.byte_link import LinkedStream
 from rig.zebro.profile import LegProfile, encode_counts
 
 LONGEST_MOTION: Final = 65.535
@@ -44,14 +46,23 @@ class LegCommands(Protocol):
         ...
 
 
-def leave_still(legs: LegCommands) -> None:
-    """Stop legs that were moved, before their driver is left; a link that fails is left as it is.
+class LeftStill(LinkedStream[Any]):
+    """Base of drivers that stop legs which they have moved when they are left.
 
-    Args:
-        legs: Robot whose legs were commanded.
+    Legs that were only read go on, and a link that fails is left as it is.
     """
-    with suppress(RigError):
-        legs.stop()
+
+    _moved = False
+
+    @abstractmethod
+    def stop(self) -> bool:
+        """Send the command to stop every leg where it is; return whether the link took it."""
+
+    def __exit__(self, *exception: object) -> None:
+        if self._moved:
+            with suppress(RigError):
+                self.stop()
+        super().__exit__(*exception)
 
 
 def milliseconds(duration: float) -> int:

@@ -16,7 +16,7 @@ from rig.links.packet_stream import LONGEST
 from rig.zebro.can import CLOCK, POSITIONS, SEQUENCE_WRAP, SET_POINTS, TICKS_WRAP
 from rig.zebro.commands import MILLISECOND
 from rig.zebro.profile import DUMP_REGISTERS, LegProfile
-from rig.zebro.registers import SYNC
+from rig.zebro.serial import SYNC
 from rig.zebro.simulated_legs import Frame, SimulatedLegs
 
 

@@ -10,8 +10,8 @@ from rig.clock import ManualClock
 from rig.driver_table import LEGS
 from rig.errors import ProfileError
 from rig.imu.profile import render_table_profile
+from rig.links.byte_link import MemoryLink
 from rig.links.can import CanLink
-from rig.links.memory import MemoryLink
 from rig.links.serial import SerialLink
 from rig.slip_rig.profile import render_table_profile as render_rig_profile
 from rig.zebro.profile import load_leg_profile

@@ -15,7 +15,7 @@ from rig.device import iterate
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import SimulatedImu
 from rig.imu.stream import ImuStream
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.replay import ReplayStream
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG

@@ -7,7 +7,7 @@ from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.clock import ManualClock
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile

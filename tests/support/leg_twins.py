@@ -7,8 +7,8 @@ from model.gait.reference import SampledReference
 from rig.backends import leg_driver
 from rig.clock import ManualClock
 from rig.device import iterate
+from rig.links.byte_link import MemoryLink
 from rig.links.faults import PERFECT_LINE
-from rig.links.memory import MemoryLink
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 

@@ -12,14 +12,14 @@ from model.arrays import Array
 from model.slip.definition import SlipDefinition
 from model.slip.rig_errors import RigErrors
 from model.slip.samples import DiscAngles, SlipSamples
+from rig.slip_rig.sweeps import STANDING, sweeps
 from zebro_lab.calibration.lateral_force import LateralForce, lateral_force, lateral_sums, no_sums
 from zebro_lab.calibration.plausible import require_plausible
-from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.runs.counted_once import run_keys
 from zebro_lab.runs.data_paths import DataSource
-from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.folder import LOG_FILE, SlipRigRun, read_slip_rig_run
 from zebro_lab.runs.manifest import RIG, TABLE
-from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.tables.disc_angles import disc_angles, joined_angles
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_columns import RigColumns, RunRule
@@ -28,6 +28,40 @@ from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
+
+SWEEP = "sweep"
+"""Name of the column with the sweep number."""
+
+
+def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+    """Number the sweeps of a recorded run: stretches without jumps of slip, leg disc turning.
+
+    Returns:
+        Sweep number of each sample, from 1; 0 outside sweeps, shape (n,). Then a note with the
+        share of samples outside sweeps, if there are any.
+
+    Raises:
+        DataError: No sample is in a sweep: the leg disc never turned, or slip jumped throughout.
+    """
+    table, constants = run.table, run.manifest.constants
+    speed_leg = table.omega_leg * constants["radius_leg"]
+    number = 1 + sweeps(table.t, speed_leg, table.omega_ground * constants["radius_ground"])
+    left_out = float(np.mean(number == 0))
+    if left_out == 1:
+        raise DataError(_why_none(speed_leg), file=run.folder / LOG_FILE)
+    if not left_out:
+        return number, ()
+    note = (
+        f"{run.folder.name}: {left_out:.1%} of the samples are ignored, because slip jumped "
+        "between two sweeps or the leg disc stood still"
+    )
+    return number, (note,)
+
+
+def _why_none(speed_leg: Array) -> str:
+    if np.abs(speed_leg).max() <= STANDING:
+        return "the leg disc never turned, so that slip is undefined; record while the rig runs"
+    return "slip jumped all the time, so that there is no sweep; change the slip ratio more slowly"
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
 from rig.experiment.load import HandShaft, LoadSetter, SimulatedOperator
 from rig.experiment.plan import LoadSetting
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.openers import SIMULATED, resolve
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import draw_imperfections

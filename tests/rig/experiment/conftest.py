@@ -17,7 +17,7 @@ from rig.experiment.load import SimulatedOperator
 from rig.experiment.plan import Plan
 from rig.experiment.plan_reading import parse_plan
 from rig.experiment.run import run_plan
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.profile import ProfileTable
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG

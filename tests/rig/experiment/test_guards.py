@@ -10,7 +10,7 @@ from rig.backends import RigDevices
 from rig.clock import ManualClock
 from rig.errors import RigError
 from rig.experiment.bench import make_bench
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.links.packet import Kind, Packet, encode_packet
 from rig.slip_rig.board import RigBoard
 

@@ -15,7 +15,7 @@ from rig.errors import ProfileError
 from rig.imu.profile import decode_orientation, encode_orientation, load_imu_profile
 from rig.imu.simulated import SimulatedImu
 from rig.imu.stream import ImuStream
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.profile import shipped_file
 
 PROFILE = load_imu_profile("imu-quaternion-serial")

@@ -9,7 +9,7 @@ from rig.device import iterate
 from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.imu.simulated import GRAVITY, SimulatedImu
 from rig.imu.stream import ImuStream
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 
 PROFILE = load_imu_profile("imu-quaternion-serial")
 

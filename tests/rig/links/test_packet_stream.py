@@ -8,7 +8,7 @@ from cobs import cobs
 
 from rig.clock import ManualClock
 from rig.errors import DeviceMismatch
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.links.packet import Kind, Packet, decode_packet, encode_packet
 from rig.links.packet_stream import MAX_FOREIGN, PacketStream
 

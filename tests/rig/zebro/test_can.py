@@ -3,46 +3,12 @@
 
 import can
 import cantools
-import numpy as np
 
-from model.gait.reference import SampledReference
 from rig.backends import leg_driver
 from rig.links.can import CanLink
 from rig.profile import shipped_file
-from rig.twins import simulated_legs
 from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS
 from rig.zebro.profile import load_leg_profile
-from rig.zebro.simulated_legs import SimulatedLegs
-
-STANDING = SampledReference(np.array([0.0, 1.0]), np.tile(np.linspace(0.2, 1.2, 6), (2, 1)))
-
-
-def test_legs_on_can_go_to_their_set_points_and_stop(take):
-    profile = load_leg_profile("zebro-100-can")
-    rng = np.random.default_rng(0)
-    twin = SimulatedLegs(STANDING, profile=profile)
-    with simulated_legs(twin, rng=rng) as stream, stream:
-        targets = (10, 20, 30, 40, 50, 60)
-        assert stream.set_points(targets, 0.1)
-        assert take(stream, 50)[-1].counts == targets
-        stream.set_points((60,) * 6, 10.0)
-        take(stream, 10)
-        stream.stop()
-        held = [s.counts for s in take(stream, 60)[-20:]]
-    assert len(set(held)) == 1
-    assert held[0] != (60,) * 6
-
-
-def test_leaving_the_driver_stops_legs_on_can_that_it_moved():
-    profile = load_leg_profile("zebro-100-can")
-    channel = "left"
-    with can.Bus(interface="virtual", channel=channel) as bus:
-        for moved in (False, True):
-            with leg_driver(profile, CanLink(f"virtual:{channel}")) as stream:
-                if moved:
-                    stream.set_points((1,) * 6, 1.0)
-            sent = [message.arbitration_id for message in iter(lambda: bus.recv(0.0), None)]
-            assert sent == [profile.can_ids.set_points, profile.can_ids.stop] * moved
 
 
 def test_the_shipped_dbc_agrees_with_the_layouts():

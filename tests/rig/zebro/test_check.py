@@ -11,7 +11,7 @@ from model.gait.reference import SampledReference
 from rig.backends import leg_driver
 from rig.clock import ManualClock
 from rig.errors import DeviceFault, RigTimeout
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 from rig.zebro.check import (
     MovedLeg,
     check_legs,

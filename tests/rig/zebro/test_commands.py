@@ -1,62 +1,93 @@
 # SPDX-License-Identifier: MIT
-"""Commands to the robot's legs, as bytes and as motion of the twin."""
+"""Every robot takes set-points and stops, whatever its layout; a gait is played in time."""
 
 import math
+from contextlib import contextmanager
+from functools import partial
 
+import can
 import numpy as np
 import pytest
 
 from model.gait.reference import SampledReference
+from rig.backends import leg_driver
+from rig.clock import ManualClock
 from rig.device import iterate
 from rig.errors import LimitExceeded, ProtocolError, RigTimeout
-from rig.zebro.commands import HORIZON, LEAD_IN, GaitPlayer, follow, leave_still, milliseconds
+from rig.links.can import CanLink
+from rig.zebro.commands import HORIZON, LEAD_IN, GaitPlayer, follow, milliseconds
 from rig.zebro.profile import decode_angles, load_leg_profile
+from rig.zebro.simulated import CanRobot
+from rig.zebro.simulated_legs import SimulatedLegs
+from support.leg_twins import STANDING
 from support.leg_twins import standing as robot
 
-
-@pytest.mark.parametrize("name", ["zebro-100-serial", "zebrobus-uart"])
-def test_legs_go_to_their_set_points(name):
-    stream, clock = robot(name)
-    with stream:
-        targets = (10, 20, 30, 40, 50, 60)
-        assert stream.set_points(targets, 0.5)
-        last = list(iterate(stream, duration=1.0, clock=clock))[-1]
-    assert last.counts == targets
+COMMANDED = ["zebro-100-serial", "zebrobus-uart", "zebro-100-can"]
+WALKING = SampledReference(np.array([0.0, 60.0]), np.array([[0.0] * 6, [240.0] * 6]))
+TARGETS = (10, 20, 30, 40, 50, 60)
 
 
-@pytest.mark.parametrize("name", ["zebro-100-serial", "zebrobus-uart"])
-def test_stop_holds_every_leg(name):
-    walking = SampledReference(np.array([0.0, 60.0]), np.array([[0.0] * 6, [240.0] * 6]))
-    stream, clock = robot(name, gait=walking)
-    with stream:
-        moving = list(iterate(stream, duration=1.0, clock=clock))
-        stream.stop()
-        list(iterate(stream, duration=0.2, clock=clock))
-        held = list(iterate(stream, duration=1.0, clock=clock))
-    assert len({s.counts for s in moving}) > 10
-    assert len({s.counts for s in held}) == 1
+class PolledBus(CanLink):
+    """A link that polls the twin behind its bus before each read, as a byte link in memory does."""
+
+    poll = staticmethod(lambda now: None)
+
+    def read(self, timeout):
+        self._clock.sleep(timeout)
+        self.poll(self._clock.now())
+        return super().read(0.0)
 
 
-@pytest.mark.parametrize("name", ["zebro-100-serial", "zebrobus-uart"])
-def test_leaving_the_driver_stops_legs_that_it_moved_and_no_others(name):
-    walking = SampledReference(np.array([0.0, 60.0]), np.array([[0.0] * 6, [240.0] * 6]))
-    for moved in (False, True):
-        stream, clock = robot(name, gait=walking)
+@contextmanager
+def driver(name, gait=STANDING):
+    """Yield a function that makes a driver of one robot, and the robot's clock."""
+    if name != "zebro-100-can":
+        stream, clock = robot(name, gait=gait)
+        yield stream, clock
+        return
+    clock, profile = ManualClock(), load_leg_profile(name)
+    with can.Bus(interface="virtual", channel="commanded") as bus:
+        legs = SimulatedLegs(gait, profile=profile)
+        link = PolledBus("virtual:commanded", clock=clock)
+        link.poll = CanRobot(legs, bus, rng=np.random.default_rng(0)).poll
+        yield leg_driver(profile, link, clock=clock), clock
+
+
+@pytest.mark.parametrize("name", COMMANDED)
+def test_legs_go_to_their_set_points_and_stop(name):
+    with driver(name, WALKING) as (stream, clock), stream:
+        read = partial(iterate, stream, clock=clock, wait=0.01)
+        assert len({s.counts for s in read(duration=1.0)}) > 10
+        assert stream.stop()
+        list(read(duration=0.2))
+        assert len({s.counts for s in read(duration=1.0)}) == 1
+        assert stream.set_points(TARGETS, 0.5)
+        assert list(read(duration=1.0))[-1].counts == TARGETS
+
+
+@pytest.mark.parametrize("name", COMMANDED)
+@pytest.mark.parametrize("moved", [False, True])
+def test_leaving_the_driver_stops_legs_that_it_moved_and_no_others(name, moved):
+    with driver(name, WALKING) as (stream, clock):
+        read = partial(iterate, stream, clock=clock, wait=0.01)
         with stream:
             if moved:
-                stream.set_points((10, 20, 30, 40, 50, 60), 30.0)
-            list(iterate(stream, duration=0.5, clock=clock))
+                stream.set_points(TARGETS, 30.0)
+            list(read(duration=0.5))
         with stream:  # the twin goes on meanwhile
-            later = list(iterate(stream, duration=2.0, clock=clock))[20:]
+            later = list(read(duration=2.0))[20:]
         assert (len({s.counts for s in later}) == 1) == moved
 
 
-def test_leaving_a_driver_whose_link_takes_nothing_is_no_error():
-    class Deaf:
-        def stop(self):
+def test_leaving_a_driver_whose_link_takes_nothing_is_no_error(monkeypatch):
+    stream, _ = robot()
+    with stream:
+        stream.set_points(TARGETS, 1.0)
+
+        def deaf(data):
             raise RigTimeout("the port takes no bytes", waited=1.0)
 
-    leave_still(Deaf())
+        monkeypatch.setattr(stream._link, "write", deaf)
 
 
 def test_following_a_gait_walks_it():
@@ -107,9 +138,6 @@ class Legs:
         self.commands.append((self.now, counts, duration))
         return True
 
-    def stop(self):
-        return True
-
 
 def played(calls):
     """Call a player at host times; return what it commanded: when, unwrapped targets, how long."""
@@ -122,19 +150,18 @@ def played(calls):
     return np.array(when), theta, np.array(duration)
 
 
-def test_the_legs_are_turned_gently_to_where_the_gait_begins():
-    when, theta, duration = played(np.arange(50.0, 51.5, 0.01))
+def away(theta, target):
+    """Return the largest difference of two leg angles, without whole turns [rad]."""
+    return np.abs(np.remainder(theta - target + np.pi, 2 * np.pi) - np.pi).max()
+
+
+def test_the_legs_are_turned_gently_to_where_the_gait_begins_and_are_in_time():
+    when, theta, duration = played(np.arange(50.0, 60.0, 0.013))
     assert (when[0], duration[0]) == (50.0, LEAD_IN)
-    away = np.remainder(theta[0] - GAIT.angles(0.0)[0] + np.pi, 2 * np.pi) - np.pi
-    assert np.abs(away).max() <= 0.51 * TURN
+    assert away(theta[0], GAIT.angles(0.0)[0]) <= 0.51 * TURN
     assert when[1] >= 50.0 + LEAD_IN
-
-
-def test_a_gait_called_in_time_is_in_time():
-    when, theta, _ = played(np.arange(50.0, 60.0, 0.013))
     target = GAIT.angles(when[1:] - 50.0 - LEAD_IN + HORIZON)
-    away = np.remainder(theta[1:] - target + np.pi, 2 * np.pi) - np.pi
-    assert np.abs(away).max() <= 0.51 * TURN
+    assert away(theta[1:], target) <= 0.51 * TURN
 
 
 @pytest.mark.parametrize("held_up", [0.2, 1.5])
@@ -146,5 +173,4 @@ def test_after_a_hold_up_the_legs_go_on_from_where_they_wait(held_up):
     assert steps.max() < SPEED * HORIZON + 1.01 * TURN
     assert set(duration[1:]) == {HORIZON}
     last = GAIT.angles(when[-1] - LEAD_IN + HORIZON - held_up)
-    away = np.remainder(theta[-1] - last + np.pi, 2 * np.pi) - np.pi
-    assert np.abs(away).max() < SPEED * HORIZON
+    assert away(theta[-1], last) < SPEED * HORIZON

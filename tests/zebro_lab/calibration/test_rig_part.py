@@ -2,6 +2,8 @@
 """One table or run folder becomes samples in SI, with its runs apart."""
 
 from datetime import UTC, datetime
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +12,10 @@ from model.slip import SlipDefinition, convert_slip
 from support.rig_tables import RADII, N, columns, given_slip, speeds, write
 from support.table_runs import slip_rig_run
 from support.written_runs import edit
-from zebro_lab.calibration.rig_part import RigPart, read_part
+from zebro_lab.calibration.rig_part import RigPart, read_part, recorded_sweeps
+from zebro_lab.files.errors import DataError
 from zebro_lab.runs.data_paths import DataSource
+from zebro_lab.runs.folder import SlipRigRun
 from zebro_lab.runs.slip_rig_table import SlipRigTable
 from zebro_lab.tables.columns_file import read_columns
 from zebro_lab.tables.rig_columns import RigColumns
@@ -110,3 +114,36 @@ def test_a_recorded_run_is_one_run_a_sweep(tmp_path):
     assert len(part.runs.names) == 3
     assert part.rows_read == len(part.normal_force) < len(t)
     assert "of the samples are ignored, because slip jumped" in part.notes[0]
+
+
+T = np.arange(0.0, 6.0, 0.005)
+DISCS = {"radius_leg": 0.035, "radius_ground": 0.12}
+
+
+def run(slip: np.ndarray, omega_leg: float = 12.0) -> SlipRigRun:
+    leg = np.full_like(T, omega_leg)
+    ground = (1 - slip) * leg * DISCS["radius_leg"] / DISCS["radius_ground"]
+    table = SlipRigTable(T, leg, ground, np.full_like(T, 5.0), np.full_like(T, 1.0))
+    return SlipRigRun(Path("a-run"), SimpleNamespace(constants=DISCS), table, ())
+
+
+def test_sweeps_are_numbered_from_one_and_jumps_belong_to_none():
+    number, (note,) = recorded_sweeps(run(0.9 * (T % 2.0) / 2.0))
+    assert [int(number[np.searchsorted(T, t)]) for t in (1.0, 3.0, 5.0)] == [1, 2, 3]
+    between = (number == 0) & (T > 0.5) & (T < 5.5)
+    assert np.all(np.abs((T[between] + 1) % 2.0 - 1) < 0.5)
+    left_out = np.mean(number == 0)
+    assert 0 < left_out < 0.4
+    assert note == (f"a-run: {left_out:.1%} of the samples are ignored, because slip jumped "
+                    "between two sweeps or the leg disc stood still")  # fmt: skip
+
+
+def test_one_sweep_is_kept_whole_without_a_note():
+    number, notes = recorded_sweeps(run(T / 10))
+    assert set(number) == {1}
+    assert notes == ()
+
+
+def test_a_disc_that_never_turns_is_named():
+    with pytest.raises(DataError, match=r"a-run.log\.mcap: the leg disc never turned"):
+        recorded_sweeps(run(np.zeros_like(T), omega_leg=0.0))

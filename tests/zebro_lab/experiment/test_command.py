@@ -5,10 +5,14 @@ import subprocess
 import sys
 import time
 from functools import partial
+from pathlib import Path
 
 from typer.testing import CliRunner
 
+from rig.experiment.run import Outcome
 from rig.twins import simulated_rig_devices
+from zebro_lab.experiment.command import experiment_in_numbers
+from zebro_lab.experiment.journal import Journal
 from zebro_lab.main import app
 
 
@@ -54,3 +58,16 @@ def test_streams_that_a_shell_has_closed_are_no_fault(short, tmp_path):
     )
     done = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE, text=True, timeout=120)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_run_that_was_cut_short_has_its_reason_and_no_numbers():
+    entry = {"text": "safe stop: SIGTERM", "number": 3, "accepted": False, "attempt": 1,
+             "folder": "a"}  # fmt: skip
+    journal = Journal("hash", {}, frozenset({"a"}), None, [entry])
+    outcome = Outcome("safe stop: SIGTERM", 2, (), 1, "real")
+    found = experiment_in_numbers(outcome, journal, Path("data"))
+    assert not found["simulated"]
+    assert found["runs"] == [{
+        "name": "a", "point": 3, "attempt": 1, "accepted": False, "why": "safe stop: SIGTERM",
+        "slip_ratio": None, "friction": None, "normal_force_N": None,
+    }]  # fmt: skip

@@ -2,7 +2,7 @@
 """A link in memory: what is written reaches the twin, waiting lets its clock pass."""
 
 from rig.clock import ManualClock
-from rig.links.memory import MemoryLink
+from rig.links.byte_link import MemoryLink
 
 
 class Twin:

@@ -4,13 +4,11 @@
 import json
 import tomllib
 
-import numpy as np
 import pytest
 
 from support.bundled_walk import PHOTOS, WALK
 from support.compared_folders import calibration
 from support.experiment_plans import short_plan
-from support.foreign_trajectories import drive, tum, written
 from support.walk_requests import write_log
 from support.written_runs import make_run
 
@@ -24,22 +22,6 @@ def document(ended, command, keys, *, code=0):
     assert (found["command"], found["exit_code"]) == (command, code)
     assert set(found) - {"simulated"} == {"command", "exit_code"} | keys
     return found
-
-
-def test_compare_lists_each_quantity_with_intervals(run_command, tmp_path):
-    one, other = calibration(tmp_path / "one"), calibration(tmp_path / "other", friction=0.5)
-    ended = run_command("compare", one, other, "--out", tmp_path / "out", "--json")
-    found = document(ended, "compare", {"folder", "names", "notes", "quantities"})
-    assert found["simulated"]
-    assert found["names"] == ["one", "other"]
-    for each in found["quantities"]:
-        assert each.keys() == {
-            "name", "unit", "first", "second", "difference", "probability_second_larger"
-        }  # fmt: skip
-        assert each["difference"]["low"] <= each["difference"]["median"]
-    larger = [each for each in found["quantities"] if each["probability_second_larger"] > 0.99]
-    assert larger
-    assert all(each["difference"]["low"] > 0 for each in larger)
 
 
 def test_predict_gives_the_walked_path_in_numbers(run_command, tmp_path):
@@ -56,17 +38,6 @@ def test_predict_gives_the_walked_path_in_numbers(run_command, tmp_path):
     })  # fmt: skip
     assert found["length_m"] > 0
     assert found["folder"] == str(tmp_path / "out")
-
-
-def test_validate_of_two_trajectories_has_their_errors(run_command, tmp_path):
-    t, position, rotation = drive()
-    truth = written(tmp_path / "truth.txt", tum(t, position, rotation))
-    slam = written(tmp_path / "slam.txt", tum(t, position + np.array([0.3, 0.4, 0.0]), rotation))
-    ended = run_command("validate", truth, slam, "--out", tmp_path / "out", "--json")
-    found = document(ended, "validate", {"folder", "validation"})
-    assert found["validation"] == json.loads((tmp_path / "out" / "manifest.json").read_text())
-    assert not found["simulated"]
-    assert "absolute error (ATE), rms" in ended.err
 
 
 def test_a_fit_of_few_steps_has_its_verdict_and_exit_code_inside(
@@ -98,15 +69,6 @@ def test_a_run_is_listed_and_its_exclusion_is_told(run_command, tmp_path):
     assert listed["samples"] == {"/board/raw": 200}
     ended = run_command("exclude", run, "--undo", "--json")
     assert document(ended, "exclude", {"folder", "excluded"})["excluded"] is None
-
-
-def test_doctor_lists_its_findings(run_command, tmp_path):
-    ended = run_command("doctor", "--data", tmp_path, "--json", "--quiet")
-    found = document(ended, "doctor", {"findings"}, code=ended.code)
-    assert "packages" in {each["what"].lower() for each in found["findings"]}
-    states = {each["state"] for each in found["findings"]}
-    assert states <= {"ok", "note", "BROKEN"}
-    assert ended.code == int("BROKEN" in states)
 
 
 def test_init_names_the_columns_that_it_guessed(run_command, tmp_path):
@@ -178,12 +140,6 @@ def test_a_recording_is_told_as_its_folder_tells_it(run_command, tmp_path):
     assert found["run"] == json.loads((folder / "run.json").read_text())
     assert found["run"]["streams"]["/legs/raw"] > 0
     assert "recording completed; run folder" in ended.err
-
-
-def test_a_recording_that_fails_has_no_document(run_command, tmp_path):
-    given = ("record", "--zebro", "zebro-100-serial@/dev/no", "--label", "x", "--data", tmp_path)
-    ended = run_command(*given, "--json", "--quiet")
-    assert (ended.code, ended.out, ended.err.count("\n")) == (1, "", 1)
 
 
 def test_an_experiment_lists_its_runs_and_their_results(run_command, tmp_path):

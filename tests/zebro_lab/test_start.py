@@ -7,13 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from zebro_lab.start import require_own_packages
-
 SCRIPTS = Path(sys.executable).parent
-
-
-def test_the_installed_packages_are_our_own():
-    require_own_packages()
 
 
 @pytest.mark.parametrize(

@@ -87,13 +87,6 @@ def test_mapped_quaternions_of_a_table_are_the_heading(tmp_path, how):
     np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
 
 
-def test_a_map_without_sections_is_for_the_only_file(tmp_path):
-    file = motion_capture(tmp_path)
-    plain = written(tmp_path / "own.toml", MOCAP.replace("[track.columns]", "[columns]"))
-    (folder,) = taken(tmp_path, track=file, columns=plain).folders
-    assert len(read_track(folder / "track").poses) == 60
-
-
 def test_a_track_of_another_clock_is_brought_to_that_of_the_legs(files, tmp_path):
     table = pd.read_csv(files / "track.csv")
     table.assign(t=table.t - 1000.25).to_csv(files / "track.csv", index=False)

@@ -22,17 +22,6 @@ def test_init_says_what_it_guessed_and_what_to_check(tmp_path):
     assert "radii in [constants]" in result.output
 
 
-def test_init_names_what_it_could_not_find(tmp_path):
-    (tmp_path / "rig.csv").write_text("a,b\n1,2\n")
-    result = CliRunner().invoke(app, [str(tmp_path / "rig.csv"), "--kind", "rig"])
-    assert (
-        "no column was found for normal_force, traction_force, omega_leg or slip_ratio"
-        in result.output
-    )
-    assert "please check: no column was recognised; map each by hand" in result.output
-    assert "names, units and signs above" not in result.output
-
-
 def test_init_lists_the_units_of_columns_that_it_does_not_use_and_every_column_of_an_imu(tmp_path):
     (tmp_path / "imu.csv").write_text("t [ms],Temp [°C]\n0,20\n10,20\n")
     CliRunner().invoke(app, [str(tmp_path / "imu.csv"), "--kind", "imu"])

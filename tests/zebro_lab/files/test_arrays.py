@@ -75,14 +75,6 @@ def test_what_is_no_archive_is_refused(data, tmp_path):
     assert ADVICE in refusal(read, tmp_path / "draws.npz")
 
 
-def test_a_damaged_member_is_refused(tmp_path):
-    file = archive(tmp_path, {"t": npy(np.arange(5000.0)), "poses": npy(np.zeros((3, 5000, 3)))})
-    data = bytearray(file.read_bytes())
-    data[60:80] = b"\xff" * 20
-    file.write_bytes(data)
-    refusal(read, file)
-
-
 @pytest.mark.parametrize(
     "header",
     [

@@ -29,13 +29,6 @@ def test_a_fault_of_data_is_placed_by_what_is_known_of_its_place(place, expected
     assert str(DataError("is bad", **place)) == expected
 
 
-def test_a_fault_of_data_carries_what_was_found():
-    error = DataError("is bad", file="a", column="b", row=1, line=2, value=-0.3, unit="N")
-    found = (error.problem, error.file, error.column, error.row, error.line, error.value)
-    assert found == ("is bad", "a", "b", 1, 2, -0.3)
-    assert error.unit == "N"
-
-
 def test_a_fault_of_settings_is_placed_by_file_and_key():
     assert str(SettingsError("is 3", file="x.toml", key="a.b")) == "x.toml, a.b: is 3"
     assert str(SettingsError("is 3", key="--seed")) == "--seed: is 3"

@@ -70,15 +70,6 @@ def test_a_manifest_that_is_a_fifo_beside_a_page_is_not_waited_for(run, tmp_path
     report(ReportRequest(run, run / "none", page), made=START)
 
 
-def test_a_plot_keeps_a_foreign_picture(run, tmp_path):
-    out = tmp_path / "robot.png"
-    Image.new("RGB", (8, 8), "red").save(out)
-    before = out.read_bytes()
-    with pytest.raises(ZebroLabError, match=r"robot\.png"):
-        plot_run(run, out=out)
-    assert out.read_bytes() == before
-
-
 def test_a_grid_is_not_written_among_the_photographs_that_are_tracked(photos):
     with pytest.raises(ZebroLabError, match="photograph"):
         draw_grid(photos, "p01.png", photos / "grid.png")

@@ -14,7 +14,6 @@ from support.written_tracks import content, write_track
 from zebro_lab.files import replacement
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.track.folder import read_track_manifest
-from zebro_lab.validation.compare.stage import compare
 
 
 class Killed(BaseException):
@@ -95,13 +94,6 @@ def test_a_reader_restores_what_an_interrupted_replacement_left_and_says_so(tmp_
     assert read_track_manifest(tmp_path / "track")["settings"] == {"x": 0.0}
     assert not (tmp_path / ".track.previous").exists()
     assert "restored from .track.previous" in caplog.text
-
-
-@pytest.mark.parametrize("named", ["one", "one/slip.toml"])
-def test_a_calibration_is_restored_whichever_way_it_is_named(tmp_path, compared, named, caplog):
-    (tmp_path / "one").rename(tmp_path / ".one.previous")
-    compare(tmp_path / named, tmp_path / "other", out=tmp_path / "out")
-    assert "restored" in caplog.text
 
 
 def test_a_folder_that_somebody_keeps_as_previous_is_never_removed(tmp_path):

@@ -31,18 +31,6 @@ def test_a_unit_gives_its_factor_and_the_si_unit_is_the_default():
     assert table().factor("unit", "m") == ("m", 1.0)
 
 
-def test_an_inner_table_is_of_the_same_kind():
-    with pytest.raises(SettingsError, match=r"legs\.radios: unknown key") as caught:
-        _with_inner().finish()
-    assert (caught.value.file, caught.value.key) == (FILE, "legs.radios")
-
-
-def _with_inner() -> SettingsTable:
-    found = table(legs={"radios": 1})
-    assert "radius" not in found.table("legs")
-    return found
-
-
 @pytest.mark.parametrize(
     ("take", "value", "message"),
     [

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Calibration, used as a notebook would."""
 
-from pathlib import Path
-
 import pytest
 
 import zebro_lab as zl
-
-DATASETS = Path(__file__).parents[3] / "datasets"
 
 
 def test_a_calibration_has_summary_posterior_verdict_and_curve(sweep, monkeypatch):
@@ -20,8 +16,3 @@ def test_a_calibration_has_summary_posterior_verdict_and_curve(sweep, monkeypatc
     assert result.verdict.headline()
     assert result.curve.values[1] == pytest.approx(0.38, abs=0.1)
     assert result.data.source.startswith("sim:")
-
-
-def test_rig_data_are_read_from_strings():
-    data = zl.read_rig_data(str(DATASETS / "rig-sim"))
-    assert len(data.samples.slip) > 1000

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from model.walk.ground import height_and_slopes, is_level
-from zebro_lab.exchange.init_stage import write_template
-from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError, ZebroLabError
+from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.ground.ground_file import TEMPLATE, read_ground
-from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 
 MAP = 'heights = "h.csv"\nstep = 0.1\norigin = [1, 2]\n'
 HEIGHTS = np.array([[0.0, 0.001, 0.002], [0.01, 0.011, -0.012]])
@@ -38,12 +36,6 @@ def test_a_slope_rises_along_x_and_y(read):
     expected = np.tan(np.radians(5)) * 0.3 - np.tan(np.radians(2)) * 7.0
     assert height(ground, 0.3, 7.0) == pytest.approx(expected)
     assert ground.what == ("slope of 5 deg along x, -2 deg along y",)
-
-
-def test_slope_and_heights_add_up(read):
-    alone = ('heights = { file = "h.csv", step = 0.1, origin = [1, 2] }', "slope_deg = [1, 2]")
-    summed = sum(height(read(each), 1.12, 2.05) for each in alone)
-    assert height(read("\n".join(alone)), 1.12, 2.05) == pytest.approx(summed)
 
 
 def test_a_map_lies_with_its_first_row_farthest_and_its_first_column_at_the_origins_x(read):
@@ -155,11 +147,6 @@ def test_every_example_in_its_comments_can_be_taken(tmp_path):
     assert len(read_ground(file).what) == 1
 
 
-@pytest.mark.parametrize("key", ["slope_deg", "heights", "file", "step", "origin", "unit"])
-def test_every_key_is_there(key):
-    assert key in TEMPLATE
-
-
 def test_an_existing_file_is_kept_unless_it_is_forced(run_command, tmp_path):
     file = tmp_path / "ground.toml"
     file.write_text("slope_deg = [1.0, 0.0]\n")
@@ -169,22 +156,3 @@ def test_an_existing_file_is_kept_unless_it_is_forced(run_command, tmp_path):
     assert file.read_text() == "slope_deg = [1.0, 0.0]\n"
     assert run_command("init", file, "--kind", "ground", "--force").code == 0
     assert "heights" in file.read_text()
-
-
-def test_a_folder_is_no_file_to_write(tmp_path):
-    with pytest.raises(AlreadyExists, match="is a folder; name the file to write"):
-        write_template(tmp_path, "ground")
-
-
-def test_a_sheet_of_a_ground_is_refused(run_command, tmp_path):
-    ended = run_command("init", tmp_path / "g.toml", "--kind", "ground", "--sheet", "a")
-    assert ended.code == 2
-    assert "a ground has none" in ended.err
-
-
-def test_a_written_robot_is_the_thesis_s_robot(run_command, tmp_path):
-    file = tmp_path / "robot.toml"
-    ended = run_command("init", file, "--kind", "robot")
-    assert ended.code == 0, ended.err
-    assert f"walk --robot {file}" in " ".join(ended.out.split())
-    assert read_robot_file(file).robot.mass == RobotFile().robot.mass

@@ -2,7 +2,6 @@
 """Damaged logs are read up to their damage."""
 
 import numpy as np
-import pytest
 
 from rig.device import Sample
 from support.logs import COUNTS, STREAMS, log_of
@@ -27,17 +26,6 @@ def test_a_log_is_read_up_to_where_it_is_cut(tmp_path):
         numbers = found.streams["/legs/raw"].sequence
         assert 5 < len(numbers) < 50
         np.testing.assert_array_equal(numbers, np.arange(len(numbers)))
-
-
-@pytest.mark.parametrize("length", [2**63, 2**64 - 1, 2**40])
-def test_a_length_beyond_the_file_is_damage(tmp_path, length):
-    file, _ = log_of("legs", rows=40)
-    path = tmp_path / "log.mcap"
-    header = len(b"\x89MCAP0\r\n") + 1  # the first record's kind stands before its length
-    data = bytearray(file.getvalue())
-    data[header : header + 8] = length.to_bytes(8, "little")
-    path.write_bytes(data)
-    assert read_raw_log(path).damage is not None
 
 
 def test_a_log_with_flipped_bytes_is_read_in_part_or_refused(tmp_path):

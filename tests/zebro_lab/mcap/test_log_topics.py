@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from support.written_bags import BEGAN, imu, joints, stamped, write_bag
+from support.written_bags import BEGAN, imu, joints, write_bag
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.log_topics import read_topic
 
@@ -45,9 +45,3 @@ def test_several_topics_without_a_choice_are_refused(bag, topics):
 def test_a_topic_that_is_not_there_is_refused_with_those_that_are(bag):
     with pytest.raises(DataError, match=r"has no joint positions on topic /c; .*known: '/a', '/b'"):
         read_topic(bag, TYPES, what="joint positions", topic="/c")
-
-
-def test_a_log_without_such_messages_names_the_type(tmp_path):
-    bag = write_bag(tmp_path / "poses", stamped(T, np.zeros((len(T), 3))), storage="mcap")
-    with pytest.raises(DataError, match=r"holds no joint positions; expected .* sensor_msgs/msg"):
-        read_topic(bag, TYPES, what="joint positions")

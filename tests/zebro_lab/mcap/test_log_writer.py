@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Logs are read by public tools alone."""
 
-from collections import Counter
 from dataclasses import fields
 
 import numpy as np
 import pytest
 from mcap.reader import make_reader
-from rosbags.highlevel import AnyReader
 
 from rig.device import Counters as DeviceCounters
 from support.logs import STREAMS, by_topic, log_of
@@ -26,20 +24,6 @@ def test_public_tools_alone_read_raw_counts_events_and_counters(stream):
     ((_, counters),) = found[f"/{stream}/counters"]
     assert (counters.received, counters.lost, counters.dropped) == (3, 1, 2)
     assert {field.name for field in fields(DeviceCounters)} < set(dir(counters))
-
-
-@pytest.mark.parametrize("stream", STREAMS)
-def test_a_second_reader_decodes_the_same_messages(stream, tmp_path):
-    """The package rosbags has its own reader of MCAP and its own decoder."""
-    file, _ = log_of(stream)
-    (tmp_path / "log.mcap").write_bytes(file.getvalue())
-    ours = {topic: len(found) for topic, found in by_topic(file).items()}
-    theirs = Counter()
-    with AnyReader([tmp_path / "log.mcap"]) as reader:
-        for connection, _, data in reader.messages():
-            reader.deserialize(data, connection.msgtype)
-            theirs[connection.topic] += 1
-    assert theirs == ours
 
 
 @pytest.mark.parametrize("stream", STREAMS)

@@ -42,13 +42,6 @@ def test_whole_counts_round_trip(given_samples):
     assert same(decode_raw(data, dtype=dtype), given_samples)
 
 
-@given(samples(st.floats(allow_nan=False, allow_infinity=False)))
-def test_values_with_fractions_round_trip(given_samples):
-    dtype = RAW_SCHEMAS["zebro_lab/msg/RawValues"][0]
-    data = encode_raw(given_samples, dtype=dtype, start=0.0)
-    assert same(decode_raw(data, dtype=dtype), given_samples)
-
-
 @given(st.binary(max_size=200))
 def test_any_bytes_are_samples_or_a_value_error(data):
     for payload in (data, b"\0\1\0\0" + data):

@@ -9,9 +9,9 @@ from mcap.writer import Writer
 
 from support.written_bags import BEGAN, imu, joints, write_bag, write_ros1_bag
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.files.names import is_bag, is_ros_log
+from zebro_lab.files.names import is_ros_log
 from zebro_lab.mcap.log_writer import LOG, LOG_TEXT
-from zebro_lab.mcap.ros_log import bag_files, read_bag, read_messages
+from zebro_lab.mcap.ros_log import read_bag, read_messages
 
 
 def log_of(path, text, data=b"\0\1\0\0" + bytes(64)):
@@ -24,12 +24,6 @@ def log_of(path, text, data=b"\0\1\0\0" + bytes(64)):
         writer.add_message(channel, log_time=0, data=data, publish_time=0)
         writer.finish()
     return path
-
-
-def test_a_whole_log_gives_its_messages(tmp_path):
-    messages, damage = read_messages(log_of(tmp_path / "log.mcap", LOG_TEXT), schema=LOG)
-    assert [message.topic for message in messages] == ["/events"]
-    assert damage is None
 
 
 @pytest.mark.parametrize(
@@ -103,20 +97,6 @@ def test_a_missing_package_is_named_with_the_way_to_install_it(bag, monkeypatch)
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     with pytest.raises(NotFound, match=r"pip install rosbags"):
         read_bag(bag, ("sensor_msgs/msg/JointState",))
-
-
-def test_files_that_are_hashed_are_those_of_the_bag(bag):
-    assert [file.name for file in bag_files(bag)] == ["metadata.yaml", "walk.db3"]
-    assert bag_files(bag / "walk.db3") == (bag / "walk.db3",)
-    with pytest.raises(NotFound):
-        bag_files(bag / "other.db3")
-
-
-def test_bags_are_known_by_their_names(bag, tmp_path):
-    assert is_bag(bag)
-    assert is_ros_log(tmp_path / "X.MCAP")
-    assert not is_bag(tmp_path)
-    assert not is_ros_log(tmp_path / "legs.csv")
 
 
 @pytest.mark.parametrize("noise", [b"", b"\0" * 5000, b"SQLite format 3\0" + b"\1" * 5000])

@@ -141,12 +141,6 @@ def test_a_calibration_that_the_prediction_did_not_use_is_no_headline(slip, whol
     assert f"the prediction was made with {named}, not with the calibration in" in page.text
 
 
-def test_a_calibration_without_any_prediction_is_a_headline(whole):
-    for name in ("prediction", "validation"):
-        (whole / name / "manifest.json").unlink()
-    assert HEADLINE in made(whole).text
-
-
 def test_a_fit_of_walks_that_a_prediction_did_not_use_is_named(whole, tmp_path):
     walks = tmp_path / "calibration/walks"
     law = inputs_of(whole / "prediction")["demo/slip.toml"]
@@ -163,14 +157,3 @@ def test_a_fit_of_walks_that_a_prediction_did_not_use_is_named(whole, tmp_path):
     (walks / "manifest.json").unlink()
     (notice,) = notices(whole)
     assert "used a fit of walks that" in notice
-
-
-def test_a_validation_of_several_runs_is_compared_with_each(whole, tmp_path):
-    data = tmp_path / "data"
-    data.mkdir()
-    validation = json.loads((whole / "validation/manifest.json").read_text())
-    whole.rename(data / "run")
-    write_json(data / "validation/manifest.json", validation)
-    assert notices(data) == ()
-    (data / "run/track/track.csv").write_text("tracked again")
-    assert len(notices(data)) == 2  # that of the run, and that of all

@@ -163,17 +163,6 @@ def test_a_calibration_that_lacks_what_is_shown_is_named_in_one_line(file, text,
     assert "\n" not in str(raised.value)
 
 
-def test_an_error_shows_no_escape_sequence_of_a_file(tmp_path):
-    named = tmp_path / "a\x1b[31m\nerror: b"
-    said = subprocess.run(
-        [COMMAND, "runs", named],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert said.returncode == 1
-    assert len(said.stderr.splitlines()) == 1
-    assert "\x1b" not in said.stderr
-
-
 @pytest.mark.browser
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium is at hand")
 def test_nothing_of_a_hostile_run_runs_in_a_browser(run, secret, tmp_path):

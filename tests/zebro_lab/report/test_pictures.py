@@ -63,12 +63,6 @@ def test_photographs_are_embedded_small_and_look_the_same(tmp_path):
     assert len(url) < file.stat().st_size / 4
 
 
-def test_a_picture_too_long_for_webp_is_embedded_as_it_is(tmp_path):
-    file = drawn(tmp_path / "a.png", np.zeros((1, 16_400), np.uint8))
-    start, _, data = embed(file, stage="track", simulated=False).data.partition(",")
-    assert (start, base64.b64decode(data)) == ("data:image/png;base64", file.read_bytes())
-
-
 def test_an_svg_is_embedded_as_it_is(tmp_path):
     svg = b'<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg"/>'
     (tmp_path / "path.svg").write_bytes(svg)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zebro_lab.tables.cells import decimal_sign, is_units_row, kind_of, may_be_thousands
+from zebro_lab.tables.cells import decimal_sign, kind_of, may_be_thousands
 
 
 @given(st.floats(allow_nan=False))
@@ -33,9 +33,3 @@ def test_numbers_with_any_but_three_decimals_show_the_decimal_sign(number, digit
     assert not may_be_thousands(text)
     assert decimal_sign([text, "7"]) == "."
     assert decimal_sign([text.replace(".", ","), "7"]) == ","
-
-
-def test_units_are_told_from_names():
-    assert is_units_row(["s", "-", "N", ""])
-    assert not is_units_row(["-", "-"])
-    assert not is_units_row(["FZ", "FX", "s"])

@@ -93,11 +93,6 @@ def test_names_units_and_signs_of_the_map_are_applied_and_others_stay():
     assert not Columns(UNITS).has(raw, "roll")
 
 
-def test_another_header_keeps_the_unit():
-    found = parse(columns={"roll": {"unit": "deg"}}).called("roll", "phi")
-    np.testing.assert_allclose(found.numbers(table({}, phi=[180.0]), "roll", **READ), [np.pi])
-
-
 def test_a_missing_column_says_where_to_map_it():
     with pytest.raises(DataError, match=r"'roll': the column of the roll of the body is "
                        r"missing; .*'rol'.*map it in "
@@ -155,11 +150,6 @@ def test_each_kind_of_table_has_its_section_and_the_common_source(tmp_path):
     assert read_mapped_columns("imu", table, other, {"roll": "rad"})[0].mapped["roll"].name == (
         "theirs"
     )
-
-
-def test_without_a_file_names_are_canonical(tmp_path):
-    found, topic = read_mapped_columns("imu", tmp_path / "a.csv", None, {"roll": "rad"})
-    assert (found.mapped["roll"].name, found.where, topic) == ("roll", "imu.", None)
 
 
 MAPS = {"rig": CANONICAL, "legs": LEG_UNITS, "track": MAPPED_UNITS, "imu": IMU_UNITS}

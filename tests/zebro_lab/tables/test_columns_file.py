@@ -73,11 +73,6 @@ def test_empty_file_changes_nothing(tmp_path):
     assert read(tmp_path, "") == RigColumns(file=tmp_path / "columns.toml")
 
 
-@pytest.mark.parametrize("source", ["import:legs.csv", "mixed:real,sim:imu"])
-def test_the_source_of_an_exported_run_is_accepted(tmp_path, source):
-    assert read(tmp_path, f'source = "{source}"').source == source
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -138,14 +133,6 @@ def test_offset_and_nanoseconds_are_added_in_si(tmp_path):
     raw = table({}, s=[10, 11], ns=[500_000_000, 0], F=[1.0, 2.0])
     np.testing.assert_array_equal(columns["t"].in_si(raw), [10.5, 11])
     np.testing.assert_array_equal(columns["normal_force"].in_si(raw), [-995, -1995])
-
-
-def test_dates_of_a_time_become_unix_time(tmp_path):
-    columns = read(tmp_path, '[columns]\nt = {name = "when", unit = "date"}\n').columns
-    raw = table({}, when=["1970-01-01T00:00:01.5Z", "1970-01-01T01:00:02+01:00"])
-    np.testing.assert_array_equal(columns["t"].in_si(raw), [1.5, 2])
-    with pytest.raises(SettingsError, match="unknown unit 'date'"):
-        read(tmp_path, '[columns]\nnormal_force = {name = "when", unit = "date"}\n')
 
 
 def test_priors_are_texts_of_the_parameter_and_what_is_known(tmp_path):

@@ -51,11 +51,6 @@ def test_a_guess_that_nobody_checked_is_refused(tmp_path, text, keys):
     assert keys in str(raised.value)
 
 
-def test_guesses_of_another_kind_of_table_do_not_matter(tmp_path):
-    text = '[legs.columns.t]\nunit = "ms?"\n[rig.columns]\nt = "ET"\n[rig.rows]\nkeep = ["a? > 1"]'
-    assert "columns" in section(tmp_path, text)
-
-
 @pytest.mark.parametrize(
     ("text", "problem"), [("[legs]\n[leg]\n", "leg: unknown key"), ("legs = 1", "a section")]
 )

@@ -41,12 +41,6 @@ def test_other_encodings_than_utf_8_are_found(tmp_path, encoding):
     assert table.fault("is bad", "Winkel [°]", 1).line == 3
 
 
-def test_a_special_character_far_down_tells_the_encoding(tmp_path):
-    text = "t,where\n" + "1,here\n" * 20_000 + "2,Köln\n"
-    (tmp_path / "a.csv").write_bytes(text.encode("latin-1"))
-    assert read_csv_file(tmp_path / "a.csv").column("where").iloc[-1] == "Köln"
-
-
 def test_a_cell_of_the_header_may_have_line_breaks(tmp_path):
     (tmp_path / "a.csv").write_text('tyre 12" wide\n"Zeit\n[s]";"Kraft\n[N]"\n0,5;1\n1,5;2\n')
     table = read_csv_file(tmp_path / "a.csv")

@@ -50,12 +50,6 @@ def test_degrees_that_pass_for_radians_are_improbable(tmp_path, text, wrapped):
     assert "unit of the angle" in str(error.value)
 
 
-def test_the_angle_of_one_disc_is_enough(tmp_path):
-    angles = read(tmp_path, with_angles().drop(columns="angle_ground")).samples.angles
-    assert angles.ground is None
-    assert angles.leg is not None
-
-
 def test_an_angle_that_some_tables_lack_is_named_and_not_used(tmp_path):
     columns(tmp_path, RADII)
     write(tmp_path, with_angles(), "a.csv")

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Sheets of workbooks are read as text tables are, or refused in one line."""
 
-import io
 import sys
-import zipfile
 from datetime import datetime
 from pathlib import Path
 
@@ -11,7 +9,6 @@ import pytest
 
 from support.bounded_reading import refusal
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables import excel_files
 from zebro_lab.tables.table_files import read_table_file
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -70,15 +67,6 @@ def test_a_formula_without_a_stored_value_is_named(tmp_path):
 def test_what_is_no_workbook_is_refused(tmp_path, content, problem):
     (tmp_path / "a.xlsx").write_bytes(content)
     assert problem in refusal(read_table_file, tmp_path / "a.xlsx")
-
-
-def test_a_workbook_that_unpacks_to_very_much_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(excel_files, "MOST_UNPACKED", 1 << 20)
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("xl/worksheets/sheet1.xml", bytes(2 << 20))
-    (tmp_path / "a.xlsx").write_bytes(made.getvalue())
-    assert "would unpack to 2 MB" in refusal(read_table_file, tmp_path / "a.xlsx")
 
 
 def test_without_openpyxl_the_line_says_how_to_get_it(tmp_path, monkeypatch):

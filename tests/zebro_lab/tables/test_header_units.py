@@ -4,7 +4,6 @@
 import pytest
 
 from zebro_lab.tables.header_units import (
-    after_lvm_header,
     stated_units,
     suffix_unit,
     unit_in_header,
@@ -60,19 +59,3 @@ def test_an_ending_is_a_unit_where_it_fits_or_can_be_nothing_else(header, si_uni
 )  # fmt: skip
 def test_settings_state_units_of_channels_or_positions(settings, names, units):
     assert stated_units(settings, names) == units
-
-
-def test_only_what_is_below_the_last_header_of_labview_is_left():
-    end = "***End_of_Header***\t"
-    lines = list(enumerate(["LabVIEW Measurement", end, "Channels\t1", end, "X_Value\ta"]))
-    assert after_lvm_header(lines) == [(4, "X_Value\ta")]
-    assert after_lvm_header(lines[4:]) == [(4, "X_Value\ta")]
-
-
-def test_a_second_segment_of_labview_is_not_taken_for_the_whole_file():
-    end = "***End_of_Header***\t"
-    lines = list(
-        enumerate(["LabVIEW Measurement", end, end, "X_Value\ta", "0\t1", end, "X_Value\ta"], 1)
-    )
-    with pytest.raises(match="that of the second ends in line 6: make a file of"):
-        after_lvm_header(lines)

@@ -8,7 +8,7 @@ import pytest
 from model.slip.definition import SlipDefinition
 from model.slip.rig_errors import UNKNOWN_RATIO, UNKNOWN_SCATTER, radius_ratio_sd
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.tables.rig_columns import RigColumns, RigErrorsStated, parse_definition
+from zebro_lab.tables.rig_columns import RigErrorsStated, parse_definition
 
 RADII = {"radius_leg": 0.035, "radius_ground": 0.12}
 
@@ -28,8 +28,3 @@ def test_a_definition_is_parsed_or_the_nearest_is_named():
     assert parse_definition("material", file=None, key="x") is SlipDefinition.MATERIAL
     with pytest.raises(SettingsError, match=r"a\.toml, x: unknown slip definition 'travl'.*travel"):
         parse_definition("travl", file=Path("a.toml"), key="x")
-
-
-def test_every_canonical_column_has_its_header_in_si_without_a_file():
-    assert RigColumns().mapped["normal_force"].name == "normal_force"
-    assert RigColumns().mapped["normal_force"].unit == "N"

@@ -61,26 +61,6 @@ def test_units_of_a_row_and_of_brackets_are_kept(text, units):
     assert dict(find_layout(lines(text)).header.units) == units
 
 
-def test_names_of_groups_tell_repeated_names_apart():
-    mocap = ",,Body,Body,Body\n,,1,1,1\n,,Rotation,Position,Position\nFrame,Time,X,X,Y\n0,0,1,2,3\n"
-    assert find_layout(lines(mocap)).header.names == (
-        "Frame", "Time", "Rotation X", "Position X", "Position Y",
-    )  # fmt: skip
-    merged = "\n,,A,,B,\nFrame,Sub,X,Y,X,Y\n,,mm,mm,mm,mm\n1,0,1,2,3,4\n2,0,1,2,3,4\n"
-    assert find_layout(lines(merged)).header.names[2:] == ("A X", "A Y", "B X", "B Y")
-
-
-def test_the_settings_of_a_labview_file_are_no_data():
-    text = (
-        "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\nSamples\t2\t2\n"
-        "X0\t0,0\t0,0\nDelta_X\t0,1\t0,1\n***End_of_Header***\nX_Value\tF\tF 2\tComment\n"
-        "0,0\t1,5\t2,5\n0,1\t1,5\t2,5\n"
-    )
-    layout = find_layout(lines(text))
-    assert layout.header.names == ("X_Value", "F", "F 2", "Comment")
-    assert (layout.last_line, layout.decimal) == (8, ",")
-
-
 @pytest.mark.parametrize(
     ("text", "problem"),
     [

@@ -61,14 +61,6 @@ def test_an_option_of_a_group_given_twice_is_wrong_usage(app):
     assert "'--seed': given twice; give it once" in result.stderr
 
 
-def test_a_flag_may_be_given_twice(app):
-    assert run(app, "one", "x", "--fast", "--fast").exit_code == 0
-
-
-def test_each_program_completes_in_a_shell(app):
-    assert "--install-completion" in run(app, "-h").output
-
-
 TYPOS = {
     "walkk": "walk", "predcit": "predict", "validat": "validate", "recrod": "record",
     "cmpare": "compare", "reprot": "report", "calibrat": "calibrate", "zebra": "zebro",

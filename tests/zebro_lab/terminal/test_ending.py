@@ -69,12 +69,6 @@ def test_what_the_file_system_says_of_a_file_is_one_line_and_exit_1(error, said,
     assert capsys.readouterr() == ("", f"error: {said}\n")
 
 
-@pytest.mark.parametrize("error", [OSError("no file is at fault"), TimeoutError(110, "timed out")])
-def test_an_error_of_the_system_without_a_file_keeps_its_traceback(error):
-    with pytest.raises(type(error)):
-        run(app_that_raises(error))
-
-
 LONG = "x" * 300
 
 

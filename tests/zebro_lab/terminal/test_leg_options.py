@@ -18,10 +18,3 @@ def test_names_are_separated_by_commas():
 def test_other_than_six_different_names_are_refused(text):
     with pytest.raises(SettingsError, match=r"--joints: found \d different names"):
         joint_names(text)
-
-
-@pytest.mark.parametrize("command", [("import", "--data", "d"), ("predict", "legs.csv")])
-def test_a_wrong_list_is_wrong_usage(run_command, command):
-    ended = run_command(*command, "--joints", "a,b")
-    assert (ended.code, ended.err.count("\n") <= 4) == (2, True)
-    assert "--joints" in ended.err

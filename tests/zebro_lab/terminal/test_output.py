@@ -51,8 +51,3 @@ def test_a_document_is_json_whatever_is_in_it(quiet, capsys):
         "n": 3, "label": "caf\\udce9",
     }  # fmt: skip
     assert captured.err == ""
-
-
-def test_no_document_is_printed_unasked(capsys):
-    TEXT.document("walk", {"x_m": 1.0})
-    assert capsys.readouterr().out == ""

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from zebro_lab.terminal import stopping
-from zebro_lab.terminal.progress import ProgressBar, ProgressLines, progress_bar, shown_times
+from zebro_lab.terminal.progress import ProgressBar, ProgressLines, progress_bar
 from zebro_lab.terminal.stopping import StoppedBySignal
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -93,14 +93,6 @@ def test_terminal_sees_what_is_going_on_and_how_far_it_is():
     assert "100 %" in text
 
 
-def test_a_short_command_says_nothing_in_a_pipe(capsys):
-    place = console(terminal=False)
-    with progress_bar(place) as bar:
-        use(bar)
-    assert written_on(place) == ""
-    assert capsys.readouterr() == ("", "")
-
-
 def test_a_quiet_command_draws_nothing_on_a_terminal():
     place = console(terminal=True)
     with progress_bar(place, quiet=True) as bar:
@@ -122,9 +114,3 @@ def test_lines_in_a_pipe_are_ten_seconds_apart_and_tell_the_time_of_the_step(cap
         "sampling: 58%, 0:28 of this step, about 0:20 left",
         "sampling: 79%, 0:38 of this step, about 0:10 left",
     ]
-
-
-def test_elapsed_and_left_are_of_the_same_step_and_clock():
-    assert shown_times(30.0, 0.25) == "0:30 of this step, about 1:30 left"
-    assert shown_times(3700.0, 1.0) == "1:01:40 of this step"
-    assert shown_times(2.0, 0.0) == "0:02 of this step"

@@ -10,7 +10,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from zebro_lab.terminal.request_command import Range, completed, request_command, value_types
+from zebro_lab.terminal.request_command import Range, completed, request_command
 
 
 @dataclass(frozen=True)
@@ -109,22 +109,6 @@ def test_advice_on_a_number_outside_its_limits_stands_in_the_error_alone():
     assert info.help == "It. Allowed: above 0."
     with pytest.raises(typer.BadParameter, match=r"^found -1; expected above 0; turn$"):
         info.callback(-1.0)
-
-
-def test_numbers_without_limits_are_finite():
-    info = get_args(completed(Annotated[float, typer.Option(help="It.")]))[1]
-    assert info.help == "It."
-    with pytest.raises(typer.BadParameter, match="found inf; expected a finite number"):
-        info.callback(float("inf"))
-
-
-def test_a_callback_is_called_with_what_passed_the_limits():
-    given = typer.Option(callback=lambda value: value + 1, min=0, help="It.")
-    assert get_args(completed(Annotated[int, given]))[1].callback(1) == 2
-
-
-def test_types_are_found_below_optional_and_repeated_ones():
-    assert list(value_types(tuple[Path, ...] | None)) == [Path]
 
 
 @pytest.mark.parametrize(

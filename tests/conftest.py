@@ -58,6 +58,17 @@ def shared() -> Path:
     return REFERENCE
 
 
+@pytest.fixture
+def blank_pictures(monkeypatch) -> None:
+    """Write empty files for figures, for claims that pictures do not show."""
+
+    def save(_figure, target, **_options):
+        if isinstance(target, Path):
+            target.write_bytes(b"")
+
+    monkeypatch.setattr("zebro_lab.plots.save", save)
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item, call):
     """Turn a skip into a failure where the reference data exists: nothing excuses it there."""

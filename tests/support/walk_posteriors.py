@@ -13,7 +13,6 @@ from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.request import ModelRequest, PredictRequest
-from zebro_lab.walk_fit.pictures import draw_walks
 
 STEERING = LINEAR[0]
 
@@ -85,8 +84,8 @@ def write_calibration(tmp_path):
     return folder
 
 
-def stored(calibration, legs, posterior):
-    """Store a posterior beside a calibration, and read it back."""
+def stored(calibration, legs, posterior, *, draw=lambda _: None):
+    """Store a posterior beside a calibration, without pictures, and read it back."""
     slip = calibration / "slip.toml"
     write_walks(
         calibration,
@@ -94,7 +93,7 @@ def stored(calibration, legs, posterior):
             posterior=posterior, left_out={}, robot=RobotFile(), logs=tuple(legs),
             inputs=(slip, *legs), settings={"seed": 1}, source="sim:test", notes=("a note",),
         ),
-        draw=lambda draft: draw_walks(draft, posterior, (), simulated=True),
+        draw=draw,
     )  # fmt: skip
     return read_stored_walks(slip)
 

@@ -28,17 +28,6 @@ def run_command(monkeypatch, capsys) -> Callable[..., Ended]:
     return within_process(monkeypatch, capsys)
 
 
-@pytest.fixture
-def blank_pictures(monkeypatch) -> None:
-    """Write empty files for figures, for claims that pictures do not show."""
-
-    def save(_figure, target, **_options):
-        if isinstance(target, Path):
-            target.write_bytes(b"")
-
-    monkeypatch.setattr("zebro_lab.plots.save", save)
-
-
 @pytest.fixture(scope="session")
 def sweep(tmp_path_factory) -> Path:
     """Return a folder with one CSV of 24 runs, 3,600 samples, and its columns.toml.

@@ -31,6 +31,7 @@ from zebro_lab.walk.output_request import BandRequest
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.prediction_file import read_prediction
 from zebro_lab.walk.request import ModelRequest, PredictRequest
+from zebro_lab.walk_fit.pictures import draw_walks
 
 
 @pytest.fixture
@@ -165,7 +166,11 @@ def test_a_model_without_slip_takes_nothing_from_walks(calibration, legs, tmp_pa
 
 
 def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs, tmp_path):
-    stored(calibration, legs, posterior_of(WrongLeg(2)))
+    posterior = posterior_of(WrongLeg(2))
+    stored(
+        calibration, legs, posterior,
+        draw=lambda draft: draw_walks(draft, posterior, (), simulated=True),
+    )  # fmt: skip
     run = tmp_path / "run"
     run.mkdir()
     predict_log(run, legs[0], str(calibration))

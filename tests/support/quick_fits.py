@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+"""Fits of few draws and steps, for claims that need no converged posterior."""
+
+from dataclasses import replace
+
+import pytest
+
+from model.bayes.calibrate import SamplerSettings
+from zebro_lab.calibration import stage
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.stated import Stated
+
+FEW = {"FIRST_LOOK": 10, "CHUNK": 5, "IMPORTANCE_DRAWS": 1000, "EFFECTIVE_DRAWS": 100.0}
+"""Constants of `model.bayes.calibrate`: steps before the first look, and at once, and draws."""
+
+
+def fit_quickly(patch: pytest.MonkeyPatch) -> None:
+    """Let `calibrate-slip` take blocks of 30, two ensembles, and few steps and draws."""
+    for name, value in FEW.items():
+        patch.setattr(f"model.bayes.calibrate.{name}", value)
+    sampler = stage._sampler
+
+    def settings(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
+        usual = sampler(request, stated)
+        return replace(usual, ensembles=2, block_length=stated.block_length or 30)
+
+    patch.setattr(stage, "_sampler", settings)

@@ -8,13 +8,16 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
+
+from support.quick_fits import fit_quickly
 
 CHECKOUT = Path(__file__).parents[2]
 EXAMPLES = sorted((CHECKOUT / "examples").glob("*.py"))
 ONE_LOAD = "simulated_load_02.13N.csv.gz"
-ARGUMENTS = {"calibrate.py": [ONE_LOAD, "slip_curve.png", "500"]}
+ARGUMENTS = {"calibrate.py": [ONE_LOAD, "slip_curve.png", "100"]}
 EVERY_RUN = 5
 """Of a load's runs every how many are in the tests' smaller dataset."""
 PHOTOS = ("simulated_00.jpg", "simulated_02.jpg", "simulated_04.jpg")
@@ -61,6 +64,11 @@ def smaller(tmp_path, monkeypatch):
     table = pd.read_csv(rig / ONE_LOAD)
     table[table.run.isin(table.run.unique()[::EVERY_RUN])].to_csv(tmp_path / ONE_LOAD, index=False)
     shutil.copy(rig / "columns.toml", tmp_path)
+    fit_quickly(monkeypatch)
+    # The floor as pictures show it, which stay blank.
+    monkeypatch.setattr(
+        "zebro_lab.track.photographs.rectify_floor", lambda *_, **__: np.zeros((2, 2, 3), np.uint8)
+    )
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -11,8 +11,11 @@ SMALLER_FIT = ("--law", "brush", "--threads", "1")
 """A fit of a law with two parameters, for claims that hold for all laws."""
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
 FILES = {"slip.toml", "summary.csv", "posterior.nc", "manifest.json"} | PICTURES
-JUDGED_EARLY = "import model.bayes.calibrate as fits; fits.FIRST_LOOK = 40; "
-"""Judge from 40 kept steps on instead of 100: not every claim needs that many."""
+EARLY = {"FIRST_LOOK": 40, "IMPORTANCE_DRAWS": 1000, "EFFECTIVE_DRAWS": 100.0}
+"""Constants of `model.bayes.calibrate` by which a fit ends after 40 kept steps, of few draws."""
+JUDGED_EARLY = "import model.bayes.calibrate as fits; " + "".join(
+    f"fits.{name} = {value}; " for name, value in EARLY.items()
+)
 MAIN = "from zebro_lab.main import calibrate_slip; calibrate_slip()"
 
 

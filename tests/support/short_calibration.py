@@ -24,7 +24,7 @@ from zebro_lab.calibration.folder import write_tables
 
 @cache
 def short_calibration() -> Calibration:
-    """Fit a simulated sweep at two loads with 100 steps; it is far from converged."""
+    """Fit a simulated sweep at two loads with 40 steps; it is far from converged."""
     rng = np.random.default_rng(2)
     plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.3, 8)), loads=(4.0, 12.0), rate=40.0)
     samples = simulate_sweep(
@@ -34,10 +34,10 @@ def short_calibration() -> Calibration:
     density = fit.posterior.log_density
     chains = start_chains(density, fit.approximation, ensembles=2, thin=5, rng=rng)
     chains = advance(
-        density, chains, steps=100, jumps=Jumps(fit.approximation.distribution, 0.3), threads=1
+        density, chains, steps=40, jumps=Jumps(fit.approximation.distribution, 0.3), threads=1
     )
     convergence = assess(chains)
-    weighted = importance_draws(density, fit.approximation, n=4000, rng=rng)
+    weighted = importance_draws(density, fit.approximation, n=2000, rng=rng)
     return conclude(
         fit, None, thin_draws(fit.posterior, chains, convergence, n=1000), convergence, samples,
         weighted=weighted, source="sim:test", seconds=1.5,

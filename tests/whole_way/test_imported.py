@@ -7,12 +7,14 @@ import pandas as pd
 
 from support.bundled_walk import WALK
 from support.other_labs import RIG_COLUMNS, write_rig_table, write_walk_tables
+from support.quick_fits import fit_quickly
 
 FEW_STEPS = ("--law", "coulomb-stribeck", "--max-steps", 100)
 
 
 def test_tables_of_others_end_in_a_judged_prediction_on_one_page(command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    fit_quickly(monkeypatch)
     bench, walk = tmp_path / "bench", tmp_path / "motion-capture"
     for folder in (bench, walk):
         folder.mkdir()

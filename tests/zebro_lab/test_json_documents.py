@@ -9,6 +9,7 @@ import pytest
 from support.bundled_walk import PHOTOS, WALK
 from support.compared_folders import calibration
 from support.experiment_plans import short_plan
+from support.quick_fits import fit_quickly
 from support.walk_requests import write_log
 from support.written_runs import make_run
 
@@ -43,7 +44,7 @@ def test_predict_gives_the_walked_path_in_numbers(run_command, tmp_path):
 def test_a_fit_of_few_steps_has_its_verdict_and_exit_code_inside(
     run_command, sweep, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("model.bayes.calibrate.FIRST_LOOK", 20)
+    fit_quickly(monkeypatch)
     monkeypatch.setattr("zebro_lab.calibration.stage.draw_calibration", lambda *_: None)
     ended = run_command(
         "calibrate-slip", sweep, "--out", tmp_path / "out", "--law", "coulomb-stribeck",

@@ -272,18 +272,13 @@ def test_loads_below_the_zero_are_told_by_what_is_implausible(
 # --- comparing laws
 
 
-@pytest.fixture(scope="module")
-def peak_law_data():
-    """Return fits of two laws to data of the second, whose peak moves with the load."""
+@pytest.mark.long
+def test_a_peak_that_moves_with_load_is_preferred_where_it_does():
     slips = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.2, 0.4, 0.7)
-    plan = replace(SMALL, slips=slips, duration=0.6)
-    samples = simulated(plan=plan)
+    samples = simulated(plan=replace(SMALL, slips=slips, duration=0.6))
     laws = (MagicFormula(curvature=0.0), THESIS_LAW)
-    return [prepared(samples, law, choice=TEN, validate=True) for law in laws]
-
-
-def test_a_peak_that_moves_with_load_is_preferred_where_it_does(peak_law_data):
-    found = compare(["no curvature", "moving peak"], peak_law_data)
+    fits = [prepared(samples, law, choice=TEN, validate=True) for law in laws]
+    found = compare(["no curvature", "moving peak"], fits)
     assert found.chosen == 1
     assert found.difference[1] == 0
     assert found.difference[0] < -CLEAR_WIN * found.standard_error[0]
@@ -299,33 +294,33 @@ def with_densities(fit, *rows):
     ]
 
 
-def test_a_tie_keeps_the_first(peak_law_data):
+def test_a_tie_keeps_the_first(fit):
     density = np.random.default_rng(0).standard_normal(16)
-    found = compare("ab", with_densities(peak_law_data[0], density, density.copy()))
+    found = compare("ab", with_densities(fit, density, density.copy()))
     assert found.chosen == 0
     assert found.difference == (0.0, 0.0)
     assert found.standard_error == (0.0, 0.0)
 
 
-def test_a_lead_within_the_scatter_of_the_runs_is_no_win(peak_law_data):
+def test_a_lead_within_the_scatter_of_the_runs_is_no_win(fit):
     density, gain = np.random.default_rng(1).standard_normal((2, 16))
     unsure = gain - gain.mean() + 0.9 * CLEAR_WIN * gain.std() / np.sqrt(16)
     sure = gain - gain.mean() + 1.1 * CLEAR_WIN * gain.std() / np.sqrt(16)
-    fits = with_densities(peak_law_data[0], density, density + unsure, density + sure)
+    fits = with_densities(fit, density, density + unsure, density + sure)
     assert compare("ab", fits[:2]).chosen == 0
     assert compare("ac", fits[::2]).chosen == 1
 
 
-def test_one_lucky_run_is_no_win(peak_law_data):
+def test_one_lucky_run_is_no_win(fit):
     density = np.zeros(16)
     lucky = density.copy()
     lucky[3] = 100.0
-    assert compare("ab", with_densities(peak_law_data[0], density, lucky)).chosen == 0
+    assert compare("ab", with_densities(fit, density, lucky)).chosen == 0
 
 
-def test_the_comparison_adds_up_over_runs(peak_law_data):
+def test_the_comparison_adds_up_over_runs(fit):
     rows = np.random.default_rng(2).standard_normal((3, 16)) + np.array([[0.0], [5.0], [-5.0]])
-    found = compare("abc", with_densities(peak_law_data[0], *rows))
+    found = compare("abc", with_densities(fit, *rows))
     assert found.chosen == 1
     np.testing.assert_allclose(found.log_density, rows.sum(axis=1))
     np.testing.assert_allclose(found.difference, (rows - rows[1]).sum(axis=1))
@@ -333,8 +328,8 @@ def test_the_comparison_adds_up_over_runs(peak_law_data):
     np.testing.assert_allclose(found.standard_error, expected, atol=1e-12)
 
 
-def test_where_no_run_can_be_left_out_the_first_law_is_kept(peak_law_data):
-    unvalidated = [replace(fit, cross_validation=None) for fit in peak_law_data]
+def test_where_no_run_can_be_left_out_the_first_law_is_kept(fit):
+    unvalidated = [replace(fit, cross_validation=None) for _ in range(2)]
     assert compare("ab", unvalidated).chosen == 0
 
 

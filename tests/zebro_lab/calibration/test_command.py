@@ -14,18 +14,9 @@ from scipy.stats import chi2
 
 from model.slip.laws import LAWS
 from model.slip.thesis import THESIS_VALUES
-from support.calibrate_processes import (
-    COMMAND,
-    FILES,
-    JUDGED_EARLY,
-    SMALL_FIT,
-    SMALLER_FIT,
-    calibrate_slip,
-    names,
-    patched,
-    run,
-)
+from support.calibrate_processes import FILES, SMALL_FIT, SMALLER_FIT, calibrate_slip, names
 from support.out_of_true import swept
+from support.quick_fits import fit_quickly
 from zebro_lab.calibration.folder import read_slip
 
 pytestmark = pytest.mark.timeout(600)
@@ -104,6 +95,7 @@ def test_truth_lies_in_the_joint_region_of_99_9_percent(converged):
 
 def test_summary_has_a_row_a_parameter_with_its_diagnostics(converged):
     summary = pd.read_csv(converged[1] / "summary.csv", index_col="parameter")
+    # The curvature that the data are made of, chosen by predictions of left-out runs.
     assert list(summary.index[:4]) == ["slip_stiffness", "shape", "friction", "peak_slip_per_load"]
     assert (summary.r_hat <= 1.01).all()
     assert (summary.ess_bulk >= 400).all()
@@ -114,15 +106,17 @@ def test_summary_has_a_row_a_parameter_with_its_diagnostics(converged):
 # A fit that does not.
 
 
-def test_fit_out_of_steps_exits_3_with_its_results_marked(sweep, tmp_path):
+def test_fit_out_of_steps_exits_3_with_its_results_marked(
+    sweep, run_command, tmp_path, monkeypatch, blank_pictures
+):
+    fit_quickly(monkeypatch)
     out = tmp_path / "out"
-    arguments = (sweep, "--out", out, *SMALLER_FIT, "--max-steps", 1)
-    process = run(patched(JUDGED_EARLY, *arguments))
-    assert process.returncode == 3, process.stderr
-    assert "error" not in process.stderr
-    assert "--max-steps 1 is fewer than the 500 sampler moves" in process.stdout
-    assert "verdict: NOT CONVERGED" in process.stdout
-    assert "next: sample longer: give the same command with --resume --max-steps" in process.stdout
+    ended = run_command("calibrate-slip", sweep, "--out", out, *SMALLER_FIT, "--max-steps", 1)
+    assert ended.code == 3, ended.err
+    assert "error" not in ended.err
+    assert "--max-steps 1 is fewer than the 500 sampler moves" in ended.out
+    assert "verdict: NOT CONVERGED" in ended.out
+    assert "next: sample longer: give the same command with --resume --max-steps" in ended.out
     assert names(out) == FILES | {"checkpoint.npz"}
     verdict = tomllib.loads((out / "slip.toml").read_text())["verdict"]
     assert not verdict["converged"]
@@ -138,29 +132,26 @@ def test_fit_out_of_steps_exits_3_with_its_results_marked(sweep, tmp_path):
     [(), (".", "--no-such-option"), (".", "--max-steps", "0")],
     ids=["no data", "unknown option", "no steps"],
 )
-def test_bad_usage_exits_2(tmp_path, arguments):
-    process = subprocess.run(
-        [COMMAND, *arguments], capture_output=True, text=True, check=False, cwd=tmp_path
-    )
-    assert (process.returncode, process.stdout) == (2, "")
-    assert "Usage: calibrate-slip" in process.stderr
+def test_bad_usage_exits_2(run_command, tmp_path, monkeypatch, arguments):
+    monkeypatch.chdir(tmp_path)
+    ended = run_command("calibrate-slip", *arguments)
+    assert (ended.code, ended.out) == (2, "")
+    assert "Usage: " in ended.err
     assert names(tmp_path) == set()
 
 
-def test_help_names_every_slip_law():
-    shown = "".join(calibrate_slip("--help").stdout.split())  # lines break at hyphens
-    assert all(name in shown for name in LAWS)
-
-
-def test_help_names_every_exit_code():
-    process = calibrate_slip("--help")
-    assert process.returncode == 0
-    text = " ".join(process.stdout.split())
+def test_help_names_every_slip_law_and_exit_code(run_command):
+    ended = run_command("calibrate-slip", "--help")
+    assert ended.code == 0
+    assert all(name in "".join(ended.out.split()) for name in LAWS)  # lines break at hyphens
+    text = " ".join(ended.out.split())
     for meaning in ("0 converged", "1 error", "2 usage", "3 not converged", "130 stopped"):
         assert meaning in text
 
 
-def test_run_out_is_told_and_corrected_where_tables_have_angles(tmp_path):
+def test_run_out_is_told_and_corrected_where_tables_have_angles(
+    run_command, tmp_path, blank_pictures
+):
     data = tmp_path / "data"
     data.mkdir()
     pd.DataFrame(swept().table).to_parquet(data / "rig.parquet")
@@ -169,9 +160,11 @@ def test_run_out_is_told_and_corrected_where_tables_have_angles(tmp_path):
         '[rig_errors]\nradius = "0.02 mm"\nrolling_resistance = 0.002\n'
     )
     out = tmp_path / "out"
-    process = calibrate_slip(data, "--out", out, "--engine", "laplace", "--law", "brush")
-    assert process.returncode == 0, process.stderr
-    told = " ".join(process.stdout.split())
+    ended = run_command(
+        "calibrate-slip", data, "--out", out, "--engine", "laplace", "--law", "brush"
+    )
+    assert ended.code == 0, ended.err
+    told = " ".join(ended.out.split())
     assert "run-out: leg disc 0.0" in told
     assert "slip is corrected for it, which predicts left-out runs better" in told
     assert "ok residuals do not swing as discs turn" in told

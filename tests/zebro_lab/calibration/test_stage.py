@@ -137,24 +137,17 @@ def test_fit_is_the_same_with_two_threads(uninterrupted, request_for, tmp_path):
     assert_same_fit(tmp_path / "out", uninterrupted)
 
 
-def test_resumed_fit_is_bitwise_the_uninterrupted_one(uninterrupted, request_for, tmp_path):
-    out = tmp_path / "out"
-    for resume, looks in ((False, 2), (True, 3)):
-        with pytest.raises(Stopped) as stopped:
-            calibrate(request_for(out, resume=resume), Watcher(stop_at=looks))
-        assert stopped.value.checkpoint == out / "checkpoint.npz"
-        assert [path.name for path in out.iterdir()] == ["checkpoint.npz"]
-    calibrate(request_for(out, resume=True), Watcher())
-    assert_same_fit(out, uninterrupted)
-
-
-def test_killed_fit_goes_on_from_its_last_periodic_checkpoint(
+def test_a_fit_that_was_stopped_and_then_killed_goes_on_to_be_bitwise_the_uninterrupted_one(
     uninterrupted, request_for, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", 0.0)
     out = tmp_path / "out"
+    with pytest.raises(Stopped) as stopped:
+        calibrate(request_for(out), Watcher(stop_at=2))
+    assert stopped.value.checkpoint == out / "checkpoint.npz"
+    assert [path.name for path in out.iterdir()] == ["checkpoint.npz"]
+    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", -1.0)  # after every few steps
     with pytest.raises(Killed):
-        calibrate(request_for(out), Watcher(die_at=5))
+        calibrate(request_for(out, resume=True), Watcher(die_at=3))
     assert 1 < checkpoint_arrays(out)["z"].shape[1] < 21
     calibrate(request_for(out, resume=True), Watcher())
     assert_same_fit(out, uninterrupted)

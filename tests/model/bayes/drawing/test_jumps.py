@@ -35,8 +35,8 @@ def test_jumps_to_the_fitted_mixture_are_accepted_more_often():
 
 def test_they_shorten_the_autocorrelation_time_and_leave_the_density_as_it_is():
     start = start_chains(leaning, LAPLACE, ensembles=4, thin=2, rng=np.random.default_rng(3))
-    plain = advance(leaning, start, steps=500, jumps=Jumps(LAPLACE.distribution, MANY))
-    fitted = advance(leaning, start, steps=500, jumps=chosen()[1])
+    plain = advance(leaning, start, steps=250, jumps=Jumps(LAPLACE.distribution, MANY))
+    fitted = advance(leaning, start, steps=250, jumps=chosen()[1])
     assert autocorrelation_times(fitted.z).max() < 0.7 * autocorrelation_times(plain.z).max()
     z = fitted.z[:, 20:].reshape(-1, 4)
     np.testing.assert_allclose(z.mean(axis=0), 0.03649, atol=0.03)  # digamma(1.5)
@@ -57,8 +57,8 @@ def test_a_mode_that_the_weighted_draws_missed_is_still_jumped_to():
     jumps = choose_jumps(two, both, weighted, rng=rng)
     assert len(jumps.proposal.weights) > len(both.modes)
     start = start_chains(two, one, ensembles=4, thin=2, rng=rng)
-    walked = advance(two, start, steps=600, jumps=jumps)
-    assert np.mean(walked.z[:, 100:, :, 0] > 4.5) == pytest.approx(0.5, abs=0.05)
+    walked = advance(two, start, steps=300, jumps=jumps)
+    assert np.mean(walked.z[:, 60:, :, 0] > 4.5) == pytest.approx(0.5, abs=0.05)
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,7 @@ def assert_same(one, other):
 # --- the right answer
 
 
+@pytest.mark.long
 def test_a_correlated_gaussian_is_reproduced():
     chains = advance(log_density, start(thin=5), steps=600)
     convergence = assess(chains)
@@ -70,7 +71,7 @@ def test_a_correlated_gaussian_is_reproduced():
 
 def test_emcees_snooker_move_would_have_failed_that(monkeypatch):
     monkeypatch.setattr(sampler, "MOVES", ((DEMove, 0.8), (DESnookerMove, 0.2)))
-    chains = advance(log_density, start(thin=5), steps=250)
+    chains = advance(log_density, start(thin=5), steps=150)
     _, spread = errors(chains, 50)
     # The day emcee's move is mended this fails, and MOVES may have its snooker back.
     assert spread.mean() < 0.96
@@ -238,18 +239,25 @@ def test_jumps_find_the_weights_of_two_modes_whatever_those_of_the_approximation
     wrong = hills(0.0, -2.0)
     chains = start_chains(two_modes, wrong, ensembles=4, thin=5, rng=rng)
     assert np.mean(chains.z[..., 0] > 0) > 0.8
-    chains = advance(two_modes, chains, steps=500, jumps=Jumps(wrong.distribution, 0.3))
-    assert np.mean(chains.z[:, 100:, :, 0] > 0) == pytest.approx(0.3, abs=0.03)
+    chains = advance(two_modes, chains, steps=200, jumps=Jumps(wrong.distribution, 0.3))
+    assert np.mean(chains.z[:, 50:, :, 0] > 0) == pytest.approx(0.3, abs=0.03)
 
 
-def test_a_gaussian_is_reproduced_with_jumps_to_a_poor_approximation():
+@pytest.mark.parametrize(
+    ("steps", "of_mean", "of_spread"),
+    [
+        (200, 0.05, 0.035),  # about 4,000 effective draws, the worst of 12
+        pytest.param(600, 0.03, 0.02, marks=pytest.mark.long),
+    ],
+)
+def test_a_gaussian_is_reproduced_with_jumps_to_a_poor_approximation(steps, of_mean, of_spread):
     off = LaplaceMixture((Laplace(MEAN + 0.3 * np.sqrt(np.diag(COVARIANCE)), COVARIANCE, 0.0),))
-    chains = advance(log_density, start(thin=5), steps=600, jumps=Jumps(off.distribution, 0.3))
+    chains = advance(log_density, start(thin=5), steps=steps, jumps=Jumps(off.distribution, 0.3))
     convergence = assess(chains)
     mean_error, spread = errors(chains, convergence.burn_in)
-    assert np.abs(mean_error).max() < 0.03  # about 13,000 effective draws, the worst of 12
-    assert np.abs(spread - 1).max() < 0.02
-    assert convergence.converged
+    assert np.abs(mean_error).max() < of_mean
+    assert np.abs(spread - 1).max() < of_spread
+    assert convergence.r_hat.max() <= 1.01
 
 
 def test_jumps_shorten_the_autocorrelation_time_of_a_gaussian():

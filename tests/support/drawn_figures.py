@@ -11,12 +11,12 @@ def figures_saved(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
     """Collect figures by file name in place of saving them; saving takes most of the time.
 
     Args:
-        monkeypatch: Replaces `zebro_lab.plots.save` until the test ends.
+        monkeypatch: Replaces what saves a figure until the test ends.
     """
     saved: dict[str, Figure] = {}
 
-    def keep(figure: Figure, path: Path) -> None:
+    def keep(figure: Figure, path: Path, **_options: object) -> None:
         saved[path.name] = figure
 
-    monkeypatch.setattr("zebro_lab.plots.save", keep)
+    monkeypatch.setattr(Figure, "savefig", keep)
     return saved

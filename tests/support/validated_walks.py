@@ -10,9 +10,8 @@ from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
 from support.watchers import Nobody
 from zebro_lab.validation.request import ValidateRequest
-from zebro_lab.walk.output_request import BandRequest
-from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import ModelRequest, PredictRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
+from zebro_lab.walk.stage import predict
 
 STEP = np.radians(3.6)
 

@@ -10,9 +10,8 @@ from model.walk_fit.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_
 from support.watchers import Nobody
 from zebro_lab.calibration.walks_folder import WalksToWrite, read_stored_walks, write_walks
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.walk.output_request import BandRequest
-from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import ModelRequest, PredictRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
+from zebro_lab.walk.stage import predict
 
 STEERING = LINEAR[0]
 

@@ -15,10 +15,15 @@ from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.walk.folder import read_draws
-from zebro_lab.walk.output_request import BandRequest
-from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import ModelName, ModelRequest, PredictRequest, RuleName, WalkRequest
-from zebro_lab.walk.stage import walk
+from zebro_lab.walk.request import (
+    BandRequest,
+    ModelName,
+    ModelRequest,
+    PredictRequest,
+    RuleName,
+    WalkRequest,
+)
+from zebro_lab.walk.stage import predict, walk
 from zebro_lab.walk.walking import Walked
 
 

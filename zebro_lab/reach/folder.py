@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The result folder of `reach`: table, programs and picture."""
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
+import pandas as pd
 
 from model.robot import Robot
 from zebro_lab.files.picture_format import in_every_format
@@ -36,23 +35,14 @@ def write_table(file: Path, ways: Sequence[Way]) -> None:
         file: File to write.
         ways: The ways, at least one.
     """
-    rows = [_row(way) for way in ways]
-    with file.open("w", encoding="utf-8", newline="") as text:
-        writer = csv.DictWriter(text, rows[0], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
-def _row(way: Way) -> dict[str, str]:
-    goal = {"goal": way.number, "x_m": way.goal.x, "y_m": way.goal.y,
-            "heading_rad": way.goal.heading}  # fmt: skip
-    return {name: _cell(value) for name, value in {**goal, **way.document()}.items()}
-
-
-def _cell(value: object) -> str:
-    if value is None or (isinstance(value, float) and np.isnan(value)):
-        return ""
-    return f"{value:.10g}" if isinstance(value, float) else str(value)
+    rows = [
+        {
+            "goal": way.number, "x_m": way.goal.x, "y_m": way.goal.y,
+            "heading_rad": way.goal.heading, **way.document(),
+        }
+        for way in ways
+    ]  # fmt: skip
+    pd.DataFrame(rows).to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
 
 
 def draw_ways(file: Path, ways: Sequence[Way], robot: Robot, *, title: str) -> None:

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from rich.text import Text
 
 from zebro_lab.reach.stage import ReachResult
 from zebro_lab.reach.way import Way, compared, missed, named
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.result import print_result
 from zebro_lab.terminal.tables import plain_table
 
 
@@ -23,14 +23,9 @@ def print_reached(console: Console, reached: ReachResult, out: Path) -> None:
         reached: The ways.
         out: Folder that was written.
     """
-    console.print(plain(f"SIMULATED ways to goals: {reached.title}"))
-    console.print(way_table(reached.ways))
-    for line in lines(reached):
-        console.print(plain(line))
-    console.print(Text(f"\nwritten to {out}:"))
-    for name in ("reach.*", "*.toml"):
-        for path in sorted(out.glob(name)):
-            console.print(plain(f"  {path}"))
+    parts = [f"SIMULATED ways to goals: {reached.title}", way_table(reached.ways), *lines(reached)]
+    files = [path for name in ("reach.*", "*.toml") for path in sorted(out.glob(name))]
+    print_result(console, parts, out=out, files=files)
 
 
 def way_table(ways: Sequence[Way]) -> Table:

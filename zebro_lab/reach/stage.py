@@ -26,7 +26,7 @@ from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.program_file import CYCLE, even_times, groups_of
 from zebro_lab.walk.program_stage import laid_out, surroundings_of
 from zebro_lab.walk.request import ModelRequest
-from zebro_lab.walk.walking import Walked, ground_of, robot_of, speed_warnings, walk_with
+from zebro_lab.walk.walking import Walked, ground_of, robot_of, walk_with
 
 
 @dataclass(frozen=True)
@@ -169,12 +169,8 @@ def _walked(
     text = program_text(plan.parts, walking.stepping, request.stepping, about=about)
     file.write_text(text, encoding="utf-8")
     ground = ground_of(model)
-    asked = laid_out(file, model, walking.described, watcher, ground=ground)
-    walked = walk_with(
-        model, walking.described, asked.reference, duration=asked.duration, what=asked.what,
-        ground=ground,
-        notes=speed_warnings(asked.reference, walking.described.leg_speed_limit),
-    )  # fmt: skip
+    legs = laid_out(file, model, walking.described, watcher, ground=ground)
+    walked = walk_with(model, walking.described, legs, ground=ground)
     return Way(number, goals[number - 1], manoeuvre, plan.parts, walked, name)
 
 

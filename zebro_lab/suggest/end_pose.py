@@ -21,8 +21,8 @@ from model.walk.traction import TractionTable, law_table
 from zebro_lab.files.replacement import recover
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.walk.leg_angles import angles_from
-from zebro_lab.walk.predict_stage import is_walk_folder, with_own_robot, without_offsets
 from zebro_lab.walk.request import PredictRequest
+from zebro_lab.walk.stage import is_walk_folder, with_own_robot, without_offsets
 from zebro_lab.walk.walking import robot_of
 
 WALKED: Final = 40

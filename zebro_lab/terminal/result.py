@@ -16,7 +16,12 @@ WARNING = "WARNING"
 
 
 def print_result(
-    console: Console, parts: Iterable[str | Table], *, source: str = "", out: Path
+    console: Console,
+    parts: Iterable[str | Table],
+    *,
+    source: str = "",
+    out: Path,
+    files: Iterable[Path] = (),
 ) -> None:
     """Print tables and lines in their order, first that data are simulated, last the folder.
 
@@ -25,12 +30,16 @@ def print_result(
         parts: Tables, and lines of text, shown as they are.
         source: Source of the data, by which they are simulated or not.
         out: Folder that was written.
+        files: Files in it to list; none for its name alone.
     """
     if is_simulated(source):
         console.print(plain(f"SIMULATED: {source}"))
     for part in parts:
         console.print(plain(part) if isinstance(part, str) else part)
-    console.print(Text(f"\nwritten to {out}"))
+    files = list(files)
+    console.print(Text(f"\nwritten to {out}" + ":" * bool(files)))
+    for file in files:
+        console.print(plain(f"  {file}"))
 
 
 def warnings_first(notes: Iterable[str]) -> tuple[list[str], list[str]]:

@@ -18,7 +18,7 @@ from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs
-from zebro_lab.walk.output_request import BandRequest
+from zebro_lab.walk.request import BandRequest
 from zebro_lab.walk.walking import Walked
 
 SAMPLING = 0.1  # s between the poses kept of each draw

@@ -60,11 +60,9 @@ def walk(request: WalkRequest, output: Output = TEXT) -> None:
 @request_command(first=("log", "out", "slip", "model", "robot"))
 def predict(request: PredictRequest, output: Output = TEXT) -> None:
     """Predict the path from leg angles: FOLDER/path.csv, a band, pictures and an animation."""
-    from zebro_lab.walk import predict_stage
+    from zebro_lab.walk import stage
     from zebro_lab.walk.screen import run_and_report
 
     request.model.require_slip()
-    folder = predict_stage.prediction_folder(request)
-    run_and_report(
-        "predict", lambda watcher: predict_stage.predict(request, watcher), folder, output
-    )
+    folder = stage.prediction_folder(request)
+    run_and_report("predict", lambda watcher: stage.predict(request, watcher), folder, output)

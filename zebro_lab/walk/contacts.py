@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Contact states of a walk, and the touchdowns of its legs."""
+"""Contact states of a walk and the touchdowns of its legs, and the tables of both."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+import pandas as pd
 
 from model.arrays import Array
 from model.contact.sequence import (
@@ -13,6 +16,7 @@ from model.contact.sequence import (
     ContactSequence,
     contact_cycle,
     contact_states,
+    named_legs,
 )
 from model.contact.touchdown import Touchdown, touchdowns
 from model.gait import CyclicReference
@@ -106,3 +110,48 @@ def _turn_time(t: Array, theta: Array) -> float | None:
     if min(map(len, times)) < 1 or np.ptp(every) > _STEADY * np.median(every):
         return None
     return float(np.median(every))
+
+
+def write_contacts(file: Path, contacts: WalkContacts) -> None:
+    """Write the contact states of a walk as CSV, one row a state, SI.
+
+    Cycles begin with the gait's, and are counted from the one in which the walk begins to repeat.
+
+    Args:
+        file: File to write; an existing one is overwritten.
+        contacts: Contacts of the walk.
+    """
+    cycle = contacts.cycle
+    rows = [
+        {
+            "by": contacts.by,
+            "contact": named_legs(state.legs),
+            "start": state.start,
+            "end": state.end,
+            "duration": state.duration,
+            "cycle": None
+            if cycle is None or state.start < cycle.settled
+            else str(1 + int((state.start - cycle.settled) / cycle.period + 1e-6)),
+            "joined": state.joined,
+        }
+        for state in contacts.sequence.states
+    ]
+    _write(file, rows)
+
+
+def write_touchdowns(file: Path, downs: Sequence[Touchdown]) -> None:
+    """Write the touchdowns of a walk as CSV, one row a leg and turn, SI; NaN is an empty cell.
+
+    Args:
+        file: File to write; an existing one is overwritten.
+        downs: The touchdowns, at least one.
+    """
+    names = ("leg", "turn", "t", "angle", "asked_t", "asked_angle", "late", "liftoff_t",
+             "liftoff_angle", "contacts")  # fmt: skip
+    rows = [{name: getattr(each, name) for name in names} | {"leg": each.leg + 1} for each in downs]
+    _write(file, rows, names)
+
+
+def _write(file: Path, rows: list[dict[str, Any]], names: Sequence[str] | None = None) -> None:
+    table = pd.DataFrame(rows, columns=names)
+    table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")

@@ -5,15 +5,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from model.gait.cyclic import CyclicReference
 from model.robot import Robot
 from model.tasks import Watcher
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.terminal.picture_options import Window
 from zebro_lab.walk.band import band_settings
-from zebro_lab.walk.contact_files import write_contacts, write_touchdowns
-from zebro_lab.walk.contacts import WalkContacts
+from zebro_lab.walk.contacts import write_contacts, write_touchdowns
 from zebro_lab.walk.folder import (
     CONTACTS_CSV,
     THESIS_CSV,
@@ -21,9 +19,7 @@ from zebro_lab.walk.folder import (
     walk_folder,
     write_draws,
 )
-from zebro_lab.walk.output_request import PictureRequest
-from zebro_lab.walk.pictures import draw_band, draw_contacts, draw_walk
-from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.request import ModelRequest, PictureRequest
 from zebro_lab.walk.walking import Walked
 
 
@@ -81,15 +77,12 @@ def write_walk(
         out, walked.path, kind=kind, source=source, settings=everything, inputs=inputs
     ) as folder:
         _write_thesis(folder, walked)
-        _draw(request, walked, folder, watcher)
+        _draw(_shown(request.pictures, walked), walked, folder, watcher)
         if walked.contacts is not None:
-            _write_contacts(folder, walked, walked.contacts, _asked(request, walked))
+            write_contacts(folder / CONTACTS_CSV, walked.contacts)
+            write_touchdowns(folder / TOUCHDOWNS_CSV, walked.contacts.touchdowns)
         if walked.band is not None:
             write_draws(folder, walked.band)
-            draw_band(
-                folder, walked.band, title=walked.title, form=request.pictures.form,
-                ground=walked.heights,
-            )  # fmt: skip
 
 
 def _write_thesis(folder: Path, walked: Walked) -> None:
@@ -102,43 +95,35 @@ def _write_thesis(folder: Path, walked: Walked) -> None:
         write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot)
 
 
-def _write_contacts(
-    folder: Path, walked: Walked, contacts: WalkContacts, asked: PictureRequest
-) -> None:
-    """Write the tables of contact states and touchdowns, and the picture of the states."""
-    write_contacts(folder / CONTACTS_CSV, contacts)
-    write_touchdowns(folder / TOUCHDOWNS_CSV, contacts.touchdowns)
-    draw_contacts(folder, walked.path, contacts, title=walked.title, asked=asked)
-
-
-def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
-    robot, title = walked.described.robot, walked.title
+def _draw(request: PictureRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
     _raise_if_stopped(watcher)
-    if request.pictures.figures:
-        watcher.step("drawing", None)
-        gait = walked.reference if isinstance(walked.reference, CyclicReference) else None
-        draw_walk(
-            folder, walked.path, robot, title=title, asked=_asked(request, walked), gait=gait,
-            slip=walked.slip, ground=walked.heights,
-        )  # fmt: skip
-    if request.pictures.animate:
-        from zebro_lab.plots.animation import animate  # matplotlib takes most of a second
+    if request.figures or walked.contacts is not None or walked.band is not None:
+        from zebro_lab.walk import pictures  # matplotlib takes most of a second
+
+        if request.figures:
+            watcher.step("drawing", None)
+            pictures.draw_walk(folder, walked, request)
+        pictures.draw_contacts(folder, walked, request)
+        pictures.draw_band(folder, walked, request)
+    if request.animate:
+        from zebro_lab.plots.animation import animate
 
         def follow(fraction: float) -> None:
             watcher.step("filming", fraction)
             _raise_if_stopped(watcher)
 
         animate(
-            walked.path, robot, folder, title=title, progress=follow, ground=walked.heights
+            walked.path, walked.described.robot, folder, title=walked.title, progress=follow,
+            ground=walked.heights,
         )  # fmt: skip
 
 
-def _asked(request: ModelRequest, walked: Walked) -> PictureRequest:
+def _shown(request: PictureRequest, walked: Walked) -> PictureRequest:
     """Return the pictures to draw; of a program the whole walk is shown if no window is asked."""
-    asked, t = request.pictures, walked.path.t
-    if asked.window is not None or not walked.segments:
-        return asked
-    return replace(asked, window=Window(float(t[0]), float(t[-1])))
+    t = walked.path.t
+    if request.window is not None or not walked.segments:
+        return request
+    return replace(request, window=Window(float(t[0]), float(t[-1])))
 
 
 def _raise_if_stopped(watcher: Watcher) -> None:

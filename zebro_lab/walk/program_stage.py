@@ -19,12 +19,11 @@ from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.ground.ground_file import GroundFile
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.walk.asked import AskedWalk, WalkedSegment
 from zebro_lab.walk.informed_legs import informed_legs
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.program_file import Program, read_program
 from zebro_lab.walk.request import ModelRequest
-from zebro_lab.walk.walking import MOST_STEPS, time_step
+from zebro_lab.walk.walking import MOST_STEPS, WalkedLegs, WalkedSegment, speed_warnings, time_step
 
 _MISSED = np.radians(1.0)  # a miss that is told of
 _WALKS = "dynamics"  # the model that finds where segments end
@@ -37,7 +36,7 @@ def laid_out(
     watcher: Watcher,
     *,
     ground: GroundFile | None = None,
-) -> AskedWalk:
+) -> WalkedLegs:
     """Read a program and compute its leg angles.
 
     Args:
@@ -85,9 +84,11 @@ def laid_out(
     )
     settings = {"program": str(file), "duration": legs.end,
                 "segments": [asdict(each) for each in segments]}  # fmt: skip
-    return AskedWalk(
-        legs.reference(), legs.end, _named(file), settings, segments=segments,
-        stances=legs.stance_intervals(), files=(file,), notes=missed,
+    reference = legs.reference()
+    return WalkedLegs(
+        reference, legs.end, _named(file), settings, segments=segments,
+        stances=legs.stance_intervals(), files=(file,),
+        notes=(*missed, *speed_warnings(reference, described.leg_speed_limit)),
     )  # fmt: skip
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from rich.text import Text
 
 from model.arrays import Array
 from model.counted import counted
@@ -17,17 +16,15 @@ from model.tasks import Watcher
 from model.walk.leg_work import LegWork, leg_work
 from model.walk.support import SLIDES, Support, support_of
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
+from zebro_lab.terminal.result import print_result, warnings_first
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.walk.contact_screen import contact_document, contact_lines, touchdown_table
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.output import WalkStopped
-from zebro_lab.walk.program_summary import segment_summaries, segment_table
-from zebro_lab.walk.summary import WalkSummary, summarise
+from zebro_lab.walk.summary import WalkSummary, segment_summaries, segment_table, summarise
 from zebro_lab.walk.walking import Walked
 
-_WARNING = "WARNING"
 _STEEP = 30.0  # deg; a body that stands on its legs sways by a few degrees
 _MUCH_FLIGHT = 0.01  # share of the time; a few steps between two stances do not matter
 _MUCH_UNLOADED = 0.05  # share of a stance; touchdown and lift-off are never quite at its ends
@@ -56,7 +53,7 @@ def run_and_report(
 
 def walk_document(walked: Walked) -> dict[str, object]:
     """Return the results of a walk for `--json`; keys end in the unit."""
-    summary = _summary(walked)
+    summary, support, work = _summary(walked), _support(walked), leg_work(walked.path)
     x, y, yaw = summary.end
     return {
         "title": walked.title,
@@ -74,22 +71,19 @@ def walk_document(walked: Walked) -> dict[str, object]:
         "largest_roll_rad": summary.largest_roll,
         "largest_pitch_rad": summary.largest_pitch,
         "mean_slip_m_per_s": summary.mean_slip,
-        **_work_document(walked),
-        **_support_document(_support(walked)),
-        "schedule": _schedule_document(walked),
-        "contacts": None if walked.contacts is None else contact_document(walked.contacts),
-        "segments": [each.document() for each in segment_summaries(walked.path, walked.segments)],
-        "notes": _notes(walked, summary),
-    }
-
-
-def _work_document(walked: Walked) -> dict[str, object]:
-    work = leg_work(walked.path)
-    return {
         "work_done_j": work.done,
         "work_taken_back_j": work.taken_back,
         "slip_energy_j": work.slip,
         "contact_energy_j": work.contacts,
+        "flight_share": support.flight,
+        "body_contact_share": support.body,
+        "loaded_shares": support.loaded,
+        "sliding_shares": support.sliding,
+        "unloaded_shares": support.unloaded,
+        "schedule": _schedule_document(walked),
+        "contacts": None if walked.contacts is None else contact_document(walked.contacts),
+        "segments": [each.document() for each in segment_summaries(walked.path, walked.segments)],
+        "notes": _notes(walked, summary),
     }
 
 
@@ -114,32 +108,28 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
         walked: The finished walk; the table is printed only for a cyclic gait.
         out: The walk folder, of which the files that the commands write are listed.
     """
-    console.print(plain(f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"))
+    parts: list[str | Table] = [f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"]
     if isinstance(walked.reference, CyclicReference):
-        console.print(gait_table(walked.reference))
+        parts.append(gait_table(walked.reference))
         if walked.schedule is not None:
-            console.print(event_table(walked.reference))
-            console.print(plain(schedule_line(walked.schedule)))
+            parts += [event_table(walked.reference), schedule_line(walked.schedule)]
     if walked.segments:
-        console.print(segment_table(segment_summaries(walked.path, walked.segments)))
+        parts.append(segment_table(segment_summaries(walked.path, walked.segments)))
     summary = _summary(walked)
-    for line in _in_order([*summary_lines(summary), *_notes(walked, summary)]):
-        console.print(plain(line))
+    warnings, notes = warnings_first(_notes(walked, summary))
+    parts += [*warnings, *summary_lines(summary), *notes]
     if walked.contacts is not None:
-        for line in contact_lines(walked.contacts):
-            console.print(plain(line))
-        console.print(touchdown_table(walked.contacts))
-    console.print(Text(f"\nwritten to {out}:"))
-    for path in sorted(out.iterdir()):
-        if path.name in (*FILES, MANIFEST):
-            console.print(plain(f"  {path}"))
+        parts += [*contact_lines(walked.contacts), touchdown_table(walked.contacts)]
+    files = [path for path in sorted(out.iterdir()) if path.name in (*FILES, MANIFEST)]
+    print_result(console, parts, out=out, files=files)
 
 
 def _notes(walked: Walked, summary: WalkSummary) -> list[str]:
     support = _support(walked)
     lines = [*walked.notes, *tilt_lines(summary), *support_lines(support)]
     lines += [*slip_lines(walked, summary, support), *work_lines(leg_work(walked.path))]
-    return _in_order(lines)
+    warnings, notes = warnings_first(lines)
+    return [*warnings, *notes]
 
 
 def _summary(walked: Walked) -> WalkSummary:
@@ -153,16 +143,6 @@ def _support(walked: Walked) -> Support:
     return support_of(path, stances)
 
 
-def _support_document(support: Support) -> dict[str, object]:
-    return {
-        "flight_share": support.flight,
-        "body_contact_share": support.body,
-        "loaded_shares": support.loaded,
-        "sliding_shares": support.sliding,
-        "unloaded_shares": support.unloaded,
-    }
-
-
 def support_lines(support: Support) -> list[str]:
     """Say how much of the time the robot flew, its body touched, and legs stood without load.
 
@@ -171,11 +151,11 @@ def support_lines(support: Support) -> list[str]:
     """
     lines = []
     if support.flight > _MUCH_FLIGHT:
-        lines.append(f"{_WARNING}: nothing is on the ground in {support.flight:.1%} of the time: "
+        lines.append(f"WARNING: nothing is on the ground in {support.flight:.1%} of the time: "
                      "all legs are lifted at once, and the robot falls; check the gait's "
                      "times")  # fmt: skip
     if support.body > 0:
-        lines.append(f"{_WARNING}: the body touches the ground in {support.body:.1%} of the time; "
+        lines.append(f"WARNING: the body touches the ground in {support.body:.1%} of the time; "
                      "its friction is that of the legs, which nothing has measured")  # fmt: skip
     idle = [f"leg {leg} in {share:.0%}" for leg, share in enumerate(support.unloaded, start=1)
             if share > _MUCH_UNLOADED]  # fmt: skip
@@ -184,18 +164,13 @@ def support_lines(support: Support) -> list[str]:
     return lines
 
 
-def _in_order(lines: list[str]) -> list[str]:
-    """Return lines with the warnings first."""
-    return sorted(lines, key=lambda line: not line.startswith(_WARNING))
-
-
 def tilt_lines(summary: WalkSummary) -> list[str]:
     """Return a warning if the body tilts farther than a body on its legs can; else nothing."""
     roll, pitch = np.degrees([summary.largest_roll, summary.largest_pitch])
     if max(roll, pitch) <= _STEEP:
         return []
     return [
-        f"{_WARNING}: the body overturns, with a roll of {roll:.0f} and a pitch of {pitch:.0f} "
+        f"WARNING: the body overturns, with a roll of {roll:.0f} and a pitch of {pitch:.0f} "
         f"deg; the model holds for a body on its legs, up to about {_STEEP:g} deg: check the robot "
         "and the leg angles, and do not use this path"
     ]
@@ -254,7 +229,7 @@ def slip_lines(walked: Walked, summary: WalkSummary, support: Support) -> list[s
         lines.append(f"slip: {walked.slip.text} is assumed, not measured")
     elif untested > _MANY_UNTESTED:
         lines.append(
-            f"{_WARNING}: {untested:.0%} of the contacts carry less than {tested[0]:.3g} N, the "
+            f"WARNING: {untested:.0%} of the contacts carry less than {tested[0]:.3g} N, the "
             "lowest load the slip law was tested at"
         )
     return lines

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Compute a path from leg angles, for `walk` and `predict`."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
@@ -9,15 +10,13 @@ import numpy as np
 
 from model.arrays import Array
 from model.errors import DefinitionMismatch
-from model.gait import CyclicReference, SampledReference
+from model.gait import CyclicReference, EventSystem, SampledReference
 from model.gait.direction import Direction
-from model.gait.events import EventSystem
 from model.gait.reference import LegReference
 from model.gait.stance import Intervals
 from model.poses import Poses
 from model.predict import FINE
 from model.robot import Robot
-from model.tasks import Watcher
 from model.walk.ground import FLAT, Ground, beyond_grid
 from model.walk.path import WalkPath
 from model.walk_models import (
@@ -32,12 +31,60 @@ from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.ground.ground_file import GroundFile, read_ground
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
-from zebro_lab.walk.asked import WalkedSegment
-from zebro_lab.walk.contacts import WalkContacts, contacts_of
+from zebro_lab.walk.contacts import WalkContacts
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
-from zebro_lab.walk.output_request import ContactRequest
 from zebro_lab.walk.request import ModelRequest
+
+
+@dataclass(frozen=True)
+class WalkedSegment:
+    """A segment of a walked program, for a table.
+
+    Attributes:
+        what: Gait and turn, or "stand".
+        cycles: Number of cycles; 0 of a stand.
+        end: Time of its end [s].
+    """
+
+    what: str
+    cycles: int
+    end: float
+
+
+@dataclass(frozen=True)
+class WalkedLegs:
+    """Leg angles to walk: those of a gait, a program or a log.
+
+    Attributes:
+        reference: The angles over time, from time zero on.
+        duration: Time to walk [s].
+        what: Name of gait, program or log, for titles.
+        settings: Where they come from, JSON-serialisable, for the manifest.
+        direction: Side that the gait turns to.
+        rule: What the thesis's model follows where its listing and its text differ.
+        exact: Whether the angles are exact, as in a walk folder: then only the floor of fitted
+            walks applies, not their leg offsets.
+        schedule: The max-plus system of a gait's events; None for others.
+        segments: Of a program, where each segment ended.
+        stances: Of a program, when each leg stands; None for others.
+        files: Files that were read; by the hash of a log a walk that was fitted is recognised.
+        notes: Notes, one line each.
+    """
+
+    reference: CyclicReference | SampledReference
+    duration: float
+    what: str
+    settings: Mapping[str, object] = field(default_factory=dict)
+    direction: Direction = "left"
+    rule: Rule = "listing"
+    exact: bool = False
+    schedule: EventSystem | None = None
+    segments: tuple[WalkedSegment, ...] = ()
+    stances: Intervals | None = None
+    files: tuple[Path, ...] = ()
+    notes: tuple[str, ...] = ()
+
 
 MOST_STEPS: Final = 500_000
 """Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""
@@ -107,23 +154,6 @@ class Walked:
         return replace(self, path=path, band=self.band and self.band.delayed(delay))
 
 
-def with_contacts(walked: Walked, request: ContactRequest, watcher: Watcher) -> Walked:
-    """Return a walk with its contact states, if they are requested.
-
-    Args:
-        walked: The walk, with the times that its files have.
-        request: Whether contact states are requested.
-        watcher: Receives progress.
-    """
-    if not request.contacts:
-        return walked
-    watcher.step("finding contacts", None)
-    found = contacts_of(
-        walked.path, walked.reference, by=walked.contact_by, stances=walked.stances
-    )  # fmt: skip
-    return replace(walked, contacts=found)
-
-
 def robot_of(request: ModelRequest) -> RobotFile:
     """Return the robot of `--robot`, else the thesis's robot.
 
@@ -146,32 +176,17 @@ def ground_of(request: ModelRequest) -> GroundFile | None:
 def walk_with(
     request: ModelRequest,
     described: RobotFile,
-    reference: LegReference,
+    legs: WalkedLegs,
     *,
-    duration: float,
-    what: str,
-    direction: Direction = "left",
-    rule: Rule = "listing",
-    logs: tuple[Path, ...] = (),
-    angles_are_true: bool = False,
     ground: GroundFile | None = None,
-    notes: tuple[str, ...] = (),
 ) -> Walked:
     """Compute the path of a robot from its leg angles, from time zero on.
 
     Args:
         request: Model, slip law and time step.
         described: Parameters of the robot.
-        reference: Leg angles over time, from time zero on.
-        duration: Duration of the walk [s].
-        what: Name of the gait or log, for titles.
-        direction: Side the gait turns to.
-        rule: What the thesis's model follows where its listing and its text differ.
-        logs: Files of the leg log, by whose hash a walk that was fitted is recognised.
-        angles_are_true: Whether the angles are exact, as in a walk folder: then only the floor of
-            fitted walks applies, not their leg offsets.
+        legs: Leg angles over time.
         ground: The ground; None for level ground.
-        notes: Notes to begin with, one line each.
 
     Raises:
         SettingsError: The model needs a slip law and has none or one of another slip definition,
@@ -180,34 +195,35 @@ def walk_with(
         ModelError: The walk cannot be computed.
     """
     model = MODELS[request.model]
-    kinematic = is_kinematic(request.model, reference)
+    kinematic = is_kinematic(request.model, legs.reference)
     slip, unused = _slip_for(model, request.slip, kinematic=kinematic)
     informed = None
     if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
-        same_legs = False if angles_are_true else None
-        informed = informed_legs(slip.walks, described, logs=logs, same_legs=same_legs)
+        same_legs = False if legs.exact else None
+        informed = informed_legs(slip.walks, described, logs=legs.files, same_legs=same_legs)
     dt = time_step(request, model, informed)
-    _require_steps(duration, dt)
+    _require_steps(legs.duration, dt)
     run = ModelRun(
-        described.robot, reference, slip, duration, dt, direction, rule,
+        described.robot, legs.reference, slip, legs.duration, dt, legs.direction, legs.rule,
         None if informed is None else informed.middle, FLAT if ground is None else ground.ground,
     )  # fmt: skip
     path = _run(run, model, slip)
+    notes = [*legs.notes]
     if slip is not None and dt > model.dt:
-        notes = (*notes, f"in steps of {dt:g} s, longer than {model.dt:g} s, legs slip too much")
+        notes.append(f"in steps of {dt:g} s, longer than {model.dt:g} s, legs slip too much")
     if ground is not None:
-        notes = (*notes, *ground_notes(ground, path, described.robot))
+        notes += ground_notes(ground, path, described.robot)
+    notes += [*unused, *(note for part in (informed, slip) if part for note in part.notes)]
     grip = "" if slip is None else f", slip {slip.title}"
     how = " (kinematics by contact detection)" if kinematic else (
-        " (by the thesis's text)" if rule == "text" else ""
+        " (by the thesis's text)" if legs.rule == "text" else ""
     )  # fmt: skip
     on = "" if request.ground is None else f", on {request.ground.name}"
-    title = f"{what}, model '{model.name}'{how}{grip}{on}"
-    found = (part.notes for part in (informed, slip) if part is not None)
-    notes = (*notes, *unused, *(note for part in found for note in part))
     return Walked(
-        path, reference, described, slip, model.name, dt, title, notes, informed,
-        decides_contact(run, model.name), ground,
+        path, legs.reference, described, slip, model.name, dt,
+        f"{legs.what}, model '{model.name}'{how}{grip}{on}", tuple(notes), informed,
+        decides_contact(run, model.name), ground, schedule=legs.schedule, segments=legs.segments,
+        stances=legs.stances,
     )  # fmt: skip
 
 

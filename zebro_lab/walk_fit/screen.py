@@ -4,15 +4,14 @@
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from rich.text import Text
 
 from model.bayes.estimate import informed
 from model.counted import counted
 from model.walk_fit.posterior import Contraction, WalkPosterior
 from model.walk_fit.prior import FALL, UNITS
-from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import shown_unit
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.result import print_result
 from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.screen import radius_text, yaw_text
@@ -29,18 +28,13 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
         done: The finished fit of the walks.
     """
     posterior = done.posterior
-    if is_simulated(done.source):
-        console.print(plain(f"SIMULATED: {done.source}"))
-    for note in done.notes:
-        console.print(plain(note))
-    console.print(_parameter_table(posterior))
-    for line in (*_uninformed(posterior), *_cases(posterior), *_quality(posterior)):
-        console.print(plain(line))
+    parts = [*done.notes, _parameter_table(posterior), *_uninformed(posterior), *_cases(posterior),
+             *_quality(posterior)]  # fmt: skip
     if done.left_out:
-        console.print(_left_out_table(done.left_out))
+        parts.append(_left_out_table(done.left_out))
     else:
-        console.print(plain("A single walk cannot be predicted from others; add a second --walks."))
-    console.print(Text(f"\nwritten to {done.folder}"))
+        parts.append("A single walk cannot be predicted from others; add a second --walks.")
+    print_result(console, parts, source=done.source, out=done.folder)
 
 
 def _parameter_table(posterior: WalkPosterior) -> Table:

@@ -27,10 +27,9 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
 from zebro_lab.walk.folder import read_draws, read_walk, read_walk_manifest
-from zebro_lab.walk.output_request import BandRequest
-from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.prediction_file import read_prediction
-from zebro_lab.walk.request import ModelRequest, PredictRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
+from zebro_lab.walk.stage import predict
 from zebro_lab.walk_fit.pictures import draw_walks
 
 

@@ -21,8 +21,8 @@ from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.track.file import read_track
 from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
 from zebro_lab.validation.predicted_walks import pairs_of_run
-from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.request import ModelRequest, PredictRequest
+from zebro_lab.walk.stage import predict
 
 
 def test_leg_angles_come_back_in_si_whatever_their_names_and_units(files, tmp_path):

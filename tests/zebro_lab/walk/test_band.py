@@ -19,7 +19,7 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.band import ASSUMED_OFFSET_DEG, band_settings, offset_sd_deg, predict_band
 from zebro_lab.walk.folder import DRAWS, read_draws
-from zebro_lab.walk.output_request import BandRequest
+from zebro_lab.walk.request import BandRequest
 from zebro_lab.walk.walking import Walked
 
 

@@ -9,6 +9,8 @@ from contextlib import redirect_stdout
 import numpy as np
 import pytest
 
+from model.contact.sequence import contact_cycle, contact_states
+from model.contact.touchdown import Touchdown
 from model.frames import attitude
 from model.gait import tetrapod_reference, tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
@@ -18,7 +20,13 @@ from model.walk.ground import heights_on
 from zebro_lab.ground.ground_file import read_ground
 from zebro_lab.main import app
 from zebro_lab.terminal import ending
-from zebro_lab.walk.contacts import RULES, contacts_of
+from zebro_lab.walk.contacts import (
+    RULES,
+    WalkContacts,
+    contacts_of,
+    write_contacts,
+    write_touchdowns,
+)
 from zebro_lab.walk.folder import CONTACTS, read_walk
 
 TETRAPOD = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
@@ -73,21 +81,14 @@ def folder(tmp_path_factory):
     return out, " ".join(printed.getvalue().split())
 
 
-def test_one_command_prints_eq_3_33_with_its_times(folder):
-    _, printed = folder
-    assert EQ_3_33 in printed
-    assert f"contact states by {RULES['events']}" in printed
-    assert "a cycle of 3 s, which repeats from 0.41 s on" in printed
-    assert f"touchdowns by {RULES['events']}" in printed
-
-
-def test_the_folder_has_the_tables_and_the_figure_in_the_format(folder):
-    out, _ = folder
-    names = {path.name for path in out.iterdir()}
-    assert {"contacts.csv", "touchdowns.csv", "contacts.svg"} <= names
-    assert "contacts.svg" in CONTACTS
+def test_one_command_prints_eq_3_33_with_its_times_and_writes_tables_and_figure(folder):
+    out, printed = folder
+    for part in (EQ_3_33, RULES["events"], "a cycle of 3 s, which repeats from 0.41 s on"):
+        assert part in printed
+    names = {"contacts.csv", "touchdowns.csv", "contacts.svg"}
+    assert names < set(CONTACTS)
     manifest = json.loads((out / "manifest.json").read_text())
-    assert {"contacts.csv", "touchdowns.csv", "contacts.svg"} <= set(manifest["outputs"])
+    assert names <= set(manifest["outputs"])
     assert manifest["settings"]["contact_by"] == "events"
 
 
@@ -137,8 +138,8 @@ def test_a_program_and_a_log_have_contacts_too(run_command, tmp_path):
 
 def test_a_program_asks_for_the_touchdowns_of_its_schedule(run_command, tmp_path, monkeypatch):
     shown = []
-    monkeypatch.setattr("zebro_lab.walk.output.draw_contacts",
-                        lambda *_, asked, **__: shown.append(asked.window))  # fmt: skip
+    monkeypatch.setattr("zebro_lab.walk.pictures.draw_contacts",
+                        lambda _folder, _walked, request: shown.append(request.window))  # fmt: skip
     program = tmp_path / "p.toml"
     program.write_text('[[segment]]\ngait = "tripod"\nuntil = { strides = 2 }\n\n'
                        '[[segment]]\ngait = "tripod"\nsteering = -1\n'
@@ -211,3 +212,31 @@ def test_a_window_without_anything_to_draw_is_refused(run_command):
     code, _, err = run_command("walk", "--slip", "thesis", "--duration", 1, "--window", "0:1")
     assert code == 2
     assert "give --figures or --contacts too" in err
+
+
+T = np.arange(600, dtype=float) * 0.01
+
+
+def test_states_are_written_with_the_cycle_that_they_begin_in(tmp_path):
+    contact = (T % 2 < 1)[:, None] == np.isin(np.arange(6), (0, 3, 4))
+    sequence = contact_states(T, contact)
+    cycle = contact_cycle(sequence, 2.0, tolerance=0.02)
+    write_contacts(tmp_path / "c.csv", WalkContacts("force", sequence, cycle, 2.0, 0.02, ()))
+    with (tmp_path / "c.csv").open(newline="") as text:
+        rows = list(csv.reader(text))
+    assert rows[0] == ["by", "contact", "start", "end", "duration", "cycle", "joined"]
+    assert rows[1] == ["force", "{1,4,5}", "0", "1", "1", "", "0"]
+    assert rows[2] == ["force", "{2,3,6}", "1", "2", "1", "1", "0"]
+    assert [row[5] for row in rows[1:]] == ["", "1", "1", "2", "2", "3"]
+
+
+def test_a_touchdown_that_there_was_not_is_empty(tmp_path):
+    nan = float("nan")
+    rows = [Touchdown(2, 1, 1.5, 0.5, 1.25, 0.75, nan, nan, 1),
+            Touchdown(2, 2, nan, nan, 3.25, 0.75, nan, nan, 0)]  # fmt: skip
+    write_touchdowns(tmp_path / "t.csv", rows)
+    assert (tmp_path / "t.csv").read_text().splitlines() == [
+        "leg,turn,t,angle,asked_t,asked_angle,late,liftoff_t,liftoff_angle,contacts",
+        "3,1,1.5,0.5,1.25,0.75,0.25,,,1",
+        "3,2,,,3.25,0.75,,,,0",
+    ]

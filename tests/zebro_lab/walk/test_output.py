@@ -16,8 +16,7 @@ from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_draws, read_walk, read_walk_manifest
 from zebro_lab.walk.output import WalkStopped, write_walk
-from zebro_lab.walk.output_request import BandRequest, PictureRequest
-from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PictureRequest
 from zebro_lab.walk.walking import Walked
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")

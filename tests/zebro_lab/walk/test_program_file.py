@@ -92,7 +92,8 @@ def test_a_program_is_told_of_by_segment_and_figures_show_all_of_it(
 ):
     windows = []
     monkeypatch.setattr(
-        "zebro_lab.walk.output.draw_walk", lambda *_, asked, **__: windows.append(asked.window)
+        "zebro_lab.walk.pictures.draw_walk",
+        lambda _folder, _walked, request: windows.append(request.window),
     )
     file, out = written(tmp_path, PROGRAM), tmp_path / "out"
     ended = run_command(

@@ -14,9 +14,8 @@ from model.thesis.walk import walk_thesis
 from support.watchers import Nobody
 from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.walk.folder import read_walk
-from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.request import ModelRequest, PredictRequest, WalkRequest
-from zebro_lab.walk.stage import walk
+from zebro_lab.walk.stage import predict, walk
 from zebro_lab.walk.thesis_file import COLUMNS, write_thesis
 
 ROBOT = Robot()

@@ -121,72 +121,74 @@ def test_a_force_beyond_its_limit_is_answered_in_the_same_look(lab, monkeypatch)
     assert min(reactions) < 0.02  # usual: 0.2 ms (docs/experiments.md)
 
 
-def test_a_silent_load_cell_stops_the_discs(lab, monkeypatch):
-    with turning(lab, monkeypatch) as (acquire, _, drives, cell):
-        monkeypatch.setattr(cell, "_emit", lambda record: None)
-        with pytest.raises(RigTimeout, match="stream 'load cell' sent nothing within"):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
+def silent_cell(monkeypatch, drives, cell):
+    monkeypatch.setattr(cell, "_emit", lambda record: None)
 
 
-def test_records_of_a_load_cell_numbered_at_random_stop_the_discs(lab, monkeypatch):
-    with turning(lab, monkeypatch) as (acquire, _, drives, cell):
-        send, rng = cell._send, np.random.default_rng(0)
+def random_numbers(monkeypatch, drives, cell):
+    send, rng = cell._send, np.random.default_rng(0)
 
-        def anyhow(reading, values):
-            cell._number = int(rng.integers(1 << 32))
-            send(reading, values)
+    def anyhow(reading, values):
+        cell._number = int(rng.integers(1 << 32))
+        send(reading, values)
 
-        monkeypatch.setattr(cell, "_send", anyhow)
-        with pytest.raises(UnreliableRecords, match="'load_cell' restarted its numbering"):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
+    monkeypatch.setattr(cell, "_send", anyhow)
 
 
-def test_readings_that_waited_while_the_host_was_held_up_stop_the_discs(lab, monkeypatch):
-    with turning(lab, monkeypatch, reading_age=0.3) as (acquire, _, drives, _):
-        time.sleep(0.4)
-        with pytest.raises(StaleReading, match=r"age of a reading of stream .* limit is 0\.3 s"):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
+def silent_drive(monkeypatch, drives, cell):
+    send = drives._send
+
+    def only_leg(axis, command, data):
+        if axis.disc == "leg":
+            send(axis, command, data)
+
+    monkeypatch.setattr(drives, "_send", only_leg)
 
 
-def test_a_saturated_load_cell_stops_the_discs(lab, monkeypatch):
-    with turning(lab, monkeypatch) as (acquire, _, drives, cell):
-        cell.status = SATURATED
-        with pytest.raises(DeviceFault, match="transducer saturated"):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
+def is_set(**values):
+    """Return a fault that gives attributes of the cell, or the drives' temperature, a value."""
+
+    def plant(monkeypatch, drives, cell):
+        for name, value in values.items():
+            setattr(drives if name == "temperature" else cell, name, value)
+
+    return plant
 
 
-@pytest.mark.parametrize(
-    ("limits", "name", "said"),
-    [
-        ({"lateral_force": 2.0}, "lateral_force", "third axis is 3 N; its limit is 2 N"),
-        ({"torque": 2.0}, "torque", "torque on the load cell is 3 N m; its limit is 2 N m"),
-    ],
-)
-def test_what_the_cell_feels_beside_the_contact_is_guarded(lab, monkeypatch, limits, name, said):
+HOT = {"temperature_celsius": 80.0}
+FAULTS = {
+    "silent load cell": (
+        silent_cell, {}, RigTimeout, "stream 'load cell' sent nothing within"),
+    "records numbered at random": (
+        random_numbers, {}, UnreliableRecords, "'load_cell' restarted its numbering"),
+    "host held up": (
+        lambda *_: time.sleep(0.4), {"reading_age": 0.3}, StaleReading,
+        r"age of a reading of stream .* limit is 0\.3 s"),
+    "saturated load cell": (
+        is_set(status=SATURATED), {}, DeviceFault, "transducer saturated"),
+    "lateral force": (
+        is_set(lateral_force=3.0), {"lateral_force": 2.0}, LimitExceeded,
+        "third axis is 3 N; its limit is 2 N"),
+    "torque": (
+        is_set(torque=3.0), {"torque": 2.0}, LimitExceeded,
+        "torque on the load cell is 3 N m; its limit is 2 N m"),
+    "hot drive": (
+        is_set(temperature=81.5), HOT, LimitExceeded, r"is 81.5 degC; .* 80 degC"),
+    "temperature that is not told": (
+        is_set(temperature=float("nan")), HOT, RigTimeout,
+        "temperature of the leg drive' sent nothing within"),
+    "silent drive": (silent_drive, {}, RigTimeout, "stream 'ground drive' sent nothing"),
+    "error of a drive": (
+        lambda _, drives, __: drives.trip("ground", 0x40), {}, DeviceFault,
+        "ground disc reports motor failed"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("plant", "limits", "error", "message"), FAULTS.values(), ids=FAULTS)
+def test_a_fault_of_a_device_stops_both_discs(lab, monkeypatch, plant, limits, error, message):
     with turning(lab, monkeypatch, **limits) as (acquire, _, drives, cell):
-        setattr(cell, name, 3.0)
-        with pytest.raises(LimitExceeded, match=said):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
-
-
-def test_a_hot_drive_stops_the_discs(lab, monkeypatch):
-    with turning(lab, monkeypatch, temperature_celsius=80.0) as (acquire, _, drives, _):
-        assert not acquire.until(lambda _: False, 0.3)
-        drives.temperature = 81.5
-        with pytest.raises(LimitExceeded, match=r"a drive or its motor is 81.5 degC; .* 80 degC"):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
-
-
-def test_a_temperature_that_is_limited_must_be_told(lab, monkeypatch):
-    with turning(lab, monkeypatch, temperature_celsius=80.0) as (acquire, _, drives, _):
-        drives.temperature = float("nan")
-        with pytest.raises(RigTimeout, match="temperature of the leg drive' sent nothing within"):
+        plant(monkeypatch, drives, cell)
+        with pytest.raises(error, match=message):
             acquire.until(lambda _: False, 3.0)
         assert stands(drives)
 
@@ -199,28 +201,6 @@ def test_a_dead_bus_stops_the_discs_by_their_watchdog(lab, monkeypatch):
             acquire.until(lambda _: False, 3.0)
         time.sleep(1.5 * WATCHDOG)  # no command can arrive
         assert not drives.turning()
-
-
-def test_a_drive_that_is_heard_no_more_stops_both(lab, monkeypatch):
-    with turning(lab, monkeypatch) as (acquire, _, drives, _):
-        send = drives._send
-
-        def only_leg(axis, command, data):
-            if axis.disc == "leg":
-                send(axis, command, data)
-
-        monkeypatch.setattr(drives, "_send", only_leg)
-        with pytest.raises(RigTimeout, match="stream 'ground drive' sent nothing"):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
-
-
-def test_an_error_of_a_drive_stops_both(lab, monkeypatch):
-    with turning(lab, monkeypatch) as (acquire, _, drives, _):
-        drives.trip("ground", 0x40)
-        with pytest.raises(DeviceFault, match="ground disc reports motor failed"):
-            acquire.until(lambda _: False, 3.0)
-        assert stands(drives)
 
 
 def test_standstill_is_commanded_before_closed_loop(lab, monkeypatch):

@@ -93,56 +93,53 @@ def test_a_force_beyond_its_limit_stops_within_so_many_samples(lab):
     assert again.run(done={r.start.point.number for r in twin.sink.accepted}).finished == 6
 
 
-def test_a_traction_beyond_its_limit_stops(lab):
-    twin = lab["twin"]()
-    with pytest.raises(LimitExceeded, match=r"traction force is .* N; its limit is 1 N"):
-        twin.run(lab["plan"](limits={"traction_force": 1.0}))
-    assert twin.at_rest()
+def silence(twin, monkeypatch):
+    monkeypatch.setattr(twin.board, "_frames", lambda due: [])
 
 
-def test_a_silent_device_stops_and_is_named(lab, monkeypatch):
-    twin = lab["twin"]()
-
-    def fall_silent():
-        monkeypatch.setattr(twin.board, "_frames", lambda due: [])
-
-    twin.sink = lab["At"](10, fall_silent)
-    with pytest.raises(RigTimeout, match="stream 'board' sent nothing within"):
-        twin.run()
-    assert twin.at_rest()
-    assert "board" in reasons(twin.sink)[0]
+def no_room(twin, monkeypatch):
+    twin.sink.room = 0.0
 
 
-def test_a_device_that_stops_by_itself_is_an_error(lab):
-    twin = lab["twin"]()
-    twin.sink = lab["At"](10, lambda: twin.clock.sleep(0.5))  # held up beyond the watchdog
-    with pytest.raises((DeviceFault, RigTimeout)):
-        twin.run()
-    assert twin.at_rest()
+def held_up(twin, monkeypatch):
+    twin.clock.sleep(0.5)  # beyond the watchdog
 
 
-def test_a_disc_that_does_not_follow_stops(lab, monkeypatch):
-    twin = lab["twin"]()
+def broken(twin, monkeypatch):
+    raise ZeroDivisionError("planted")
+
+
+def ground_disc_stays(twin, monkeypatch):
     command = twin.rig.command
     monkeypatch.setattr(
         twin.rig, "command", lambda disc, omega: command(disc, omega if disc == "leg" else 0.0)
     )
-    wanted = lab["plan"](limits={"speed_error": 2.0}, points={"slips": [0.0]})
-    with pytest.raises(LimitExceeded, match="speed error of the ground disc at its set-point"):
-        twin.run(wanted)
-    assert twin.at_rest()
 
 
-def test_a_full_disk_ramps_down_and_is_named(lab):
+FAULTS = {
+    "traction": (
+        lambda *_: None, {"traction_force": 1.0}, LimitExceeded,
+        r"traction force is .* N; its limit is 1 N"),
+    "silent device": (silence, {}, RigTimeout, "stream 'board' sent nothing within"),
+    "stopped by itself": (held_up, {}, (DeviceFault, RigTimeout), "board|watchdog"),
+    "disc that does not follow": (
+        ground_disc_stays, {"speed_error": 2.0}, LimitExceeded,
+        "speed error of the ground disc at its set-point"),
+    "full disk": (no_room, {}, SinkFailed, "room left is 0 bytes"),
+    "any exception": (broken, {}, ZeroDivisionError, "planted"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("plant", "limits", "error", "message"), FAULTS.values(), ids=FAULTS)
+def test_any_fault_leaves_the_discs_at_rest_and_is_the_reason(
+    lab, monkeypatch, plant, limits, error, message
+):
     twin = lab["twin"]()
-
-    def fill():
-        twin.sink.room = 0.0
-
-    twin.sink = lab["At"](10, fill)
-    with pytest.raises(SinkFailed, match="room left is 0 bytes"):
-        twin.run()
+    twin.sink = lab["At"](10, lambda: plant(twin, monkeypatch))
+    with pytest.raises(error, match=message) as raised:
+        twin.run(lab["plan"](limits=limits))
     assert twin.at_rest()
+    assert reasons(twin.sink) == [f"{type(raised.value).__name__}: {raised.value}"]
 
 
 @pytest.mark.parametrize("category", [None, StopCategory.SAFE, StopCategory.EMERGENCY])
@@ -164,19 +161,6 @@ def test_an_end_that_cannot_be_stored_is_an_error_however_the_run_ended(lab, cat
     assert twin.at_rest()
     latched = category is StopCategory.EMERGENCY
     assert shown[-1] is (RigState.LATCHED if latched else RigState.STOPPED)
-
-
-def test_an_exception_anywhere_leaves_the_motors_at_rest(lab):
-    twin = lab["twin"]()
-
-    def fail():
-        raise ZeroDivisionError("planted")
-
-    twin.sink = lab["At"](10, fail)
-    with pytest.raises(ZeroDivisionError):
-        twin.run()
-    assert twin.at_rest()
-    assert reasons(twin.sink) == ["ZeroDivisionError: planted"]
 
 
 def test_a_host_that_hangs_is_stopped_by_the_watchdog(lab):

@@ -6,7 +6,6 @@ holds the verdict on its point and includes an accepted one. A run that a crash 
 therefore either finished and included, or neither.
 """
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,12 +14,11 @@ from typing import Any, Final
 from zebro_lab.experiment.journal import Journal
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.runs.exclusion import exclude_run
-from zebro_lab.runs.folder import LOG_FILE, require_recorded, run_state
-from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_manifest
+from zebro_lab.runs.folder import LOG_FILE, require_recorded
+from zebro_lab.runs.manifest import MANIFEST_FILE, RunManifest, read_manifest
 
 UNJUDGED: Final = "the run ended before its point was accepted; --resume measures it again"
 """Reason for which a run is excluded until its end record holds a verdict."""
-_POINT_LABEL: Final = re.compile(r"(point|check)-\d{4} ")
 
 
 @dataclass(frozen=True)
@@ -51,9 +49,8 @@ def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dic
 def finished_points(data: Path, journal: Journal) -> Finished:
     """Find the points of a plan that are finished; exclude repeated, lost and interrupted runs.
 
-    A run is excluded by an entry in its `run.json`. For runs of earlier versions, without `point`
-    in their end record, the journal decides. Other recordings and plans are left as they are. A
-    point counts as finished also if its accepted run was excluded since.
+    A run is excluded by an entry in its `run.json`. Other recordings and plans are left as they
+    are. A point counts as finished also if its accepted run was excluded since.
 
     Args:
         data: Folder of the experiment; the caller holds its lock.
@@ -66,11 +63,10 @@ def finished_points(data: Path, journal: Journal) -> Finished:
     manifests, notices = _read_all(data)
     # Runs that count come first: where a point has two, it is one of them that stays.
     for run, manifest in sorted(manifests, key=lambda item: item[1].excluded is not None):
-        number = _accepted(manifest, journal, run.name)
+        number = _accepted(manifest, journal)
         if number is None:
-            if _is_cut_short(run, manifest):
-                exclude_run(run, why=UNJUDGED)
-        elif (lost := _lost_log(run, manifest)) is not None:
+            continue
+        if (lost := _lost_log(run, manifest)) is not None:
             notices.append(f"{lost}; point {number} is measured again")
             if manifest.excluded is None:
                 exclude_run(run, why="log missing or changed; its point is measured again")
@@ -113,21 +109,6 @@ def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
     return manifests, notices
 
 
-def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
-    """Return whether a run, by label a point of an earlier version, ended without an end record.
-
-    False for a run that is excluded already, or is being recorded.
-    """
-    return (
-        not manifest.point
-        and manifest.excluded is None
-        and manifest.kind == "slip-rig"
-        and _POINT_LABEL.match(manifest.label) is not None
-        and manifest.exit_status == RECORDING
-        and run_state(run, manifest) != RECORDING
-    )
-
-
 def _lost_log(run: Path, manifest: RunManifest) -> str | None:
     """Return that a run's log is missing or not the one of the checksum in the manifest, else None.
 
@@ -143,11 +124,9 @@ def _lost_log(run: Path, manifest: RunManifest) -> str | None:
     return None
 
 
-def _accepted(manifest: RunManifest, journal: Journal, name: str) -> int | None:
+def _accepted(manifest: RunManifest, journal: Journal) -> int | None:
     """Return the number of the point of this plan that a run has finished; None without one."""
     point: Mapping[str, Any] = manifest.point
-    if not point:
-        return journal.accepted.get(name)
     if point.get("plan") != journal.plan or point.get("accepted") is not True:
         return None
     number = point.get("number")

@@ -2,13 +2,19 @@
 """Which runs an experiment takes for its own, and what it does to those of others."""
 
 import os
+import subprocess
+import sys
+from collections import Counter
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
+from rig.experiment.control import Control
+from rig.safety import StopCategory
 from zebro_lab.experiment.journal import JOURNAL_FILE
-from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.runs.folder import LOG_FILE, find_runs
 from zebro_lab.runs.manifest import (
     MANIFEST_FILE,
@@ -43,24 +49,21 @@ def test_an_experiment_below_another_is_not_its_own(lab, plan, tmp_path, resume)
     assert counted(above) == 2 * POINTS
 
 
-def killed_recording(data: Path, *, kind: str, label: str) -> Path:
+def killed_recording(data: Path) -> Path:
     """Write a run folder that a kill left behind, as `record` leaves one."""
-    folder = data / f"20200101T000000Z_{kind}_{label}"
+    folder = data / "20200101T000000Z_slip-rig_by hand"
     folder.mkdir(parents=True)
     (folder / LOG_FILE).write_bytes(b"")
     os.utime(folder / LOG_FILE, (0, 0))
     start = datetime(2020, 1, 1, tzinfo=UTC).isoformat()
-    write_manifest(folder, RunManifest(
-        kind=kind, label=label, material="", operator="", source="sim:x", start=start, stop=None,
-        exit_status=RECORDING, software={}, constants={}, streams={},
-    ))  # fmt: skip
+    manifest = RunManifest(kind="slip-rig", label="by hand", source="sim:x", start=start)
+    write_manifest(folder, replace(manifest, exit_status=RECORDING))
     return folder
 
 
-@pytest.mark.parametrize(("kind", "label"), [("walk", "left turn"), ("slip-rig", "by hand")])
-def test_recordings_beside_an_experiment_are_left_alone(lab, plan, tmp_path, kind, label):
+def test_recordings_beside_an_experiment_are_left_alone(lab, plan, tmp_path):
     data = tmp_path / "data"
-    recording = killed_recording(data, kind=kind, label=label)
+    recording = killed_recording(data)
     before = manifests(recording)
     assert lab.run(plan, data).finished == POINTS
     assert lab.run(plan, data, resume=True).attempts == 0
@@ -95,3 +98,99 @@ def test_a_point_whose_log_is_lost_is_measured_again(lab, plan, tmp_path, damage
     assert (outcome.attempts, outcome.finished) == (1, POINTS)
     assert any(LOG_FILE in line and "measured again" in line for line in said)
     assert counted(data) == POINTS
+
+
+KILLED_BEFORE_A_POINTS_LINE = """
+import os, signal
+from zebro_lab.experiment.journal import JournalWriter
+append, left = JournalWriter.append, [3]
+
+def killed(self, kind, text, **more):
+    if kind == "point":
+        left[0] -= 1
+        if left[0] == 0:
+            os.kill(os.getpid(), signal.SIGKILL)
+    return append(self, kind, text, **more)
+
+JournalWriter.append = killed
+"""
+KILLED_AT_AN_EXCLUSION = """
+import os, signal
+from zebro_lab.recording import run_files
+write = run_files.write_manifest
+
+def killed(folder, manifest):
+    write(folder, manifest)
+    if manifest.exit_status != "recording":
+        os.kill(os.getpid(), signal.SIGKILL)
+
+run_files.write_manifest = killed
+"""
+
+
+def killed_run(plan, data, code):
+    """Run a plan in a process that is killed between a run's end record and its journal line."""
+    arguments = ["rig", "run", str(plan), "--rig", "sim", "--fast", "--data", str(data)]
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\nfrom zebro_lab.main import main\nmain()", *arguments],
+        capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == -9, done.stdout + done.stderr
+
+
+def test_a_point_killed_before_its_journal_line_is_counted_once(lab, plan, tmp_path):
+    data = tmp_path / "data"
+    killed_run(plan, data, KILLED_BEFORE_A_POINTS_LINE)
+    assert lab.run(plan, data, resume=True).finished == POINTS
+    counts = [read_manifest(run) for run in find_runs(data)]
+    labels = Counter(m.label.partition(" attempt")[0].partition(" again")[0]
+                     for m in counts if m.excluded is None)  # fmt: skip
+    assert sorted(labels.values()) == [1] * POINTS
+
+
+def test_a_refused_attempt_killed_before_its_journal_line_is_not_counted(lab, plan, tmp_path):
+    plan.write_text(plan.read_text().replace("slip = 0.02   ", "slip = 1e-9   "))
+    killed_run(plan, tmp_path / "data", KILLED_AT_AN_EXCLUSION)
+    assert not counted(tmp_path / "data")
+
+
+def stopped_run(lab, plan, data, *, after):
+    control = Control()
+    stop = lab.StopAfter(after, lambda: control.stop.request(StopCategory.SAFE, "planted"))
+    lab.run(plan, data, watcher=stop, control=control)
+
+
+def test_points_of_another_rig_are_not_taken_for_points_of_this_one(lab, plan, tmp_path):
+    data = tmp_path / "data"
+    stopped_run(lab, plan, data, after=3)
+    for run in find_runs(data):
+        file = run / MANIFEST_FILE
+        file.write_text(file.read_text().replace('"sim:rig"', '"real"'))
+    journal = (data / JOURNAL_FILE).read_bytes()
+    with pytest.raises(SettingsError, match=r"measured on 'real', and this rig is 'sim:rig'"):
+        lab.run(plan, data, resume=True)
+    assert (data / JOURNAL_FILE).read_bytes() == journal
+
+
+def test_a_damaged_run_does_not_keep_an_experiment_from_going_on(lab, plan, tmp_path):
+    data = tmp_path / "data"
+    stopped_run(lab, plan, data, after=3)
+    (find_runs(data)[1] / MANIFEST_FILE).write_text("{ not JSON")
+    foreign = data / "20200101T000000Z_slip-rig_foreign"
+    foreign.mkdir()
+    (foreign / MANIFEST_FILE).write_text("[1, 2]")
+    outcome = lab.run(plan, data, resume=True)
+    assert (outcome.finished, outcome.attempts) == (6, 4)  # the damaged point is measured again
+
+
+def test_an_experiment_has_one_owner(lab, plan, tmp_path):
+    data, refused = tmp_path / "data", []
+
+    def second():
+        with pytest.raises(OSError, match=r"is in use by process \d+") as found:
+            lab.run(plan, data, resume=True)
+        refused.append(str(found.value))
+
+    assert lab.run(plan, data, watcher=lab.StopAfter(2, second)).completed
+    assert "experiment" in refused[0]
+    assert lab.run(plan, data, resume=True).attempts == 0  # and afterwards it is free

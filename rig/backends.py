@@ -8,6 +8,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Stream
 from rig.driver_table import IMUS, LEGS, load_class
 from rig.imu.profile import ImuProfile, load_imu_profile
+from rig.links.byte_link import ByteLink
 from rig.links.can import CanLink
 from rig.links.serial import SerialLink
 from rig.links.udp import UdpLink
@@ -15,7 +16,14 @@ from rig.profile import split_address
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
-from rig.slip_rig.profile import BoardProfile, RigProfile, device_profiles, load_rig_profile
+from rig.slip_rig.profile import (
+    BoardProfile,
+    DriveProfile,
+    LoadCellProfile,
+    RigProfile,
+    device_profiles,
+    load_rig_profile,
+)
 from rig.zebro.profile import LegProfile, load_leg_profile
 
 
@@ -140,13 +148,31 @@ def open_rig(address: str, *, buffered: bool = False) -> RigDevices:
     profile = load_rig_profile(profile_name)
     found = device_profiles(profile)
     if isinstance(found, BoardProfile):
-        link = SerialLink(port, baudrate=found.baudrate)
-        return RigDevices(profile, board=RigBoard(link, profile=found, limits=profile.limits))
-    drives, cell = found
-    bus = CanLink(port, bitrate=drives.bitrate)
-    datagrams = UdpLink(cell.host, cell.port)
+        return board_devices(profile, found, SerialLink(port, baudrate=found.baudrate))
+    bus = CanLink(port, bitrate=found[0].bitrate)
+    datagrams = UdpLink(found[1].host, found[1].port)
+    return bus_devices(profile, found, bus, datagrams, buffered=buffered)
+
+
+def board_devices(
+    profile: RigProfile, board: BoardProfile, link: ByteLink, *, clock: Clock = SYSTEM_CLOCK
+) -> RigDevices:
+    """Return the board of a rig over a given link, neither yet open."""
+    driver = RigBoard(link, profile=board, limits=profile.limits, clock=clock)
+    return RigDevices(profile, board=driver)
+
+
+def bus_devices(
+    profile: RigProfile,
+    profiles: tuple[DriveProfile, LoadCellProfile],
+    bus: CanLink,
+    datagrams: UdpLink,
+    *,
+    buffered: bool = False,
+) -> RigDevices:
+    """Return drives and load cell of a rig over given links, none yet open, see `open_rig`."""
     return RigDevices(
         profile,
-        drives=DriveBus(bus, profile=drives, limits=profile.limits),
-        load_cell=NetFtCell(datagrams, profile=cell, buffered=buffered),
+        drives=DriveBus(bus, profile=profiles[0], limits=profile.limits),
+        load_cell=NetFtCell(datagrams, profile=profiles[1], buffered=buffered),
     )

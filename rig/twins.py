@@ -15,7 +15,14 @@ import can
 import numpy as np
 
 from model.gait.reference import LegReference
-from rig.backends import RigDevices, imu_driver, leg_driver, leg_link
+from rig.backends import (
+    RigDevices,
+    board_devices,
+    bus_devices,
+    imu_driver,
+    leg_driver,
+    leg_link,
+)
 from rig.driver_table import IMUS, LEGS, load_class
 from rig.errors import ProfileError
 from rig.imu.profile import ImuProfile
@@ -26,9 +33,6 @@ from rig.links.faults import PERFECT_LINE, Faults
 from rig.links.serial import SerialLink
 from rig.links.serve import PortServer, Ticker
 from rig.links.udp import UdpLink
-from rig.slip_rig.board import RigBoard
-from rig.slip_rig.drives import DriveBus
-from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import (
     BoardProfile,
     DriveProfile,
@@ -46,19 +50,9 @@ from rig.zebro.simulated_legs import SimulatedLegs
 _channels = itertools.count()
 
 
-def byte_robot(
+def _byte_robot(
     legs: SimulatedLegs, *, faults: Faults = PERFECT_LINE, rng: np.random.Generator
 ) -> ByteTwin:
-    """Return simulated legs on a serial line, as a byte twin that is not served yet.
-
-    Args:
-        legs: The legs.
-        faults: Transmission errors of the line.
-        rng: Random generator of the transmission errors.
-
-    Raises:
-        ProfileError: The profile's layout is `can` or `table`, which no serial line carries.
-    """
     layout, name = legs.profile.layout, legs.profile.name
     if LEGS[layout].link == "can":
         raise ProfileError(f"no serial port carries layout '{layout}'", file=name)
@@ -86,8 +80,7 @@ def robot_twin(
     Raises:
         ProfileError: The profile's layout is `can` or `table`, which no serial line carries.
     """
-    legs = SimulatedLegs(reference, profile=profile)
-    return byte_robot(legs, faults=faults, rng=rng)
+    return _byte_robot(SimulatedLegs(reference, profile=profile), faults=faults, rng=rng)
 
 
 @contextmanager
@@ -110,7 +103,7 @@ def simulated_legs(legs: SimulatedLegs, *, rng: np.random.Generator) -> Iterator
                 link = leg_link(profile, f"virtual:{channel}", source=robot.source)
                 yield leg_driver(profile, link)
         return
-    twin = byte_robot(legs, rng=rng)
+    twin = _byte_robot(legs, rng=rng)
     with PortServer(twin) as server:
         yield leg_driver(profile, leg_link(profile, server.port, source=twin.source))
 
@@ -174,40 +167,50 @@ def simulated_rig_devices(
         twin = SimulatedBoard(rig, profile=found, watchdog=watchdog, rng=rng)
         with PortServer(twin) as server:
             serial = SerialLink(server.port, baudrate=found.baudrate, source=twin.source)
-            board = RigBoard(serial, profile=found, limits=profile.limits)
-            yield RigDevices(profile, board=board)
+            yield board_devices(profile, found, serial)
         return
-    with _served_on_bus(rig, found, watchdog, rng) as (link, datagrams):
-        drives, load_cell = found
-        yield RigDevices(
-            profile,
-            drives=DriveBus(link, profile=drives, limits=profile.limits),
-            load_cell=NetFtCell(datagrams, profile=load_cell, buffered=buffered),
-        )
-
-
-@contextmanager
-def _served_on_bus(
-    rig: SimulatedRig,
-    profiles: tuple[DriveProfile, LoadCellProfile],
-    watchdog: float,
-    rng: np.random.Generator,
-) -> Iterator[tuple[CanLink, UdpLink]]:
-    """Serve drives on a virtual bus and a load cell at a UDP port; yield the links to them."""
     channel = _new_channel()
     with (
         can.Bus(interface="virtual", channel=channel) as bus,
-        SimulatedLoadCell(rig, profile=profiles[1], rng=rng) as cell,
+        rig_on_bus(rig, found, bus, watchdog=watchdog, rng=rng) as cell,
     ):
-        drives = SimulatedDrives(rig, bus, profile=profiles[0], watchdog=watchdog)
+        link = CanLink(f"virtual:{channel}", source=cell.source)
+        datagrams = UdpLink(cell.host, cell.port, source=cell.source)
+        yield bus_devices(profile, found, link, datagrams, buffered=buffered)
+
+
+@contextmanager
+def rig_on_bus(
+    rig: SimulatedRig,
+    profiles: tuple[DriveProfile, LoadCellProfile],
+    bus: can.BusABC,
+    *,
+    watchdog: float = 0.2,
+    faults: Faults = PERFECT_LINE,
+    rng: np.random.Generator,
+) -> Iterator[SimulatedLoadCell]:
+    """Serve drives on a CAN bus and a load cell at a UDP port.
+
+    Args:
+        rig: Simulated discs and contact.
+        profiles: Profiles of drives and load cell.
+        bus: The bus, open.
+        watchdog: Time without a command after which drives stop the discs [s].
+        faults: Transmission errors of the load cell's datagrams.
+        rng: Random generator of the transmission errors.
+
+    Yields:
+        The load cell, which knows its host and port.
+    """
+    drives = SimulatedDrives(rig, bus, profile=profiles[0], watchdog=watchdog)
+    with SimulatedLoadCell(rig, profile=profiles[1], faults=faults, rng=rng) as cell:
 
         def tick(now: float) -> None:
             drives.poll(now)
             cell.poll(now)
 
         with Ticker(tick):
-            link = CanLink(f"virtual:{channel}", source=drives.source)
-            yield link, UdpLink(cell.host, cell.port, source=cell.source)
+            yield cell
 
 
 def _new_channel() -> str:

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rig.backends import RigDevices, open_rig
+from rig.backends import board_devices, open_rig
 from rig.clock import SYSTEM_CLOCK, Clock, ManualClock
 from rig.experiment.acquire import PERIOD
 from rig.experiment.bench import Bench, make_bench
@@ -18,7 +18,6 @@ from rig.experiment.load import HandShaft, LoadSetter, SimulatedOperator
 from rig.experiment.plan import LoadSetting
 from rig.links.byte_link import MemoryLink
 from rig.openers import SIMULATED, resolve
-from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
@@ -141,7 +140,5 @@ def _fast_bench(
             key="--fast",
         )
     twin = SimulatedBoard(rig, profile=profile.board, rng=rng)
-    board = RigBoard(
-        MemoryLink(twin, clock=clock), profile=profile.board, limits=profile.limits, clock=clock
-    )
-    return make_bench(RigDevices(profile, board=board))
+    link = MemoryLink(twin, clock=clock)
+    return make_bench(board_devices(profile, profile.board, link, clock=clock))

@@ -3,7 +3,7 @@
 
 import tempfile
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias, cast
@@ -20,22 +20,19 @@ from rig.links.faults import Faults
 from rig.links.serve import PortServer, Ticker
 from rig.links.slcan import SlcanAdapter
 from rig.openers import LEGS_PROFILE
-from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.profile import BoardProfile, device_profiles, load_rig_profile
 from rig.slip_rig.simulated_board import SimulatedBoard
-from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
-from rig.twins import robot_twin
+from rig.twins import rig_on_bus, robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.simulated import CanRobot
 from rig.zebro.simulated_body import SimulatedBody
 from rig.zebro.simulated_legs import SimulatedLegs
 from zebro_lab.files.atomic import atomic_write_text
-from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.devices import default_gait, profile_text, twin_rig
 from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
 from zebro_lab.runs.legs import read_leg_log
 
-WATCHDOG = 0.2
 TwinRequest: TypeAlias = ZebroTwinRequest | ImuTwinRequest | RigTwinRequest
 
 
@@ -109,36 +106,25 @@ def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
     The address of the latter names a temporary profile, with the port of the load cell.
 
     Raises:
-        SettingsError: The profile has neither a board nor drives with a load cell.
-        RigError: The profile or the port is invalid.
+        RigError: The profile or the port is invalid, or the profile has neither a board nor drives
+            with a load cell.
     """
     profile = load_rig_profile(request.profile)
+    found = device_profiles(profile)
     rng = np.random.default_rng(0)
     rig, faults = twin_rig(rng), Faults(drop=request.drop)
-    if profile.board is not None:
-        board = SimulatedBoard(
-            rig, profile=profile.board, watchdog=WATCHDOG, faults=faults, rng=rng
-        )
+    if isinstance(found, BoardProfile):
+        board = SimulatedBoard(rig, profile=found, faults=faults, rng=rng)
         with _port(board, request) as port:
             yield Served(board.source, {"board": port}, f"{request.profile}@{port}")
         return
-    if profile.drives is None or profile.load_cell is None:
-        raise SettingsError(f"profile '{profile.name}' lacks [board], or [drives] and [load_cell]")
-    with ExitStack() as stack:
-        bus, place = stack.enter_context(_bus(request, "sim:rig"))
-        drives = SimulatedDrives(rig, bus, profile=profile.drives, watchdog=WATCHDOG)
-        cell = stack.enter_context(
-            SimulatedLoadCell(rig, profile=profile.load_cell, faults=faults, rng=rng)
-        )
-
-        def tick(now: float) -> None:
-            drives.poll(now)
-            cell.poll(now)
-
-        stack.enter_context(Ticker(tick))
-        file = stack.enter_context(_profile_of_cell(request.profile, cell))
+    with (
+        _bus(request, "sim:rig") as (bus, place),
+        rig_on_bus(rig, found, bus, faults=faults, rng=rng) as cell,
+        _profile_of_cell(request.profile, cell) as file,
+    ):
         places = {"drives": place, "load cell": f"udp://{cell.host}:{cell.port}"}
-        yield Served(drives.source, places, f"{file}@{place}")
+        yield Served(cell.source, places, f"{file}@{place}")
 
 
 def _gait(play: Path | None) -> LegReference:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Final
 
 from zebro_lab.files.errors import RecordingError
-from zebro_lab.recording.recorder import needing_threads
+from zebro_lab.recording.run_files import needing_threads
 from zebro_lab.recording.status import RecordStatus
 
 PATIENCE: Final = 1.0

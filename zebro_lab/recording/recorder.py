@@ -22,28 +22,9 @@ from rig.device import Counters, Sample
 from rig.sample_queue import SampleQueue
 from zebro_lab.files.errors import RecordingError
 from zebro_lab.mcap.log_writer import INFO, LogWriter
-from zebro_lab.recording.run_files import RunFiles, require_space
+from zebro_lab.recording.run_files import RunFiles, needing_threads, require_space
 from zebro_lab.runs.folder import LOG_FILE, new_run_folder, removing_new_folders
 from zebro_lab.runs.manifest import RunManifest
-
-
-@contextmanager
-def needing_threads() -> Iterator[None]:
-    """Convert a failure to start a thread in the `with` statement to a `RecordingError`.
-
-    Raises:
-        RecordingError: A thread could not be started. Other exceptions pass unchanged.
-    """
-    try:
-        yield
-    except RuntimeError as error:
-        if "start new thread" not in str(error):
-            raise
-        raise RecordingError(
-            f"{error}: the system allows no more threads; close other programs, or raise the "
-            "limit of threads (ulimit -u)"
-        ) from error
-
 
 FLUSH_EVERY: Final = 0.1
 """Interval at which the queues are written and flushed [s]."""

@@ -4,8 +4,8 @@
 import contextlib
 import os
 import shutil
-from collections.abc import Iterable, Mapping
-from contextlib import ExitStack
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, Final
@@ -69,6 +69,24 @@ class OpenPlace:
             return [Path(f"/proc/self/fd/{self._number}").readlink().parent]
         except OSError:
             return []
+
+
+@contextmanager
+def needing_threads() -> Iterator[None]:
+    """Convert a failure to start a thread in the `with` statement to a `RecordingError`.
+
+    Raises:
+        RecordingError: A thread could not be started. Other exceptions pass unchanged.
+    """
+    try:
+        yield
+    except RuntimeError as error:
+        if "start new thread" not in str(error):
+            raise
+        raise RecordingError(
+            f"{error}: the system allows no more threads; close other programs, or raise the "
+            "limit of threads (ulimit -u)"
+        ) from error
 
 
 def require_space(folder: Path, least: float) -> None:

@@ -18,8 +18,9 @@ from zebro_lab.files.source_names import is_twin, joined_source
 from zebro_lab.mcap.log_writer import WARNING
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
-from zebro_lab.recording.recorder import RunRecorder, needing_threads
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.run_files import needing_threads
 from zebro_lab.recording.status import COUNT_EVERY, RecordStatus, StreamWatch, reading_failure
 from zebro_lab.robot.leg_warnings import WARNING as SUSPECTED
 from zebro_lab.robot.leg_warnings import leg_warnings

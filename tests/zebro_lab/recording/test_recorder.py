@@ -19,7 +19,7 @@ from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording import recorder as module
 from zebro_lab.recording import run_files
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.recording.recorder import RunRecorder, needing_threads
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.folder import run_state
 from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
 
@@ -135,45 +135,34 @@ def test_no_step_of_the_wall_clock_shows_in_the_log(tmp_path, monkeypatch):
     assert 0 <= host[0] <= host[1] < 1.0
 
 
-@pytest.mark.parametrize("error", [OSError(errno.EIO, "Input/output error"), MemoryError("full")])
-def test_a_disk_that_cannot_be_synchronised_ends_the_run(tmp_path, monkeypatch, error):
-    monkeypatch.setattr(module, "SYNC_EVERY", 0.05)
-
-    def fail(_file):
-        raise error
-
-    with recorder(tmp_path) as run:
-        monkeypatch.setattr(os, "fsync", fail)
-        end = time.monotonic() + 2.0
-        while run.failure is None and time.monotonic() < end:
-            time.sleep(0.01)
-        monkeypatch.undo()
-    assert str(error) in str(run.failure)
-    assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
+FAULTS = {
+    "disk that is not synchronised": (os, "fsync", OSError(errno.EIO, "Input/output error")),
+    "memory for the disk": (os, "fsync", MemoryError("full")),
+    "end of the writer": (module.LogWriter, "flush", SystemExit("over")),
+    "end of the log": (module.LogWriter, "finish", ValueError("no such chunk")),
+    "end of the thread that ends the log": (module.LogWriter, "finish", SystemExit("over")),
+}
 
 
-@pytest.mark.parametrize("error", [ValueError("no such chunk"), SystemExit("over")])
-def test_whatever_closing_the_log_raises_is_the_reason_in_the_end_record(
-    tmp_path, monkeypatch, error
+@pytest.mark.parametrize(("where", "name", "error"), FAULTS.values(), ids=FAULTS)
+def test_whatever_a_thread_of_the_recorder_raises_is_the_reason_in_the_end_record(
+    tmp_path, monkeypatch, where, name, error
 ):
-    def fail(_log):
+    monkeypatch.setattr(module, "SYNC_EVERY", 0.05)
+    planted = []
+
+    def fail(_):
+        planted.append(monkeypatch.undo())
         raise error
 
     with recorder(tmp_path) as run:
         run.write("legs", some(0, 10))
-        monkeypatch.setattr(module.LogWriter, "finish", fail)
+        monkeypatch.setattr(where, name, fail)
+        if name != "finish":
+            until(lambda: run.failure is not None, limit=2.0)
+    assert planted
     assert str(error) in run.failure
     assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
-
-
-def test_whatever_ends_the_writer_is_the_reason(tmp_path, monkeypatch):
-    def fail(_log):
-        raise SystemExit("over")
-
-    with recorder(tmp_path) as run:
-        monkeypatch.setattr(module.LogWriter, "flush", fail)
-        until(lambda: run.failure is not None, limit=2.0)
-    assert "SystemExit: over" in read_manifest(run.folder).exit_status
 
 
 def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path, monkeypatch):
@@ -224,17 +213,3 @@ def test_the_beginning_of_a_run_waits_for_no_disk(tmp_path, monkeypatch):
     manifest = read_manifest(run.folder)
     start, stop = map(datetime.fromisoformat, (manifest.start, manifest.stop))
     assert (stop - start).total_seconds() < ended - began + 0.1
-
-
-def test_a_refused_thread_says_what_to_do():
-    with pytest.raises(RecordingError, match=r"can't start new thread: .*ulimit") as caught:  # noqa: SIM117
-        with needing_threads():
-            raise RuntimeError("can't start new thread")
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("error", [RuntimeError("torn"), ValueError("can't start new thread")])
-def test_other_errors_pass_unchanged(error):
-    with pytest.raises(type(error)) as caught, needing_threads():
-        raise error
-    assert caught.value is error

@@ -11,7 +11,7 @@ from zebro_lab.files.errors import RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording import run_files
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.recording.run_files import RunFiles
+from zebro_lab.recording.run_files import RunFiles, needing_threads
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 MANIFEST = RunManifest(kind="walk", label="x", source="sim:test", start="2026-01-02T03:04:05+00:00")
@@ -85,3 +85,17 @@ def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):
         until(lambda: run.failure is not None, limit=1.0)
     assert "removed or renamed" in read_manifest(there).exit_status
     assert len(read_raw_log(there / "log.mcap").streams["/legs/raw"]) == 10
+
+
+def test_a_refused_thread_says_what_to_do():
+    with pytest.raises(RecordingError, match=r"can't start new thread: .*ulimit") as caught:  # noqa: SIM117
+        with needing_threads():
+            raise RuntimeError("can't start new thread")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("error", [RuntimeError("torn"), ValueError("can't start new thread")])
+def test_other_errors_pass_unchanged(error):
+    with pytest.raises(type(error)) as caught, needing_threads():
+        raise error
+    assert caught.value is error

@@ -90,25 +90,23 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
 
 
 def _require_something(request: ImportRequest) -> None:
-    if request.legs is None and request.track is None and request.rig is None:
-        if request.imu is not None:
-            raise SettingsError("is imported with the leg angles of its walk only; add --legs",
-                                key=f"--{IMU}")  # fmt: skip
-        raise SettingsError("no file to import is given; add --legs, --track or --rig",
-                            key="--legs, --track, --rig")  # fmt: skip
-    if request.track is None and request.trajectory != TrajectoryRequest():
-        raise SettingsError("--plane, --forward, --times and --layout say how a track is read; add "
-                            "its file", key="--track")  # fmt: skip
-    if request.track is None and request.pose_sd is not None:
-        raise SettingsError("is that of a track; add its file, with --track", key="--track-sd")
-    if request.track_offset and (request.track is None or request.legs is None):
-        raise SettingsError("brings a track to the clock of the legs; give the files of both",
-                            key="--track-offset")  # fmt: skip
-    if request.legs is None:
-        for name in (IMU, "robot"):
-            if getattr(request, name) is not None:
-                raise SettingsError("belongs to a walk; give the leg angles, too, with --legs",
-                                    key=f"--{name}")  # fmt: skip
+    legs, track = request.legs is not None, request.track is not None
+    walk = "belongs to a walk; give the leg angles, too, with --legs"
+    wrong = (
+        (request.imu is not None and not legs, "--imu", walk),
+        (request.robot is not None and not legs, "--robot", walk),
+        (not legs and not track and request.rig is None, "--legs, --track, --rig",
+         "no file to import is given; add one of these"),
+        (request.trajectory != TrajectoryRequest() and not track, "--track",
+         "--plane, --forward, --times and --layout say how a track is read; add its file"),
+        (request.pose_sd is not None and not track, "--track-sd",
+         "is that of a track; add its file, with --track"),
+        (request.track_offset and not (legs and track), "--track-offset",
+         "brings a track to the clock of the legs; give the files of both"),
+    )  # fmt: skip
+    for is_wrong, key, problem in wrong:
+        if is_wrong:
+            raise SettingsError(problem, key=key)
 
 
 def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:

@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import Literal
 
 from zebro_lab.exchange.column_guesses import ColumnGuess, guess_columns, guess_kind
 from zebro_lab.exchange.columns_template import render_columns
@@ -14,13 +14,11 @@ from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.files.names import is_ros_log
 from zebro_lab.files.opening import read_text
 from zebro_lab.ground.ground_file import TEMPLATE
-from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.robot.robot_file import RobotFile, render_robot_file
 from zebro_lab.tables.columns import COLUMNS_FILE, RIG
 from zebro_lab.tables.columns_sections import is_sectioned
 from zebro_lab.tables.table_files import read_table_file
 
-_JOINTS: Final = "sensor_msgs/msg/JointState"
 Kind = Literal["rig", "legs", "imu", "track"]
 
 
@@ -60,8 +58,7 @@ def write_columns_template(
 
     Raises:
         NotFound: The table file does not exist.
-        DataError: The table cannot be read, or is a ROS log, which needs no column map; the
-            message names its joints and the command that reads them.
+        DataError: The table cannot be read, or is a ROS log, which needs no column map.
         SettingsError: The headers leave the kind open, or the existing file is no TOML.
         AlreadyExists: A `columns.toml` beside the table maps tables of this kind, and `force` is
             not set.
@@ -86,23 +83,15 @@ def write_columns_template(
 
 
 def _require_no_ros_log(file: Path) -> None:
-    """Raise `DataError` for a ROS log, with the names of its joints and what to do with them."""
-    if not file.exists() or not is_ros_log(file):
-        return
-    messages, _ = read_messages(file, schema=_JOINTS)
-    topics: dict[str, list[str]] = {}
-    for message in messages:
-        named = topics.setdefault(message.topic, [])
-        named += [name for name in message.content.name if name not in named]
-    found = "; ".join(f"{topic} has the joints {', '.join(n)}" for topic, n in topics.items())
-    raise DataError(
-        f"is a ROS log, no table: {found or f'it has no messages of type {_JOINTS}'}; name "
-        "those of legs 1 to 6 (1, 3, 5 left and 2, 4, 6 right, front to rear) with: zebro-lab "
-        f"import --legs {file} --joints NAME1,NAME2,NAME3,NAME4,NAME5,NAME6, or each, with unit, "
-        f"sign and offset, in [legs.columns] of a {COLUMNS_FILE} "
-        'beside it: theta1 = {name = "NAME1", sign = -1, offset = "90 deg"}',
-        file=file,
-    )
+    """Raise `DataError` for a ROS log, with what takes it; import lists its joints."""
+    if file.exists() and is_ros_log(file):
+        raise DataError(
+            "is a ROS log, no table; give it to zebro-lab import --legs, with --joints where its "
+            "joints do not name the legs, or with unit, sign and offset of each in [legs.columns] "
+            f"of a {COLUMNS_FILE} beside it: "
+            'theta1 = {name = "NAME1", sign = -1, offset = "90 deg"}',
+            file=file,
+        )
 
 
 def _require_free(target: Path, present: str, kind: str | None) -> None:

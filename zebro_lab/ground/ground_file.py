@@ -16,6 +16,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import MOST_TEXT, read_bytes
 from zebro_lab.files.settings_table import SettingsTable, read_settings
 from zebro_lab.tables.csv_files import decoded, possible_encodings
+from zebro_lab.tables.text_layout import BLANKS, SEPARATORS, split_line
 
 _MAP_KEYS: Final = ("step", "origin", "unit")
 _GONE: Final = ("roughness", "area")  # of earlier versions
@@ -24,7 +25,6 @@ MOST_RELIEF: Final = 2.0
 """Largest range of heights of a map whose unit is not given [m]."""
 MOST_PLACES: Final = 16_777_216
 """Largest number of heights: 4096 by 4096."""
-_SEPARATORS: Final = {";": "semicolons", "\t": "tabs", ",": "commas"}
 _ADVICE: Final = "ground.toml names it; its path is relative to that file"
 
 
@@ -152,22 +152,33 @@ def _height_table(file: Path) -> Array:
         DataError: A cell is no finite number, rows differ in length, or there are fewer than two
             rows or columns, or too many; the message names row and value.
     """
-    lines = _text(file).splitlines()
+    lines = [
+        (number, line.strip())
+        for number, line in enumerate(_text(file).splitlines(), start=1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    separator = next((each for each in ";\t," if lines and each in lines[0][1]), BLANKS)
     rows: list[list[float]] = []
-    separator = None
-    for number, line in enumerate(lines, start=1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        if separator is None:
-            separator = next((each for each in _SEPARATORS if each in line.strip()), " ")
-        row = _numbers(line, separator, file=file, row=len(rows) + 1, line_number=number)
-        if rows and len(row) != len(rows[0]):
-            raise DataError(
-                f"has {len(row)} heights, the rows above have {len(rows[0])}; expected one height "
-                "for each place of a grid: the same number in each row",
-                file=file, row=len(rows) + 1, line=number,
-            )  # fmt: skip
-        rows.append(row)
+    for row, (number, line) in enumerate(lines, start=1):
+        cells = split_line(line.removesuffix(separator), separator)  # some end a row with one
+        heights = [_number(each if separator == "," else each.replace(",", ".")) for each in cells]
+        wrong = next((i for i, each in enumerate(heights) if not math.isfinite(each)), None)
+        problem = ""
+        if wrong is not None:
+            cell = f"'{cells[wrong][:40]}'" if cells[wrong] else "empty"
+            problem = (
+                f"cell {wrong + 1} is {cell}; expected a height as a finite number: cells are "
+                f"taken to be separated by {SEPARATORS[separator]}, and there are no rows of names "
+                "and no gaps"
+            )
+        elif rows and len(heights) != len(rows[0]):
+            problem = (
+                f"has {len(heights)} heights, the rows above have {len(rows[0])}; expected one "
+                "height for each place of a grid: the same number in each row"
+            )
+        if problem:
+            raise DataError(problem, file=file, row=row, line=number)
+        rows.append(heights)
     _require_size(len(rows), len(rows[0]) if rows else 0, file)
     return np.array(rows)
 
@@ -183,28 +194,11 @@ def _text(file: Path) -> str:
     return decoded(data, encodings[0])
 
 
-def _numbers(line: str, separator: str, *, file: Path, row: int, line_number: int) -> list[float]:
-    """Return the heights of a line; raise `DataError` for a cell that is no finite number."""
-    cells = line.split() if separator == " " else line.split(separator)
-    if separator == "," and not cells[-1].strip():  # some programs end a row with a separator
-        cells = cells[:-1]
-    numbers = []
-    for column, cell in enumerate(cells, start=1):
-        text = cell.strip() if separator == "," else cell.strip().replace(",", ".")
-        try:
-            number = float(text)
-        except ValueError:
-            number = None
-        if number is None or not math.isfinite(number):
-            separated = _SEPARATORS.get(separator, "blanks")
-            wrong = f"'{cell.strip()[:40]}'" if cell.strip() else "empty"
-            raise DataError(
-                f"cell {column} is {wrong}; expected a height as a finite number: cells are taken "
-                f"to be separated by {separated}, and there are no rows of names and no gaps",
-                file=file, row=row, line=line_number, value=cell,
-            )  # fmt: skip
-        numbers.append(number)
-    return numbers
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def _require_size(rows: int, columns: int, file: Path) -> None:

@@ -45,7 +45,10 @@ def belonging(sources: Sources) -> Belonging:
     used = not predicted or bool(users)
     notices = [notice for run in predicted for notice in _slip(run, sources, law)]
     notices += [notice for run in sources.runs for notice in _walk(run)]
-    notices += _of_walks(sources, law)
+    if sources.walks is not None:
+        notices += _not_from(
+            "the fit of walks", sources.walks, {str(sources.calibration.folder): law}
+        )
     notices += _together(sources)
     notices += _changed(sources)
     return Belonging(tuple(dict.fromkeys(notices)), used)
@@ -85,15 +88,19 @@ def _walk(run: ReportedRun) -> Iterator[str]:
         yield from _judged(run, run.parts[VALIDATION])
 
 
+def _not_from(what: str, result: ReportPart, files: Mapping[str, str | None]) -> Iterator[str]:
+    """Say which files, by name with their hash as far as known, a result was not made from."""
+    for file, digest in files.items():
+        if digest is not None and digest not in _read(result):
+            yield f"{what} was not made from {file} as it is now; make it again"
+
+
 def _predicted(run: ReportedRun, prediction: ReportPart) -> Iterator[str]:
     """Say which of a run's files with leg angles a prediction was not made from."""
     imported = _mapping(run.recorded.get("inputs"))
     tables = {str(digest) for name, digest in imported.items() if Path(name).suffix != ".toml"}
-    if tables & _read(prediction):  # made from the table that the run was imported from
-        return
-    for file, digest in _leg_files(run).items():
-        if digest not in _read(prediction):
-            yield f"{run.name}: the prediction was not made from {file} as it is now"
+    if not tables & _read(prediction):  # else made from the table that the run was imported from
+        yield from _not_from(f"{run.name}: the prediction", prediction, _leg_files(run))
 
 
 def _tracked(run: ReportedRun, track: ReportPart) -> Iterator[str]:
@@ -106,25 +113,11 @@ def _tracked(run: ReportedRun, track: ReportPart) -> Iterator[str]:
 
 def _judged(run: ReportedRun, validation: ReportPart) -> Iterator[str]:
     """Say which of a run's prediction and track is not the one that a validation judged."""
-    for name, file in ((PREDICTION, PATH_CSV), (TRACK, TRACK_CSV)):
-        if not _present(run, name):
-            continue
-        part = run.parts[name]
-        digest = _now(part, file)
-        if digest is not None and digest not in _read(validation):
-            yield (
-                f"{run.name}: the validation in {validation.folder} judged another {name} than "
-                f"{part.folder / file} as it is now; validate again"
-            )
-
-
-def _of_walks(sources: Sources, law: str | None) -> Iterator[str]:
-    walks = sources.walks
-    if walks is not None and law is not None and law not in _read(walks):
-        yield (
-            f"the walks in {walks.folder} were fitted with another slip law than that of "
-            f"{sources.calibration.folder} as it is now; fit them again"
-        )
+    parts = {name: run.parts[name] for name in (PREDICTION, TRACK) if _present(run, name)}
+    files = {PREDICTION: PATH_CSV, TRACK: TRACK_CSV}
+    judged = {str(part.folder / files[name]): _now(part, files[name])
+              for name, part in parts.items()}  # fmt: skip
+    yield from _not_from(f"{run.name}: the validation in {validation.folder}", validation, judged)
 
 
 def _together(sources: Sources) -> Iterator[str]:

@@ -2,6 +2,7 @@
 """Angles of the discs of a rig table, where they are recorded."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -75,26 +76,17 @@ def joined_angles(
         return None, ()
     if len({(one.radius_leg, one.radius_ground) for one in each}) > 1:
         return None, ("angles of the discs are not used: the tables have discs of other radii",)
-    recorded = {
-        "leg": [one.leg for one in each if one.leg is not None],
-        "ground": [one.ground for one in each if one.ground is not None],
-    }
-    joined = {
-        disc: np.concatenate(angles)
-        for disc, angles in recorded.items()
-        if len(angles) == len(tables)
-    }
-    notes = tuple(
-        f"the angle of the {disc} disc is not used, because some tables lack it"
-        for disc, angles in recorded.items()
-        if angles and disc not in joined
-    )
+    joined: dict[str, Array] = {}
+    notes = []
+    for disc in ("leg", "ground"):
+        angles = [found for one in each if (found := getattr(one, disc)) is not None]
+        if len(angles) == len(tables):
+            joined[disc] = np.concatenate(angles)
+        elif angles:
+            notes.append(f"the angle of the {disc} disc is not used, because some tables lack it")
     if not joined:
-        return None, notes
-    first = each[0]
-    return DiscAngles(
-        joined.get("leg"), joined.get("ground"), first.radius_leg, first.radius_ground
-    ), notes
+        return None, tuple(notes)
+    return replace(each[0], **({"leg": None, "ground": None} | joined)), tuple(notes)
 
 
 def _problem(table: RigTable, name: str, runs: Runs, time: Array | None) -> str:

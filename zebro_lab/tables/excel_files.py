@@ -38,13 +38,15 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
     content = read_unpacked(path)
     with parsing(path, "cannot be read as an Excel workbook", advice="save it again, or as CSV"):
         _require_bounded(path, content)
-        name, cells = _filled_sheet(path, _sheets(path, content, values=True), sheet)
-        above = next(i for i, row in enumerate(cells) if any(cell is not None for cell in row))
-        cells = cells[above:]
+        name, found = _filled_sheet(path, _sheets(path, content, values=True), sheet)
+        values = [[cell.value for cell in row] for row in found]
+        above = next(i for i, row in enumerate(values) if any(cell is not None for cell in row))
+        cells = values[above:]
         header = _header(path, name, cells)
         formulas = _sheets(path, content, values=False)[name][above:]
         _require_values(path, name, cells, formulas, above + 1)
-        percent = _in_percent(path, content, name, above + 1 + header.first)
+        shown = found[above + header.first]
+        percent = [i for i, cell in enumerate(shown) if "%" in str(cell.number_format)]
     notes = (f"sheet '{name}'", *header.notes)
     ratios = {header.names[i]: "dimensionless" for i in percent if i < len(header.names)}
     notes += tuple(f"'{each}' is shown in percent and stored as a ratio" for each in ratios)
@@ -93,15 +95,15 @@ def _opened(path: Path, content: bytes, *, values: bool) -> Iterator[Any]:
 
 
 def _sheets(path: Path, content: bytes, *, values: bool) -> Mapping[str, Cells]:
-    """Return the cells of each sheet, none of a sheet of charts; their formulas, if not values."""
+    """Return the cells of each sheet, none of a sheet of charts; with formulas, if not values."""
     with _opened(path, content, values=values) as book:
         sheets = {
-            name: [list(row) for row in book[name].iter_rows(values_only=True)]
+            name: [list(row) for row in book[name].iter_rows()]
             for name in book.sheetnames
             if hasattr(book[name], "iter_rows")
         }
     for rows in sheets.values():
-        while rows and all(cell is None for cell in rows[-1]):
+        while rows and all(cell.value is None for cell in rows[-1]):
             rows.pop()
     return sheets
 
@@ -126,19 +128,12 @@ def _require_values(path: Path, name: str, cells: Cells, formulas: Cells, first:
     """Raise if an empty cell has a formula: its value was never computed and stored."""
     for i, (row, found) in enumerate(zip(formulas, cells, strict=False)):
         for j, (formula, value) in enumerate(zip(row, found, strict=False)):
-            if value is None and formula is not None:
+            if value is None and formula.value is not None:
                 raise DataError(
                     f"row {first + i}, column {j + 1} of sheet '{name}' has a formula without a "
                     "stored value; open the file in Excel or LibreOffice and save it again",
                     file=path,
                 )
-
-
-def _in_percent(path: Path, content: bytes, name: str, row: int) -> list[int]:
-    """Return the columns whose number in a row is shown in percent: 0.02 as 2 %."""
-    with _opened(path, content, values=True) as book:
-        cells = next(book[name].iter_rows(min_row=row, max_row=row), ())
-        return [i for i, cell in enumerate(cells) if "%" in str(cell.number_format)]
 
 
 def _columns(cells: Cells, header: Header) -> dict[str, pd.Series]:

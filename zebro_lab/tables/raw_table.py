@@ -22,6 +22,15 @@ from zebro_lab.tables.header_units import suffix_unit
 
 _MINUS = "\u2212"  # as typesetters write it
 _BLOCK = 1 << 16  # cells converted to numbers at a time
+_ADVICE: Final = (
+    (r"[-+]?\d+,\d+", "write decimals with a point"),
+    (r"[-+]?\d{1,3}([ .,'’\u00a0\u202f]\d{3})+([.,]\d+)?", "write it without thousands separators"),
+    (
+        r"[-+]?[\d.,]+ ?[^\d\s.,:/-][^\d]*",
+        "write the number alone, and its unit in the header or in columns.toml",
+    ),
+)
+"""What to do about a cell of a form that is not a number, the first that fits."""
 OVERLOAD: Final = 1e30
 """Least size of a number that stands for an overload, such as 9.9e37 of instruments with SCPI."""
 
@@ -245,21 +254,15 @@ class RawTable:
                 "thousands separators, decimals with a point",
                 name, index, value=text,
             )  # fmt: skip
-        if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
-            advice = "; write decimals with a point"
-        elif re.fullmatch(r"\s*[-+]?\d{1,3}([ .,'’\u00a0\u202f]\d{3})+([.,]\d+)?\s*", text):
-            advice = "; write it without thousands separators"
-        elif re.fullmatch(r"[-+]?[\d.,]+ ?[^\d\s.,:/-][^\d]*", text.strip()):
-            advice = "; write the number alone, and its unit in the header or in columns.toml"
-        elif kind_of(text) == "value":
-            advice = '; if it is a time, state unit = "date", "date UTC" or "h:m:s" in columns.toml'
-        elif any(character.isdigit() for character in text):
-            advice = "; write one number alone in the cell, or delete the row"
-        elif index == 0:
-            advice = "; if the row holds units, delete it and give them in columns.toml"
-        else:
-            advice = "; correct or delete the row"
-        return self.fault(f"'{text}' is not a number{advice}", name, index, value=text)
+        advice = next((a for form, a in _ADVICE if re.fullmatch(form, text.strip())), "")
+        if not advice and kind_of(text) == "value":
+            advice = 'if it is a time, state unit = "date", "date UTC" or "h:m:s" in columns.toml'
+        elif not advice and any(character.isdigit() for character in text):
+            advice = "write one number alone in the cell, or delete the row"
+        elif not advice:
+            units = "if the row holds units, delete it and give them in columns.toml"
+            advice = "correct or delete the row" if index else units
+        return self.fault(f"'{text}' is not a number; {advice}", name, index, value=text)
 
     def _is_line_of_words(self, index: int) -> bool:
         """Return whether a row, counted from 0, holds words alone, or one word and empty cells."""

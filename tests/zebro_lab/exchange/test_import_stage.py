@@ -192,7 +192,7 @@ def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
     ("changes", "message"),
     [
         ({}, "no file to import"),
-        ({"imu": "imu.csv"}, "^--imu: is imported with the leg angles .*; add --legs$"),
+        ({"imu": "imu.csv"}, "^--imu: belongs to a walk"),
         ({"track": "track.csv", "imu": "imu.csv"}, "^--imu: belongs to a walk"),
         ({"legs": "legs.csv", "trajectory": TrajectoryRequest(plane=Plane.XY)}, "^--track: .*add"),
         ({"track": "track.csv", "track_offset": 2.0}, "^--track-offset: .*files of both"),

@@ -146,11 +146,8 @@ def test_existing_file_is_kept_unless_forced(tmp_path):
     assert "FZ" in (tmp_path / "columns.toml").read_text()
 
 
-def test_a_ros_log_is_told_with_its_joints_and_the_command_that_reads_it(tmp_path):
-    names = [f"bein_{leg}" for leg in ("hr", "mr", "vr", "vl", "ml", "hl")]
-    log = write_bag(tmp_path / "log", joints([0.0, 0.1], np.zeros((2, 6)), names=names))
-    with pytest.raises(DataError, match="is a ROS log, no table: /joint_states has the") as told:
+def test_a_ros_log_is_told_with_the_command_that_reads_it(tmp_path):
+    log = write_bag(tmp_path / "log", joints([0.0, 0.1], np.zeros((2, 6))))
+    with pytest.raises(DataError, match=r"is a ROS log, no table; .* import --legs, with --joints"):
         write_columns_template(log)
-    assert f"joints {', '.join(names)}; name those of legs 1 to 6" in str(told.value)
-    assert f"zebro-lab import --legs {log} --joints NAME1," in str(told.value)
     assert not list(tmp_path.rglob("columns.toml"))

@@ -70,12 +70,12 @@ def another_profile(run):
 
 def another_prediction(run):
     (run / "prediction/path.csv").write_text("predicted again")
-    return "judged another prediction than"
+    return "the validation in "
 
 
 def another_track(run):
     (run / "track/track.csv").write_text("tracked again")
-    return "judged another track than"
+    return "the validation in "
 
 
 def a_track_of_another_run(run):
@@ -153,7 +153,7 @@ def test_a_fit_of_walks_that_a_prediction_did_not_use_is_named(whole, tmp_path):
     assert notices(whole) == ()
     edit(walks / "manifest.json", inputs={"s": digest("another law")})
     (notice,) = notices(whole)
-    assert "were fitted with another slip law" in notice
+    assert "the fit of walks was not made from" in notice
     (walks / "manifest.json").unlink()
     (notice,) = notices(whole)
     assert "used a fit of walks that" in notice

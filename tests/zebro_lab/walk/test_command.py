@@ -4,9 +4,11 @@
 import json
 import subprocess
 
+import numpy as np
 import pytest
 
 from support.commands import COMMAND
+from zebro_lab.walk.folder import read_walk_manifest
 
 
 def test_walk_in_a_pipe_prints_gait_and_end_and_writes_its_folder(tmp_path):
@@ -61,6 +63,7 @@ USAGE = {
     "no such gait": ("walk", "--gait", "trot", "--duration", "3"),
     "no such model": ("predict", "legs.csv", "--model", "ours"),
     "no log": ("predict", "--slip", "thesis"),
+    "window of nothing": ("walk", "--slip", "thesis", "--duration", "1", "--window", "0:1"),
     "rule of another model": ("walk", "--duration", "3", "--slip", "thesis", "--thesis", "text"),
     "negative step": ("walk", "--duration", "3", "--slip", "thesis", "--dt", "-1"),
 }
@@ -73,23 +76,62 @@ def test_wrong_usage_is_exit_2(arguments, run_command):
     assert "Usage: " in stderr
 
 
-def test_json_is_one_document_with_the_results_and_quiet_leaves_it_alone(run_command, tmp_path):
+def test_json_is_one_document_and_quiet_leaves_errors_alone(run_command, tmp_path):
     given = ("walk", "--slip", "coulomb:0.4", "--duration", 4, "--json", "--out")
     ended, quiet = (run_command(*given, tmp_path / "a", *more) for more in ((), ("--quiet",)))
     document = json.loads(ended.out)
     assert ended.code == document["exit_code"] == quiet.code == 0
     assert document == json.loads(quiet.out)
-    assert document["command"] == "walk"
-    assert document["simulated"]
+    assert (document["command"], document["simulated"]) == ("walk", True)
     assert document["duration_s"] == 4.0
-    assert document["length_m"] > 0.1
     assert "SIMULATED walk" in ended.err
     assert quiet.err == ""
-
-
-def test_quiet_prints_nothing_but_errors(run_command, tmp_path):
-    given = ("walk", "--slip", "coulomb:0.4", "--duration", 1, "--quiet", "--out")
-    assert run_command(*given, tmp_path / "a") == (0, "", "")
-    ended = run_command(*given, tmp_path / "b", "--robot", "none.toml")
+    ended = run_command(*given, tmp_path / "b", "--robot", "none.toml", "--quiet")
     assert (ended.code, ended.out) == (1, "")
     assert "none.toml: no such file" in ended.err
+
+
+def test_predict_takes_what_walk_wrote(run_command, tmp_path):
+    walk, robot = tmp_path / "walk", tmp_path / "robot.toml"
+    robot.write_text("mass = 3.0\n[legs]\narc_deg = 200\n")
+    asked = ("walk", "--slip", "coulomb:0.4", "--duration", 3, "--robot", robot, "--out", walk)
+    assert run_command(*asked).code == 0
+    out = tmp_path / "predicted"
+    ended = run_command("predict", walk, "--model", "no-slip-simple", "--dt", "0.02", "--robot",
+                        robot, "--direction", "right", "--out", out)  # fmt: skip
+    assert (ended.code, ended.err) == (0, "")
+    for part in ("logged leg angles, model 'no-slip-simple'", "straight ahead", "path.csv"):
+        assert part in ended.out
+    settings = read_walk_manifest(out)["settings"]
+    assert (settings["model"], settings["dt"], settings["direction"]) == (
+        "no-slip-simple", 0.02, "right",
+    )  # fmt: skip
+    assert settings["robot"]["mass"] == 3.0
+    assert settings["robot"]["leg_arc"] == pytest.approx(np.radians(200))
+
+
+def test_a_leg_log_with_a_gap_is_one_line_with_its_place(run_command, tmp_path):
+    log = tmp_path / "legs.csv"
+    rows = [f"{t / 100},{','.join([str(t / 50)] * 6)}" for t in (*range(30), *range(60, 90))]
+    log.write_text("\n".join(["t,theta1,theta2,theta3,theta4,theta5,theta6", *rows]) + "\n")
+    ended = run_command("predict", log, "--slip", "thesis", "--out", tmp_path / "out")
+    assert ended.code == 1
+    assert ended.err.startswith(f"error: {log}, column 't', row 31 (line 32): time jumps from 0.29")
+
+
+@pytest.mark.parametrize(
+    ("address", "problem"),
+    [("here", "expected tcp://HOST:PORT"), ("tcp://8.8.8.8:8786", "outside of this machine")],
+)
+@pytest.mark.parametrize("name", ["predict none.csv", "walk --duration 2"])
+def test_a_scheduler_that_cannot_be_used_is_told_before_anything_is_read(
+    run_command, tmp_path, name, address, problem
+):
+    out = tmp_path / "out"
+    ended = run_command(
+        *name.split(), "--slip", "none.toml", "--draws", 2, "--out", out, "--scheduler", address
+    )
+    assert ended.code == 2
+    assert "--scheduler" in ended.err
+    assert problem in ended.err
+    assert not out.exists()

@@ -9,8 +9,6 @@ from contextlib import redirect_stdout
 import numpy as np
 import pytest
 
-from model.contact.sequence import contact_cycle, contact_states
-from model.contact.touchdown import Touchdown
 from model.frames import attitude
 from model.gait import tetrapod_reference, tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
@@ -22,10 +20,7 @@ from zebro_lab.main import app
 from zebro_lab.terminal import ending
 from zebro_lab.walk.contacts import (
     RULES,
-    WalkContacts,
     contacts_of,
-    write_contacts,
-    write_touchdowns,
 )
 from zebro_lab.walk.folder import CONTACTS, read_walk
 
@@ -206,37 +201,3 @@ def test_touchdowns_are_where_the_leg_comes_down_to_the_ground(on_ground):
         if row["asked_angle"]:  # else it came down twice in a turn without a touchdown asked for
             late.append(own - float(row["asked_angle"]))
     assert np.ptp(late) > np.radians(5.0)  # the ground decides
-
-
-def test_a_window_without_anything_to_draw_is_refused(run_command):
-    code, _, err = run_command("walk", "--slip", "thesis", "--duration", 1, "--window", "0:1")
-    assert code == 2
-    assert "give --figures or --contacts too" in err
-
-
-T = np.arange(600, dtype=float) * 0.01
-
-
-def test_states_are_written_with_the_cycle_that_they_begin_in(tmp_path):
-    contact = (T % 2 < 1)[:, None] == np.isin(np.arange(6), (0, 3, 4))
-    sequence = contact_states(T, contact)
-    cycle = contact_cycle(sequence, 2.0, tolerance=0.02)
-    write_contacts(tmp_path / "c.csv", WalkContacts("force", sequence, cycle, 2.0, 0.02, ()))
-    with (tmp_path / "c.csv").open(newline="") as text:
-        rows = list(csv.reader(text))
-    assert rows[0] == ["by", "contact", "start", "end", "duration", "cycle", "joined"]
-    assert rows[1] == ["force", "{1,4,5}", "0", "1", "1", "", "0"]
-    assert rows[2] == ["force", "{2,3,6}", "1", "2", "1", "1", "0"]
-    assert [row[5] for row in rows[1:]] == ["", "1", "1", "2", "2", "3"]
-
-
-def test_a_touchdown_that_there_was_not_is_empty(tmp_path):
-    nan = float("nan")
-    rows = [Touchdown(2, 1, 1.5, 0.5, 1.25, 0.75, nan, nan, 1),
-            Touchdown(2, 2, nan, nan, 3.25, 0.75, nan, nan, 0)]  # fmt: skip
-    write_touchdowns(tmp_path / "t.csv", rows)
-    assert (tmp_path / "t.csv").read_text().splitlines() == [
-        "leg,turn,t,angle,asked_t,asked_angle,late,liftoff_t,liftoff_angle,contacts",
-        "3,1,1.5,0.5,1.25,0.75,0.25,,,1",
-        "3,2,,,3.25,0.75,,,,0",
-    ]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Options of walk and predict: names that exist, steps short enough."""
 
+from pathlib import Path
 from typing import get_args
 
 import pytest
@@ -89,3 +90,9 @@ def test_a_step_that_skips_contacts_is_refused_with_the_longest_one(model, dt):
     ):
         ModelRequest("thesis", model, dt=dt)
     assert ModelRequest("thesis", model, dt=longest).dt == longest
+
+
+@pytest.mark.parametrize("model", [name for name in MODELS if name != "dynamics"])
+def test_models_of_level_ground_refuse_another(model):
+    with pytest.raises(SettingsError, match=f"--ground|'{model}'"):
+        ModelRequest("thesis", model, ground=Path("ground.toml"))

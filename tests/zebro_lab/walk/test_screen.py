@@ -68,9 +68,7 @@ def test_a_scheduled_gait_has_its_events_cycle_and_coupling_time(walked, tmp_pat
     ]  # fmt: skip
     console = Console(file=io.StringIO(), width=200)
     print_walk(console, done, tmp_path)
-    assert "cycle time (eigenvalue) 2.7 s; from any start events repeat after 2 cycles" in (
-        console.file.getvalue()
-    )
+    assert "2.7 s; from any start events repeat after 2 cycles" in console.file.getvalue()
     document = walk_document(done)["schedule"]
     assert (document["cycle_time_s"], document["coupling_time_cycles"]) == (pytest.approx(2.7), 2)
     assert document["liftoff_s"].tolist() == [1.9, 0.1, 1.0, 1.9, 0.1, 1.0]
@@ -94,29 +92,25 @@ def test_the_end_of_the_path_and_its_turn_are_told(walked, sign, side):
     )
     first, second, _ = summary_lines(summarise(mirrored))
     x, y = mirrored.position[-1, :2]
-    assert first == f"after 4 s at x {x:.4f} m, y {y:.4f} m, yaw {sign * np.degrees(0.6):.2f} deg"
+    for part in ("after 4 s", f"{x:.4f} m", f"{y:.4f} m", f"{sign * np.degrees(0.6):.2f} deg"):
+        assert part in first
     assert f"turning {side}, radius 0.5" in second
     straight = replace(walked, position=walked.position * [1, 0, 1],
                        orientation=0 * walked.orientation)  # fmt: skip
-    assert "straight ahead, yaw rate 0.000 deg/s" in summary_lines(summarise(straight))[1]
+    assert "straight ahead" in summary_lines(summarise(straight))[1]
 
 
 def test_assumed_slip_and_loads_below_the_tested_are_told(walked):
-    done = finished(walked)
-    mean, assumed = slip_lines(done, summarise(walked), support_of(walked))
-    assert mean.startswith("legs in contact slip at ")
-    assert "over 10 mm/s in" in mean
-    assert assumed == "slip: coulomb:0.4 is assumed, not measured"
+    mean, assumed = slip_lines(finished(walked), summarise(walked), support_of(walked))
+    assert "slip at" in mean
+    assert "coulomb:0.4 is assumed" in assumed
     light = replace(walked, normal_force=0.1 * walked.normal_force)
     *_, warning = slip_lines(finished(light, slip="thesis"), summarise(light), support_of(light))
-    assert warning == (
-        "WARNING: 100% of the contacts carry less than 2.13 N, the lowest load the slip law was "
-        "tested at"
-    )
+    assert warning.startswith("WARNING: 100% of the contacts carry less than 2.13 N")
 
 
 @pytest.mark.parametrize(("axis", "degrees"), [(0, 179.0), (1, -89.0)])
-def test_a_body_that_overturns_is_warned_of_before_the_results(walked, axis, degrees):
+def test_a_body_that_overturns_is_warned_of(walked, axis, degrees):
     orientation = walked.orientation.copy()
     orientation[-1, axis] = np.radians(degrees)
     assert tilt_lines(summarise(walked)) == []
@@ -125,39 +119,36 @@ def test_a_body_that_overturns_is_warned_of_before_the_results(walked, axis, deg
     assert f"{abs(degrees):.0f}" in warning
 
 
-def test_flight_body_contact_and_idle_legs_are_told():
-    def lines(**changes):
-        quiet = Support(0.0, 0.0, np.full(6, 0.5), np.zeros(6), np.zeros(6))
-        return support_lines(replace(quiet, **changes))
+@pytest.mark.parametrize(
+    ("changes", "parts"),
+    [
+        ({"body": float("nan")}, ()),
+        ({"flight": 0.009}, ()),
+        ({"flight": 0.226}, ("WARNING: nothing is on the ground", "22.6%")),
+        ({"body": 0.001}, ("WARNING: the body touches the ground", "0.1%")),
+        ({"unloaded": np.array([0.0, 0.2, 0.04, np.nan, 0.5, 0.0])},
+         ("leg 2 in 20%, leg 5 in 50%",)),
+    ],
+)  # fmt: skip
+def test_flight_body_contact_and_idle_legs_are_told(changes, parts):
+    quiet = Support(0.0, 0.0, np.full(6, 0.5), np.zeros(6), np.zeros(6))
+    lines = support_lines(replace(quiet, **changes))
+    assert len(lines) == bool(parts)
+    assert all(part in lines[0] for part in parts)
 
-    assert lines() == lines(body=float("nan")) == lines(flight=0.009) == []
-    (flight,) = lines(flight=0.226)
-    assert flight.startswith("WARNING: nothing is on the ground in 22.6% of the time")
-    (body,) = lines(body=0.001)
-    assert body.startswith("WARNING: the body touches the ground in 0.1% of the time")
-    (idle,) = lines(unloaded=np.array([0.0, 0.2, 0.04, np.nan, 0.5, 0.0]))
-    assert idle == "legs without load in their stance: leg 2 in 20%, leg 5 in 50% of it"
 
-
-def test_warnings_come_before_the_numbers_and_other_notes_after(walked, tmp_path):
-    doubted = replace(finished(walked), notes=("log: 3 samples", "WARNING: not trustworthy"))
+def test_warnings_are_first_notes_last_and_no_markup_and_files_are_listed(walked, tmp_path):
+    (tmp_path / "path.csv").touch()
+    (tmp_path / "mine.txt").touch()
+    doubted = replace(finished(walked), notes=("[bold]log: 3", "WARNING: not trustworthy"))
     console = Console(file=io.StringIO(), width=200)
     print_walk(console, doubted, tmp_path)
     text = console.file.getvalue()
-    assert text.index("WARNING") < text.index("after 4 s") < text.index("log: 3 samples")
+    assert text.startswith("SIMULATED walk: tripod, model 'dynamics', dt 0.01 s")
+    assert text.index("WARNING") < text.index("after 4 s") < text.index("[bold]log: 3")
+    assert "path.csv" in text
+    assert "mine.txt" not in text
     assert walk_document(doubted)["notes"][0] == "WARNING: not trustworthy"
-
-
-def test_everything_is_printed_and_notes_are_no_markup(walked, tmp_path):
-    (tmp_path / "path.csv").touch()
-    (tmp_path / "mine.txt").touch()
-    console = Console(file=io.StringIO(), width=120)
-    print_walk(console, finished(walked), tmp_path)
-    printed = console.file.getvalue()
-    assert "SIMULATED walk: tripod, model 'dynamics', dt 0.01 s" in printed
-    assert "[bold]a note" in printed
-    assert "path.csv" in printed
-    assert "mine.txt" not in printed
 
 
 def test_a_stopped_walk_is_one_line_and_exit_130(capsys):

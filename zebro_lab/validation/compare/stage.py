@@ -41,6 +41,11 @@ class Compared:
     comparison: Comparison
     differences: tuple[PathDifference, ...]
 
+    @property
+    def rows(self) -> list[tuple[Quantity, PathDifference]]:
+        """Each quantity with its difference."""
+        return list(zip(self.comparison.quantities, self.differences, strict=True))
+
 
 def compare(
     first: Path, second: Path, *, out: Path, form: PictureFormat = "png", seed: int = 1
@@ -74,10 +79,7 @@ def compare(
     comparison = comparer(first, second, names=(one, other), rng=rng)
     differences = (difference(*each.draws, rng=rng) for each in comparison.quantities)
     done = Compared(comparison, tuple(differences))
-    rows = [
-        _row(quantity, apart)
-        for quantity, apart in zip(comparison.quantities, done.differences, strict=True)
-    ]
+    rows = [_row(*row) for row in done.rows]
     content = {
         "of": comparison.kind,
         "source": comparison.source,

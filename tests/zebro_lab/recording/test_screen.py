@@ -77,18 +77,6 @@ def test_a_pipe_that_takes_no_line_is_told_at_the_end(monkeypatch):
         assert screen.close()
 
 
-def test_a_pipe_that_nobody_reads_any_more_is_not_waited_for(monkeypatch):
-    def broken(_):
-        raise BrokenPipeError
-
-    place = Console(file=SimpleNamespace(write=broken, flush=lambda: None))
-    monkeypatch.setattr(module, "LINE_EVERY", 0.0)
-    with record_screen(place) as screen:
-        with pytest.raises((OSError, SystemExit)):
-            screen.show(RecordStatus(Path("run"), 1.0, None, STREAMS))
-        assert screen.close()
-
-
 @pytest.mark.parametrize("number", SIGNALS)
 def test_the_first_signal_is_the_reason_and_the_second_is_obeyed(number):
     with record_screen(console(terminal=False)) as screen:
@@ -105,20 +93,8 @@ def test_handlers_are_restored_after_an_exception():
     assert [signal.getsignal(number) for number in SIGNALS] == before
 
 
-def test_a_key_is_a_wish_to_stop_and_others_are_not():
-    reading, writing = os.pipe()
-    with os.fdopen(reading) as keys, os.fdopen(writing, "wb", buffering=0) as typist:
-        screen = RecordScreen(console(terminal=True), None, keys)
-        assert screen.stop_reason() is None
-        typist.write(b"x")
-        assert screen.stop_reason() is None
-        typist.write(b"q")
-        assert screen.stop_reason() == "key"
-        assert not screen.signalled
-
-
-@pytest.mark.parametrize("typed", [b"xq", b"\xe4\xff q", b"\xc3", b"\xffq"])
-def test_no_byte_typed_hides_the_key_that_stops(typed):
+@pytest.mark.parametrize("typed", [b"", b"x", b"q", b"xq", b"\xe4\xff q", b"\xc3", b"\xffq"])
+def test_a_key_is_a_wish_to_stop_and_no_other_byte_hides_it(typed):
     reading, writing = os.pipe()
     with os.fdopen(reading) as keys, os.fdopen(writing, "wb", buffering=0) as typist:
         screen = RecordScreen(console(terminal=True), None, keys)
@@ -132,6 +108,7 @@ def test_no_byte_typed_hides_the_key_that_stops(typed):
         asker.join(1.0)
         assert not hung
         assert heard == [None if b"q" not in typed else "key"]
+        assert not screen.signalled
 
 
 def test_a_keyboard_that_is_gone_is_a_stop():
@@ -143,24 +120,17 @@ def test_a_keyboard_that_is_gone_is_a_stop():
         assert screen.signalled
 
 
-def test_a_lost_connection_is_a_stop_however_often_it_is_told(monkeypatch):
+@pytest.mark.parametrize("outlives", [False, True])
+def test_a_lost_connection_is_a_stop_unless_the_recording_is_told_to_outlive_it(outlives):
     heard = []
-    before = signal.signal(signal.SIGHUP, lambda *_: heard.append("unheard"))
+    handler = signal.SIG_IGN if outlives else lambda *_: heard.append("unheard")
+    before = signal.signal(signal.SIGHUP, handler)
     try:
         with record_screen(console(terminal=False)) as screen:
             for _ in range(3):
                 signal.raise_signal(signal.SIGHUP)
+            expected = (None, False) if outlives else ("SIGHUP", True)
+            assert (screen.stop_reason(), screen.signalled) == expected
             assert heard == []
-            assert (screen.stop_reason(), screen.signalled) == ("SIGHUP", True)
-    finally:
-        signal.signal(signal.SIGHUP, before)
-
-
-def test_a_recording_told_to_outlive_its_terminal_does():
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        with record_screen(console(terminal=False)) as screen:
-            signal.raise_signal(signal.SIGHUP)
-            assert (screen.stop_reason(), screen.signalled) == (None, False)
     finally:
         signal.signal(signal.SIGHUP, before)

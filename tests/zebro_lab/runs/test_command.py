@@ -8,15 +8,6 @@ from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.runs.manifest import read_manifest
 
 
-def test_a_second_exclusion_keeps_the_first_reason(tmp_path, run_command):
-    folder = make_run(tmp_path)
-    for why in ("belt slipped", "wrong disc, too"):
-        assert run_command("exclude", folder, "--why", why).code == 0
-    listed = run_command("runs", tmp_path).out
-    assert "belt slipped" in (folder / "run.json").read_text()
-    assert "excluded (wrong disc, too; before: belt slipped)" in listed
-
-
 def test_an_exclusion_can_be_undone_and_stays_on_record(tmp_path, run_command):
     folder = make_run(tmp_path)
     assert run_command("exclude", folder, "--why", "belt slipped").code == 0

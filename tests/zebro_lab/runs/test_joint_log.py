@@ -157,19 +157,11 @@ def test_topics_that_share_a_leg_or_lack_one_are_not_mixed(tmp_path):
             read_joint_log(write(tmp_path / "bag.mcap", *states))
 
 
-DYNAMIC = """
+DYNAMIC = f"""
 std_msgs/Header header
 string[] joint_names
 control_msgs/InterfaceValue[] interface_values
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
+{HEADER}{"=" * 80}
 MSG: control_msgs/InterfaceValue
 string[] interface_names
 float64[] values

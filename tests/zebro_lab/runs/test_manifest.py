@@ -28,35 +28,6 @@ def run_json(folder: Path, text: str) -> Path:
     return folder
 
 
-@pytest.mark.parametrize(
-    "start", ["yesterday", "", "2026-01-01", "2026-01-01T00:00:00", "9999-99-99T99:99:99+00:00"]
-)
-def test_a_start_that_is_no_moment_with_a_time_zone_is_refused(start, tmp_path):
-    assert "'start'" in refusal(
-        read_manifest, run_json(tmp_path, json.dumps(RUN | {"start": start}))
-    )
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"stop": "tomorrow"},
-        {"streams": {"/a/raw": "many"}},
-        {"streams": {"/a/raw": [1]}},
-        {"excluded": {"why": ["x"]}},
-        {"constants": {"radius_leg": "wide"}},
-        {"profiles": {"legs": 3}},
-        {"counters": {"legs": 3}},
-        {"clocks": {"legs": {"offset": "x"}}},
-    ],
-    ids=lambda change: next(iter(change)),
-)
-def test_a_value_of_another_type_in_run_json_is_refused(change, tmp_path):
-    assert f"'{next(iter(change))}'" in refusal(
-        read_manifest, run_json(tmp_path, json.dumps(RUN | change))
-    )
-
-
 def test_a_manifest_is_read_back_as_it_was_written(tmp_path):
     written = RunManifest(
         kind="walk", label="caf\udce9", material="x", operator="ü", source="sim:zebro",
@@ -71,18 +42,28 @@ def test_a_manifest_is_read_back_as_it_was_written(tmp_path):
     assert "truth" not in (tmp_path / "run.json").read_text()
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"schema_version": 2}, "'schema_version' is 2, expected 1"),
-        ({"schema_version": None}, "'schema_version' is null"),
-        ({"operator": 3}, "'operator' is 3: "),
-        ({"seed": True}, "'seed' is true: "),
-        ({"operator": None}, "'operator' is null: "),
-        ({"kind": "slip_rig"}, "'kind' is 'slip_rig'; did you mean 'slip-rig'"),
-        ({"exclusions": [{"did": "excluded"}]}, "an entry of 'exclusions' lacks 'did' or 'why'"),
-    ],
-)
+NO_MOMENTS = ("yesterday", "", "2026-01-01", "2026-01-01T00:00:00", "9999-99-99T99:99:99+00:00")
+FAULTS = [
+    *(({"start": start}, "'start'") for start in NO_MOMENTS),
+    ({"stop": "tomorrow"}, "'stop'"),
+    ({"streams": {"/a/raw": "many"}}, "'streams'"),
+    ({"streams": {"/a/raw": [1]}}, "'streams'"),
+    ({"excluded": {"why": ["x"]}}, "'excluded'"),
+    ({"constants": {"radius_leg": "wide"}}, "'constants'"),
+    ({"profiles": {"legs": 3}}, "'profiles'"),
+    ({"counters": {"legs": 3}}, "'counters'"),
+    ({"clocks": {"legs": {"offset": "x"}}}, "'clocks'"),
+    ({"schema_version": 2}, "'schema_version' is 2, expected 1"),
+    ({"schema_version": None}, "'schema_version' is null"),
+    ({"operator": 3}, "'operator' is 3: "),
+    ({"seed": True}, "'seed' is true: "),
+    ({"operator": None}, "'operator' is null: "),
+    ({"kind": "slip_rig"}, "'kind' is 'slip_rig'; did you mean 'slip-rig'"),
+    ({"exclusions": [{"did": "excluded"}]}, "an entry of 'exclusions' lacks 'did' or 'why'"),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), FAULTS)
 def test_a_manifest_of_another_form_is_named(change, message, tmp_path):
     found = refusal(read_manifest, run_json(tmp_path, json.dumps(RUN | change)))
     assert found.startswith(str(tmp_path / "run.json"))

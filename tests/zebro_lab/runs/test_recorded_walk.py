@@ -95,20 +95,16 @@ def test_a_damaged_profile_of_an_imu_is_named(recorded, tmp_path):
         read_recorded_tilt(folder)
 
 
-def with_a_second(recorded, folder, profile="imu2"):
+def with_a_second(recorded, folder, profile):
     """Copy a run so that its IMU is one of two."""
     shutil.copytree(recorded, folder)
     shutil.copy(folder / "profiles" / "imu.toml", folder / "profiles" / f"{profile}.toml")
     return folder
 
 
-def test_of_two_imus_the_one_that_is_used_and_the_other_are_named(recorded, tmp_path):
-    tilt = read_recorded_tilt(with_a_second(recorded, tmp_path / "two"))
-    assert tilt.notes == ("roll and pitch are those of imu; not used: imu2",)
-    assert read_recorded_tilt(recorded).notes == ()
-
-
-def test_an_imu_that_sent_nothing_is_passed_over(recorded, tmp_path):
-    tilt = read_recorded_tilt(with_a_second(recorded, tmp_path / "two", "imu0"))
+@pytest.mark.parametrize("other", ["imu2", "imu0"])  # neither has sent anything
+def test_of_two_imus_the_one_that_is_used_and_the_other_are_named(recorded, tmp_path, other):
+    tilt = read_recorded_tilt(with_a_second(recorded, tmp_path / "two", other))
     assert [file.name for file in tilt.files] == ["log.mcap", "imu.toml"]
-    assert tilt.notes == ("roll and pitch are those of imu; not used: imu0",)
+    assert tilt.notes == (f"roll and pitch are those of imu; not used: {other}",)
+    assert read_recorded_tilt(recorded).notes == ()

@@ -53,10 +53,8 @@ def started(
         command: Its name.
         options: Options of `subprocess.Popen`.
     """
-    process = subprocess.Popen(
-        [Path(COMMAND).with_name(command), *map(str, arguments)],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options,
-    )  # fmt: skip
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, **options}
+    process = subprocess.Popen([Path(COMMAND).with_name(command), *map(str, arguments)], **options)
     try:
         yield process
     except AssertionError:  # show what it printed

@@ -30,16 +30,6 @@ def spoil_records(twin, monkeypatch, spoil, *, after=0):
     monkeypatch.setattr(twin.board, "_encode", encode)
 
 
-def test_forces_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypatch):
-    twin = lab["twin"]()
-    spoil_records(
-        twin, monkeypatch, lambda number, c: (number, (400_000, 100_000, *c[2:])), after=2000
-    )
-    with pytest.raises(RigError, match=r"forces .* stayed the same.*; the limit is 0\.25 s"):
-        twin.run()
-    assert twin.at_rest()
-
-
 def test_speeds_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypatch):
     twin = lab["twin"]()
     frozen = []
@@ -60,31 +50,27 @@ def test_speeds_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypat
     assert twin.at_rest()
 
 
-@pytest.mark.parametrize("numbering", ["restarting", "random"])
-def test_records_that_restart_again_and_again_or_are_numbered_at_random_stop(
-    lab, monkeypatch, numbering
-):
+RNG = np.random.default_rng(0)
+SPOILED = {
+    "frozen": (
+        lambda number, c: (number, (400_000, 100_000, *c[2:])),
+        r"forces .* stayed the same.*; the limit is 0\.25 s"),
+    "restarting": (  # 20 times a second at 1 kHz
+        lambda number, c: (1_000_000 * (number // 50) + number % 50, c),
+        r"stream 'board'.* numbering"),
+    "numbered at random": (
+        lambda number, c: (int(RNG.integers(1 << 32)), c), r"stream 'board'.* numbering"),
+    "two of three beyond the limit": (
+        lambda number, c: (number, c if number % 3 == 0 else ((1 << 31) - 1, *c[1:])),
+        r"normal force is .* N; its limit is 25 N"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("spoil", "message"), SPOILED.values(), ids=SPOILED)
+def test_records_that_cannot_be_believed_stop_the_discs(lab, monkeypatch, spoil, message):
     twin = lab["twin"]()
-    rng = np.random.default_rng(0)
-
-    def number(true, counts):
-        anew = 1_000_000 * (true // 50) + true % 50  # 20 times a second at 1 kHz
-        return (anew if numbering == "restarting" else int(rng.integers(1 << 32))), counts
-
-    spoil_records(twin, monkeypatch, number, after=2000)
-    with pytest.raises(RigError, match=r"stream 'board'.* numbering"):
-        twin.run()
-    assert twin.at_rest()
-
-
-def test_a_force_beyond_its_limit_in_two_samples_of_three_stops(lab, monkeypatch):
-    twin = lab["twin"]()
-
-    def saturate(number, counts):
-        return number, (counts if number % 3 == 0 else ((1 << 31) - 1, *counts[1:]))
-
-    spoil_records(twin, monkeypatch, saturate, after=2000)
-    with pytest.raises(RigError, match=r"normal force is .* N; its limit is 25 N"):
+    spoil_records(twin, monkeypatch, spoil, after=2000)
+    with pytest.raises(RigError, match=message):
         twin.run()
     assert twin.at_rest()
 

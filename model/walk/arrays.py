@@ -87,7 +87,6 @@ class Work(NamedTuple):
         w: Guess of the final angular velocity, shape (3,) [rad/s].
         force: Force on one contact at zero velocity of the body, shape (3,) [N].
         point: Velocity of one material contact point, shape (3,) [m/s].
-        P: Decrease of one contact's force per velocity of the body there, shape (3, 3) [N s/m].
         inertia: Inertia in the world frame, shape (3, 3) [kg m2].
         gyro: Gyroscopic moment, shape (3,) [N m].
         gain: Change of v and w over the step before, by its length, shape (6,) [m/s2, rad/s2].
@@ -110,7 +109,6 @@ class Work(NamedTuple):
     w: Array
     force: Array
     point: Array
-    P: Array
     inertia: Array
     gyro: Array
     gain: Array
@@ -133,7 +131,7 @@ def new_work():
         np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.zeros((n, 3)),
         np.zeros((n, 2)), np.empty(n), np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n),
         np.empty((3, 3)), np.empty((6, 6)), np.empty(6), np.empty(3), np.empty(3), np.empty(3),
-        np.empty(3), np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.zeros(6),
+        np.empty(3), np.empty((3, 3)), np.empty(3), np.zeros(6),
     )  # fmt: skip
 
 

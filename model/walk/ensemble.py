@@ -22,7 +22,7 @@ from model.walk.dynamics import (
     step_times,
 )
 from model.walk.ground import FLAT, Ground, is_level
-from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
+from model.walk.quaternion import roll_pitch_yaw
 from model.walk.stride import repeated_strides, strides_until_alike
 from model.walk.traction import TractionTable
 
@@ -220,5 +220,5 @@ def _strides(
             draw.robot, draw.table, state, theta, options, ground=draw.ground,
             began=stride * steps * options.dt,
         )  # fmt: skip
-        roll_pitch, yaw = roll_pitch_yaw(pose[:, 3:])[:, :2], unwrapped_yaw(pose[:, 3:])
-        yield np.column_stack([pose[:, :2], yaw, roll_pitch])
+        roll, pitch, yaw = roll_pitch_yaw(pose[:, 3:]).T
+        yield np.column_stack([pose[:, :2], np.unwrap(yaw), roll, pitch])

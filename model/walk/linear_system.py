@@ -31,45 +31,86 @@ def start_system(mass, inertia, gyro, state, dt, A, b):
 
 
 @inlined
-def add_contact(A, b, dt, place, P, force):
-    """Add a contact to the step's linear system: dt·J'PJ to A, lower half, and dt·J'·force to b.
+def add_damping_along(A, c, place, n):
+    r"""Add a damping of one contact along one direction to a step's matrix, lower half.
 
-    J = [1, -place×] is the contact Jacobian. It takes velocity and angular velocity of the body to
-    the velocity at `place`.
+    With the contact Jacobian :math:`J = [1, -place\times]`, which takes velocity and angular
+    velocity of the body to the velocity at `place`, it adds :math:`c\, J^T n\, n^T J`.
 
     Args:
         A: Matrix of the step, updated, shape (6, 6).
+        c: Damping times the step's length [kg].
+        place: Contact from the body's centre, world frame, shape (3,) [m].
+        n: The direction, shape (3,) [-].
+    """
+    x, y, z = place
+    n0, n1, n2 = n[0], n[1], n[2]
+    m0, m1, m2 = y * n2 - z * n1, z * n0 - x * n2, x * n1 - y * n0  # place × n
+    A[0, 0] += c * n0 * n0
+    A[1, 0] += c * n1 * n0
+    A[1, 1] += c * n1 * n1
+    A[2, 0] += c * n2 * n0
+    A[2, 1] += c * n2 * n1
+    A[2, 2] += c * n2 * n2
+    A[3, 0] += c * m0 * n0
+    A[3, 1] += c * m0 * n1
+    A[3, 2] += c * m0 * n2
+    A[3, 3] += c * m0 * m0
+    A[4, 0] += c * m1 * n0
+    A[4, 1] += c * m1 * n1
+    A[4, 2] += c * m1 * n2
+    A[4, 3] += c * m1 * m0
+    A[4, 4] += c * m1 * m1
+    A[5, 0] += c * m2 * n0
+    A[5, 1] += c * m2 * n1
+    A[5, 2] += c * m2 * n2
+    A[5, 3] += c * m2 * m0
+    A[5, 4] += c * m2 * m1
+    A[5, 5] += c * m2 * m2
+
+
+@inlined
+def add_damping(A, c, place):
+    r"""Add a damping of one contact alike in all directions, :math:`c\, J^T J`, to the matrix.
+
+    Args:
+        A: Matrix of the step, lower half updated, shape (6, 6).
+        c: Damping times the step's length [kg].
+        place: Contact from the body's centre, world frame, shape (3,) [m].
+    """
+    x, y, z = place
+    for i in range(3):
+        A[i, i] += c
+    A[3, 1] -= c * z
+    A[3, 2] += c * y
+    A[4, 0] += c * z
+    A[4, 2] -= c * x
+    A[5, 0] -= c * y
+    A[5, 1] += c * x
+    A[3, 3] += c * (y * y + z * z)
+    A[4, 3] -= c * x * y
+    A[4, 4] += c * (x * x + z * z)
+    A[5, 3] -= c * x * z
+    A[5, 4] -= c * y * z
+    A[5, 5] += c * (x * x + y * y)
+
+
+@inlined
+def add_force(b, dt, place, force):
+    r"""Add the impulse of a force at a contact, :math:`\Delta t\, J^T F`, to a step's right side.
+
+    Args:
         b: Right side of the step, updated, shape (6,).
         dt: Length of the step [s].
         place: Contact from the body's centre, world frame, shape (3,) [m].
-        P: Symmetric damping matrix of the contact, shape (3, 3) [N s/m].
         force: Force of the contact at zero velocity of the body, shape (3,) [N].
     """
     x, y, z = place
-    for j in range(3):
-        b[j] += dt * force[j]
-        p0, p1, p2 = P[0, j], P[1, j], P[2, j]
-        # Column j of place× P.
-        q0, q1, q2 = y * p2 - z * p1, z * p0 - x * p2, x * p1 - y * p0
-        for i in range(j, 3):
-            A[i, j] += dt * P[i, j]
-        A[3, j] += dt * q0
-        A[4, j] += dt * q1
-        A[5, j] += dt * q2
+    for i in range(3):
+        b[i] += dt * force[i]
     b[3] += dt * (y * force[2] - z * force[1])
     b[4] += dt * (z * force[0] - x * force[2])
     b[5] += dt * (x * force[1] - y * force[0])
-    # place× P (place×)', lower half, from the rows of place× P.
-    q1 = y * P[2, 1] - z * P[1, 1]
-    q2 = y * P[2, 2] - z * P[1, 2]
-    A[3, 3] += dt * (y * q2 - z * q1)
-    q0, q1, q2 = z * P[0, 0] - x * P[2, 0], z * P[0, 1] - x * P[2, 1], z * P[0, 2] - x * P[2, 2]
-    A[4, 3] += dt * (y * q2 - z * q1)
-    A[4, 4] += dt * (z * q0 - x * q2)
-    q0, q1, q2 = x * P[1, 0] - y * P[0, 0], x * P[1, 1] - y * P[0, 1], x * P[1, 2] - y * P[0, 2]
-    A[5, 3] += dt * (y * q2 - z * q1)
-    A[5, 4] += dt * (z * q0 - x * q2)
-    A[5, 5] += dt * (x * q1 - y * q0)
 
 
 @inlined

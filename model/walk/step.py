@@ -30,7 +30,13 @@ from model.robot import N_LEGS
 from model.walk.anisotropy import effective_size, find_across, sideways
 from model.walk.arrays import N_CONTACTS
 from model.walk.contact_points import find_contacts, point_velocity
-from model.walk.linear_system import add_contact, solve_positive, start_system
+from model.walk.linear_system import (
+    add_damping,
+    add_damping_along,
+    add_force,
+    solve_positive,
+    start_system,
+)
 from model.walk.quaternion import rotate, rotation_matrix
 from model.walk.traction_lookup import traction_secant
 
@@ -149,7 +155,7 @@ def add_contact_forces(table, contacts, work, n, speed, dt):
         Sum over contacts of traction over slip velocity [N s/m].
     """
     k, c, held = contacts.stiffness, contact_damping(contacts, dt), 0.0
-    v, w, P, force, point = work.v, work.w, work.P, work.force, work.point
+    v, w, force, point = work.v, work.w, work.force, work.point
     for i in range(n):
         point_velocity(v, w, work.place[i], work.velocity[i], point)
         m0, m1, m2 = work.normal[i, 0], work.normal[i, 1], work.normal[i, 2]
@@ -169,20 +175,18 @@ def add_contact_forces(table, contacts, work, n, speed, dt):
         G = traction_secant(table, work.kind[i], load, slip, flow)
         work.secant[i] = G
         held += G * (1.0 + max(lateral[0], 0.0))
-        push = -k * work.gap[i] - c * u_n
+        push, place = -k * work.gap[i] - c * u_n, work.place[i]
         for a in range(3):
             m_a = work.normal[i, a]
             force[a] = push * m_a - G * (work.velocity[i, a] - u_n * m_a)
-            for d in range(3):
-                P[a, d] = (k * dt + c - G) * m_a * work.normal[i, d]
-            P[a, a] += G
         if lateral[0] != 0.0:
             more = G * sideways(lateral, across, work.velocity[i])
             for a in range(3):
                 force[a] -= more * across[a]
-                for d in range(3):
-                    P[a, d] += G * lateral[0] * across[a] * across[d]
-        add_contact(work.A, work.b, dt, work.place[i], P, force)
+            add_damping_along(work.A, dt * G * lateral[0], place, across)
+        add_damping_along(work.A, dt * (k * dt + c - G), place, work.normal[i])
+        add_damping(work.A, dt * G, place)
+        add_force(work.b, dt, place, force)
     return held
 
 

@@ -5,19 +5,28 @@ from hypothesis import strategies as st
 
 from model.robot import GRAVITY
 from model.walk.arrays import new_state
-from model.walk.linear_system import add_contact, solve_positive, start_system
+from model.walk.linear_system import (
+    add_damping,
+    add_damping_along,
+    add_force,
+    solve_positive,
+    start_system,
+)
 
 
 @given(st.integers(0, 2**32 - 1))
 def test_a_contact_adds_its_jacobians_square(seed):
     rng = np.random.default_rng(seed)
-    place, force, root = rng.normal(size=3), rng.normal(size=3), rng.normal(size=(3, 3))
-    P = root @ root.T
-    A, b = np.zeros((6, 6)), np.zeros(6)
-    add_contact(A, b, 0.1, place, P, force)
+    place, force, direction = rng.normal(size=(3, 3))
     x, y, z = place
     J = np.hstack([np.eye(3), -np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])])
-    np.testing.assert_allclose(np.tril(A), np.tril(0.1 * J.T @ P @ J), atol=1e-12)
+    alike, along, b = np.zeros((6, 6)), np.zeros((6, 6)), np.zeros(6)
+    add_damping(alike, 0.3, place)
+    add_damping_along(along, -0.2, place, direction)
+    add_force(b, 0.1, place, force)
+    np.testing.assert_allclose(alike, np.tril(0.3 * J.T @ J), atol=1e-12)
+    square = J.T @ np.outer(direction, direction) @ J
+    np.testing.assert_allclose(along, np.tril(-0.2 * square), atol=1e-12)
     np.testing.assert_allclose(b, 0.1 * J.T @ force, atol=1e-12)
 
 

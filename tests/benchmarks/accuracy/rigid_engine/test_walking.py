@@ -32,15 +32,6 @@ def test_a_robot_on_ice_slides_down_a_slope_as_fast_as_gravity_lets_it():
     assert path.position[-1, 0] == pytest.approx(-fall, rel=0.02)
 
 
-def test_a_patch_has_its_own_friction():
-    from benchmarks.accuracy.rigid_engine.arcs import FLAT
-
-    heights = FLAT._replace(rise_x=np.tan(np.radians(10.0)))
-    everywhere = np.array([[-5.0, 5.0, -5.0, 5.0, 0.7]])
-    held = stand(Friction(0.0, 1e-3, everywhere), heights=heights)
-    assert abs(held.position[-1, 0]) < 1e-3
-
-
 def test_a_robot_put_on_rough_ground_rests_there_before_it_walks():
     case = rough(10)[-1]
     heights, _ = engine_ground(case)

@@ -63,17 +63,12 @@ def test_poses_outside_the_predicted_time_are_left_out_and_noted():
     found = judge(PATH.delayed(2.0))
     assert found.rows[0].errors.poses == 5
     assert found.notes[2].startswith("4 tracked poses lie outside the predicted time")
-    note = judge(PATH.delayed(0.5)).notes[2]
-    assert note == "1 tracked pose lies outside the predicted time and is not scored"
+    assert judge(PATH.delayed(0.5)).notes[2].startswith("1 tracked pose lies outside")
+    warning = judge(PATH.delayed(2.5)).notes[2]  # most of the track
+    assert warning.startswith("WARNING")
+    assert "4 of 9 tracked poses" in warning
     with pytest.raises(DataError, match="start from it: 1; expected two or more"):
         judge(PATH.delayed(3.2), anchor=True)
-
-
-def test_a_prediction_that_lasts_for_less_than_half_of_the_track_is_warned_of():
-    found = judge(PATH.delayed(2.5))
-    assert found.rows[0].errors.poses == 4
-    assert found.notes[2].startswith("WARNING: the whole walk is not testable")
-    assert "only 4 of 9 tracked poses lie within the predicted time, 0 to 4 s" in found.notes[2]
 
 
 def test_a_track_without_headings_cannot_start_a_prediction():
@@ -95,13 +90,11 @@ def test_what_cannot_be_judged_is_told(draws, heading, told):
     track = Poses(T, PATH.position, np.full_like(T, heading))
     found = judge(track, draws=draws)
     assert bool(found.rows[0].consistency) == (draws >= 50)
-    lines = [note for note in found.notes if "not testable" in note and "clock" not in note]
+    clock, *lines = sorted(
+        (note for note in found.notes if "not testable" in note), key=lambda x: "clock" not in x
+    )
+    assert "clock" in clock  # an even motion determines none
     assert [line[: len(start)] for line, start in zip(lines, told, strict=True)] == told
-
-
-def test_a_motion_that_determines_no_clock_is_told():
-    (note,) = (note for note in judge(Poses(T, PATH.position, PATH.yaw)).notes if "clock" in note)
-    assert "not testable" in note
 
 
 @pytest.mark.parametrize("late", [0.0, 2.0])
@@ -147,8 +140,5 @@ def test_a_track_that_turns_to_the_other_side_is_asked_about(monkeypatch, left, 
 def test_seconds_without_poses_are_told():
     t = np.delete(np.arange(0, 4.001, 0.05), slice(20, 40))
     found = judge(Poses(t, np.column_stack([0.1 * t, 0 * t]), 0 * t))
-    assert (
-        "the track has 1 gap, the longest of 1.05 s: 1 of 4 s are without poses, and not scored"
-        in found.notes
-    )
+    assert any("1 gap, the longest of 1.05 s: 1 of 4 s" in note for note in found.notes)
     assert not any("gap" in note for note in judge(PATH).notes)

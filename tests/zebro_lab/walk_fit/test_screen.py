@@ -5,7 +5,6 @@ import io
 from pathlib import Path
 
 import numpy as np
-import pytest
 from rich.console import Console
 
 from model.walk_fit.prior import NAMES, WrongLeg
@@ -42,19 +41,13 @@ def test_every_parameter_is_told_before_and_after_in_its_unit():
     assert "by +5.0 ± 0.0 deg: probability 100%" in text
 
 
-def test_misfits_effective_draws_and_the_folder_are_told():
+def test_misfits_draws_source_folder_and_notes_without_markup_are_told():
     text = printed()
-    assert "(about 1 or less is expected): one 0.90, two 1.10" in text
-    assert "40 effective draws" in text
-    assert "A single walk cannot be predicted from others" in text
+    for part in ("one 0.90, two 1.10", "40 effective draws", "A single walk cannot", "SIMULATED: ",
+                 "[bold]note"):  # fmt: skip
+        assert part in text
     assert text.rstrip().endswith("written to out/walks")
-
-
-@pytest.mark.parametrize(("source", "simulated"), [("real", False), ("real, sim:x", True)])
-def test_simulated_data_are_told_and_notes_are_no_markup(source, simulated):
-    text = printed(source=source)
-    assert ("SIMULATED: " in text) == simulated
-    assert "[bold]note" in text
+    assert "SIMULATED" not in printed(source="real")
 
 
 def test_walks_left_out_have_their_errors_beside_the_best_baselines():

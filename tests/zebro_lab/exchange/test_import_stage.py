@@ -59,29 +59,6 @@ def test_standard_deviations_that_are_stated_are_those_of_the_track(files, tmp_p
     assert not any("exact" in note or "--track-sd" in note for note in imported.notes)
 
 
-def test_columns_of_a_folder_above_hold_for_every_kind_and_are_named(files, tmp_path):
-    below = files / "deep" / "below"
-    below.mkdir(parents=True)
-    for name in ("legs.csv", "imu.csv", "track.csv"):
-        (files / name).rename(below / name)
-    (files / "deep" / "columns.toml").write_text('[rig.columns.t]\nname = "x"\n')
-    folder, notes = everything_below(files, below, tmp_path)
-    assert read_leg_log(folder).source == "sim:other-lab"
-    turned = read_leg_log(folder).reference.theta[:, 1]
-    np.testing.assert_allclose(np.diff(turned), np.diff(THETA[:, 1]), atol=1e-9)
-    for kind in ("legs", "imu", "track"):
-        line = f"{kind}.csv: columns are those of {files / 'columns.toml'}, the nearest for {kind}"
-        assert any(note.startswith(line) for note in notes)
-
-
-def everything_below(files, below, tmp_path):
-    imported = taken(
-        tmp_path, legs=below / "legs.csv", imu=below / "imu.csv", track=below / "track.csv",
-        robot=files / "robot.toml",
-    )  # fmt: skip
-    return imported.folders[0], imported.notes
-
-
 def test_suspected_leg_angles_are_warned_of_and_kept_with_the_run(tmp_path):
     theta = tripod().angles(T12) * [1, -1, 1, -1, 1, -1]
     table = {"t": T12} | {f"theta{leg}": theta[:, leg - 1] for leg in range(1, 7)}
@@ -224,15 +201,6 @@ def test_times_beyond_what_a_log_can_hold_are_refused(tmp_path, name, first):
     assert not list(tmp_path.glob("data/*"))
 
 
-def test_a_log_without_leg_angles_is_refused(files, tmp_path):
-    (files / "noise.mcap").write_bytes(b"\x00" * 500)
-    with pytest.raises(DataError, match="not an MCAP"):
-        taken(tmp_path, legs=files / "noise.mcap")
-    folder, _ = everything(files, tmp_path)
-    with pytest.raises(DataError, match=r"holds no joint positions.*the run's folder"):
-        taken(tmp_path, legs=folder / "log.mcap")
-
-
 WALKED = tripod(1.2).angles(T12)
 SEEN = T12[::10]
 PATH = np.column_stack([0.05 * SEEN, 0.01 * SEEN**2, 0.2 * SEEN])
@@ -274,19 +242,6 @@ def test_a_choice_among_topics_is_asked_for_and_must_be_one(bag, tmp_path):
     with pytest.raises(SettingsError, match=r"--topic: found /o, but nothing is read from it"):
         taken(tmp_path, legs=bag, topic=("/o",))
     assert not (tmp_path / "data").exists()
-
-
-def test_joints_are_named_in_an_option(bag, tmp_path):
-    names = [f"m{number}" for number in range(6)]
-    other = write_bag(tmp_path / "other", joints(T12, WALKED[:, ORDER], names=names))
-    with pytest.raises(DataError, match=r"has the joints m0, m1, m2, m3, m4, m5 on topic /j"):
-        read_leg_log(other)
-    listed = ",".join(f"m{ORDER.index(leg)}" for leg in range(6))
-    (folder,) = taken(tmp_path, legs=other, joints=listed).folders
-    log = read_leg_log(folder).reference
-    np.testing.assert_allclose(log.theta - log.theta[0], WALKED - WALKED[0], atol=1e-9)
-    with pytest.raises(SettingsError, match=r"--joints: found 5 different names"):
-        taken(tmp_path, legs=other, joints="m0,m1,m2,m3,m4")
 
 
 def test_degrees_in_a_bag_are_told_by_columns_toml_and_suspected_without(tmp_path):

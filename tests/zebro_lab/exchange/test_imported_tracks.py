@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from support.foreign_trajectories import drive, euroc, kitti, tum, written
-from support.imported_files import T, everything, taken
+from support.imported_files import T, taken
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.track.file import read_track
@@ -15,22 +15,6 @@ from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
 
 def kitti_of(t, position, rotation):
     return kitti(position, rotation)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("1 2 3\n", "has 3 numbers a line"),
-        ("0 0 0 0 0 0 0 x\n", "a line of words"),
-        ("0 0 0 0 0 0 0 0\n", "length 0"),
-        ("# nothing\n", "has no pose"),
-        ("0 0 0 0 0 0 0 1\n" * 3, "has 1 pose; expected 3"),
-    ],
-)
-def test_a_trajectory_of_another_form_is_refused(files, tmp_path, text, message):
-    (files / "path.tum").write_text(text)
-    with pytest.raises(DataError, match=message):
-        everything(files, tmp_path, "path.tum")
 
 
 @pytest.mark.parametrize(

@@ -3,37 +3,24 @@
 
 import json
 import os
-from datetime import UTC, datetime
 from pathlib import Path
 
-import numpy as np
 import pytest
 from PIL import Image
 
-from support.table_runs import slip_rig_run
+from support.written_runs import START, make_run
 from support.written_tracks import content
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
 from zebro_lab.runs.plot_stage import plot_run
-from zebro_lab.runs.slip_rig_table import SlipRigTable
 from zebro_lab.track.annotate_stage import draw_grid
-
-START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
 
 
 @pytest.fixture
 def run(tmp_path) -> Path:
     """Return a run folder of the slip rig."""
-    rng, n = np.random.default_rng(1), 200
-    table = SlipRigTable(
-        np.arange(n) * 1e-3, 12 + rng.normal(size=n) / 10, 2 + rng.normal(size=n) / 10,
-        6 + rng.normal(size=n) / 10, rng.normal(size=n),
-    )  # fmt: skip
-    return slip_rig_run(
-        tmp_path / "data", table, label="sweep", material="POM", operator="a", source="real",
-        start=START, radius_leg=0.035, radius_ground=0.12,
-    )  # fmt: skip
+    return make_run(tmp_path / "data")
 
 
 @pytest.fixture

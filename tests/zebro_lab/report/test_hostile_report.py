@@ -6,6 +6,7 @@ The page is also loaded in Chromium where there is one: nothing else knows for s
 
 import base64
 import json
+import re
 import shutil
 import subprocess
 from datetime import UTC, datetime
@@ -15,7 +16,7 @@ import pytest
 from PIL import Image
 
 from support.commands import COMMAND
-from support.report_pages import write_json
+from support.report_pages import change_manifest, write_json
 from zebro_lab.files.errors import DataError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
@@ -35,35 +36,18 @@ HARM = (
     "a\nb\rc\u2028d",
 )
 ALL = " ".join(HARM)
-SLIP = """
-schema = 1
-slip_definition = {harm}
-source = {harm}
-[verdict]
-headline = {harm}
-next_steps = [{harm}]
-[law]
-name = {harm}
-[tested]
-samples = 620
-runs = 24
-normal_force = [2.1, 12.7]
-slip_ratio = [-0.01, 0.9]
-[parameters.{harm}]
-symbol = {harm}
-unit = {harm}
-median = 1.5
-q05 = 1.4
-q95 = 1.6
-"""
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 
 
-def part(folder: Path, kind: str, pictures: list[str] = [], **content: object) -> None:  # noqa: B006
-    write_json(folder / "manifest.json", {
-        "schema": 1, "kind": kind, "source": ALL, "settings": {}, "inputs": {ALL: ALL},
-        "outputs": dict.fromkeys(pictures, ALL), "software": {ALL: ALL}, "notes": [ALL], **content,
-    })  # fmt: skip
+KEPT = ("kind", "schema")
+"""Keys of manifests whose values are compared: with others the page would not be made at all."""
+
+
+def spoiled(value: object, key: str = "") -> object:
+    """Return the content of a manifest with harm in place of every text."""
+    if isinstance(value, dict):
+        return {name: spoiled(each, name) for name, each in value.items()}
+    return ALL if isinstance(value, str) and key not in KEPT else value
 
 
 @pytest.fixture
@@ -74,30 +58,26 @@ def secret(tmp_path) -> bytes:
 
 
 @pytest.fixture
-def run(tmp_path, secret) -> Path:
+def run(walk, tmp_path, secret) -> Path:
     """Return a folder of a run with harm in every text, and a calibration beside it."""
-    folder = tmp_path / "run <b>&amp; ${HOME}"
-    terms = ("label", "material", "operator", "exit_status", "source", "robot", "stop", "start")
-    write_json(folder / "run.json", {
-        "kind": "walk", **dict.fromkeys(terms, ALL), "streams": {ALL: 3}, "excluded": {"why": ALL},
-    })  # fmt: skip
+    folder = walk.rename(tmp_path / "run <b>&amp; ${HOME}")
+    for file in (*folder.rglob("*.json"), *(tmp_path / "calibration").glob("*.json")):
+        write_json(file, spoiled(json.loads(file.read_text())))
+    write_json(folder / "run.json", {"kind": "walk", "label": ALL, "exit_status": ALL,
+                                     "streams": {ALL: 3}, "excluded": {"why": ALL}})  # fmt: skip
     row = {"ate_m": 0.01, "coverage90_x": 0.9, "nees": 1.0}
+    change_manifest(folder / "validation", runs={ALL: {ALL: row, "prediction": row}}, outputs={})
     hostile_name = "<img src=x onerror=document.title='OWNED'>.png"
-    part(folder / "validation", "validation", [], runs={ALL: {ALL: row, "prediction": row}})
-    part(folder / "track", "track",
-         ["../../secret.png", str(tmp_path / "secret.png"), "link.png", "x/../../../secret.png",
-          hostile_name],
-         photos=3, tracked=2, times=ALL, left_out={ALL: ALL})  # fmt: skip
+    outside = ("../../secret.png", str(tmp_path / "secret.png"), "link.png",
+               "x/../../../secret.png")  # fmt: skip
+    change_manifest(folder / "track", outputs=dict.fromkeys((*outside, hostile_name), ALL))
+    change_manifest(folder / "prediction", outputs={})
     (folder / "track/x").mkdir()
     (folder / "track/link.png").symlink_to(tmp_path / "secret.png")
     Image.new("RGB", (5, 5)).save(folder / "track" / hostile_name)
-    part(folder / "prediction", "predict",
-         settings={"model": ALL, "slip": {"named": ALL, "source": ALL},
-                   "leg_angles": ALL})  # fmt: skip
-    calibration = tmp_path / "calibration"
-    part(calibration, "calibration")
-    (calibration / "slip.toml").write_text(SLIP.format(harm=json.dumps(ALL)))
-    (calibration / "summary.csv").write_text("parameter,prior\n" + json.dumps(HARM[0]) + ",x\n")
+    slip = tmp_path / "calibration/slip.toml"
+    slip.write_text(re.sub(r'= "[^"]*"', lambda _: f"= {json.dumps(ALL)}", slip.read_text()))
+    change_manifest(tmp_path / "calibration", outputs={})
     return folder
 
 

@@ -27,7 +27,7 @@ from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.columns import COLUMNS_FILE, IMU, KINDS, LEGS, TRACK
-from zebro_lab.tables.columns_file import read_mapped_columns, rig_columns
+from zebro_lab.tables.columns_file import read_mapped_columns
 from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.terminal.leg_options import joint_names
@@ -199,17 +199,10 @@ def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None
 
 def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
     path = request.rig or Path()
-    label = request.label or table_stem(path)
-    columns = rig_columns(path, request.columns)
-    runs, notes = rig_runs(
-        path, columns, label=label, material=request.material, operator=request.operator
-    )
-    start, zero, note = _start(request.start, float(runs[0].table.t[0]), _last(runs), path)
+    runs, notes = rig_runs(path, request)
+    last = max(float(run.table.t[-1]) for run in runs)
+    start, zero, note = _start(request.start, float(runs[0].table.t[0]), last, path)
     return [run.begun(start, zero) for run in runs], (*note, *notes)
-
-
-def _last(runs: Sequence[RigRun]) -> float:
-    return max(float(run.table.t[-1]) for run in runs)
 
 
 def _start(

@@ -12,6 +12,7 @@ from model.arrays import Array
 from model.counted import counted
 from rig.slip_rig.profile import FURTHER
 from zebro_lab.calibration.plausible import require_plausible
+from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hashes
@@ -21,14 +22,14 @@ from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.runs.slip_rig_table import SlipRigTable
 from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.tables.columns import COLUMNS_FILE
-from zebro_lab.tables.columns_file import prior_entry
+from zebro_lab.tables.columns_file import prior_entry, rig_columns
 from zebro_lab.tables.disc_angles import disc_angles
 from zebro_lab.tables.rig_columns import RigColumns, RigErrorsStated
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.run_separation import run_times, separate_runs
 from zebro_lab.tables.slip_source import slip
-from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.tables.table_files import read_table_file, table_stem
 
 _NEEDED = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
 _MOSTLY = 0.9  # share of rows
@@ -68,17 +69,12 @@ class RigRun:
         )
 
 
-def rig_runs(
-    path: Path, columns: RigColumns, *, label: str, material: str, operator: str
-) -> tuple[list[RigRun], tuple[str, ...]]:
+def rig_runs(path: Path, request: ImportRequest) -> tuple[list[RigRun], tuple[str, ...]]:
     """Read a table of a slip rig and separate it into runs.
 
     Args:
         path: The table file.
-        columns: Column map, radii, and the rule that separates runs.
-        label: Prefix of every run's name; the whole name of a single run without a rule.
-        material: Leg and ground material.
-        operator: Name of the operator.
+        request: Column map, label, material and operator.
 
     Returns:
         The runs, not begun yet, and notes, one line each.
@@ -89,12 +85,17 @@ def rig_runs(
             is no finite number, a radius changes, rows are averages of trials, time decreases or
             repeats within a run, or no rig can have measured the numbers.
     """
+    columns, label = rig_columns(path, request.columns), request.label or table_stem(path)
     raw = read_table_file(path, sheet=columns.sheet)
     table = RigTable(raw, columns, kept_rows(raw, columns.keep))
     if columns.runs.each_row:
         raise DataError(f"each row is the mean of a trial, not a sample, as {COLUMNS_FILE} states "
                         f"in [runs] each_row; {_ELSE}", file=path)  # fmt: skip
-    _require_columns(table)
+    missing = [name for name in _NEEDED if table.source_of(name) is None]
+    if missing and table.source_of("slip_ratio") is not None:
+        raise DataError(f"has a slip ratio but no {missing[0]}; {_ELSE}", file=path)
+    for name in missing:
+        table.required(name)
     doubts = _require_plausible(table)
     runs = separate_runs(table, label)
     run_times(table, runs)
@@ -104,8 +105,8 @@ def rig_runs(
     common = RunManifest(
         kind="slip-rig",
         label=label,
-        material=material,
-        operator=operator,
+        material=request.material,
+        operator=request.operator,
         source=stated_source(columns.source or raw.source, path),
         exit_status=IMPORTED,
         constants={name: _radius(table, name) for name in ("radius_leg", "radius_ground")},
@@ -119,13 +120,11 @@ def rig_runs(
         )
         for i, name in enumerate(runs.names)
     ]
-    return made, (
-        *raw.notes,
-        *table.conversions(),
-        *doubts,
-        *_left_out(table),
-        f"{counted(len(made), 'run')}, {runs.rule}",
-    )
+    notes = [*raw.notes, *table.conversions(), *doubts]
+    if columns.keep:
+        left_out, conditions = len(raw) - len(table.rows), " and ".join(map(str, columns.keep))
+        notes.append(f"{left_out} of {len(raw)} rows do not meet {conditions}: skipped")
+    return made, (*notes, f"{counted(len(made), 'run')}, {runs.rule}")
 
 
 def write_rig_run(data_dir: Path, run: RigRun) -> Path:
@@ -151,18 +150,6 @@ def write_rig_run(data_dir: Path, run: RigRun) -> Path:
         replace(run.manifest, inputs=file_hashes(run.files)),
         extra=lambda draft: _write_stated(draft, run.stated),
     )
-
-
-def _require_columns(table: RigTable) -> None:
-    for name in _NEEDED:
-        if table.source_of(name) is None:
-            if table.source_of("slip_ratio") is not None and name.startswith("omega_"):
-                raise DataError(
-                    f"has a slip ratio but no {name}, and a run folder needs the speeds of both "
-                    f"discs; {_ELSE}",
-                    file=table.raw.path,
-                )
-            table.required(name)
 
 
 def _require_plausible(table: RigTable) -> tuple[str, ...]:
@@ -194,14 +181,6 @@ def _radius(table: RigTable, name: str) -> float:
             file=table.raw.path, column=name,
         )  # fmt: skip
     return float(values[0])
-
-
-def _left_out(table: RigTable) -> tuple[str, ...]:
-    left_out = len(table.raw) - len(table.rows)
-    conditions = " and ".join(map(str, table.columns.keep))
-    return (f"{left_out} of {len(table.raw)} rows do not meet {conditions}: skipped",) * bool(
-        table.columns.keep
-    )
 
 
 def _stated(columns: RigColumns) -> dict[str, Mapping[str, object]]:

@@ -13,7 +13,7 @@ from zebro_lab.files.atomic import atomic_folder, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError, shown
 from zebro_lab.files.settings_table import fill_in
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
-from zebro_lab.runs.folder import LOG_FILE, RECOVERED, read_slip_rig_run, run_state
+from zebro_lab.runs.folder import LOG_FILE, read_slip_rig_run, run_state
 from zebro_lab.runs.manifest import RECORDING, read_manifest
 from zebro_lab.runs.recorded_walk import LEGS, read_recorded_legs
 from zebro_lab.tables.columns import COLUMNS_FILE
@@ -90,11 +90,7 @@ def unended_notes(folder: Path) -> tuple[str, ...]:
     end = read_raw_log(folder / LOG_FILE).end
     until = "" if end is None else f"; samples go up to {end:.3f} s"
     state = run_state(folder, manifest)
-    why = {
-        RECORDING: "it is being recorded, or its recorder was killed just now",
-        RECOVERED: "its recorder was killed",
-    }[state]
-    return (f"WARNING: the run has not ended, state '{state}': {why}{until}",)
+    return (f"WARNING: the run has not ended, state '{state}'{until}",)
 
 
 def _raw_columns(stream: SampleColumns) -> Columns:
@@ -104,10 +100,14 @@ def _raw_columns(stream: SampleColumns) -> Columns:
 
 def _write(file: Path, columns: Columns, *, to: Format, source: str) -> None:
     table = pd.DataFrame(dict(columns))
-    if to == "parquet":
-        _write_parquet(file, table, source)
-    else:
+    if to == "csv":
         table.to_csv(file, index=False, lineterminator="\n")
+        return
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    arrow = pa.Table.from_pandas(table, preserve_index=False)
+    pq.write_table(arrow.replace_schema_metadata({"source": source}), file)
 
 
 def _write_source(file: Path, run: Path, source: str) -> None:
@@ -117,11 +117,3 @@ def _write_source(file: Path, run: Path, source: str) -> None:
     """
     head = f"# Tables of the run {shown(run.absolute().name)}, written by zebro-lab export.\n"
     atomic_write_text(file, fill_in(head + 'source = "unknown"\n', {"source": source}))
-
-
-def _write_parquet(file: Path, table: pd.DataFrame, source: str) -> None:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    arrow = pa.Table.from_pandas(table, preserve_index=False)
-    pq.write_table(arrow.replace_schema_metadata({"source": source}), file)

@@ -30,21 +30,19 @@ Other names and units of columns are mapped by a columns.toml in the folder of t
 def import_files(request: ImportRequest, output: Output = TEXT) -> None:
     """Convert files from other software to run folders in DIR: run.json, log.mcap, track/."""
     from zebro_lab.exchange.import_stage import import_run
-    from zebro_lab.runs.manifest import read_manifest
 
     with output.progress() as watcher:
         imported = import_run(request, watcher)
     output.say(*imported.notes)
-    manifests = {folder: read_manifest(folder) for folder in imported.folders}
-    for folder, manifest in manifests.items():
+    for folder, manifest in imported.manifests.items():
         simulated = "SIMULATED " if is_simulated(manifest.source) else ""
         counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
         held = f"samples: {counts}" if counts else "a track alone"
         output.say(f"{simulated}source {manifest.source}, {held}; wrote {folder}")
     runs = [
         {"folder": folder, "source": manifest.source, "samples": dict(manifest.streams)}
-        for folder, manifest in manifests.items()
+        for folder, manifest in imported.manifests.items()
     ]
-    simulated = any(is_simulated(manifest.source) for manifest in manifests.values())
+    simulated = any(is_simulated(manifest.source) for manifest in imported.manifests.values())
     content = {"simulated": simulated, "runs": runs, "notes": list(imported.notes)}
     output.document("import", content)

@@ -25,7 +25,7 @@ from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
-from zebro_lab.runs.manifest import IMPORTED, RunManifest
+from zebro_lab.runs.manifest import IMPORTED, RunManifest, read_manifest
 from zebro_lab.tables.columns import COLUMNS_FILE, IMU, KINDS, LEGS, TRACK
 from zebro_lab.tables.columns_file import read_mapped_columns
 from zebro_lab.tables.columns_sections import columns_above
@@ -44,12 +44,17 @@ class Imported:
     """Result of an import.
 
     Attributes:
-        folders: The written run folders, the walk first.
+        manifests: Manifest of each run folder that was written, the walk first.
         notes: Notes on start time, damage and left-out rows, one line each.
     """
 
-    folders: tuple[Path, ...]
+    manifests: Mapping[Path, RunManifest]
     notes: tuple[str, ...]
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """The run folders that were written."""
+        return tuple(self.manifests)
 
 
 def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
@@ -86,7 +91,8 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
         folders.append(write_rig_run(request.data, run))
     files = [(kind, file) for kind in KINDS if (file := getattr(request, kind)) is not None]
     above = [line for each in files for line in columns_above(*each, request.columns)]
-    return Imported(tuple(folders), (*walk_notes, *rig_notes, *above))
+    manifests = {folder: read_manifest(folder) for folder in folders}
+    return Imported(manifests, (*walk_notes, *rig_notes, *above))
 
 
 def _require_something(request: ImportRequest) -> None:

@@ -41,11 +41,16 @@ def init(
     --kind ground or robot write FILE itself, a commented ground.toml of level ground, or a
     robot.toml of the thesis's robot.
     """
-    if kind == "ground" or kind == "robot":
-        _write_template(file, kind, sheet, force, output)
-        return
-    from zebro_lab.exchange.init_stage import write_columns_template
+    from zebro_lab.exchange.init_stage import write_columns_template, write_template
 
+    if kind == "ground" or kind == "robot":
+        if sheet is not None:
+            raise typer.BadParameter(f"is of a workbook; a {kind} has none", param_hint="'--sheet'")
+        template = write_template(file, kind, force=force)
+        output.say(f"wrote {template}, a {kind} to edit; then:")
+        output.say(f"  zebro-lab walk --{kind} {template} --slip thesis --duration 20 --figures")
+        output.document("init", {"written": [template], "kind": kind})
+        return
     written = write_columns_template(file, kind=kind, sheet=sheet, force=force)
     output.say(*written.notes, f"wrote {written.file} for a table of kind {written.kind}")
     for name, guess in written.guesses.items():
@@ -58,21 +63,6 @@ def init(
     columns = {name: guess.name for name, guess in written.guesses.items()}
     content = {"written": [written.file], "kind": written.kind, "columns": columns}
     output.document("init", {**content, "to_check": advice, "notes": list(written.notes)})
-
-
-def _write_template(
-    file: Path, kind: Literal["ground", "robot"], sheet: str | None, force: bool, output: Output
-) -> None:
-    """Write a template and say how to use it; raise `BadParameter` for a sheet."""
-    from zebro_lab.exchange.init_stage import write_template
-
-    if sheet is not None:
-        raise typer.BadParameter(f"is of a workbook; a {kind} has none", param_hint="'--sheet'")
-    written = write_template(file, kind, force=force)
-    what = "level ground with all keys as comments" if kind == "ground" else "the thesis's robot"
-    output.say(f"wrote {written}, {what}; edit it, then:")
-    output.say(f"  zebro-lab walk --{kind} {written} --slip thesis --duration 20 --figures")
-    output.document("init", {"written": [written], "kind": kind})
 
 
 def _to_check(written: "WrittenColumns") -> list[str]:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pandas as pd
+
 from model.bayes.calibration import Calibration
 from model.bayes.verdict import Verdict
 from model.slip.curve import SlipCurve
@@ -27,7 +29,6 @@ from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, option
 from zebro_lab.workers import open_executor
 
 if TYPE_CHECKING:
-    import pandas as pd
     from xarray import DataTree
 
 
@@ -51,13 +52,11 @@ class CalibrationResult:
         return self.calibration.verdict
 
     @property
-    def summary(self) -> "pd.DataFrame":
+    def summary(self) -> pd.DataFrame:
         """Posterior, prior and diagnostics as in `summary.csv`, SI; its index is the parameter.
 
         A fixed parameter has the prior "fixed" and NaN for the diagnostics.
         """
-        import pandas as pd
-
         table = calibration_folder.summary_csv(self.calibration)
         return pd.read_csv(io.StringIO(table), index_col="parameter")
 

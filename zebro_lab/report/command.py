@@ -23,11 +23,10 @@ named, and a calibration that no prediction used is no headline.
 @request_command()
 def report(request: ReportRequest, output: Output = TEXT) -> None:
     """Write an HTML report with slip curve, track, prediction and validation: report.html."""
-    from zebro_lab.report import stage
-    from zebro_lab.report.belonging import belonging
+    from zebro_lab.report import belonging, stage
 
     sources = stage.report(request, made=datetime.now(UTC))
-    notices = list(belonging(sources).notices)
+    notices = list(belonging.belonging(sources).notices)
     for notice in notices:
         output.say(f"does not belong together: {notice}")
     for part in sources.missing:

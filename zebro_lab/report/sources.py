@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Find the result folders that a report shows, and the commands for those that are missing."""
 
-import csv
+import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+
+import pandas as pd
 
 from zebro_lab.calibration.folder import SLIP_TOML
 from zebro_lab.calibration.walks_folder import FOLDER as WALKS
@@ -224,23 +226,10 @@ def _part(name: str, folder: Path, data: Path) -> ReportPart:
 
 
 def _rows(file: Path) -> dict[str, dict[str, Any]]:
-    """Read a CSV as dicts by header, by the cell in the first column; numeric cells as floats.
-
-    Rows with more cells than headers are left out.
-    """
+    """Read a CSV as dicts by header, by the cell in the first column."""
     text = read_text(file, most=_MOST_TABLE)
     with parsing(file, "cannot be read as CSV", advice=_AGAIN):
-        rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]
-        return {
-            next(iter(row.values())): {k: _value(v or "") for k, v in row.items()} for row in rows
-        }
-
-
-def _value(cell: str) -> float | str:
-    try:
-        return float(cell)
-    except ValueError:
-        return cell
+        return pd.read_csv(io.StringIO(text), index_col=0).to_dict("index")
 
 
 _READERS: Mapping[str, Callable[[Path], Any]] = {

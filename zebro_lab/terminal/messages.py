@@ -8,7 +8,6 @@ import typer
 from zebro_lab.files.errors import shown
 
 if TYPE_CHECKING:
-    from rich.console import Console
     from rich.text import Text
 
 
@@ -27,11 +26,3 @@ def plain(line: str) -> "Text":
     from rich.text import Text
 
     return Text(shown(line))
-
-
-def wide_console() -> "Console":
-    """Create a Rich console on standard output, 120 columns wide if that is not a terminal."""
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=120)

@@ -11,7 +11,7 @@ import typer
 
 from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.terminal.messages import say, wide_console
+from zebro_lab.terminal.messages import say
 from zebro_lab.terminal.stopping import STOPPED, StoppedBySignal
 from zebro_lab.terminal.timely_output import say_in_time
 
@@ -58,9 +58,9 @@ class Output:
         """Create the console for results as text: on stdout, or stderr beside a JSON document."""
         from rich.console import Console
 
-        if not (self.quiet or self.as_json):
-            return wide_console()
-        return Console(stderr=True, quiet=self.quiet, highlight=False, width=120)
+        aside = self.quiet or self.as_json
+        width = 120 if aside or not Console().is_terminal else None
+        return Console(stderr=aside, quiet=self.quiet, highlight=False, width=width)
 
     def say(self, *lines: str) -> None:
         """Write lines of results where `console` writes."""

@@ -22,9 +22,8 @@ from rig.links.slcan import SlcanAdapter, decode_frame, encode_frame
 from rig.slip_rig.board import RigBoard, board_body, speed_body
 from rig.slip_rig.can_simple import ESTIMATES, HEARTBEAT, Command, can_id
 from rig.slip_rig.drives import DriveBus
-from rig.slip_rig.load_cell import NetFtCell
+from rig.slip_rig.load_cell import RECORD, NetFtCell, Request, encode_request
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.rdt import RECORD, Request, encode_request
 from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS, CanLegs
 from rig.zebro.profile import LegProfile, load_leg_profile
 from rig.zebro.serial import SYNC, DumpLegs, PacketLegs, PolledLegs

@@ -22,8 +22,8 @@ from rig.links.serve import PortServer, Ticker
 from rig.links.slcan import SlcanAdapter
 from rig.slip_rig.can_simple import AxisState, Command
 from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.load_cell import SATURATED
 from rig.slip_rig.profile import BoardProfile, load_rig_profile
-from rig.slip_rig.rdt import SATURATED
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives

@@ -30,17 +30,15 @@ from rig.imu.stream import ImuStream
 from rig.links.serial import SerialLink
 from rig.links.serve import PortServer
 from rig.links.udp import UdpLink
-from rig.slip_rig.load_cell import NetFtCell
+from rig.slip_rig.load_cell import MOST_IN_ONE, RECORD, REQUEST, NetFtCell, Request
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.rdt import MOST_IN_ONE, RECORD, REQUEST, Request
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
 from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait, profile_text
-from zebro_lab.recording.display import Display
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.screen import RecordScreen
-from zebro_lab.recording.stage import LOOK_EVERY
+from zebro_lab.recording.stage import LOOK_EVERY, Display
 from zebro_lab.recording.status import StreamWatch
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 

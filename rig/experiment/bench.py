@@ -21,9 +21,8 @@ from rig.sample_columns import SampleColumns
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.decode import decode_board, decode_forces, decode_further_loads, disc_speed
 from rig.slip_rig.drives import DriveBus
-from rig.slip_rig.load_cell import NetFtCell
+from rig.slip_rig.load_cell import NetFtCell, describe_status
 from rig.slip_rig.profile import RigProfile
-from rig.slip_rig.rdt import describe_status
 
 ARM_TIMEOUT: Final = 2.0
 """Timeout for a drive to enter closed-loop control [s]."""

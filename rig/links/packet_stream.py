@@ -9,13 +9,13 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.errors import DeviceMismatch
 from rig.links.byte_link import ByteLink, LinkedStream
-from rig.links.framing import CobsFramer
 from rig.links.packet import (
     CHECKSUM,
     HEADER,
     LONGEST_BODY,
     TICK,
     WRAP,
+    CobsFramer,
     Kind,
     Packet,
     decode_packet,

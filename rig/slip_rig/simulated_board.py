@@ -6,8 +6,7 @@ import math
 import numpy as np
 
 from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
-from rig.links.framing import CobsFramer
-from rig.links.packet import TICK, Kind, Packet, decode_packet, encode_packet
+from rig.links.packet import TICK, CobsFramer, Kind, Packet, decode_packet, encode_packet
 from rig.links.packet_stream import LONGEST
 from rig.slip_rig.board import WATCHDOG_EXPIRED, board_body, speed_body
 from rig.slip_rig.profile import BoardProfile

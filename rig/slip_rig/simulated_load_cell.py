@@ -11,8 +11,8 @@ from typing import Self
 import numpy as np
 
 from rig.links.faults import PERFECT_LINE, Faults, FaultyLine
+from rig.slip_rig.load_cell import MAGIC, MOST_IN_ONE, RECORD, REQUEST, WRAP, Request
 from rig.slip_rig.profile import LoadCellProfile
-from rig.slip_rig.rdt import MAGIC, MOST_IN_ONE, RECORD, REQUEST, WRAP, Request
 from rig.slip_rig.simulated import SimulatedRig
 
 INT32 = (1 << 31) - 1

@@ -7,8 +7,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.errors import ProtocolError
 from rig.links.byte_link import ByteLink, LinkedStream
-from rig.links.framing import TrailerFramer
-from rig.links.packet import Kind
+from rig.links.packet import Kind, TrailerFramer
 from rig.links.packet_stream import PacketStream
 from rig.zebro.commands import LeftStill, milliseconds
 from rig.zebro.profile import DUMP_REGISTERS, LegProfile

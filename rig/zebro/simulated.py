@@ -10,8 +10,7 @@ import can
 import numpy as np
 
 from rig.links.faults import PERFECT_LINE, Faults, FaultyLine, FaultyWire
-from rig.links.framing import CobsFramer
-from rig.links.packet import TICK, Kind, Packet, decode_packet, encode_packet
+from rig.links.packet import TICK, CobsFramer, Kind, Packet, decode_packet, encode_packet
 from rig.links.packet_stream import LONGEST
 from rig.zebro.can import CLOCK, POSITIONS, SEQUENCE_WRAP, SET_POINTS, TICKS_WRAP
 from rig.zebro.commands import MILLISECOND

@@ -12,7 +12,7 @@ from rig.errors import DeviceFault, LimitExceeded, RigTimeout
 from rig.experiment.control import Control
 from rig.experiment.sink import ExperimentWatcher, SinkFailed
 from rig.links.can import CanLink
-from rig.slip_rig.rdt import SATURATED
+from rig.slip_rig.load_cell import SATURATED
 from rig.slip_rig.simulated import SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell

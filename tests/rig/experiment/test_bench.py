@@ -15,8 +15,8 @@ from rig.experiment.control import Control
 from rig.links.can import CanLink
 from rig.slip_rig.can_simple import AxisState, Command, split_id
 from rig.slip_rig.decode import measured_slip
+from rig.slip_rig.load_cell import SATURATED
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.rdt import SATURATED
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.twins import simulated_rig_devices

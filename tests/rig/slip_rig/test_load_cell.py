@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from rig.links.faults import Faults
 from rig.slip_rig.decode import decode_forces
-from rig.slip_rig.load_cell import NetFtCell
-from rig.slip_rig.rdt import (
+from rig.slip_rig.load_cell import (
     MOST_IN_ONE,
     RECORD,
     REQUEST,
     SATURATED,
+    NetFtCell,
     Request,
     describe_status,
 )
@@ -97,3 +97,18 @@ def test_a_read_keeps_each_record_with_its_own_counts(sent):
     counters = stream.counters
     assert (counters.received, counters.damaged) == (len(samples), sent.count(b"short"))
     assert counters.received + counters.repeated + counters.damaged == len(sent)
+
+
+@given(st.binary(max_size=80))
+def test_any_datagram_is_whole_records_or_damaged(datagram):
+    stream = NetFtCell(OneRead(datagram), profile=PROFILE)
+    samples = stream.read(0.0)
+    whole = len(datagram) in (RECORD.size, 2 * RECORD.size)
+    assert bool(samples) == whole
+    assert stream.counters.damaged == (not whole)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_every_status_but_zero_is_spelled_out(status):
+    if status & ~(1 << 31):
+        assert describe_status(status)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Live devices into run folders: real drivers over twins, and gaps in what they send."""
 
+import threading
 import time
 
 import numpy as np
@@ -23,7 +24,7 @@ from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording.devices import default_gait, open_devices, profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.request import RecordRequest
-from zebro_lab.recording.stage import record
+from zebro_lab.recording.stage import Display, record
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest, profile_file
@@ -62,7 +63,9 @@ def test_all_devices_are_recorded_and_nothing_is_lost(everything):
 def test_clocks_of_devices_that_tell_time_are_compared(everything):
     clocks = everything[0].manifest.clocks
     assert set(clocks) == {"legs", "imu1", "imu2", "load_cell"}
-    assert abs(clocks["legs"]["offset"]) < 0.2
+    legs = read_raw_log(everything[0].folder / "log.mcap").streams["/legs/raw"]
+    late = legs.host_time - legs.device_time - clocks["legs"]["offset"]
+    assert -0.01 < np.percentile(late, 10) < 0.02  # a busy machine reads others later
 
 
 def test_the_twins_truth_is_in_the_record(everything):
@@ -180,3 +183,45 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     stream = read_raw_log(recorder.folder / "log.mcap").streams["/legs/raw"]
     assert np.diff(stream.host_time).max() > 1.2
     assert len(stream) == counters.received
+
+
+def test_the_last_status_is_shown_before_the_end():
+    seen, gave_up = [], []
+    display = Display(seen.append, give_up=gave_up.append)
+    for number in range(100):
+        display.show(number)
+    display.close()
+    assert seen[-1] == 99
+    assert seen == sorted(seen)
+    assert gave_up == []
+
+
+def test_a_display_that_raises_is_given_up_once_and_says_why():
+    gave_up, shown = [], []
+
+    def show(status):
+        shown.append(status)
+        raise ValueError("torn")
+
+    display = Display(show, give_up=gave_up.append)
+    display.show(1)
+    until(lambda: gave_up)
+    display.show(2)
+    display.close()
+    assert shown == [1]
+    assert len(gave_up) == 1
+    assert "torn" in gave_up[0]
+
+
+def test_a_display_that_hangs_is_given_up_and_holds_up_nothing(monkeypatch):
+    monkeypatch.setattr("zebro_lab.recording.stage.PATIENCE", 0.05)
+    gave_up, free = [], threading.Event()
+    display = Display(lambda status: free.wait(20), give_up=gave_up.append)
+    try:
+        until(lambda: display.show(1) or gave_up, limit=10)
+        began = time.monotonic()
+        display.close()
+        assert time.monotonic() - began < 10
+    finally:
+        free.set()
+    assert len(gave_up) == 1

@@ -43,9 +43,9 @@ from model.arrays import Array
 from model.gait.program import CycleGait, ProgramLegs
 from model.gait.reference import LegReference, SampledReference
 from model.robot import GRAVITY, N_LEGS, Robot
+from model.routes.program import lay_out
 from model.walk.dynamics import DynamicsOptions
 from model.walk.dynamics import walk as dynamics_walk
-from model.walk.program import lay_out
 from model.walk.traction import TractionTable, VelocityCoulomb
 from zebro_lab.walk.program_file import read_program
 

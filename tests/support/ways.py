@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.walk.goal import Goal
-from model.walk.manoeuvre import Part
+from model.routes.goal import Goal
+from model.routes.manoeuvre import Part
 from model.walk.path import WalkPath
 from zebro_lab.reach.way import CURVE, Way
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from model.walk.manoeuvre import Part, Stepping
+from model.routes.manoeuvre import Part, Stepping
 from zebro_lab.reach.request import SteppingRequest
 
 _DIGITS = 6  # decimals of steering and of degrees; a micrometre in a metre

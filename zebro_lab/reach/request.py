@@ -8,7 +8,7 @@ from typing import Annotated
 
 from typer import BadParameter, Option
 
-from model.walk.goal import Goal
+from model.routes.goal import Goal
 from zebro_lab.terminal.picture_options import FormatOption
 from zebro_lab.terminal.request_command import Range
 from zebro_lab.walk.request import (

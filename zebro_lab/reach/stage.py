@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from model.errors import DomainError
+from model.routes.goal import Goal
+from model.routes.manoeuvre import Fitted, Stepping, Surroundings
+from model.routes.reach import NOTHING, Stride, curve, measured_stride, stop_turn_walk
 from model.tasks import Watcher
-from model.walk.goal import Goal
-from model.walk.manoeuvre import Fitted, Stepping, Surroundings
-from model.walk.reach import NOTHING, Stride, curve, measured_stride, stop_turn_walk
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes

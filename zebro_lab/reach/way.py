@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.counted import counted
-from model.walk.goal import Goal
+from model.routes.goal import Goal
+from model.routes.manoeuvre import Part
 from model.walk.leg_work import LegWork, leg_work
-from model.walk.manoeuvre import Part
 from model.walk.path import WalkPath
 from zebro_lab.walk.walking import Walked
 

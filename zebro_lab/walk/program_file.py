@@ -10,7 +10,7 @@ from model.errors import DomainError
 from model.gait import TETRAPOD, TRIPOD, Direction, Gait, parse_gait
 from model.gait.program import CycleGait, cycle_gait
 from model.robot import N_LEGS
-from model.walk.program import Segment, Until
+from model.routes.program import Segment, Until
 from zebro_lab.files.settings_table import SettingsTable, read_settings
 from zebro_lab.robot.gait_argument import LEAST_DEG
 

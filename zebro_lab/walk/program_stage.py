@@ -8,12 +8,12 @@ import numpy as np
 
 from model.leg_state import corrected
 from model.robot import GRAVITY
+from model.routes.manoeuvre import Surroundings
+from model.routes.program import lay_out
 from model.tasks import Watcher
 from model.walk.bend import STRAIGHT
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ground import FLAT, Ground
-from model.walk.manoeuvre import Surroundings
-from model.walk.program import lay_out
 from model.walk_models import MODELS
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError

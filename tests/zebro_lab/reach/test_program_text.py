@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.walk.manoeuvre import Part
+from model.routes.manoeuvre import Part
 from zebro_lab.reach.program_text import program_text
 from zebro_lab.reach.request import SteppingRequest
 from zebro_lab.reach.stage import stepping_of

@@ -6,8 +6,8 @@ import io
 import numpy as np
 from rich.console import Console
 
-from model.walk.goal import Goal
-from model.walk.reach import Stride
+from model.routes.goal import Goal
+from model.routes.reach import Stride
 from support.ways import made_way
 from zebro_lab.reach.screen import lines, reach_document, way_table
 from zebro_lab.reach.stage import ReachResult

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.walk.goal import Goal
-from model.walk.manoeuvre import Part
+from model.routes.goal import Goal
+from model.routes.manoeuvre import Part
 from support.ways import made_way as way
 from zebro_lab.reach.way import CURVE, STOP_TURN_WALK, compared, missed, named
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from model.walk.arcs import (
+from model.routes.arcs import (
     Arc,
     arc_and_straight_to,
     arc_straight_arc_to,

@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.errors import DomainError
-from model.walk.arcs import (
+from model.routes.arcs import (
     Arc,
     arc_and_straight_to,
     arc_straight_arc_to,
     arc_to,
     two_arcs_to,
 )
-from model.walk.goal import Goal
-from model.walk.manoeuvre import (
+from model.routes.goal import Goal
+from model.routes.manoeuvre import (
     SOLVED,
     Fitted,
     Part,

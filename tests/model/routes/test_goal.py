@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.walk.goal import ARM, Goal
+from model.routes.goal import ARM, Goal
 
 
 def test_only_a_heading_that_is_asked_for_is_missed():

@@ -10,9 +10,9 @@ from model.errors import DomainError
 from model.gait.notation import TETRAPOD, TRIPOD
 from model.gait.program import cycle_gait
 from model.robot import GRAVITY, Robot
+from model.routes.program import Segment, Until, lay_out
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.path import turning_radius
-from model.walk.program import Segment, Until, lay_out
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()
@@ -130,7 +130,7 @@ def test_progress_is_told_after_every_cycle_and_may_stop_a_segment():
 
 
 def test_a_place_that_the_robot_does_not_come_to_ends_in_a_message(monkeypatch):
-    monkeypatch.setattr("model.walk.program.MOST_CYCLES", 3)
+    monkeypatch.setattr("model.routes.program.MOST_CYCLES", 3)
     with pytest.raises(DomainError, match=r"segment 2: after 3 cycles .* has not come to"):
         laid_out(Segment(stand=1.0), Segment(STRAIGHT, Until(near=(-2.0, 0.0, 0.1))))
     with pytest.raises(DomainError, match=r"has not turned by 90 degrees; it has by 0"):

@@ -9,10 +9,10 @@ import numpy as np
 from model.errors import DomainError
 from model.gait.program import CycleGait, ProgramLegs
 from model.robot import Robot
+from model.routes.growing_walk import GrowingWalk, Reached
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ground import FLAT, Ground
-from model.walk.growing_walk import GrowingWalk, Reached
 from model.walk.traction import TractionTable
 
 MOST_CYCLES = 1000  # of one segment

@@ -9,9 +9,9 @@ from model.gait.program import ProgramLegs, cycle_gait
 from model.leg_state import LegState, corrected
 from model.path_draws import bent_walk
 from model.robot import GRAVITY, Robot
+from model.routes.growing_walk import GrowingWalk
 from model.walk.bend import STRAIGHT
 from model.walk.dynamics import DynamicsOptions, walk
-from model.walk.growing_walk import GrowingWalk
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()

@@ -13,11 +13,11 @@ from model.gait.notation import TRIPOD, Gait
 from model.gait.program import CycleGait, ProgramLegs, cycle_gait
 from model.gait.steering import ideal_liftoff, scaled_stance
 from model.robot import Robot
+from model.routes.goal import Goal
+from model.routes.growing_walk import GrowingWalk
 from model.walk.bend import STRAIGHT, Bend
 from model.walk.dynamics import DynamicsOptions
-from model.walk.goal import Goal
 from model.walk.ground import FLAT, Ground
-from model.walk.growing_walk import GrowingWalk
 from model.walk.traction import TractionTable
 
 LEAST_SHARE = 0.003  # of a stance: below, a stride does nothing

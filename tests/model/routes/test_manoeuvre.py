@@ -6,10 +6,10 @@ import pytest
 
 from model.gait.notation import TETRAPOD
 from model.robot import GRAVITY, Robot
+from model.routes.goal import Goal
+from model.routes.manoeuvre import SOLVED, Part, Stepping, Surroundings, fitted, walked_end
+from model.routes.program import Segment, Until, lay_out
 from model.walk.dynamics import DynamicsOptions, walk
-from model.walk.goal import Goal
-from model.walk.manoeuvre import SOLVED, Part, Stepping, Surroundings, fitted, walked_end
-from model.walk.program import Segment, Until, lay_out
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()

@@ -6,11 +6,11 @@ import pytest
 
 from model.errors import DomainError
 from model.robot import GRAVITY, Robot
-from model.walk.arcs import Arc
+from model.routes.arcs import Arc
+from model.routes.goal import Goal
+from model.routes.manoeuvre import Stepping, Surroundings
+from model.routes.reach import curve, measured_stride, stop_turn_walk
 from model.walk.dynamics import DynamicsOptions
-from model.walk.goal import Goal
-from model.walk.manoeuvre import Stepping, Surroundings
-from model.walk.reach import curve, measured_stride, stop_turn_walk
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()

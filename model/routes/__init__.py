@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Programs of several gaits, and ways to a goal."""

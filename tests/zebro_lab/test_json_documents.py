@@ -6,7 +6,7 @@ import tomllib
 
 import pytest
 
-from support.bundled_walk import PHOTOS, WALK
+from support.bundled_walk import PHOTOS
 from support.compared_folders import calibration
 from support.experiment_plans import short_plan
 from support.quick_fits import fit_quickly
@@ -102,25 +102,6 @@ def test_rig_check_has_a_verdict_of_each_run_and_its_exit_code(run_command, tmp_
         "name", "slip_ratio", "normal_force_N", "traction_N", "expected_N", "sd_N", "verdict"
     }  # fmt: skip
     assert (only["verdict"] == "ok") == (ended.code == 0)
-
-
-def test_the_kit_lists_its_files(run_command, tmp_path):
-    ended = run_command("camera", "kit", "--out", tmp_path / "kit", "--json", "--quiet")
-    found = document(ended, "camera kit", {"written"})
-    assert str(tmp_path / "kit" / "kit.pdf") in found["written"]
-
-
-def test_a_camera_is_told_in_numbers(run_command, tmp_path):
-    ended = run_command(
-        "camera", "calibrate", WALK / "calibration", "--board", "charuco:9x6:40mm:30mm:4x4_50",
-        "--out", tmp_path / "camera.toml", "--json",
-    )  # fmt: skip
-    found = document(ended, "camera calibrate", {
-        "written", "lens_model", "size_px", "matrix_px", "distortion", "rms_px", "coverage",
-        "photographs", "left_out", "warnings",
-    })  # fmt: skip
-    assert 1490 < found["matrix_px"][0][0] < 1510
-    assert 0 < found["coverage"] <= 1
 
 
 def test_annotations_are_counted(run_command, tmp_path):

@@ -63,9 +63,8 @@ def test_a_grid_is_not_written_among_the_photographs_that_are_tracked(photos):
     assert list(content(photos)) == ["p01.png"]
 
 
-def test_results_of_the_same_command_are_replaced(run, photos, compared, tmp_path):
+def test_results_of_the_same_command_are_replaced(run, photos, tmp_path):
     for _ in range(2):
-        compared(tmp_path / "out")
         report(ReportRequest(run, run / "none", tmp_path / "r.html"), made=START)
         plot_run(run, out=tmp_path / "p.png")
         draw_grid(photos, "p01.png", tmp_path / "g.png")

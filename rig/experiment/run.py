@@ -27,7 +27,7 @@ UNLOADED: Final = Zero(0.0, 0.0, 0.0)  # subtracted until the first zero has bee
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunOutcome:
     """Outcome of a run.
 
     Attributes:
@@ -61,7 +61,7 @@ def run_plan(
     clock: Clock = SYSTEM_CLOCK,
     period: float = PERIOD,
     done: Collection[int] = (),
-) -> Outcome:
+) -> RunOutcome:
     """Run a plan; in the end the drives are de-energised and the sink has stored the reason.
 
     Args:
@@ -124,7 +124,7 @@ class _Run:
         self._attempts = 0
         self._refused: list[int] = []
 
-    def go(self) -> Outcome:
+    def go(self) -> RunOutcome:
         """Run the plan; in every case leave the rig de-energised and store the reason."""
         reason = "failed"
         try:
@@ -141,10 +141,10 @@ class _Run:
         if failed is not None:
             raise failed
         refused, source = tuple(self._refused), self._bench.source
-        return Outcome(reason, len(self._done), refused, self._attempts, source)
+        return RunOutcome(reason, len(self._done), refused, self._attempts, source)
 
     def _execute_plan(self) -> str:
-        """Carry out the steps, and a stop that ends the run; return the reason of `Outcome`."""
+        """Carry out the steps, and a stop that ends the run; return the reason of `RunOutcome`."""
         self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
         if self._plan.limits.guards_off:
             self._sink.event("guards off", self._plan.limits.guards_off_text)

@@ -32,22 +32,9 @@ class CheckedLegs(LegCommands, Stream, Protocol):
     """A robot whose leg stream can be read and that takes leg commands."""
 
 
-@dataclass(frozen=True)
-class MovedLeg:
-    """Observation of the leg that moved when the count of one channel was increased.
-
-    Attributes:
-        leg: Number of the leg that moved, 1 to 6.
-        forward: Whether the leg turned as in walking forward.
-    """
-
-    leg: int
-    forward: bool
-
-
 def check_legs(
     robot: CheckedLegs,
-    observe: Callable[[int], MovedLeg],
+    observe: Callable[[int], tuple[int, bool]],
     *,
     clock: Clock = SYSTEM_CLOCK,
 ) -> LegProfile:
@@ -55,7 +42,8 @@ def check_legs(
 
     Args:
         robot: The robot, open, its legs free.
-        observe: Called after each motion with the channel, from 0; asks a person which leg moved.
+        observe: Called after each motion with the channel, from 0; asks a person which leg moved,
+            1 to 6, and whether it turned as in walking forward.
         clock: Host time.
 
     Returns:
@@ -67,21 +55,21 @@ def check_legs(
             was observed for two channels.
         ProtocolError: The robot takes no commands.
     """
-    seen: list[MovedLeg] = []
+    seen: dict[int, bool] = {}
     for channel in range(len(robot.profile.legs)):
         move_channel(robot, channel, clock=clock)
-        observation = observe(channel)
-        if observation.leg in [earlier.leg for earlier in seen]:
+        leg, forward = observe(channel)
+        if leg in seen:
             raise DeviceFault(
-                f"leg {observation.leg} was seen to move for two channels, the second of them "
+                f"leg {leg} was seen to move for two channels, the second of them "
                 f"channel {channel + 1}; start again and watch which leg moves",
                 status=channel,
             )
-        seen.append(observation)
+        seen[leg] = forward
     return replace(
         robot.profile,
-        legs=tuple(observation.leg for observation in seen),
-        sign=tuple(1 if observation.forward else -1 for observation in seen),
+        legs=tuple(seen),
+        sign=tuple(1 if forward else -1 for forward in seen.values()),
     )
 
 

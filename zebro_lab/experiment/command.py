@@ -19,13 +19,13 @@ from zebro_lab.terminal.timely_output import leave_at_once, say_in_time
 
 if TYPE_CHECKING:
     from rig.experiment.control import Control
-    from rig.experiment.run import Outcome
+    from rig.experiment.run import RunOutcome
     from rig.experiment.weigh import GainCheck, Weighing
     from zebro_lab.experiment.check_stage import CheckedRun
     from zebro_lab.experiment.journal import Journal
 
 
-def experiment_in_numbers(outcome: "Outcome", journal: "Journal", data: Path) -> dict[str, Any]:
+def experiment_in_numbers(outcome: "RunOutcome", journal: "Journal", data: Path) -> dict[str, Any]:
     """Return how an experiment ended, and each run folder that was closed in it.
 
     Args:
@@ -170,7 +170,7 @@ def _say_latched(data: Path) -> None:
     )
 
 
-def _end(outcome: "Outcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
+def _end(outcome: "RunOutcome", data: Path, output: Output, *, latched: bool) -> NoReturn:
     """Print how an experiment ended, and exit with 0, `REFUSED` or `STOPPED`."""
     words = (
         f"{outcome.reason}: {counted(outcome.finished, 'point')} finished, "

@@ -13,7 +13,7 @@ from rig.exclusive import Exclusive
 from rig.experiment.control import Control
 from rig.experiment.control_server import ControlServer, send_command
 from rig.experiment.plan import Plan
-from rig.experiment.run import Outcome, run_plan
+from rig.experiment.run import RunOutcome, run_plan
 from rig.experiment.sink import ExperimentWatcher
 from rig.experiment.supervision import signal_stops, supervised
 from zebro_lab.experiment.folder import ExperimentFolder
@@ -43,7 +43,9 @@ CONTROL_FILE: Final = "control.json"
 LOCK_FILE: Final = ".experiment.lock"
 
 
-def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:
+def run_experiment(
+    request: RigRunRequest, watcher: ExperimentWatcher, control: Control
+) -> RunOutcome:
     """Run a plan on a rig, and record each attempt at a point into a run folder of its own.
 
     Args:

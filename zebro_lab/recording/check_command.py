@@ -17,7 +17,6 @@ from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
-    from rig.zebro.check import MovedLeg
     from zebro_lab.recording.check_stage import Checked
 
 app = Application(no_args_is_help=True)
@@ -41,8 +40,9 @@ def check(request: CheckRequest, output: Output = TEXT) -> None:
     _require_answers()
     checked = check_zebro(request, _Terminal(output))
     if checked.lift_off is not None:
+        theta_deg = math.degrees(checked.lift_off.theta)
         output.say(
-            f"lift-off angle {checked.lift_off.theta_deg:.1f} degrees (0 ahead, 90 down): the hip "
+            f"lift-off angle {theta_deg:.1f} degrees (0 ahead, 90 down): the hip "
             f"height there minus that at touchdown is {1e3 * checked.lift_off.mismatch:+.1f} mm"
         )
     output.say(f"wrote the profile {checked.file}; record with --zebro {checked.file}@PORT")
@@ -67,7 +67,7 @@ def _require_answers() -> None:
 def _in_numbers(checked: "Checked") -> dict[str, object]:
     profile, found = checked.profile, checked.lift_off
     lift_off = found and {
-        "angle_rad": math.radians(found.theta_deg), "height_difference_m": found.mismatch
+        "angle_rad": found.theta, "height_difference_m": found.mismatch
     }  # fmt: skip
     return {
         "simulated": is_simulated(checked.source),
@@ -86,14 +86,12 @@ class _Terminal:
     def __init__(self, output: Output) -> None:
         self._output = output
 
-    def watch(self, channel: int) -> "MovedLeg":
+    def watch(self, channel: int) -> tuple[int, bool]:
         """Prompt for the leg that moved with a channel (from 0), and for its direction."""
-        from rig.zebro.check import MovedLeg
-
         asked = f"channel {channel + 1} was moved; which leg turned ({_LEGS})?"
         with self._output.asking():
             leg = typer.prompt(asked, value_proc=_leg_number)
-            return MovedLeg(leg, typer.confirm("did that leg turn as in walking forward?"))
+            return leg, typer.confirm("did that leg turn as in walking forward?")
 
     def hold_toes_ahead(self) -> None:
         """Ask the person to hold every toe straight ahead, and wait for Enter."""

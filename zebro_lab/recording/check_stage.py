@@ -12,7 +12,7 @@ import numpy as np
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.openers import LEGS_PROFILE, SIMULATED, legs_at, resolve
-from rig.zebro.check import MovedLeg, check_legs, find_lift_off, latest_counts, zero_legs
+from rig.zebro.check import LiftOff, check_legs, find_lift_off, latest_counts, zero_legs
 from rig.zebro.profile import LegProfile, encode_counts, save_leg_profile
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.devices import default_gait
@@ -25,7 +25,7 @@ MOVING: Final = 1.0
 class Person(Protocol):
     """Interface to a person who watches the robot and reports observations."""
 
-    def watch(self, channel: int) -> MovedLeg:
+    def watch(self, channel: int) -> tuple[int, bool]:
         """Return which leg moved with a channel (from 0), and whether it turned forward."""
         ...
 
@@ -36,19 +36,6 @@ class Person(Protocol):
     def measure_height(self, theta_deg: float) -> float:
         """Return the height of a hip above the ground [m] whose leg stands at an angle [deg]."""
         ...
-
-
-@dataclass(frozen=True)
-class LiftOffFound:
-    """Lift-off angle of a leg.
-
-    Attributes:
-        theta_deg: Lift-off angle [deg].
-        mismatch: Height of the hip at lift-off minus its height at touchdown [m].
-    """
-
-    theta_deg: float
-    mismatch: float
 
 
 @dataclass(frozen=True)
@@ -65,7 +52,7 @@ class Checked:
     file: Path
     profile: LegProfile
     source: str
-    lift_off: LiftOffFound | None = None
+    lift_off: LiftOff | None = None
 
 
 def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_CLOCK) -> Checked:
@@ -122,7 +109,7 @@ def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
 
 def _lift_off(
     robot: Any, profile: LegProfile, touchdown_deg: float, person: Person, clock: Clock
-) -> LiftOffFound:
+) -> LiftOff:
     def height(theta: float) -> float:
         robot.set_points(encode_counts(profile, [theta] * len(profile.legs)), MOVING)
         end = clock.now() + MOVING
@@ -130,9 +117,8 @@ def _lift_off(
             robot.read(min(0.05, max(end - clock.now(), 0.0)))
         return person.measure_height(math.degrees(theta))
 
-    found = find_lift_off(
+    return find_lift_off(
         height,
         math.radians(touchdown_deg),
         counts_per_revolution=profile.counts_per_revolution,
     )
-    return LiftOffFound(math.degrees(found.theta), found.mismatch)

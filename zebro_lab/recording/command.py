@@ -8,6 +8,7 @@ import typer
 
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.recording.request import RecordRequest
+from zebro_lab.runs.manifest import manifest_text
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 from zebro_lab.terminal.stopping import STOPPED
@@ -50,8 +51,6 @@ def record(request: RecordRequest, output: Output = TEXT) -> None:
 def _print_document(recorded: "Recorded", output: Output, code: int) -> None:
     """Print the contents of the run's `run.json`; who reads them is waited for, by then."""
     if output.as_json:
-        from zebro_lab.runs.manifest import manifest_text
-
         run = json.loads(manifest_text(recorded.manifest))
         simulated = is_simulated(recorded.manifest.source)
         content = {"folder": recorded.folder, "simulated": simulated, "run": run}

@@ -2,8 +2,7 @@
 """`zebro-lab sim`: a simulated device at a port that any program can open."""
 
 from collections.abc import Callable
-from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -12,9 +11,6 @@ from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwi
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
-
-if TYPE_CHECKING:
-    from zebro_lab.recording.simulate_stage import Served
 
 app = Application(
     no_args_is_help=True, help="Run a simulated device and print the port to connect to."
@@ -30,37 +26,33 @@ Duration = Annotated[
 @request_command()
 def zebro(request: ZebroTwinRequest, duration: Duration = None, output: Output = TEXT) -> None:
     """Simulate the robot's legs, which walk a tripod gait or the leg angles of --play."""
-    from zebro_lab.recording.simulate_stage import serve_zebro
-
-    _serve(serve_zebro(request), "sim zebro", request.profile, duration, output)
+    _serve(request, "sim zebro", duration, output)
 
 
 @app.command()
 @request_command()
 def imu(request: ImuTwinRequest, duration: Duration = None, output: Output = TEXT) -> None:
     """Simulate an inertial measurement unit on a robot that walks."""
-    from zebro_lab.recording.simulate_stage import serve_imu
-
-    _serve(serve_imu(request), "sim imu", request.profile, duration, output)
+    _serve(request, "sim imu", duration, output)
 
 
 @app.command()
 @request_command()
 def rig(request: RigTwinRequest, duration: Duration = None, output: Output = TEXT) -> None:
     """Simulate the slip rig, which repeats a slip sweep until a program commands its discs."""
-    from zebro_lab.recording.simulate_stage import serve_rig
-
-    _serve(serve_rig(request), "sim rig", request.profile, duration, output)
+    _serve(request, "sim rig", duration, output)
 
 
 def _serve(
-    serving: "AbstractContextManager[Served]",
+    request: ZebroTwinRequest | ImuTwinRequest | RigTwinRequest,
     command: str,
-    profile: str,
     duration: float | None,
     output: Output,
 ) -> None:
-    with output.progress() as watcher, serving as served:
+    from zebro_lab.recording.simulate_stage import serve
+
+    profile = request.profile
+    with output.progress() as watcher, serve(request) as served:
         for what, place in served.places.items():
             output.say(f"SIMULATED {what} ({served.source}), profile {profile}: {place}")
         output.say(f"to record the simulated device, use the address {served.address}")

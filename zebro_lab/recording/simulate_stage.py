@@ -3,7 +3,7 @@
 
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias, cast
@@ -52,16 +52,25 @@ class Served:
     address: str
 
 
-@contextmanager
-def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
-    """Serve a simulated robot, on a port or a CAN bus, while the context lasts.
+def serve(request: TwinRequest) -> AbstractContextManager[Served]:
+    """Serve a simulated device while the context lasts.
 
-    It walks the requested leg angles, or the default gait.
+    A robot, on a port or a CAN bus, walks the requested leg angles or the default gait; so does the
+    one that carries an IMU. A slip rig is a board, or drives and load cell, whose address names a
+    temporary profile with the port of the load cell.
 
     Raises:
-        RigError: The profile or the port is invalid.
+        RigError: The profile or the port is invalid, or the profile of a rig has neither a board
+            nor drives with a load cell.
         ZebroLabError: The leg angles to walk cannot be read.
     """
+    if isinstance(request, ZebroTwinRequest):
+        return _zebro(request)
+    return _imu(request) if isinstance(request, ImuTwinRequest) else _rig(request)
+
+
+@contextmanager
+def _zebro(request: ZebroTwinRequest) -> Iterator[Served]:
     profile = load_leg_profile(request.profile)
     rng = np.random.default_rng(0)
     gait = _gait(request.play)
@@ -79,15 +88,7 @@ def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
 
 
 @contextmanager
-def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
-    """Serve a simulated inertial measurement unit on a port while the context lasts.
-
-    It is carried by a robot that walks the requested leg angles, or the default gait.
-
-    Raises:
-        RigError: The profile or the port is invalid.
-        ZebroLabError: The leg angles to walk cannot be read.
-    """
+def _imu(request: ImuTwinRequest) -> Iterator[Served]:
     rng = np.random.default_rng(0)
     legs = SimulatedLegs(_gait(request.play), profile=load_leg_profile(LEGS_PROFILE))
     faults = Faults(drop=request.drop)
@@ -100,15 +101,7 @@ def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
 
 
 @contextmanager
-def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
-    """Serve a simulated slip rig while the context lasts: a board, or drives and load cell.
-
-    The address of the latter names a temporary profile, with the port of the load cell.
-
-    Raises:
-        RigError: The profile or the port is invalid, or the profile has neither a board nor drives
-            with a load cell.
-    """
+def _rig(request: RigTwinRequest) -> Iterator[Served]:
     profile = load_rig_profile(request.profile)
     found = device_profiles(profile)
     rng = np.random.default_rng(0)

@@ -13,7 +13,6 @@ from rig.clock import ManualClock
 from rig.errors import DeviceFault, RigTimeout
 from rig.links.byte_link import MemoryLink
 from rig.zebro.check import (
-    MovedLeg,
     check_legs,
     find_lift_off,
     latest_counts,
@@ -30,7 +29,7 @@ def test_the_check_finds_order_and_signs():
     stream, clock = robot(truth=truth)
 
     def watch(channel):
-        return MovedLeg(truth.legs[channel], truth.sign[channel] == 1)
+        return truth.legs[channel], truth.sign[channel] == 1
 
     with stream:
         found = check_legs(stream, watch, clock=clock)
@@ -40,7 +39,7 @@ def test_the_check_finds_order_and_signs():
 def test_a_leg_seen_twice_ends_the_check():
     stream, clock = robot()
     with stream, pytest.raises(DeviceFault, match="leg 1 was seen to move for two channels"):
-        check_legs(stream, lambda _: MovedLeg(1, True), clock=clock)
+        check_legs(stream, lambda _: (1, True), clock=clock)
 
 
 def test_zeros_are_what_is_read_with_the_toes_ahead():

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-from rig.experiment.run import Outcome
+from rig.experiment.run import RunOutcome
 from rig.twins import simulated_rig_devices
 from zebro_lab.experiment.command import experiment_in_numbers
 from zebro_lab.experiment.journal import Journal
@@ -64,7 +64,7 @@ def test_a_run_that_was_cut_short_has_its_reason_and_no_numbers():
     entry = {"text": "safe stop: SIGTERM", "number": 3, "accepted": False, "attempt": 1,
              "folder": "a"}  # fmt: skip
     journal = Journal("hash", {}, frozenset({"a"}), None, [entry])
-    outcome = Outcome("safe stop: SIGTERM", 2, (), 1, "real")
+    outcome = RunOutcome("safe stop: SIGTERM", 2, (), 1, "real")
     found = experiment_in_numbers(outcome, journal, Path("data"))
     assert not found["simulated"]
     assert found["runs"] == [{

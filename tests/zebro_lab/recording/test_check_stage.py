@@ -7,7 +7,6 @@ import pytest
 
 from rig.clock import SYSTEM_CLOCK
 from rig.errors import ProfileError
-from rig.zebro.check import MovedLeg
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording import check_stage
@@ -22,7 +21,7 @@ class Person:
         self.held = 0
 
     def watch(self, channel):
-        return MovedLeg(6 - channel, forward=False)
+        return 6 - channel, False
 
     def hold_toes_ahead(self):
         self.held += 1
@@ -81,5 +80,5 @@ def test_lift_off_is_where_the_hip_is_as_high_as_at_touchdown(tmp_path, monkeypa
     monkeypatch.setattr(check_stage, "MOVING", 0.01)
     asked = CheckRequest("sim", tmp_path / "mine.toml", touchdown_deg=54.0)
     found = check_zebro(asked, Measuring()).lift_off
-    assert found.theta_deg == pytest.approx(126.0, abs=3.6)  # of a count
+    assert math.degrees(found.theta) == pytest.approx(126.0, abs=3.6)  # of a count
     assert abs(found.mismatch) < 0.07 * math.radians(3.6)

@@ -21,7 +21,7 @@ from zebro_lab.recording import stage as module
 from zebro_lab.recording import status
 from zebro_lab.recording.devices import OpenDevices, profile_text
 from zebro_lab.recording.request import RecordRequest, ZebroTwinRequest
-from zebro_lab.recording.simulate_stage import serve_zebro
+from zebro_lab.recording.simulate_stage import serve
 from zebro_lab.recording.stage import record
 from zebro_lab.runs.stage import list_runs
 
@@ -107,7 +107,7 @@ def test_a_watcher_that_cannot_say_whether_to_stop_ends_the_run_with_its_record(
 
 
 def test_swapped_devices_end_the_run_with_a_line_that_says_so(tmp_path):
-    with serve_zebro(ZebroTwinRequest("zebro-100-serial")) as served:
+    with serve(ZebroTwinRequest("zebro-100-serial")) as served:
         address = f"imu-quaternion-serial@{served.places['robot']}"
         with pytest.raises(RecordingError, match="are two ports swapped"):
             record(RecordRequest("x", tmp_path, imus=(address,), duration=5.0), RecordWatcher())

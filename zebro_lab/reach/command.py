@@ -26,8 +26,7 @@ Parts of a manoeuvre are whole strides, whose stances are as long as to end at t
 @request_command(first=("goal", "slip", "out"))
 def reach(request: ReachRequest, output: Output = TEXT) -> None:
     """Plan and walk two ways to a place: stop, turn, walk, and a curve; compare time and work."""
-    from zebro_lab.reach import stage
-    from zebro_lab.reach.screen import print_reached, reach_document
+    from zebro_lab.reach import screen, stage
     from zebro_lab.walk.output import WalkStopped
 
     if not request.goal:
@@ -38,5 +37,5 @@ def reach(request: ReachRequest, output: Output = TEXT) -> None:
     request.model.require_slip()
     with output.progress(WalkStopped) as watcher:
         reached = stage.reach(request, watcher)
-    print_reached(output.console(), reached, request.out)
-    output.document("reach", {**reach_document(reached), "folder": request.out})
+    screen.print_reached(output.console(), reached, request.out)
+    output.document("reach", {**screen.reach_document(reached), "folder": request.out})

@@ -4,11 +4,17 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
+import tomlkit
 
 from model.robot import Robot
+from model.routes.manoeuvre import Part, Stepping
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.result_folder import ResultKind
+from zebro_lab.plots import save
+from zebro_lab.plots.ways import DrawnGoal, ways_to_goals
+from zebro_lab.reach.request import SteppingRequest
 from zebro_lab.reach.way import CURVE, STOP_TURN_WALK, Way, named
 
 TABLE, PICTURE = "reach.csv", "reach"
@@ -54,9 +60,6 @@ def draw_ways(file: Path, ways: Sequence[Way], robot: Robot, *, title: str) -> N
         robot: The robot, for the size of its body.
         title: Title of the figure.
     """
-    from zebro_lab.plots import save  # matplotlib takes most of a second
-    from zebro_lab.plots.ways import DrawnGoal, ways_to_goals
-
     numbers = dict.fromkeys(way.number for way in ways)
     goals = [
         DrawnGoal(
@@ -69,3 +72,47 @@ def draw_ways(file: Path, ways: Sequence[Way], robot: Robot, *, title: str) -> N
     ]  # fmt: skip
     ground = ways[0].walked.heights
     save(ways_to_goals(goals, robot, title=title, ground=ground), file)
+
+
+_DIGITS = 6  # decimals of steering and of degrees; a micrometre in a metre
+
+
+def program_text(
+    parts: Sequence[Part], stepping: Stepping, request: SteppingRequest, *, about: Sequence[str]
+) -> str:
+    """Return the text of a program with a segment for each part.
+
+    Args:
+        parts: The parts.
+        stepping: Gait, times and angles that they have in common.
+        request: The same as asked for: names and times are written as they were given.
+        about: Lines of a comment at its beginning.
+    """
+    document = tomlkit.document()
+    for line in about:
+        document.add(tomlkit.comment(line))
+    segments = tomlkit.aot()
+    for part in parts:
+        segments.append(tomlkit.item(_segment(part, stepping, request)))
+    document.add("segment", segments)
+    return tomlkit.dumps(document)
+
+
+def _segment(part: Part, stepping: Stepping, request: SteppingRequest) -> dict[str, object]:
+    down, up = stepping.stance(part.share)
+    segment: dict[str, object] = {"gait": request.gait, **_times(request)}
+    if part.bend != 0:
+        segment |= {"steering": round(part.steering, _DIGITS), "direction": part.direction}
+    segment["touchdown_deg"] = round(float(np.degrees(down)), _DIGITS)
+    if up is not None:
+        segment["liftoff_deg"] = round(float(np.degrees(up)), _DIGITS)
+    until = tomlkit.inline_table()
+    until["strides"] = part.strides
+    return {**segment, "until": until}
+
+
+def _times(request: SteppingRequest) -> dict[str, float]:
+    times = {"cycle": request.cycle, "ground_time": request.tau_ground,
+             "flight_time": request.tau_flight}  # fmt: skip
+    given = {name: value for name, value in times.items() if value is not None}
+    return {**given, **({"double_stance": request.tau_double} if request.tau_double else {})}

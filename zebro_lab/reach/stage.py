@@ -17,8 +17,15 @@ from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable, result_folder
-from zebro_lab.reach.folder import PICTURE, REACH, TABLE, draw_ways, program_name, write_table
-from zebro_lab.reach.program_text import program_text
+from zebro_lab.reach.folder import (
+    PICTURE,
+    REACH,
+    TABLE,
+    draw_ways,
+    program_name,
+    program_text,
+    write_table,
+)
 from zebro_lab.reach.request import ReachRequest, SteppingRequest, parse_goal
 from zebro_lab.reach.way import CURVE, STOP_TURN_WALK, Way, named
 from zebro_lab.robot.robot_file import RobotFile
@@ -82,9 +89,11 @@ def reach(request: ReachRequest, watcher: Watcher) -> ReachResult:
             _walked(draft, number, goals, manoeuvre, plan, walking, watcher)
             for number, manoeuvre, plan in planned
         )
-        content |= _content(request, goals, ways)
+        walked = ways[0].walked
+        content |= _content(request, goals, walked)
         notes = tuple(dict.fromkeys(note for way in ways for note in way.walked.notes))
-        title = f"{request.stepping.gait}, model 'dynamics', slip {_slip_title(ways)}"
+        slip = "" if walked.slip is None else walked.slip.title
+        title = f"{request.stepping.gait}, model 'dynamics', slip {slip}"
         reached = ReachResult(goals, ways, walking.stride, title, notes)
         write_table(draft / TABLE, ways)
         watcher.step("drawing", None)
@@ -183,29 +192,13 @@ def _options(request: ReachRequest) -> str:
     )
 
 
-def _slip_title(ways: Sequence[Way]) -> str:
-    slip = ways[0].walked.slip
-    return "" if slip is None else slip.title
-
-
-def _content(
-    request: ReachRequest, goals: Sequence[Goal], ways: Sequence[Way]
-) -> dict[str, object]:
+def _content(request: ReachRequest, goals: Sequence[Goal], walked: Walked) -> dict[str, object]:
     """Return source, settings and hashes of inputs for the manifest."""
-    walked: Walked = ways[0].walked
-    slip, described, ground = walked.slip, walked.described, walked.ground
-    read = [
-        *((described.file,) if described.file else ()),
-        *(slip.files if slip else ()),
-        *(ground.files if ground else ()),
-    ]
     settings = {
         "goals": [asdict(goal) for goal in goals],
         "gait": asdict(request.stepping),
-        "model": walked.model,
-        "dt": walked.dt,
-        "slip": None if slip is None else {"named": slip.text, "source": slip.source},
-        "doubts": list(walked.doubts),
-        **({} if ground is None else {"ground": ground.settings}),
+        **walked.settings,
     }
-    return {"source": f"sim:{walked.model}", "settings": settings, "inputs": file_hashes(read)}
+    return {
+        "source": f"sim:{walked.model}", "settings": settings, "inputs": file_hashes(walked.files)
+    }  # fmt: skip

@@ -4,6 +4,7 @@
 import typer
 
 from model.counted import counted
+from zebro_lab.files.documents import read_json_document
 from zebro_lab.files.names import is_ros_log
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.output import TEXT, Output
@@ -43,15 +44,13 @@ _ONLY_RUNS = ("predicted", "track", "anchor", "estimate_offset")
 @request_command()
 def validate(request: ValidateRequest, output: Output = TEXT) -> None:
     """Compute the errors of predicted paths against tracked ones, with baselines."""
-    from zebro_lab.files.documents import read_json_document
-    from zebro_lab.validation import stage, trajectory_stage
-    from zebro_lab.validation.screen import print_validated
+    from zebro_lab.validation import screen, stage, trajectory_stage
 
     (_require_pair if request.is_pair else _require_runs)(request)
     run = trajectory_stage.validate_pair if request.is_pair else stage.validate
     with output.progress() as watcher:
         validated = run(request, watcher)
-    print_validated(output.console(), validated, request.folder)
+    screen.print_validated(output.console(), validated, request.folder)
     manifest = read_json_document(request.folder / "manifest.json")
     content = {"folder": request.folder, "simulated": is_simulated(validated.source)}
     output.document("validate", {**content, "validation": manifest})

@@ -19,6 +19,7 @@ from zebro_lab.files.result_folder import ResultKind, result_folder
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.track.file import tum_lines
 from zebro_lab.validation.judged_run import JudgedRun
+from zebro_lab.validation.pictures import draw_validation
 from zebro_lab.validation.predicted_walks import ShownRun
 
 SCHEMA = 1
@@ -157,8 +158,6 @@ def write_validation(
     Raises:
         AlreadyExists, NotWritten: As in `result_folder`.
     """
-    from zebro_lab.validation import pictures  # matplotlib takes most of a second
-
     runs = [each.run for each in shown]
     notes = [f"{run.name}: {note}" for run in runs for note in run.notes]
     content = {
@@ -175,9 +174,7 @@ def write_validation(
     with result_folder(out, VALIDATION, content=content) as draft:
         _write_tables(draft, runs)
         for each in shown:
-            undrawn = pictures.draw_validation(
-                draft, each, simulated=is_simulated(source), form=form
-            )
+            undrawn = draw_validation(draft, each, simulated=is_simulated(source), form=form)
             notes += [f"{each.run.name}: {why}" for why in undrawn]
 
 

@@ -20,6 +20,7 @@ from zebro_lab.track.trajectory.file import Trajectory, read_trajectory
 from zebro_lab.track.trajectory.request import of_file
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 from zebro_lab.validation.folder import ERRORS, METRICS, error_columns, to_csv
+from zebro_lab.validation.pictures import draw_pair
 from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.trajectory_pair import Errors, JudgedPair, judge_pair
 
@@ -94,8 +95,6 @@ def pair_metrics(row: Errors) -> dict[str, float]:
 
 def _write(request: ValidateRequest, judged: JudgedPair, settings: dict[str, object]) -> None:
     """Write the folder: metrics, errors pose by pose, matched poses, picture, manifest."""
-    from zebro_lab.validation.pictures import draw_pair  # matplotlib takes most of a second
-
     both = (judged.reference, judged.estimate)
     metrics = {row.where: pair_metrics(row) for row in judged.rows}
     content = {

@@ -48,21 +48,21 @@ Draws are the same on this machine's cores and on a Dask cluster. --scheduler ne
 @request_command(first=("program", "name", "duration", "slip", "out"))
 def walk(request: WalkRequest, output: Output = TEXT) -> None:
     """Simulate a gait, or a program of several, and write path.csv, a band, pictures and a film."""
-    from zebro_lab.walk import stage
-    from zebro_lab.walk.screen import run_and_report
+    from zebro_lab.walk import screen, stage
 
     if request.duration is None and request.program is None:
         raise typer.BadParameter("missing: the duration of the walk [s]", param_hint="'--duration'")
     request.require_slip()
-    run_and_report("walk", lambda watcher: stage.walk(request, watcher), request.out, output)
+    screen.run_and_report("walk", lambda watcher: stage.walk(request, watcher), request.out, output)
 
 
 @request_command(first=("log", "out", "slip", "model", "robot"))
 def predict(request: PredictRequest, output: Output = TEXT) -> None:
     """Predict the path from leg angles: FOLDER/path.csv, a band, pictures and an animation."""
-    from zebro_lab.walk import stage
-    from zebro_lab.walk.screen import run_and_report
+    from zebro_lab.walk import screen, stage
 
     request.model.require_slip()
     folder = stage.prediction_folder(request)
-    run_and_report("predict", lambda watcher: stage.predict(request, watcher), folder, output)
+    screen.run_and_report(
+        "predict", lambda watcher: stage.predict(request, watcher), folder, output
+    )

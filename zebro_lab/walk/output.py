@@ -53,46 +53,28 @@ def write_walk(
         WalkStopped: A stop was requested before pictures are drawn, or during the animation;
             nothing was written.
     """
-    described, slip = walked.described, walked.slip
-    read = [
-        *files,
-        *((described.file,) if described.file else ()),
-        *(slip.files if slip else ()),
-        *(walked.ground.files if walked.ground else ()),
-    ]
     everything = {
-        "model": walked.model,
-        "dt": walked.dt,
+        **walked.settings,
         "contact_by": walked.contact_by,
-        "slip": None if slip is None else {"named": slip.text, "source": slip.source},
-        "robot": _robot_settings(described.robot),
-        "doubts": list(walked.doubts),
+        "robot": _robot_settings(walked.described.robot),
         "walks": None if walked.informed is None else walked.informed.settings(),
-        **({} if walked.ground is None else {"ground": walked.ground.settings}),
         **settings,
         **({} if walked.band is None else {"band": band_settings(request.band, walked.informed)}),
     }
-    source, inputs = f"sim:{walked.model}", file_hashes(read)
+    source, inputs = f"sim:{walked.model}", file_hashes([*files, *walked.files])
     with walk_folder(
         out, walked.path, kind=kind, source=source, settings=everything, inputs=inputs
     ) as folder:
-        _write_thesis(folder, walked)
+        if walked.model == "thesis":  # its package takes most of a second
+            from zebro_lab.walk.thesis_file import write_thesis
+
+            write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot)
         _draw(_shown(request.pictures, walked), walked, folder, watcher)
         if walked.contacts is not None:
             write_contacts(folder / CONTACTS_CSV, walked.contacts)
             write_touchdowns(folder / TOUCHDOWNS_CSV, walked.contacts.touchdowns)
         if walked.band is not None:
             write_draws(folder, walked.band)
-
-
-def _write_thesis(folder: Path, walked: Walked) -> None:
-    """Write the quantities of the thesis's model, if it walked."""
-    from model.thesis.path import ThesisPath  # its package takes most of a second
-
-    if isinstance(walked.path, ThesisPath):
-        from zebro_lab.walk.thesis_file import write_thesis
-
-        write_thesis(folder / THESIS_CSV, walked.path, walked.described.robot)
 
 
 def _draw(request: PictureRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:

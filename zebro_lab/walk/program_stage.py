@@ -20,10 +20,11 @@ from zebro_lab.files.errors import SettingsError
 from zebro_lab.ground.ground_file import GroundFile
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.informed_legs import informed_legs
+from zebro_lab.walk.notes import speed_warnings
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.program_file import Program, read_program
 from zebro_lab.walk.request import ModelRequest
-from zebro_lab.walk.walking import MOST_STEPS, WalkedLegs, WalkedSegment, speed_warnings, time_step
+from zebro_lab.walk.walking import MOST_STEPS, WalkedLegs, WalkedSegment, time_step
 
 _MISSED = np.radians(1.0)  # a miss that is told of
 _WALKS = "dynamics"  # the model that finds where segments end

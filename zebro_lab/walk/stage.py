@@ -27,6 +27,7 @@ from zebro_lab.walk.band import predict_band
 from zebro_lab.walk.contacts import contacts_of
 from zebro_lab.walk.folder import PREDICTION, WALKED
 from zebro_lab.walk.leg_angles import angles_from
+from zebro_lab.walk.notes import speed_warnings
 from zebro_lab.walk.output import write_walk
 from zebro_lab.walk.program_stage import laid_out
 from zebro_lab.walk.request import ModelRequest, PredictRequest, WalkRequest
@@ -36,7 +37,6 @@ from zebro_lab.walk.walking import (
     WalkedLegs,
     ground_of,
     robot_of,
-    speed_warnings,
     walk_with,
 )
 from zebro_lab.workers import open_executor

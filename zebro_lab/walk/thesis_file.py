@@ -10,6 +10,7 @@ from model.leg import wrap_angle
 from model.robot import N_LEGS, Robot
 from model.thesis.frames import contact_forces, contact_frames, hip_frames
 from model.thesis.path import ThesisPath
+from model.walk.path import WalkPath
 from zebro_lab.walk.folder import write_rows
 
 _DIGITS = "%.8g"  # to 1e-7 m in a walk of 10 m
@@ -33,8 +34,8 @@ COLUMNS = (
 """The columns of `thesis.csv`, in order."""
 
 
-def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
-    """Write the quantities of the thesis's model as CSV in SI with the columns `COLUMNS`.
+def write_thesis(file: Path, path: WalkPath, robot: Robot) -> None:
+    """Write the quantities of the thesis's model as CSV in SI; nothing of another model's walk.
 
     Frames and forces are computed and written part by part, since all at once of a long walk they
     take more memory than the walk.
@@ -44,6 +45,8 @@ def write_thesis(file: Path, path: ThesisPath, robot: Robot) -> None:
         path: The walk; NaN, for what a leg in the air does not have, becomes an empty cell.
         robot: The robot that walked.
     """
+    if not isinstance(path, ThesisPath):
+        return
     if len(path.t) > 1:
         steps = max(round(_EVERY / float(path.t[1] - path.t[0])), 1)
         path = path.part(slice(None, None, steps))

@@ -7,6 +7,7 @@ import typer
 
 from zebro_lab.calibration.command import fit_and_report
 from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.files.documents import read_json_document, read_toml_document
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.command_classes import Version
 from zebro_lab.terminal.output import TEXT, Output
@@ -79,8 +80,6 @@ def calibrate(
 
 def _document(request: CalibrationRequest, *, with_walks: bool) -> dict[str, object]:
     """Return the contents of the folder's slip.toml, and of the manifest of `walks/` if fitted."""
-    from zebro_lab.files.documents import read_json_document, read_toml_document
-
     slip = read_toml_document(request.out / "slip.toml")
     source = str(slip.get("source", ""))
     content = {"folder": request.out, "simulated": is_simulated(source), "calibration": slip}
@@ -104,9 +103,8 @@ def _fit_walks(
     executor: Executor | None,
 ) -> None:
     """Fit leg offsets and floor parameters to tracked walks, write `walks/`, print the results."""
-    from zebro_lab.walk_fit.screen import print_walks
-    from zebro_lab.walk_fit.stage import calibrate_walks
+    from zebro_lab.walk_fit import screen, stage
 
     with output.progress() as watcher:
-        done = calibrate_walks(tracked, calibration, watcher, executor=executor)
-    print_walks(output.console(), done)
+        done = stage.calibrate_walks(tracked, calibration, watcher, executor=executor)
+    screen.print_walks(output.console(), done)

@@ -6,6 +6,9 @@ from pathlib import Path
 
 from model.walk_fit.posterior import WalkPosterior
 from zebro_lab.files.picture_format import PictureFormat
+from zebro_lab.plots import save
+from zebro_lab.plots.path_validation import path_validation
+from zebro_lab.plots.walks import walk_parameters
 from zebro_lab.validation.judged_run import JudgedRun
 
 PARAMETERS, LEFT_OUT = "walk_parameters", "left_out."
@@ -24,10 +27,6 @@ def draw_walks(
         simulated: Whether to append "(simulated)" to the titles.
         form: Format of the pictures.
     """
-    from zebro_lab.plots import save
-    from zebro_lab.plots.path_validation import path_validation
-    from zebro_lab.plots.walks import walk_parameters
-
     save(walk_parameters(posterior, simulated=simulated), folder / f"{PARAMETERS}.{form}")
     for run in left_out:
         figure = path_validation(

@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from model.gait import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
@@ -13,13 +12,7 @@ from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.request import ModelRequest
-from zebro_lab.walk.walking import (
-    MOST_STEPS,
-    WalkedLegs,
-    largest_speeds,
-    speed_warnings,
-    walk_with,
-)
+from zebro_lab.walk.walking import MOST_STEPS, WalkedLegs, walk_with
 
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.0), 2.0)
 
@@ -59,29 +52,3 @@ def test_steps_that_make_no_walk_or_too_long_a_one_are_an_error(options):
 
 def test_a_step_longer_than_the_model_s_is_noted():
     assert any("legs slip too much" in n for n in walked(slip="coulomb:0.4", dt=0.005).notes)
-
-
-FAST = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0)
-
-
-def test_largest_speeds_of_a_gait_are_those_of_its_angles():
-    t = np.linspace(0.0, 4.0, 2001)
-    sampled = SampledReference(t, FAST.angles(t))
-    np.testing.assert_allclose(largest_speeds(FAST), largest_speeds(sampled), rtol=1e-9)
-
-
-def test_a_leg_faster_than_the_limit_is_named_and_one_at_the_limit_is_not():
-    fastest = float(largest_speeds(FAST).max())
-    assert speed_warnings(FAST, None) == speed_warnings(FAST, fastest) == ()
-    (line,) = speed_warnings(FAST, np.radians(200.0))
-    for part in ("WARNING: leg 1", "292 deg/s", "200 deg/s", "legs.speed_limit_deg_per_s"):
-        assert part in line
-
-
-@pytest.mark.parametrize("limit", ["4", "0", "-300"])
-def test_an_improbable_limit_is_refused(limit, run_command, tmp_path):
-    robot = tmp_path / "robot.toml"
-    robot.write_text(f"[legs]\nspeed_limit_deg_per_s = {limit}\n")
-    ended = run_command("walk", "--slip", "thesis", "--duration", 2, "--robot", robot)
-    assert ended.code == 1
-    assert "speed_limit_deg_per_s: is" in ended.err

@@ -63,8 +63,13 @@ $(LOWEST_STAMP): pyproject.toml
 test-lowest: $(LOWEST_STAMP) ## the tests with the lowest versions allowed, on Python 3.11
 	$(LOWEST)/bin/python -m pytest -n 2 --dist worksteal -m "not long"
 
-test-long: $(STAMP) ## coverage and other statistical claims; minutes each, tables printed
-	$(BIN)/python -m pytest -m long -s --timeout 5400 tests
+# Long tests that watch a clock run alone.
+TIMED := tests/long/test_recording.py tests/long/test_experiment_faults.py tests/benchmarks/faults \
+  tests/zebro_lab/test_stops.py
+
+test-long: $(STAMP) ## coverage and other statistical claims, under an hour on two cores; tables at the end
+	$(BIN)/python -m pytest -m long -s --timeout 3600 $(TIMED)
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m long -rP --timeout 3600 tests $(TIMED:%=--ignore=%)
 
 check: lint types floors test ## lint, types, import floors, then the tests
 

@@ -27,12 +27,12 @@ from zebro_lab.experiment.rig_at_hand import rig_at_hand
 
 pytestmark = pytest.mark.long
 
-N_SEEDS = 20
+N_SEEDS = 10
 PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
 TRUTH = np.array(THESIS_VALUES)
 SYMBOLS = [parameter.symbol for parameter in THESIS_LAW.parameters]
-DRAWS = 20_000
+DRAWS = 10_000
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ pytestmark = pytest.mark.long
 
 RIGS = {"usual": USUAL, "measured": RigErrors(1e-6, 1e-6)}
 N_SEEDS = 20
-N_SAMPLED = 2
+N_SAMPLED = 1
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
 TRUTH = np.array(THESIS_VALUES)
 LAW = THESIS_LAW.parameters

@@ -13,7 +13,7 @@ from tracking.floor import EDGE_SPREADS
 from tracking.floor.edge_spread import EDGE_SCALE
 
 DISTANCES = (2.0, 2.6, 3.4, 4.4, 5.7)  # m
-WALKS = 60
+WALKS = 40
 
 
 def drawn_spread(rng):

@@ -4,7 +4,7 @@
 Every walk of the reference data becomes what a lab would have: leg angles counted in steps of 3.6
 degrees, and a track of a pose every two seconds with a tracker's noise. Two walks of a floor inform
 the fit; the others are predicted from their leg angles and first tracked poses, which are not
-scored, and judged by twenty tracks of other noise: a few poses behind one start may well lie all
+scored, and judged by ten tracks of other noise: a few poses behind one start may well lie all
 within a band or all without.
 """
 
@@ -43,7 +43,7 @@ HALF_CIRCLES = (
 STEP = np.radians(3.6)  # of the legs' encoders
 EVERY = 2.0  # s between photographs
 NOISE = np.array([0.002, 0.002, np.radians(0.3)])  # x, y, yaw; more than in docs/tracking.md
-TRACKS = 20  # of other noise, that judge a prediction
+TRACKS = 10  # of other noise, that judge a prediction
 RADIUS, YAW_RATE, OF_PATH = 0.02, 0.1, 0.02  # of radius, deg/s, rms of path
 COVERED = (0.80, 0.97)
 

@@ -38,9 +38,9 @@ from tracking.errors import TrackingError
 from tracking.images import exif_time, read_pixels, times_from_table, video_frames
 from zebro_lab.calibration.checkpoint import load_checkpoint
 from zebro_lab.calibration.folder import POSTERIOR
+from zebro_lab.calibration.posterior_file import law_draws
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
-from zebro_lab.calibration.slip_draws import law_draws
 from zebro_lab.calibration.walks_folder import SCHEMA, describe_legs, read_stored_walks
 from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
 from zebro_lab.experiment.plan_stage import read_plan

@@ -7,8 +7,8 @@ import pytest
 
 from model.bayes.calibrate import SamplerSettings
 from zebro_lab.calibration import stage
+from zebro_lab.calibration.priors import KnownPriors
 from zebro_lab.calibration.request import CalibrationRequest
-from zebro_lab.calibration.stated import Stated
 
 FEW = {"FIRST_LOOK": 10, "CHUNK": 5, "IMPORTANCE_DRAWS": 1000, "EFFECTIVE_DRAWS": 100.0}
 """Constants of `model.bayes.calibrate`: steps before the first look, and at once, and draws."""
@@ -20,7 +20,7 @@ def fit_quickly(patch: pytest.MonkeyPatch) -> None:
         patch.setattr(f"model.bayes.calibrate.{name}", value)
     sampler = stage._sampler
 
-    def settings(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
+    def settings(request: CalibrationRequest, stated: KnownPriors) -> SamplerSettings:
         usual = sampler(request, stated)
         return replace(usual, ensembles=2, block_length=stated.block_length or 30)
 

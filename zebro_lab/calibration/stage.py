@@ -20,9 +20,9 @@ from zebro_lab.calibration.checkpoint import load_checkpoint, save_checkpoint
 from zebro_lab.calibration.folder import CALIBRATION, write_tables
 from zebro_lab.calibration.lateral_force import LateralForce
 from zebro_lab.calibration.pictures import draw_calibration
+from zebro_lab.calibration.priors import KnownPriors, gather_priors, priors_content
 from zebro_lab.calibration.request import COMPARE, CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
-from zebro_lab.calibration.stated import Stated, priors_content, state_priors
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes, fingerprint
 from zebro_lab.files.result_folder import require_replaceable, result_folder
@@ -91,7 +91,7 @@ def calibrate(
             was written if sampling had begun.
     """
     data = read(request, watcher) if data is None else data
-    stated, laws = state_priors(request, data, candidates(request, data.samples))
+    stated, laws = gather_priors(request, data, candidates(request, data.samples))
     inputs = file_hashes((*data.files, *stated.files))
     mark = fingerprint(inputs, request.decisive())
     earlier = load_checkpoint(request.out, fingerprint=mark) if request.resume else None
@@ -160,10 +160,10 @@ def stated_notes(request: CalibrationRequest, data: RigData) -> tuple[str, ...]:
     Raises:
         ZebroLabError: A prior cannot be used, or an earlier calibration cannot be read.
     """
-    return state_priors(request, data, candidates(request, data.samples))[0].notes
+    return gather_priors(request, data, candidates(request, data.samples))[0].notes
 
 
-def _sampler(request: CalibrationRequest, stated: Stated) -> SamplerSettings:
+def _sampler(request: CalibrationRequest, stated: KnownPriors) -> SamplerSettings:
     return SamplerSettings(
         max_steps=request.max_steps,
         block_length=stated.block_length,
@@ -177,7 +177,7 @@ def _write(
     request: CalibrationRequest,
     calibration: Calibration,
     inputs: dict[str, str],
-    stated: Stated,
+    stated: KnownPriors,
     lateral: LateralForce | None,
 ) -> None:
     priors, fit = priors_content(stated, calibration), calibration.fit

@@ -13,8 +13,8 @@ from model.bayes.priors import Prior
 from model.slip.definition import SlipDefinition
 from model.slip.law import SlipLaw
 from model.slip.rig_errors import USUAL, RigErrors
-from zebro_lab.calibration.fitted_blocks import read_slip_blocks
 from zebro_lab.calibration.folder import POSTERIOR, SlipFile, read_slip_file
+from zebro_lab.calibration.posterior_file import read_slip_blocks
 from zebro_lab.calibration.prior_argument import named_priors, parse_prior
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, SettingsError

@@ -4,8 +4,7 @@
 import typer
 
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.suggest.request import SuggestRequest
-from zebro_lab.suggest.target_text import EXPECTED
+from zebro_lab.suggest.request import EXPECTED, SuggestRequest
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 

@@ -31,9 +31,9 @@ from zebro_lab.suggest.folder import (
     Expected,
     Suggested,
     points_of,
+    with_points,
     write_expected,
 )
-from zebro_lab.suggest.plan_text import with_points
 from zebro_lab.suggest.proposal import (
     DURATIONS,
     MOST_SLIPS,
@@ -43,8 +43,7 @@ from zebro_lab.suggest.proposal import (
     knowledge_of,
     propose,
 )
-from zebro_lab.suggest.request import SuggestRequest
-from zebro_lab.suggest.target_text import ForceText, ParameterText, TargetText
+from zebro_lab.suggest.request import ForceText, ParameterText, SuggestRequest, TargetText
 from zebro_lab.workers import WorkersRequest, open_executor
 
 READ_DRAWS: Final = 200

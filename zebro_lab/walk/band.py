@@ -14,7 +14,7 @@ from model.poses import Poses
 from model.predict import ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.tasks import Watcher
-from zebro_lab.calibration.slip_draws import slip_tables
+from zebro_lab.calibration.posterior_file import slip_tables
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.folder import INFORMED_MODEL
 from zebro_lab.walk.informed_legs import InformedLegs

@@ -16,8 +16,8 @@ from model.walk_fit.posterior import WalkPosterior
 from model.walk_fit.prior import WalkPrior
 from model.walk_fit.tracked_walk import middle
 from model.walk_models import baseline_paths
+from zebro_lab.calibration.posterior_file import slip_tables
 from zebro_lab.calibration.slip_argument import NamedSlip
-from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.validation.folder import metrics
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.walk.prediction_file import PredictionFile

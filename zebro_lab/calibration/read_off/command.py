@@ -12,7 +12,7 @@ from zebro_lab.terminal.request_command import request_command
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from zebro_lab.calibration.read_off.values import ReadOffResult
+    from zebro_lab.calibration.read_off.stage import ReadOffResult
 
 EPILOG = """
 Examples:

@@ -2,7 +2,7 @@
 """Stage of `zebro-lab read-off`: curves by load, their coefficients, and the folder."""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -15,10 +15,10 @@ from model.counted import counted
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip
 from model.slip.load_curves import LoadCurve, curves_by_load
-from model.slip.read_off import read_off
-from zebro_lab.calibration.curve_table import CurveTable, is_curve_table, read_curve_table
+from model.slip.magic_formula import peak_slip
+from model.slip.read_off import ReadOff, read_off
+from zebro_lab.calibration.curve_argument import CurveTable, is_curve_table, read_curve_table
 from zebro_lab.calibration.read_off.request import ReadOffRequest
-from zebro_lab.calibration.read_off.values import ReadCurve, ReadOffResult
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.picture_format import in_every_format
@@ -29,6 +29,55 @@ from zebro_lab.files.source_names import is_simulated
 TABLE, PICTURE = "read-off.csv", "curves"
 READ_OFF: Final = ResultKind("read-off", "read-off", (TABLE, *in_every_format(PICTURE)))
 _FEWEST = 3  # points of a side of a curve, below which it is no side but noise about zero slip
+
+
+@dataclass(frozen=True)
+class ReadCurve:
+    """A curve at one load, and what was read off it.
+
+    Attributes:
+        curve: The points, at positive slip and force.
+        side: "driving" or "braking".
+        found: Coefficients; None where the curve does not give them.
+        reason: Why not; empty if it does.
+    """
+
+    curve: LoadCurve
+    side: str
+    found: ReadOff | None
+    reason: str = ""
+
+    def row(self) -> dict[str, object]:
+        """Return the row of `read-off.csv`; NaN where nothing was found."""
+        nan = float("nan")
+        found = self.found or ReadOff(nan, nan, nan, nan, (nan,) * 4, nan)
+        row: dict[str, object] = {
+            "load_n": self.curve.load, "side": self.side, "points": len(self.curve.slip),
+        }  # fmt: skip
+        for name, error in zip("BCDE", found.errors, strict=True):
+            row |= {name: getattr(found, name), f"{name}_error": error}
+        peak = float(peak_slip(found.B, found.C, found.E)) if self.found else np.nan
+        return row | {
+            "peak_over_load": found.D / self.curve.load, "peak_slip": peak,
+            "misfit_n": found.misfit, "problem": self.reason,
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ReadOffResult:
+    """What was read off all curves.
+
+    Attributes:
+        curves: The curves by load, driving before braking.
+        definition: Slip definition.
+        source: Source of the data.
+        notes: Notes on the data, one line each.
+    """
+
+    curves: tuple[ReadCurve, ...]
+    definition: SlipDefinition
+    source: str
+    notes: tuple[str, ...]
 
 
 def read_off_curves(request: ReadOffRequest) -> ReadOffResult:
@@ -112,7 +161,8 @@ def _write(request: ReadOffRequest, result: ReadOffResult, files: tuple[Path, ..
     with result_folder(request.out, READ_OFF, content=content) as draft:
         table = pd.DataFrame(rows)
         table.to_csv(draft / TABLE, index=False, float_format="%.6g", lineterminator="\n")
+        shown = [(each.curve, each.side, each.found) for each in result.curves]
         figure = read_curves(
-            result.curves, definition=str(result.definition), simulated=is_simulated(result.source)
+            shown, definition=str(result.definition), simulated=is_simulated(result.source)
         )
         save(figure, draft / f"{PICTURE}.{request.form}")

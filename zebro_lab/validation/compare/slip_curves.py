@@ -12,10 +12,9 @@ from model.slip.curve import SlipCurve
 from model.slip.curve_band import farthest, simultaneous_band
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.curve_argument import GivenCurve, is_curve, parse_curve
-from zebro_lab.calibration.fitted_blocks import read_fitted_blocks
 from zebro_lab.calibration.folder import read_slip_file
+from zebro_lab.calibration.posterior_file import law_draws, read_fitted_blocks
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.calibration.slip_draws import law_draws
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.validation.compare.values import Comparison, Curve, Place, Quantity
 

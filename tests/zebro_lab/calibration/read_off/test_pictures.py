@@ -5,7 +5,6 @@ from model.slip.load_curves import LoadCurve
 from model.slip.magic_formula import magic_formula
 from model.slip.read_off import read_off
 from zebro_lab.calibration.read_off.pictures import read_curves
-from zebro_lab.calibration.read_off.values import ReadCurve
 
 
 def test_each_curve_has_a_panel_with_points_and_the_formula_if_there_is_one():
@@ -13,8 +12,8 @@ def test_each_curve_has_a_panel_with_points_and_the_formula_if_there_is_one():
     force = magic_formula(slip, 34.34, 1.564, 4.84, 0.797)
     curve = LoadCurve(12.75, slip, force)
     curves = [
-        ReadCurve(curve, "driving", read_off(slip, force)),
-        ReadCurve(curve, "braking", None, "no peak"),
+        (curve, "driving", read_off(slip, force)),
+        (curve, "braking", None),
     ]
     figure = read_curves(curves, definition="material", simulated=True)
     driving, braking = figure.axes

@@ -11,13 +11,14 @@ from model.bayes.prior_conflict import PriorShift
 from model.bayes.stated_priors import StatedPriors
 from model.slip import MagicFormula
 from model.slip.thesis import THESIS_LAW
+from support.compared_folders import calibration
 from support.rig_tables import RADII, columns, louder, speeds, write
 from support.short_calibration import short_calibration
 from zebro_lab.calibration.folder import write_tables
+from zebro_lab.calibration.priors import KnownPriors, gather_priors, priors_content, read_earlier
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
-from zebro_lab.calibration.stated import Stated, priors_content, state_priors
-from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
 
 LAWS = {"constant": MagicFormula("constant"), "peak": THESIS_LAW}
@@ -39,7 +40,7 @@ def data(folder: Path, priors: str = "") -> RigData:
 def test_an_option_replaces_the_prior_of_columns_toml_by_the_parameter_s_name(tmp_path):
     found = data(tmp_path, '[priors]\nfriction = "0.4 ± 0.1"\nshape = "uniform(1.4, 1.7)"\n')
     request = CalibrationRequest((tmp_path,), prior=("mu = 0.5 ± 0.2",))
-    stated, laws = state_priors(request, found, LAWS)
+    stated, laws = gather_priors(request, found, LAWS)
     assert stated.texts == {"friction": "mu = 0.5 ± 0.2", "shape": "shape ~ uniform(1.4, 1.7)"}
     assert "normal(mean 0.5, sd 0.2)" in stated.priors.single["friction"].describe()
     assert laws is LAWS
@@ -48,7 +49,7 @@ def test_an_option_replaces_the_prior_of_columns_toml_by_the_parameter_s_name(tm
 def test_a_wrong_prior_of_columns_toml_names_the_file(tmp_path):
     found = data(tmp_path, '[priors]\nfrction = "0.4 ± 0.1"\n')
     with pytest.raises(SettingsError, match=r"columns\.toml, \[priors\].*did you mean 'friction'"):
-        state_priors(CalibrationRequest((tmp_path,)), found, LAWS)
+        gather_priors(CalibrationRequest((tmp_path,)), found, LAWS)
 
 
 def test_different_priors_of_two_column_maps_are_refused(tmp_path):
@@ -63,7 +64,7 @@ def test_different_priors_of_two_column_maps_are_refused(tmp_path):
 
 def test_an_earlier_calibration_brings_its_law_and_block_length(tmp_path, earlier):
     request = CalibrationRequest((tmp_path,), prior_from=earlier)
-    stated, laws = state_priors(request, data(tmp_path / "data"), LAWS)
+    stated, laws = gather_priors(request, data(tmp_path / "data"), LAWS)
     fitted = short_calibration()
     assert list(laws.values()) == [fitted.posterior.law]
     assert stated.block_length == fitted.fit.block_choice.length
@@ -75,7 +76,7 @@ def test_an_earlier_calibration_brings_its_law_and_block_length(tmp_path, earlie
 def test_another_load_cell_leaves_out_what_it_changes(tmp_path, earlier):
     request = CalibrationRequest((tmp_path,), prior_from=earlier)
     found, law = data(tmp_path / "data"), {p.name for p in THESIS_LAW.parameters}
-    other_cell, _ = state_priors(replace(request, carry="law"), found, LAWS)
+    other_cell, _ = gather_priors(replace(request, carry="law"), found, LAWS)
     assert set(other_cell.priors.earlier.draws) == law
 
 
@@ -88,22 +89,22 @@ def test_data_of_the_earlier_calibration_are_not_counted_twice(tmp_path):
         request = CalibrationRequest((tmp_path,), prior_from=folder)
         if file == table:
             with pytest.raises(SettingsError, match=r"rig\.csv: already in the data of last-year"):
-                state_priors(request, found, LAWS)
+                gather_priors(request, found, LAWS)
         else:  # the same column map is no reason
-            state_priors(request, found, LAWS)
+            gather_priors(request, found, LAWS)
 
 
 def test_an_earlier_calibration_of_another_law_is_refused(tmp_path, earlier):
     request = CalibrationRequest((tmp_path,), prior_from=earlier, law="brush")
     with pytest.raises(SettingsError, match="was fitted with the law 'magic-formula'"):
-        state_priors(request, data(tmp_path / "data"), LAWS)
+        gather_priors(request, data(tmp_path / "data"), LAWS)
 
 
 def test_an_earlier_calibration_of_another_slip_definition_is_refused(tmp_path, earlier):
     columns(tmp_path / "data", RADII)
     found = read_rig_data([write(tmp_path / "data", speeds())], slip_definition="travel")
     with pytest.raises(SettingsError, match="add --slip-definition material"):
-        state_priors(CalibrationRequest((tmp_path,), prior_from=earlier), found, LAWS)
+        gather_priors(CalibrationRequest((tmp_path,), prior_from=earlier), found, LAWS)
 
 
 def test_what_was_stated_is_recorded_with_how_the_data_agree():
@@ -111,7 +112,7 @@ def test_what_was_stated_is_recorded_with_how_the_data_agree():
         PriorShift(("friction",), np.array([-4.2]), 18.1, 1, 2e-5),
         PriorShift(("gain_normal",), np.array([0.1]), 0.0, 0, float("nan")),
     )
-    stated = Stated(StatedPriors(), {"friction": "friction = 0.4 ± 0.05"})
+    stated = KnownPriors(StatedPriors(), {"friction": "friction = 0.4 ± 0.05"})
     assert priors_content(stated, short_calibration()) == {}
     content = priors_content(stated, replace(short_calibration(), prior_shifts=shifts))
     assert content["stated"] == {"friction": "friction = 0.4 ± 0.05"}
@@ -120,3 +121,28 @@ def test_what_was_stated_is_recorded_with_how_the_data_agree():
     assert conflict["shift_in_prior_sd"] == [-4.2]
     assert "p" not in silent
     assert "from" not in content
+
+
+def test_draws_law_and_block_length_are_those_of_the_calibration(tmp_path):
+    fitted = short_calibration()
+    write_tables(tmp_path, fitted, inputs={})
+    found = read_earlier(tmp_path)
+    assert found.curve.law == fitted.posterior.law
+    assert found.block_length == fitted.fit.block_choice.length
+    assert found.title == tmp_path.name
+    names = [p.name for p in fitted.posterior.parameters]
+    for name, draws in found.draws.items():
+        np.testing.assert_allclose(draws, fitted.draws.flat[:, names.index(name)])
+    assert len(found.draws) == len(names)
+
+
+def test_simulated_and_untrustworthy_priors_are_said(tmp_path):
+    write_tables(tmp_path, short_calibration(), inputs={})
+    warned, simulated = read_earlier(tmp_path).notes
+    assert "not trustworthy: NOT CONVERGED" in warned
+    assert "SIMULATED data, source 'sim:test'" in simulated
+
+
+def test_a_slip_toml_without_draws_is_no_posterior(tmp_path):
+    with pytest.raises(NotFound, match=r"posterior\.nc: no such file"):
+        read_earlier(calibration(tmp_path / "slip"))

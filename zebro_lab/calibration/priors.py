@@ -1,32 +1,68 @@
 # SPDX-License-Identifier: MIT
-"""Priors stated by options, `columns.toml` and an earlier calibration, as the fit takes them."""
+"""Priors of options, `columns.toml` and an earlier calibration, as the fit takes them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from model.arrays import Array
 from model.bayes.calibration import Calibration
 from model.bayes.likelihood import NUISANCE
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.priors import Prior
 from model.bayes.stated_priors import EarlierPosterior, StatedPriors
+from model.slip.curve import SlipCurve
 from model.slip.law import Parameter, SlipLaw
 from model.slip.laws import TOGETHER
 from model.slip.magic_formula import MagicFormula
 from model.slip.sided import SidedLaw
-from zebro_lab.calibration.earlier import NOISE, EarlierCalibration, read_earlier
+from zebro_lab.calibration.draws import read_draws_of
+from zebro_lab.calibration.folder import POSTERIOR, read_slip_file
 from zebro_lab.calibration.prior_argument import named_priors, parse_prior
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData
-from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.documents import read_toml_document
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
+from zebro_lab.files.source_names import is_simulated
 
 _OPTION: Final = "--prior"
 
 
+NOISE: Final = (
+    "slip_error_scale", "slip_scatter", "noise_floor", "noise_slope", "noise_correlation",
+)  # fmt: skip
+"""Parameters of the errors of block means, which hold for one block length."""
+
+
 @dataclass(frozen=True)
-class Stated:
+class EarlierCalibration:
+    """An earlier calibration with the draws of its posterior.
+
+    Attributes:
+        title: Name of its folder.
+        curve: Its slip curve, with law and slip definition.
+        draws: Draws of each parameter of law and measurement by name, shape (n,).
+        block_length: Samples in a block mean; None if the file does not say.
+        source: Source of its data.
+        files: Files that were read.
+        notes: Warnings about it, one line each.
+        data: SHA-256 of the files that it was fitted to.
+    """
+
+    title: str
+    curve: SlipCurve
+    draws: Mapping[str, Array]
+    block_length: int | None
+    source: str
+    files: tuple[Path, ...]
+    notes: tuple[str, ...]
+    data: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class KnownPriors:
     """What is known beforehand, with the texts and files that said so.
 
     Attributes:
@@ -49,9 +85,9 @@ class Stated:
         return () if self.earlier is None else self.earlier.files
 
 
-def state_priors(
+def gather_priors(
     request: CalibrationRequest, data: RigData, laws: Mapping[str, SlipLaw]
-) -> tuple[Stated, Mapping[str, SlipLaw]]:
+) -> tuple[KnownPriors, Mapping[str, SlipLaw]]:
     """Read the priors that a request and its data state, and which laws they leave.
 
     Args:
@@ -75,7 +111,7 @@ def state_priors(
     single = StatedPriors({name: prior for name, (prior, _) in found.items()})
     texts = {name: text for name, (_, text) in found.items()}
     if earlier is None:
-        return Stated(single, texts), laws
+        return KnownPriors(single, texts), laws
     carried = _carried(earlier, request)
     posterior = EarlierPosterior(
         {name: draws for name, draws in earlier.draws.items() if name in carried},
@@ -86,7 +122,7 @@ def state_priors(
         f"prior: the posterior of {posterior.origin}, with the correlations of {', '.join(carried)}"
     )
     notes = (*earlier.notes, said)
-    return Stated(priors, texts, earlier, earlier.block_length, notes), laws
+    return KnownPriors(priors, texts, earlier, earlier.block_length, notes), laws
 
 
 def _singles(
@@ -155,7 +191,7 @@ def _carried(earlier: EarlierCalibration, request: CalibrationRequest) -> tuple[
     )
 
 
-def priors_content(stated: Stated, calibration: Calibration) -> dict[str, Any]:
+def priors_content(stated: KnownPriors, calibration: Calibration) -> dict[str, Any]:
     """Return what was stated beforehand and how the data agree, for `slip.toml` and the manifest.
 
     Args:
@@ -191,3 +227,45 @@ def _agreement(shift: PriorShift) -> dict[str, Any]:
     if shift.conflict is not None:
         content |= {"p": shift.p, "conflict": shift.conflict}
     return content
+
+
+def read_earlier(path: Path) -> EarlierCalibration:
+    """Read an earlier calibration.
+
+    Args:
+        path: A calibration folder, or its `slip.toml`.
+
+    Raises:
+        NotFound: There is no `posterior.nc` beside the `slip.toml`.
+        DataError: A file is missing or damaged.
+    """
+    found = read_slip_file(path)
+    posterior = found.file.with_name(POSTERIOR)
+    if not posterior.is_file():
+        raise NotFound(
+            f"{posterior}: no such file; the posterior of a calibration is in its draws: name a "
+            "folder that calibrate-slip wrote"
+        )
+    names = [p.name for p in (*found.curve.law.parameters, *NUISANCE)]
+    draws, _ = read_draws_of(posterior, "posterior", names, advice="calibrate again")
+    missing = [p.name for p in found.curve.law.parameters if p.name not in draws]
+    if missing:
+        raise DataError(f"has no draws of {', '.join(missing)}; calibrate again", file=posterior)
+    content = read_toml_document(found.file)
+    length = content.get("tested", {}).get("block_length")
+    title = found.file.absolute().parent.name
+    notes = []
+    if found.doubt is not None:
+        notes.append(f"WARNING: the prior is a calibration that is not trustworthy: {found.doubt}")
+    if is_simulated(found.source):
+        notes.append(f"the prior is a calibration of SIMULATED data, source '{found.source}'")
+    return EarlierCalibration(
+        title=title,
+        curve=found.curve,
+        draws=draws,
+        block_length=length if isinstance(length, int) else None,
+        source=found.source,
+        files=(found.file, posterior),
+        notes=tuple(notes),
+        data=frozenset(map(str, content.get("data", {}).values())),
+    )

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.poses import Poses
 from model.slip.law import Parameter
-from zebro_lab.files.own_file import picture_metadata
 from zebro_lab.files.picture_format import PictureFormat, format_of
+from zebro_lab.files.single_file import picture_metadata
 from zebro_lab.files.units import unit_symbol
 
 BLUE, RED, GREEN, PALE_BLUE = "#0072B2", "#D55E00", "#009E73", "#56B4E9"

@@ -4,12 +4,12 @@
 from datetime import datetime
 
 from zebro_lab.files.atomic import atomic_write_text
-from zebro_lab.files.own_file import html_page, require_own
+from zebro_lab.files.single_file import SingleFile, require_overwritable
 from zebro_lab.report.page import render_report
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.sources import Sources, find_sources
 
-REPORT = html_page("report")
+REPORT = SingleFile("report", (b'<meta name="generator" content="zebro-lab ',))
 
 
 def report(request: ReportRequest, *, made: datetime) -> Sources:
@@ -27,7 +27,7 @@ def report(request: ReportRequest, *, made: datetime) -> Sources:
             `out` is a folder, a file that is no report or part of a result, or in no folder.
         OSError: The page cannot be written.
     """
-    out = require_own(request.out, REPORT, inputs=(request.data, request.calibration))
+    out = require_overwritable(request.out, REPORT, inputs=(request.data, request.calibration))
     sources = find_sources(request.data, calibration=request.calibration)
     title = request.title or f"Report on {request.data.absolute().name}"
     atomic_write_text(out, render_report(sources, title=title, made=made))

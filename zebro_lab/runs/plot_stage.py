@@ -8,8 +8,8 @@ from pathlib import Path
 
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.files.picture_format import PictureFormat, format_of
+from zebro_lab.files.single_file import picture, require_overwritable
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.signals import RunSignals, read_signals
@@ -59,7 +59,7 @@ def plot_run(
     place = folder.absolute()
     file = out or place.with_name(f"{place.name}.{form or 'png'}")
     own = _format_of(file, form)
-    target = require_own(file, PLOT, inputs=(folder / LOG_FILE, folder / MANIFEST_FILE))
+    target = require_overwritable(file, PLOT, inputs=(folder / LOG_FILE, folder / MANIFEST_FILE))
     signals = read_signals(folder)
     if window is not None:
         signals = signals.within(*window)

@@ -21,6 +21,7 @@ _MONTHS: Final = (
 _NAMED_MONTH = rf"^(\d\d?)-({'|'.join(_MONTHS)})-(\d{{4}})"
 _DAY: Final = 86400.0  # s
 _ZONE = r"(?:Z|[+-]\d\d:?\d\d)$"
+_UNREAD: Final = "is not read as a date or time; write"
 EXAMPLE: Final = "2026-03-04T05:06:07.5+01:00"
 
 
@@ -58,11 +59,16 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
     if unit == CLOCK:
         found = pd.to_timedelta(texts.str.replace(",", ".", regex=False), errors="coerce")
         seconds = found.dt.total_seconds().to_numpy(dtype=float)
-        _require_read(table, name, np.isnan(seconds) & ~empty, "12:00:00.5")
+        _require(table, name, ~np.isnan(seconds) | empty, f"{_UNREAD} 12:00:00.5")
         return _past_midnight(seconds)
     zone = unit.removeprefix("date").strip() or None
     zoned = texts.str.contains(_ZONE, na=False).to_numpy(dtype=bool)
-    _require_zone(table, name, zoned | empty if zone is None else ~zoned, zone)
+    if zone is None:
+        _require(table, name, zoned | empty, 'has no time zone; state it in columns.toml: unit = '
+                 '"date UTC" or "date +01:00"')  # fmt: skip
+    else:
+        _require(table, name, ~zoned, 'has a time zone of its own; state unit = "date" in '
+                 "columns.toml")  # fmt: skip
     texts = texts.str.replace(r"^(\d\d?)\.(\d\d?)\.(\d{4})", r"\3-\2-\1", regex=True)
     texts = texts.str.replace(_NAMED_MONTH, _numbered_month, regex=True)
     texts = texts.str.replace(r"^(\d{4})/(\d\d?)/(\d\d?)", r"\1-\2-\3", regex=True)
@@ -70,7 +76,7 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
     texts = texts.str.replace(r"-(\d)(?=[-T ]|$)", r"-0\1", regex=True)
     found = pd.to_datetime(texts, format="ISO8601", utc=True, errors="coerce")
     since = (found - pd.Timestamp(0, tz="UTC")).dt.total_seconds().to_numpy(dtype=float)
-    _require_read(table, name, np.isnan(since) & ~empty, EXAMPLE)
+    _require(table, name, ~np.isnan(since) | empty, f"{_UNREAD} {EXAMPLE}")
     return since - _offset(zone)
 
 
@@ -98,21 +104,8 @@ def _offset(zone: str | None) -> float:
     return shift.total_seconds() if shift else 0.0
 
 
-def _require_zone(table: RawTable, name: str, good: NDArray[np.bool_], zone: str | None) -> None:
+def _require(table: RawTable, name: str, good: NDArray[np.bool_], problem: str) -> None:
+    """Raise `DataError` with the text of the first cell that is not good."""
     if not good.all():
         index = int(np.argmin(good))
-        text = table.column(name).iloc[index]
-        problem = (
-            f"'{text}' has no time zone; state it in columns.toml: unit = \"date UTC\" or "
-            '"date +01:00"'
-            if zone is None
-            else f"'{text}' has a time zone of its own; state unit = \"date\" in columns.toml"
-        )
-        raise table.fault(problem, name, index)
-
-
-def _require_read(table: RawTable, name: str, bad: NDArray[np.bool_], example: str) -> None:
-    if bad.any():
-        index = int(np.argmax(bad))
-        text = table.column(name).iloc[index]
-        raise table.fault(f"'{text}' is not read as a date or time; write {example}", name, index)
+        raise table.fault(f"'{table.column(name).iloc[index]}' {problem}", name, index)

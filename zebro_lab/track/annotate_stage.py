@@ -17,7 +17,7 @@ from tracking.images import find_photos, read_pixels
 from tracking.photos.scene import Click, MarkedTop
 from zebro_lab.files.atomic import atomic_write_bytes, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
-from zebro_lab.files.own_file import picture, require_own
+from zebro_lab.files.single_file import picture, require_overwritable
 from zebro_lab.files.units import option_to_si
 from zebro_lab.robot.marker_print import LARGEST_PRINT
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
@@ -95,7 +95,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     middle = None if around is None else _pair(around, "--around")
     _require_photo(photo, photo_names(origin))
     path = origin / photo if origin.is_dir() else origin
-    target = require_own(file, GRID, inputs=(path,))
+    target = require_overwritable(file, GRID, inputs=(path,))
     if origin.is_dir() and target.parent.samefile(origin):
         raise AlreadyExists(
             f"{file} would lie among the photographs and be tracked as one of them; choose another "

@@ -16,10 +16,10 @@ from tracking.images import PhotoTimes, read_pixels
 from tracking.photos.preview import PhotoPreview, preview_photo
 from tracking.photos.workers import PROCESSES, Progress
 from zebro_lab.files.atomic import atomic_write_bytes
-from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.files.single_file import picture, require_overwritable
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.robot.marker_print import MarkerPrint
 from zebro_lab.track.annotations import ANNOTATIONS_FILE, render_annotations
@@ -56,7 +56,7 @@ def preview(request: TrackRequest, file: Path) -> PhotoPreview:
     """
     from zebro_lab.track import pictures  # matplotlib takes most of a second
 
-    target = require_own(file, PREVIEW, inputs=request.inputs)
+    target = require_overwritable(file, PREVIEW, inputs=request.inputs)
     inputs = read_inputs(request)
     with ExitStack() as stack:
         sequence = _first_photos(request, stack)

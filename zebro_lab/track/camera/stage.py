@@ -24,8 +24,8 @@ from tracking.markers import dictionary_named
 from tracking.photos.workers import PROCESSES, WORTH_WORKERS, Progress, run_batches
 from zebro_lab.files.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, SettingsError
-from zebro_lab.files.own_file import require_own, text_file
 from zebro_lab.files.provenance import file_hash
+from zebro_lab.files.single_file import SingleFile, require_overwritable
 from zebro_lab.files.units import option_to_si
 from zebro_lab.track.camera.kit import BOARD, kit_pages, starter_floor
 from zebro_lab.track.camera.request import CameraRequest
@@ -36,7 +36,7 @@ from zebro_lab.track.photo_sequence import upright_size
 KIT_FILE = "kit.pdf"
 FEWEST_VIEWS = 3
 _TRIED = 6  # photographs in which another board is looked for
-LENS = text_file("camera calibrate", HEADING)
+LENS = SingleFile("camera calibrate", (HEADING.encode(),))
 
 
 _BOARD_EXPECTED = (
@@ -123,7 +123,7 @@ def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult
             determine the lens.
         TrackStopped: A stop was requested.
     """
-    target = require_own(request.out, LENS, inputs=(request.photos,))
+    target = require_overwritable(request.out, LENS, inputs=(request.photos,))
     board = parse_board(request.board)
     paths = find_photos(request.photos)
     sizes = Counter(size for path in paths if (size := upright_size(path)) is not None)

@@ -21,7 +21,7 @@ _DRAWN_BY: Final = "drawn by zebro-lab "
 
 
 @dataclass(frozen=True)
-class OwnFile:
+class SingleFile:
     """A kind of single file that one command writes, and how such a file is recognised.
 
     Attributes:
@@ -33,21 +33,13 @@ class OwnFile:
     marks: tuple[bytes, ...]
 
 
-def html_page(command: str) -> OwnFile:
-    """Return the kind of an HTML page by `command`, recognised by zebro-lab's generator tag.
-
-    The tag does not name the command, so pages by other commands are recognised as well.
-    """
-    return OwnFile(command, (b'<meta name="generator" content="zebro-lab ',))
-
-
-def picture(command: str) -> OwnFile:
+def picture(command: str) -> SingleFile:
     """Return the kind of a picture by `command`, recognised by its `picture_metadata`."""
     drawn = f"{_DRAWN_BY}{command}"
     content = f"{COMMENT}\0{command}".encode("latin-1")
     png = len(content).to_bytes(4, "big") + b"tEXt" + content
     svg, pdf = f"<dc:description>{drawn}</dc:description>", f"/Subject ({drawn})"
-    return OwnFile(command, (png, svg.encode(), pdf.encode()))
+    return SingleFile(command, (png, svg.encode(), pdf.encode()))
 
 
 def picture_metadata(form: PictureFormat, command: str | None) -> dict[str, str | None]:
@@ -65,17 +57,7 @@ def picture_metadata(form: PictureFormat, command: str | None) -> dict[str, str 
     return {"Creator": SOFTWARE, "Producer": SOFTWARE, "CreationDate": None, "Subject": drawn}
 
 
-def text_file(command: str, heading: str) -> OwnFile:
-    """Return the kind of a text file, recognised by its heading.
-
-    Args:
-        command: The command that writes the file.
-        heading: Text that the file begins with.
-    """
-    return OwnFile(command, (heading.encode(),))
-
-
-def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Path:
+def require_overwritable(out: Path, kind: SingleFile, *, inputs: Sequence[Path] = ()) -> Path:
     """Check, before anything is computed, that an output file is new, empty or of the same command.
 
     Args:
@@ -104,7 +86,7 @@ def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Pat
     return file
 
 
-def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
+def _require_ours(out: Path, file: Path, kind: SingleFile) -> None:
     if not file.is_file():
         raise AlreadyExists(f"{out} is not a regular file; choose another file with --out")
     with file.open("rb") as opened:

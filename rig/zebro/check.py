@@ -156,12 +156,10 @@ class LiftOff:
     Attributes:
         theta: Lift-off angle, a whole number of counts [rad].
         mismatch: Hip height at `theta` less hip height at touchdown [m].
-        measurements: Number of measured hip heights.
     """
 
     theta: float
     mismatch: float
-    measurements: int
 
 
 def find_lift_off(
@@ -196,4 +194,4 @@ def find_lift_off(
         middle = (low + high) // 2
         low, high = (middle, high) if above(middle) > 0 else (low, middle)
     best = min((low, high), key=lambda index: abs(above(index)))
-    return LiftOff(best * count, above(best), len(heights) + 1)
+    return LiftOff(best * count, above(best))

@@ -22,8 +22,8 @@ from rig.experiment.control import Control
 from rig.experiment.run import run_plan
 from rig.slip_rig.decode import measured_slip
 from support.memory_sink import MemorySink
+from zebro_lab.experiment.opened_rig import opened_rig
 from zebro_lab.experiment.plan_stage import read_plan
-from zebro_lab.experiment.rig_at_hand import rig_at_hand
 
 pytestmark = pytest.mark.long
 
@@ -50,7 +50,7 @@ def say(line: str) -> None:
 
 def measure(seed: int) -> tuple[SlipSamples, SlipSamples]:
     """Run the plan; return its samples with measured and with commanded slip."""
-    with rig_at_hand("sim", seed=seed, fast=True) as rig:
+    with opened_rig("sim", seed=seed, fast=True) as rig:
         plan, control, sink = read_plan(PLAN), Control(), MemorySink()
         outcome = run_plan(
             plan, bench=rig.bench, load=rig.load_setter(plan.load, control), sink=sink,

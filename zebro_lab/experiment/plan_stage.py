@@ -11,7 +11,7 @@ from rig.experiment.plan_reading import parse_plan
 from rig.experiment.steps import DurationEstimate, Point, Step, estimate, require_allowed, spell_out
 from rig.openers import resolve
 from rig.slip_rig.profile import RigProfile, load_rig_profile
-from zebro_lab.experiment.rig_at_hand import TWIN_PROFILE
+from zebro_lab.experiment.opened_rig import TWIN_PROFILE
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.settings_table import read_settings
 

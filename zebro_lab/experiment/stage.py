@@ -23,10 +23,10 @@ from zebro_lab.experiment.journal import (
     begin_or_resume,
     plan_fingerprint,
 )
+from zebro_lab.experiment.opened_rig import OpenedRig, opened_rig
 from zebro_lab.experiment.plan_stage import read_plan, require_plan_allowed
 from zebro_lab.experiment.points import Finished, finished_points, holds_points, point_sources
 from zebro_lab.experiment.request import RigRunRequest
-from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
 from zebro_lab.files.documents import read_json_document, require_object
 from zebro_lab.files.errors import (
     AlreadyExists,
@@ -65,7 +65,7 @@ def run_experiment(
             de-energised.
     """
     plan = read_plan(request.plan)
-    with rig_at_hand(
+    with opened_rig(
         request.rig, seed=request.seed, run=_run_name(request), fast=request.fast
     ) as rig:
         require_plan_allowed(request.plan, plan, rig.bench.profile)
@@ -134,7 +134,7 @@ def _recording(folder: ExperimentFolder, data: Path, control: Control) -> Iterat
                 folder.latch(stop.reason)
 
 
-def _manifest(plan: Plan, rig: RigAtHand) -> RunManifest:
+def _manifest(plan: Plan, rig: OpenedRig) -> RunManifest:
     """Return the manifest entries common to all runs of an experiment, from plan and rig."""
     return RunManifest(
         kind="slip-rig",

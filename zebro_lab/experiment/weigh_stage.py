@@ -8,8 +8,8 @@ from pathlib import Path
 from rig.experiment.control import Control
 from rig.experiment.plan import LoadSetting
 from rig.experiment.weigh import GainCheck, Weighing, check_gain, weigh
+from zebro_lab.experiment.opened_rig import opened_rig
 from zebro_lab.experiment.request import WeighRequest
-from zebro_lab.experiment.rig_at_hand import rig_at_hand
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.tables.columns import COLUMNS_FILE
@@ -51,7 +51,7 @@ def weigh_masses(
     if target is not None and target.exists():
         raise AlreadyExists(f"{target} exists; omit --data and copy the printed [load_cell]")
     forces = [mass * request.gravity for mass in request.masses]
-    with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
+    with opened_rig(request.rig, seed=request.seed, fast=request.fast) as rig:
         _require_hangable(request, rig.bench.profile.limits.normal_force)
         # No tolerance: the check is to find the error of the reading.
         load = rig.load_setter(LoadSetting("hand", math.inf, patience=0.0), control)

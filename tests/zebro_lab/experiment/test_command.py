@@ -43,7 +43,7 @@ def test_a_weighing_prints_line_and_prior():
 
 def test_a_short_run_in_real_time_takes_its_time(short, tmp_path, monkeypatch):
     patient = partial(simulated_rig_devices, watchdog=3.0)
-    monkeypatch.setattr("zebro_lab.experiment.rig_at_hand.simulated_rig_devices", patient)
+    monkeypatch.setattr("zebro_lab.experiment.opened_rig.simulated_rig_devices", patient)
     began = time.monotonic()
     result = zebro_lab("run", short, "--rig", "rig-odrive-netft@sim", "--data", tmp_path / "data")
     assert result.exit_code == 0, result.output

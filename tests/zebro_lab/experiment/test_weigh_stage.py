@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from rig.experiment.control import Control
+from zebro_lab.experiment.opened_rig import opened_rig
 from zebro_lab.experiment.request import WeighRequest
-from zebro_lab.experiment.rig_at_hand import rig_at_hand
 from zebro_lab.experiment.weigh_stage import render_load_cell, weigh_masses
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 
@@ -16,7 +16,7 @@ from zebro_lab.files.errors import AlreadyExists, SettingsError
 def test_a_weighing_gives_the_gain_its_prior(tmp_path):
     request = WeighRequest("sim", (0.2, 0.5, 1.0), tmp_path, fast=True)
     weighing, check, written = weigh_masses(request, lambda text, normal: None, Control())
-    with rig_at_hand("sim", seed=request.seed, fast=True) as rig:
+    with opened_rig("sim", seed=request.seed, fast=True) as rig:
         gain = rig.truth["rig"]["imperfections"]["gain_normal"]
     assert check.slope == pytest.approx(1 / (1 + gain), abs=1e-4)
     assert len(weighing.forces) == 4

@@ -65,14 +65,7 @@ def test_a_specific_force_in_g_is_refused_unless_its_unit_is_stated():
     stated = Columns(IMU_UNITS)
     for axis in "xyz":
         stated = stated.called(f"force_{axis}", f"a{axis}_g")
-    table = {
-        "t": T,
-        "roll": [0, 0],
-        "pitch": [0, 0],
-        "ax_g": [0, 0],
-        "ay_g": [0, 0],
-        "az_g": [1, 1],
-    }
+    table = {"t": T, "az_g": [1, 1]} | {key: [0, 0] for key in ("roll", "pitch", "ax_g", "ay_g")}
     raw = RawTable(Path("imu.csv"), {name: pd.Series(cells) for name, cells in table.items()})
     log = imu_of_table(raw, stated)
     assert vars(log)["values"][:, 9].tolist() == [9.80665, 9.80665]
@@ -93,10 +86,7 @@ def test_what_is_not_measured_is_nan_and_a_missing_yaw_is_noted():
 
 def test_columns_that_no_quantity_is_read_from_are_named():
     log = read(roll=[0.0, 0.0], pitch=[0.0, 0.0], yaw=[0.0, 0.0], gyro_yaw=[1.0, 2.0])
-    assert log.notes == (
-        "imu.csv: not read: 'gyro_yaw'; if one is an angular rate or a specific force of the body, "
-        "map it in [imu.columns] of a columns.toml",
-    )
+    assert "not read: 'gyro_yaw'" in log.notes[0]
     assert log.has_yaw
 
 

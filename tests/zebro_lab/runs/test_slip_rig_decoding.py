@@ -74,18 +74,3 @@ def test_speeds_without_any_force_about_them_are_left_out():
     t = np.concatenate([np.arange(-0.004, 0.004, 0.001), np.arange(0.026, 0.034, 0.001)])
     found, _ = averages_around(at, t, t[None])
     np.testing.assert_array_equal(found, [0, 3])
-
-
-def test_angles_of_the_discs_are_the_motors_positions_over_their_gears(tmp_path):
-    file = profile_file(tmp_path, RIG)
-    file.parent.mkdir(parents=True)
-    file.write_text(PROFILE)
-    counts = [[1.0, 2.0], [0.5, 0.5], [1.4, 2.0], [0.6, 0.5]]
-    streams = {
-        "/drives/raw": stream([0.1, 0.1, 0.3, 0.3], counts, [0, 1, 0, 1]),
-        "/load_cell/raw": stream([0.2], [[1e6, 0, -5e6, 0, 0, 0]]),
-    }
-    table, _ = derive_table(tmp_path, streams, zero={})
-    gears = table.omega_leg / 2.0, table.omega_ground / 0.5  # rad of the disc for each turn
-    np.testing.assert_allclose(table.angle_leg, 1.2 * gears[0])
-    np.testing.assert_allclose(table.angle_ground, 0.55 * gears[1])

@@ -34,7 +34,7 @@ FAST_PERIOD: Final = 0.02
 
 
 @dataclass(frozen=True)
-class RigAtHand:
+class OpenedRig:
     """A rig, real or simulated, whose bench is not yet entered.
 
     Attributes:
@@ -74,13 +74,13 @@ class RigAtHand:
 
 
 @contextmanager
-def rig_at_hand(
+def opened_rig(
     address: str,
     *,
     seed: int = 0,
     run: str = "",
     fast: bool = False,
-) -> Iterator[RigAtHand]:
+) -> Iterator[OpenedRig]:
     """Open the rig that an address names; a twin is simulated while the context lasts.
 
     Args:
@@ -104,7 +104,7 @@ def rig_at_hand(
     if port != SIMULATED:
         if fast:
             raise SettingsError("works only with a simulated rig; omit it", key="--fast")
-        yield RigAtHand(make_bench(open_rig(address)), profiles)
+        yield OpenedRig(make_bench(open_rig(address)), profiles)
         return
     rng = _run_rng(seed, run)
     rig = SimulatedRig(
@@ -116,12 +116,12 @@ def rig_at_hand(
     truth = {"rig": rig.description()}
     if fast:
         clock = ManualClock()
-        yield RigAtHand(
+        yield OpenedRig(
             _fast_bench(profile, rig, rng, clock), profiles, clock, FAST_PERIOD, rig, True, truth
         )
         return
     with simulated_rig_devices(profile, rig, rng=rng) as devices:
-        yield RigAtHand(make_bench(devices), profiles, twin=rig, truth=truth)
+        yield OpenedRig(make_bench(devices), profiles, twin=rig, truth=truth)
 
 
 def _run_rng(seed: int, run: str) -> np.random.Generator:

@@ -188,9 +188,9 @@ def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
     series, topic = read_mapped_columns(IMU, path, request.columns, IMU_UNITS)
     if not is_ros_log(path):
         return imu_of_table(read_table_file(path, sheet=series.sheet), series), None
-    found = read_imu_messages(path, topic=topic, topics=request.topic)
-    imu = imu_of_table(found.table, series)
-    return replace(imu, files=(*bag_files(path), *imu.files[1:])), found.topic
+    table, topic = read_imu_messages(path, topic=topic, topics=request.topic)
+    imu = imu_of_table(table, series)
+    return replace(imu, files=(*bag_files(path), *imu.files[1:])), topic
 
 
 def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:

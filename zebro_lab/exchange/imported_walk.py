@@ -150,22 +150,9 @@ _IMU_MESSAGE: Final = "sensor_msgs/msg/Imu"
 _VECTORS: Final = {"angular_velocity": "rate", "linear_acceleration": "force"}
 
 
-@dataclass(frozen=True)
-class TopicTable:
-    """Messages of one topic of a ROS log as a table.
-
-    Attributes:
-        table: A row per message, in SI.
-        topic: The topic that was read.
-    """
-
-    table: RawTable
-    topic: str
-
-
 def read_imu_messages(
     path: Path, *, topic: str | None = None, topics: Collection[str] = ()
-) -> TopicTable:
+) -> tuple[RawTable, str]:
     """Read IMU messages of a ROS log as the columns of an IMU table, up to the first damage.
 
     Args:
@@ -194,7 +181,7 @@ def read_imu_messages(
         )
     series = {name: pd.Series(values) for name, values in columns.items()}
     told = f"{path.name}: {found.told}"
-    return TopicTable(RawTable(path, series, notes=(told, *found.notes)), found.topic)
+    return RawTable(path, series, notes=(told, *found.notes)), found.topic
 
 
 def _columns(found: TopicRows) -> dict[str, Array] | None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.raw_table import RawTable
 
@@ -86,10 +86,9 @@ def read_row_conditions(rows: SettingsTable) -> tuple[RowCondition, ...]:
     Raises:
         SettingsError: One of them is no condition.
     """
+    texts = rows.texts("keep")
     try:
-        return tuple(map(parse_row_condition, rows.texts("keep")))
-    except SettingsError:
-        raise
+        return tuple(map(parse_row_condition, texts))
     except ValueError as error:
         raise rows.fault(str(error), "keep") from error
 

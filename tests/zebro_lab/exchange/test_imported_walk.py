@@ -60,9 +60,8 @@ TIMES = np.arange(0.0, 1.0, 0.1)
 
 
 def test_orientation_rate_and_force_are_read(tmp_path):
-    found = read_imu_messages(write_bag(tmp_path / "bag", imu(TIMES), storage="mcap"))
-    table = found.table
-    assert found.topic == "/imu"
+    table, topic = read_imu_messages(write_bag(tmp_path / "bag", imu(TIMES), storage="mcap"))
+    assert topic == "/imu"
     assert table.notes == ("bag: topic /imu, sensor_msgs/msg/Imu, 10 messages",)
     np.testing.assert_allclose(table.numbers("qz"), np.sin(0.05 * TIMES), atol=1e-12)
     np.testing.assert_allclose(table.numbers("qw"), np.cos(0.05 * TIMES), atol=1e-12)
@@ -72,9 +71,8 @@ def test_orientation_rate_and_force_are_read(tmp_path):
 
 def test_what_is_not_measured_has_no_column(tmp_path):
     absent = ("angular_velocity", "linear_acceleration")
-    table = read_imu_messages(
-        write_bag(tmp_path / "bag", imu(TIMES, absent=absent), storage="mcap")
-    ).table
+    bag = write_bag(tmp_path / "bag", imu(TIMES, absent=absent), storage="mcap")
+    table, _ = read_imu_messages(bag)
     assert list(table.columns) == ["t", "qw", "qx", "qy", "qz"]
 
 

@@ -274,15 +274,11 @@ def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequenc
 
 def _without_numbers(body: Sequence[Line]) -> TextLayout:
     """Return the layout of a table of texts, or without rows: its first line is the header."""
-    split = {s: [split_line(line, s) for _, line in body] for s in SEPARATORS if s != BLANKS}
-    regular = [s for s, rows in split.items() if len(rows[0]) > 1 and len(set(map(len, rows))) == 1]
-    if len(regular) > 1:
-        raise _several(regular)
-    separator = regular[0] if regular else max(split, key=lambda s: len(split[s][0]))
-    rows = split[separator]
-    for row, (cells, (line, _)) in enumerate(zip(rows[1:], body[1:], strict=True), start=1):
-        if len(cells) > len(rows[0]):
-            problem = uneven_row(len(cells), len(rows[0]), "correct it")
-            raise DataError(problem, row=row, line=line)
-    names = [name or f"column {i}" for i, name in enumerate(rows[0], start=1)]
-    return TextLayout(separator, made_header(names, 1), body[0][0], None, len(names))
+    number, first = body[0]
+    cells = {each: split_line(first, each) for each in SEPARATORS if each != BLANKS}
+    width = max(map(len, cells.values()))
+    fitting = [each for each in cells if len(cells[each]) == width]
+    if width > 1 and len(fitting) > 1:
+        raise _several(fitting)
+    names = [name or f"column {i}" for i, name in enumerate(cells[fitting[0]], start=1)]
+    return TextLayout(fitting[0], made_header(names, 1), number, None, width)

@@ -8,42 +8,49 @@ import pytest
 
 from support.written_tracks import content, path_from, write_track
 from zebro_lab.files.errors import NotWritten, ZebroLabError
-from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
 from zebro_lab.track.folder import TRACKED, read_track_manifest, track_folder
 
+KIND = ResultKind("mine", "my command", ("a.csv",))
 
-def test_a_foreign_file_of_a_name_that_is_written_is_kept(tmp_path, compared):
+
+def write(out: Path) -> None:
+    with result_folder(out, KIND, content={}) as draft:
+        (draft / "a.csv").write_text("1")
+
+
+def test_a_foreign_file_of_a_name_that_is_written_is_kept(tmp_path):
     out = tmp_path / "out"
     out.mkdir()
-    (out / "comparison.csv").write_text("my own comparison")
-    with pytest.raises(ZebroLabError, match=r"comparison\.csv"):
-        compared(out)
-    assert content(out) == {"comparison.csv": b"my own comparison"}
+    (out / "a.csv").write_text("my own comparison")
+    with pytest.raises(ZebroLabError, match=r"a\.csv"):
+        write(out)
+    assert content(out) == {"a.csv": b"my own comparison"}
 
 
-def test_a_result_that_a_person_changed_is_kept(tmp_path, compared):
+def test_a_result_that_a_person_changed_is_kept(tmp_path):
     out = tmp_path / "out"
-    compared(out)
-    (out / "comparison.csv").write_text("corrected by hand")
+    write(out)
+    (out / "a.csv").write_text("corrected by hand")
     with pytest.raises(ZebroLabError, match="changed"):
-        compared(out)
-    assert (out / "comparison.csv").read_text() == "corrected by hand"
+        write(out)
+    assert (out / "a.csv").read_text() == "corrected by hand"
 
 
-def test_a_result_with_a_manifest_that_cannot_be_read_is_kept(tmp_path, compared):
+def test_a_result_with_a_manifest_that_cannot_be_read_is_kept(tmp_path):
     out = tmp_path / "out"
-    compared(out)
+    write(out)
     (out / "manifest.json").write_text("{")
     with pytest.raises(ZebroLabError, match=r"manifest\.json"):
-        compared(out)
+        write(out)
 
 
-def test_another_commands_result_is_kept(tmp_path, compared):
+def test_another_commands_result_is_kept(tmp_path):
     out = tmp_path / "out"
     write_track(out, 0.0)
     before = content(out)
     with pytest.raises(ZebroLabError, match="another command"):
-        compared(out)
+        write(out)
     assert content(out) == before
     assert json.loads(before["manifest.json"])["kind"] == "track"
 

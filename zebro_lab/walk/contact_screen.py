@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """What a person reads of a walk's contacts: the sequence of a cycle, and touchdowns by leg."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import islice
 
 import numpy as np
+import pandas as pd
 from rich.table import Table
 
 from model.contact.sequence import ContactCycle, ContactState, named_legs
@@ -87,27 +88,17 @@ def touchdown_summary(downs: Sequence[Touchdown]) -> dict[str, float | None]:
     Args:
         downs: Touchdowns of one leg; turns without contact count as missed.
     """
-
-    def mean(value: Callable[[Touchdown], float]) -> float | None:
-        """Return the mean over the touchdowns that have the value; None without any."""
-        values = [value(each) for each in downs if not np.isnan(value(each))]
-        return float(np.mean(values)) if values else None
-
-    def spread(value: Callable[[Touchdown], float]) -> float | None:
-        """Return the standard deviation of the values; None of fewer than two."""
-        values = [value(each) for each in downs if not np.isnan(value(each))]
-        return float(np.std(values, ddof=1)) if len(values) > 1 else None
-
+    rows = [(each.angle, each.asked_angle, each.late, each.liftoff_angle) for each in downs]
+    names = ["angle_rad", "asked_angle_rad", "late_s", "liftoff_angle_rad"]
+    table = pd.DataFrame(rows, columns=names, dtype=float)
+    mean, spread = table.mean().to_numpy(float), table.std().to_numpy(float)
+    values = dict(zip(names, mean, strict=True))
+    values |= {"angle_sd_rad": spread[0], "late_sd_s": spread[2]}
     return {
         "touchdowns": sum(each.contacts > 0 for each in downs),
         "missed": sum(each.contacts == 0 for each in downs),
         "again": sum(max(each.contacts - 1, 0) for each in downs),
-        "angle_rad": mean(lambda each: each.angle),
-        "angle_sd_rad": spread(lambda each: each.angle),
-        "asked_angle_rad": mean(lambda each: each.asked_angle),
-        "late_s": mean(lambda each: each.late),
-        "late_sd_s": spread(lambda each: each.late),
-        "liftoff_angle_rad": mean(lambda each: each.liftoff_angle),
+        **{name: None if np.isnan(value) else float(value) for name, value in values.items()},
     }
 
 

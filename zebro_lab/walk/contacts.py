@@ -149,9 +149,9 @@ def write_touchdowns(file: Path, downs: Sequence[Touchdown]) -> None:
     names = ("leg", "turn", "t", "angle", "asked_t", "asked_angle", "late", "liftoff_t",
              "liftoff_angle", "contacts")  # fmt: skip
     rows = [{name: getattr(each, name) for name in names} | {"leg": each.leg + 1} for each in downs]
-    _write(file, rows, names)
+    _write(file, rows, list(names))
 
 
-def _write(file: Path, rows: list[dict[str, Any]], names: Sequence[str] | None = None) -> None:
+def _write(file: Path, rows: list[dict[str, Any]], names: list[str] | None = None) -> None:
     table = pd.DataFrame(rows, columns=names)
     table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")

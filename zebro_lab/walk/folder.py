@@ -4,11 +4,10 @@
 Only this module depends on the format of these files.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -68,61 +67,32 @@ _BATCH = 10_000
 """Rows formatted at a time, each 2 kB as Python floats; this takes a third of pandas' time."""
 
 
-@dataclass(frozen=True)
-class _Block:
-    """Consecutive CSV columns that hold one attribute of a path.
-
-    Attributes:
-        columns: Names of the columns.
-        values: Function that returns the attribute of a path, shape (n, len(columns)), SI.
-        may_be_empty: Whether cells may be empty when read: the model did not compute the attribute.
-        may_be_missing: Whether the columns may be missing when read: older folders have none.
-        form: printf-style format of a number.
-    """
-
-    columns: tuple[str, ...]
-    values: Callable[[WalkPath], Array]
-    may_be_empty: bool = False
-    may_be_missing: bool = False
-    form: str = _DIGITS
+def leg_columns(*names: str) -> tuple[str, ...]:
+    """Return column names, for each quantity those of the legs."""
+    return tuple(f"{name}{leg}" for name in names for leg in range(1, N_LEGS + 1))
 
 
-def _legs(name: str) -> tuple[str, ...]:
-    return tuple(f"{name}{leg}" for leg in range(1, N_LEGS + 1))
-
-
-_BLOCKS = (
-    _Block(("t",), lambda path: path.t[:, None]),
-    _Block(("x", "y", "z"), lambda path: path.position),
-    _Block(("roll", "pitch", "yaw"), lambda path: path.orientation),
-    _Block(_legs("theta"), lambda path: path.theta),
-    _Block(_legs("contact"), lambda path: path.contact.astype(float), form="%d"),
-    _Block(_legs("slip_x"), lambda path: path.slip_velocity[..., 0], may_be_empty=True),
-    _Block(_legs("slip_y"), lambda path: path.slip_velocity[..., 1], may_be_empty=True),
-    _Block(_legs("normal"), lambda path: path.normal_force, may_be_empty=True),
-    _Block(_legs("force_x"), lambda path: path.traction_force[..., 0], may_be_empty=True),
-    _Block(_legs("force_y"), lambda path: path.traction_force[..., 1], may_be_empty=True),
-    _Block(_legs("slip_ratio"), lambda path: path.slip_ratio, may_be_empty=True),
-    _Block(
-        ("body_force",),
-        lambda path: np.asarray(path.body_force)[:, None],
-        may_be_empty=True,
-        may_be_missing=True,
-    ),
-    _Block(
-        ("flight",),
-        lambda path: path.in_flight[:, None].astype(float),
-        may_be_missing=True,
-        form="%d",
-    ),
-    _Block(
-        ("work_done", "work_taken_back", "slip_energy", "contact_energy"),
-        lambda path: np.asarray(path.energy),
-        may_be_empty=True,
-        may_be_missing=True,
-    ),
-)
-COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
+_COLUMNS_OF: Final = {
+    "t": ("t",),
+    "position": ("x", "y", "z"),
+    "orientation": ("roll", "pitch", "yaw"),
+    "theta": leg_columns("theta"),
+    "contact": leg_columns("contact"),
+    "slip_velocity": leg_columns("slip_x", "slip_y"),
+    "normal_force": leg_columns("normal"),
+    "traction_force": leg_columns("force_x", "force_y"),
+    "slip_ratio": leg_columns("slip_ratio"),
+    "body_force": ("body_force",),
+    "in_flight": ("flight",),
+    "energy": ("work_done", "work_taken_back", "slip_energy", "contact_energy"),
+}
+"""Columns of `path.csv` by the attribute of a path that they hold, SI; vectors of legs by axis."""
+_COMPUTED: Final = {"slip_velocity", "normal_force", "traction_force", "slip_ratio", "body_force",
+                    "energy"}  # fmt: skip
+"""Attributes that not every model computes: their cells may be empty."""
+_LATER: Final = {"body_force", "in_flight", "energy"}
+"""Attributes that folders of earlier versions lack."""
+COLUMNS = tuple(name for columns in _COLUMNS_OF.values() for name in columns)
 """The columns of `path.csv`, in order."""
 
 
@@ -133,8 +103,16 @@ def write_path(file: Path, path: WalkPath) -> None:
         file: File to write; an existing one is overwritten.
         path: The path; NaN, for what its model does not compute, becomes an empty cell.
     """
-    values = np.column_stack([block.values(path) for block in _BLOCKS])
-    write_rows(file, COLUMNS, (values,), [block.form for block in _BLOCKS for _ in block.columns])
+    values = np.column_stack([by_axis(getattr(path, name)) for name in _COLUMNS_OF])
+    whole = {*_COLUMNS_OF["contact"], *_COLUMNS_OF["in_flight"]}
+    forms = ["%d" if name in whole else _DIGITS for name in COLUMNS]
+    write_rows(file, COLUMNS, (values,), forms)
+
+
+def by_axis(values: Array) -> Array:
+    """Return values as columns; of vectors of the legs, shape (n, 6, k), all legs' x first."""
+    values = np.asarray(values, dtype=float)
+    return values if values.ndim < 3 else np.swapaxes(values, 1, 2).reshape(len(values), -1)
 
 
 def write_rows(
@@ -207,17 +185,22 @@ def read_walk(path: Path) -> WalkPath:
     if not file.exists():
         raise NotFound(f"{file}: no such file; choose a folder that walk or predict wrote")
     table = read_table_file(file)
-    numbers = np.column_stack([
-        _read(table, name, block) for block in _BLOCKS for name in block.columns
-    ])  # fmt: skip
-    table.require_increasing("t", numbers[:, 0])
-    return _path_from(numbers)
+    read = {name: _read(table, name) for name in _COLUMNS_OF if name != "in_flight"}
+    table.require_increasing("t", read["t"])
+    for name in ("slip_velocity", "traction_force"):
+        read[name] = read[name].reshape(-1, 2, N_LEGS).swapaxes(1, 2)
+    return WalkPath(**{**read, "contact": read["contact"] != 0})
 
 
-def _read(table: RawTable, name: str, block: _Block) -> Array:
-    if block.may_be_missing and name not in table.columns:
-        return np.full(len(table), np.nan)
-    return table.finite(name, may_be_empty=block.may_be_empty)
+def _read(table: RawTable, attribute: str) -> Array:
+    """Read the columns of an attribute, shape (n, k), or (n,) of a single one; NaN without them."""
+    columns = [
+        np.full(len(table), np.nan)
+        if attribute in _LATER and name not in table.columns
+        else table.finite(name, may_be_empty=attribute in _COMPUTED)
+        for name in _COLUMNS_OF[attribute]
+    ]
+    return columns[0] if len(columns) == 1 else np.column_stack(columns)
 
 
 def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
@@ -295,25 +278,3 @@ def doubts(manifest: Mapping[str, Any]) -> tuple[str, ...]:
     """Return why the slip law or fitted walks of a walk cannot be trusted, a warning for each."""
     settings = manifest.get("settings") or {}
     return tuple(map(str, settings.get("doubts") or ()))
-
-
-def _path_from(numbers: Array) -> WalkPath:
-    parts: dict[str, Array] = {}
-    first = 0
-    for block in _BLOCKS:
-        width = len(block.columns)
-        parts[block.columns[0]] = numbers[:, first : first + width]
-        first += width
-    return WalkPath(
-        t=parts["t"][:, 0],
-        position=parts["x"],
-        orientation=parts["roll"],
-        theta=parts["theta1"],
-        contact=parts["contact1"] != 0,
-        slip_velocity=np.stack([parts["slip_x1"], parts["slip_y1"]], axis=-1),
-        slip_ratio=parts["slip_ratio1"],
-        normal_force=parts["normal1"],
-        traction_force=np.stack([parts["force_x1"], parts["force_y1"]], axis=-1),
-        body_force=parts["body_force"][:, 0],
-        energy=parts["work_done"],
-    )

@@ -7,11 +7,11 @@ import numpy as np
 
 from model.arrays import Array
 from model.leg import wrap_angle
-from model.robot import N_LEGS, Robot
+from model.robot import Robot
 from model.thesis.frames import contact_forces, contact_frames, hip_frames
 from model.thesis.path import ThesisPath
 from model.walk.path import WalkPath
-from zebro_lab.walk.folder import write_rows
+from zebro_lab.walk.folder import by_axis, leg_columns, write_rows
 
 _DIGITS = "%.8g"  # to 1e-7 m in a walk of 10 m
 _EVERY = 0.01  # s between two rows, of 1 kB each
@@ -19,17 +19,12 @@ _PART = 10_000  # samples
 _COORDINATES = ("x", "y", "z", "theta_r", "theta_p", "theta_y")
 
 
-def _of_legs(*names: str) -> tuple[str, ...]:
-    """Return column names, for each quantity those of the legs."""
-    return tuple(f"{name}{leg}" for name in names for leg in range(1, N_LEGS + 1))
-
-
 COLUMNS = (
     "t", "theta_r", "theta_p", "theta_y",
     *(f"{name}_rate" for name in _COORDINATES), *(f"{name}_acceleration" for name in _COORDINATES),
-    *_of_legs("phi", "phi_rate", "z_h", "f_g", "v_R", "v_C", "v_H"),
-    *_of_legs("hip_x", "hip_y", "hip_z", "contact_x", "contact_y", "contact_z"),
-    *_of_legs("contact_lean", "ground_x", "ground_y", "ground_z"),
+    *leg_columns("phi", "phi_rate", "z_h", "f_g", "v_R", "v_C", "v_H"),
+    *leg_columns("hip_x", "hip_y", "hip_z", "contact_x", "contact_y", "contact_z"),
+    *leg_columns("contact_lean", "ground_x", "ground_y", "ground_z"),
 )  # fmt: skip
 """The columns of `thesis.csv`, in order."""
 
@@ -62,12 +57,7 @@ def _values(path: ThesisPath, robot: Robot) -> Array:
         path.t, path.angles, path.rates, path.acceleration,
         path.phi, path.phi_rate, path.hip_height, path.static_load,
         path.leg_speed, path.contact_speed, path.hip_speed,
-        *(_by_axis(each) for each in origins),
+        *(by_axis(each) for each in origins),
         wrap_angle(path.theta + path.phi - np.pi / 2),
-        _by_axis(contact_forces(path)),
+        by_axis(contact_forces(path)),
     ])  # fmt: skip
-
-
-def _by_axis(vectors: Array) -> Array:
-    """Return vectors of the legs, (n, 6, 3), as columns, all legs' x first, shape (n, 18)."""
-    return np.swapaxes(vectors, 1, 2).reshape(len(vectors), -1)

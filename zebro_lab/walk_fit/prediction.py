@@ -18,7 +18,6 @@ from model.walk_fit.tracked_walk import middle
 from model.walk_models import baseline_paths
 from zebro_lab.calibration.posterior_file import slip_tables
 from zebro_lab.calibration.slip_argument import NamedSlip
-from zebro_lab.validation.folder import metrics
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.walk.prediction_file import PredictionFile
 from zebro_lab.walk_fit.tracked_walks import WalkOnFile
@@ -99,11 +98,6 @@ def judge_left_out(
         prediction = predict_from(fit.without(i), walk, slip, rng=rng, executor=executor)
         judged.append(judge_run(walk.name, prediction, walk.track, anchor=True, rng=rng))
     return tuple(judged)
-
-
-def metrics_by_model(left_out: Sequence[JudgedRun]) -> dict[str, dict[str, dict[str, float]]]:
-    """Return metrics of left-out walks by walk, then model, then column of `left_out.csv`."""
-    return {run.name: {row.name: metrics(row) for row in run.rows} for run in left_out}
 
 
 def predict_from(

@@ -20,11 +20,12 @@ from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import recover
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.source_names import is_simulated
+from zebro_lab.validation.folder import metrics
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.shared_clock import LARGEST_OFFSET
 from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
-from zebro_lab.walk_fit.prediction import fit_walks_on_file, judge_left_out, metrics_by_model
+from zebro_lab.walk_fit.prediction import fit_walks_on_file, judge_left_out
 from zebro_lab.walk_fit.request import WalksRequest
 from zebro_lab.walk_fit.tracked_walks import WalkOnFile, read_walks
 
@@ -108,7 +109,7 @@ def calibrate_walks(
         calibration.out,
         WalksToWrite(
             posterior=posterior,
-            left_out=metrics_by_model(left_out),
+            left_out={run.name: {row.name: metrics(row) for row in run.rows} for run in left_out},
             robot=walks[0].robot,
             logs=tuple(walk.files[0] for walk in walks),
             inputs=(slip_toml, *(file for walk in walks for file in walk.files)),

@@ -17,7 +17,6 @@ from zebro_lab.walk_fit import prediction
 from zebro_lab.walk_fit.prediction import (
     fit_walks_on_file,
     judge_left_out,
-    metrics_by_model,
     predict_from,
 )
 from zebro_lab.walk_fit.tracked_walks import read_walk_on_file
@@ -108,7 +107,3 @@ def test_each_walk_is_predicted_from_the_others_and_one_alone_is_not(walk):
     assert [run.name for run in both] == [walk.name] * 2
     assert both[0].rows[0].name == "prediction"
     assert seen == [0.0, 0.5]
-    found = metrics_by_model(both[:1])
-    assert list(found) == [walk.name]
-    assert list(found[walk.name]) == [row.name for row in both[0].rows]
-    assert found[walk.name]["prediction"]["ate_m"] == both[0].rows[0].errors.ate

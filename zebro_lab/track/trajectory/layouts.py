@@ -174,7 +174,7 @@ def _of_matrices(path: Path, numbers: NumberLines) -> RawTable:
             int(np.argmin(right)),
         )
     quaternion = Rotation.from_matrix(rotation).as_quat()
-    rows = np.column_stack((np.arange(len(matrix)), matrix[:, :, 3], quaternion))
+    rows = np.column_stack((np.arange(len(matrix), dtype=float), matrix[:, :, 3], quaternion))
     return _table(path, rows, numbers.line, {"t_s": "s"})
 
 

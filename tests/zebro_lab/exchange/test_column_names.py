@@ -4,24 +4,8 @@
 import pytest
 
 from zebro_lab.exchange.column_guesses import UNITS
-from zebro_lab.exchange.column_names import NAMES, leg_of, plain_name, split_header
+from zebro_lab.exchange.column_names import NAMES, leg_of
 from zebro_lab.robot.leg_log import ANGLES
-
-
-@pytest.mark.parametrize(
-    ("header", "name", "unit"),
-    [
-        ("FZ [N]", "fz", "N"), ("Zeit / ms", "zeit", "ms"), ("Kraft, kN", "kraft", "kN"),
-        ("Weg in mm", "weg", "mm"), ("Slip (%)", "slip", "%"), ("t_ms", "t", "ms"),
-        ("omega_l_rad_s", "omega_l", "rad/s"), ("position[0]", "position_0", None),
-        ("F (left)", "f_left", None), ("FZ [kN] (left)", "fz_left", "kN"),
-        ("[daN] FZ", "fz", "daN"), ("θ_1 [°]", "theta_1", "°"), ("__time", "__time", None),
-        ("/imu/orientation/x", "imu_orientation_x", None),
-    ],
-)  # fmt: skip
-def test_a_header_has_a_name_and_a_unit(header, name, unit):
-    assert split_header(header) == (name, unit)
-    assert set(plain_name(header)) <= set("abcdefghijklmnopqrstuvwxyz0123456789_%°")
 
 
 @pytest.mark.parametrize(

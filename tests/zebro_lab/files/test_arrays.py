@@ -69,12 +69,6 @@ def test_arrays_may_be_as_large_as_the_limit_and_no_larger(tmp_path):
         read_arrays(file, ("t",), advice=ADVICE, most=size - 1)
 
 
-@pytest.mark.parametrize("data", [b"PK\x03\x04 cut short", b""])
-def test_what_is_no_archive_is_refused(data, tmp_path):
-    (tmp_path / "draws.npz").write_bytes(data)
-    assert ADVICE in refusal(read, tmp_path / "draws.npz")
-
-
 @pytest.mark.parametrize(
     "header",
     [

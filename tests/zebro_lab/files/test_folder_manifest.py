@@ -74,11 +74,3 @@ def test_a_file_that_was_changed_after_it_was_written_is_told(tmp_path):
     assert changed_output(tmp_path / "walk" / "b") == ()
     file.unlink()
     assert changed_output(file) == ()
-
-
-@pytest.mark.parametrize("manifest", [None, "no JSON", "[]", '{"outputs": ["a"]}'])
-def test_nothing_is_said_of_files_that_no_manifest_lists(file, tmp_path, manifest):
-    if manifest is not None:
-        file.write_text(manifest)
-    (tmp_path / "a").write_text("1")
-    assert changed_output(tmp_path / "a") == ()

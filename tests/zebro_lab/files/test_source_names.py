@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from zebro_lab.files.source_names import is_simulated, joined_source, stated_source
+from zebro_lab.files.source_names import joined_source, stated_source
 
 
 @pytest.mark.parametrize(
@@ -22,14 +22,6 @@ from zebro_lab.files.source_names import is_simulated, joined_source, stated_sou
 )
 def test_sources_of_one_kind_are_joined_in_that_kind_others_are_mixed(sources, joined):
     assert joined_source(sources) == joined
-
-
-@pytest.mark.parametrize(
-    ("sources", "simulated"),
-    [(["real", "sim:imu"], True), (["sim:zebro", "sim:imu"], True), (["real", "replay:a"], False)],
-)
-def test_a_joined_source_is_simulated_if_one_of_its_sources_is(sources, simulated):
-    assert is_simulated(joined_source(sources)) is simulated
 
 
 @pytest.mark.parametrize(

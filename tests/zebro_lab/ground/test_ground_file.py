@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 
-import re
 
 import numpy as np
 import pytest
 
 from model.walk.ground import height_and_slopes, is_level
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
-from zebro_lab.ground.ground_file import TEMPLATE, read_ground
+from zebro_lab.ground.ground_file import read_ground
 
 MAP = 'heights = "h.csv"\nstep = 0.1\norigin = [1, 2]\n'
 HEIGHTS = np.array([[0.0, 0.001, 0.002], [0.01, 0.011, -0.012]])
@@ -133,18 +132,6 @@ def test_walk_takes_a_written_ground_as_it_is(run_command, tmp_path):
     assert is_level(read_ground(file).ground)
     words = ("walk", "--slip", "coulomb:0.4", "--duration", 0.5, "--ground", file)
     assert run_command(*words, "--out", tmp_path / "w").code == 0
-
-
-def test_every_example_in_its_comments_can_be_taken(tmp_path):
-    np.savetxt(tmp_path / "h.csv", np.zeros((5, 5)), delimiter=",")
-    text = TEMPLATE.format(name="ground.toml")
-    lines = text.splitlines()
-    examples = [line[2:] for line in lines if re.match(r"# (\w+ = |\[\[)", line)]
-    keys = {line.split(" =")[0] for line in examples}
-    assert keys == {"heights"}
-    file = tmp_path / "ground.toml"
-    file.write_text("\n".join(examples))
-    assert len(read_ground(file).what) == 1
 
 
 def test_an_existing_file_is_kept_unless_it_is_forced(run_command, tmp_path):

@@ -151,18 +151,6 @@ def test_bands_too_narrow_and_too_wide_are_out_of_range(key, share):
     assert not found.low <= 100 * share <= found.high
 
 
-@pytest.mark.parametrize(
-    "row",
-    [
-        {}, {"poses": 0, "coverage90_x": 0.0}, {"poses": 14, "coverage90_x": None},
-        {"poses": "14", "coverage90_x": 0.0}, {"poses": 14, "coverage90_x": "0"},
-        {"poses": 14, "coverage90_x": True}, {"poses": 14, "coverage90_x": float("nan")},
-    ],
-)  # fmt: skip
-def test_what_is_unknown_is_not_judged(row):
-    assert list(out_of_range(row)) == []
-
-
 def value_in(file, key):
     path = Path(file)
     text = path.read_text()

@@ -51,14 +51,6 @@ def test_a_guess_that_nobody_checked_is_refused(tmp_path, text, keys):
     assert keys in str(raised.value)
 
 
-@pytest.mark.parametrize(
-    ("text", "problem"), [("[legs]\n[leg]\n", "leg: unknown key"), ("legs = 1", "a section")]
-)
-def test_what_is_no_section_is_refused(tmp_path, text, problem):
-    with pytest.raises(SettingsError, match=problem):
-        section(tmp_path, text, "legs")
-
-
 def test_the_nearest_columns_with_something_for_the_kind_are_taken(tmp_path, monkeypatch):
     deep = tmp_path / "a" / "b"
     deep.mkdir(parents=True)

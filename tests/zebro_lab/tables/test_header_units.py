@@ -4,7 +4,6 @@
 import pytest
 
 from zebro_lab.tables.header_units import (
-    stated_units,
     suffix_unit,
     unit_in_header,
 )
@@ -40,22 +39,3 @@ def test_a_spelled_unit_in_round_brackets_is_no_name(word):
 )  # fmt: skip
 def test_an_ending_is_a_unit_where_it_fits_or_can_be_nothing_else(header, si_unit, unit):
     assert suffix_unit(header, si_unit) == unit
-
-
-@pytest.mark.parametrize(
-    ("settings", "names", "units"),
-    [
-        ([["Y_Unit_Label", "N", "", "V"]], ["X_Value", "a", "b", "c"], {"a": "N", "c": "V"}),
-        ([["Y_Unit_Label", "N", "", "rpm"], ["X_Dimension", "Time", "", "Time"]],
-         ["X_Value", "a", "X_Value (2)", "b"],
-         {"X_Value": "s", "X_Value (2)": "s", "a": "N", "b": "rpm"}),
-        ([["Y_Unit_Label", "N"], ["X_Dimension", "Frequency"]], ["X_Value", "a"], {"a": "N"}),
-        ([["Format Version", "1.2", "Length Units", "Centimeters"]],
-         ["Time", "Position X", "Rotation X"], {"Position X": "centimeters"}),
-        ([["Format Version", "1.2", "Length Units"]], ["Position X"], {}),
-        ([["Length Units", "Millimeters"]], ["Position X"], {}),
-        ([], ["t"], {}),
-    ],
-)  # fmt: skip
-def test_settings_state_units_of_channels_or_positions(settings, names, units):
-    assert stated_units(settings, names) == units

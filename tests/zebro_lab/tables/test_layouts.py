@@ -10,7 +10,6 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from support.bounded_reading import LONGEST_MESSAGE
@@ -135,17 +134,3 @@ def test_a_table_of_the_reference_data_is_marked_or_refused(name, shared, tmp_pa
     assert {name: doubts[name] for name in doubts if not name.startswith("q")} == expected
     found = numbers(file, accepted(written))
     assert all(np.isfinite(values).all() for values in found.values())
-
-
-@pytest.mark.reference
-@pytest.mark.parametrize("kind", ["legs", "imu", "track"])
-def test_a_walk_of_the_reference_data_is_read_as_each_kind(kind, shared, tmp_path):
-    name = "tripod_s1.10_left_mu0.38_tc2.csv.gz"
-    file = Path(shutil.copy(shared / "virtual-world" / "walks" / name, tmp_path))
-    walk = pd.read_csv(file)
-    found = numbers(file, accepted(write_columns_template(file, kind=kind)))
-    headers = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw",
-               **{f"theta{leg}": f"th{leg}" for leg in range(1, 7)}}  # fmt: skip
-    assert len(found) > 3
-    for column, values in found.items():
-        np.testing.assert_array_equal(values, walk[headers.get(column, column)])

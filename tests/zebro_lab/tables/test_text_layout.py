@@ -45,23 +45,6 @@ def test_header_and_separator_are_found(text, separator, names, last_line, decim
 
 
 @pytest.mark.parametrize(
-    ("text", "units"),
-    [
-        ("ET\tV\tT\nsec\tkph\tdeg C\n1\t2\t3\n", {"ET": "sec", "V": "kph", "T": "deg C"}),
-        ("ET  V  T\nsec kph deg C\n1 2 3\n", {"ET": "sec", "V": "kph", "T": "deg C"}),
-        ("a;b\n[ms];[-]\nt;f\n1;2\n", {"a": "ms", "b": "-"}),
-        ("Zeit [ms];Kraft (N);F (left)\n1;2;3\n", {"Zeit [ms]": "ms", "Kraft (N)": "N"}),
-        ("x[0],x[1]\n1,2\n", {}),
-        ("s;N\nt;F\n1;2\n", {"t": "s", "F": "N"}),
-        ("# t F\n# s N\n1 2\n", {"t": "s", "F": "N"}),
-        ("Unit;s;N\n", {}),
-    ],
-)
-def test_units_of_a_row_and_of_brackets_are_kept(text, units):
-    assert dict(find_layout(lines(text)).header.units) == units
-
-
-@pytest.mark.parametrize(
     ("text", "problem"),
     [
         ("", "is empty or all comments"),

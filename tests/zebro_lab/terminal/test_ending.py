@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: MIT
 """How a command ends."""
 
-import re
-
 import pytest
 import typer
 
 from model.errors import FitError
 from rig.errors import WrongDevice
 from zebro_lab.files.errors import DataError
-from zebro_lab.main import app as zebro_lab
 from zebro_lab.terminal.ending import run
 from zebro_lab.terminal.stopping import StoppedBySignal
 
@@ -67,25 +64,6 @@ def test_what_the_file_system_says_of_a_file_is_one_line_and_exit_1(error, said,
         run(app_that_raises(error))
     assert ended.value.code == 1
     assert capsys.readouterr() == ("", f"error: {said}\n")
-
-
-LONG = "x" * 300
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ("runs", LONG), ("plot", LONG), ("report", LONG), ("init", LONG),
-        ("walk", "--slip", "coulomb:0.4", "--duration", "1", "--out", LONG),
-        ("rig", "say", "status", "--data", LONG),
-    ],
-)  # fmt: skip
-def test_a_name_too_long_for_the_file_system_is_one_line(arguments, capsys, monkeypatch):
-    monkeypatch.setattr("sys.argv", ["zebro-lab", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        run(zebro_lab)
-    assert ended.value.code == 1
-    assert re.fullmatch(rf"error: \S*{LONG}\S*: .*File name too long.*\n", capsys.readouterr().err)
 
 
 def test_a_stop_that_an_import_turned_into_its_own_error_is_a_stop():

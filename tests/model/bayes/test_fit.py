@@ -164,13 +164,6 @@ def test_the_block_length_is_chosen_unless_it_is_given(fit):
     assert len(chosen.posterior.blocks) == len(blocks)
 
 
-def test_what_is_known_of_the_load_cell_is_kept_with_the_fit():
-    cell = LoadCell(zero_stability=0.03)
-    fit = prepared(simulated(), choice=TEN, load_cell=cell)
-    assert fit.load_cell == cell
-    assert fit.posterior.priors["offset_spread"].scale == 0.03
-
-
 def test_the_mode_is_higher_than_the_truth(fit):
     truth = dict(zip((p.name for p in THESIS_LAW.parameters), THESIS_VALUES, strict=True))
     truth |= {"noise_floor": 0.03, "noise_slope": 0.02, "offset_spread": 0.05}
@@ -185,7 +178,11 @@ def test_the_same_seed_prepares_the_same_fit(fit):
 
 
 def test_runs_of_one_block_fix_what_they_cannot_tell_apart():
-    fit = prepared(simulated(), choice=replace(TEN, length=SMALL.n_samples))
+    cell = LoadCell(zero_stability=0.03)
+    choice = replace(TEN, length=SMALL.n_samples)
+    fit = prepared(simulated(), choice=choice, load_cell=cell)
+    assert fit.load_cell == cell
+    assert fit.posterior.priors["offset_spread"].scale == 0.03
     assert len(fit.posterior.blocks) == fit.posterior.blocks.n_runs
     assert fit.posterior.fixed == {"noise_correlation": 0.0, "offset_spread": 0.0}
     assert len(fit.laplace.mode) == len(fit.posterior.parameters) - 2

@@ -69,6 +69,7 @@ def test_of_one_disc_alone_its_own_run_out_is_found(sweep):
     assert alone.scatter > RUN_OUT / 0.12 / np.sqrt(2)  # of the other disc
 
 
+@pytest.mark.long
 def test_discs_that_run_true_are_left_alone():
     found = found_in(swept(0.0, 0.0, seed=1).samples)
     assert not found.used
@@ -85,6 +86,7 @@ def test_angles_whose_zero_changes_from_run_to_run_are_not_used(sweep):
     assert not found_in(replace(samples, angles=angles)).used
 
 
+@pytest.mark.long
 def test_a_dial_gauge_that_says_the_discs_run_true_is_believed(sweep, found):
     stated = found_in(sweep.samples, replace(ERRORS, run_out=1e-6))
     assert np.all(np.abs(stated.coefficients) < 0.3 * np.abs(found.coefficients).max())

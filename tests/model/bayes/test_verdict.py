@@ -17,7 +17,6 @@ from model.bayes.advice import (
 from model.bayes.checks.check import Outcome
 from model.bayes.checks.inspection import Inspection, inspect
 from model.bayes.checks.linear import linearise
-from model.bayes.checks.reach import slip_reach
 from model.bayes.drawing.weighted import importance_draws
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
@@ -31,7 +30,6 @@ from rig.slip_rig.sweep import SweepPlan
 from support.judged_fits import (
     AGREED,
     CONVERGED,
-    LAW,
     RIG_VALUES,
     WELL_INFORMED,
     blocks_at,
@@ -133,11 +131,6 @@ def test_run_means_that_scatter_too_little_ask_for_a_known_load_cell():
     residuals = clean(inside=1.0, inside_p=1e-3)
     (step,) = verdict_on(residuals=residuals).next_steps()
     assert isinstance(step, WeighLoadCell)
-
-
-@pytest.mark.parametrize("sign", [-1, 1])
-def test_correlation_of_either_sign_is_no_white_noise(sign):
-    assert failed(verdict_on(residuals=clean(lag_one=sign * 0.6)))
 
 
 def test_correlation_is_judged_by_how_many_pairs_there_are():
@@ -269,20 +262,6 @@ def test_sweep_that_stops_soon_after_the_peak_names_shape_and_friction_weak():
     assert verdict.trustworthy
     assert verdict.headline().endswith("weakly identified: shape, friction")
     assert len(verdict.next_steps()) == 1, "one reason is said once"
-
-
-def test_reach_is_counted_in_peak_slips_of_either_sign():
-    peak = float(LAW.peak_slip(6.0, RIG_VALUES))
-    blocks = two_sided(3.0 * peak)
-    assert slip_reach(blocks, LAW, draws(RIG_VALUES)) == pytest.approx(3.0)
-    braking = replace(blocks, slip=-blocks.slip)
-    assert slip_reach(braking, LAW, draws(RIG_VALUES)) == pytest.approx(3.0)
-
-
-@pytest.mark.parametrize(("reach", "weak"), [(2.4, True), (2.6, False)])
-def test_curve_is_told_from_its_peak_two_and_a_half_peak_slips_out(reach, weak):
-    peak = float(LAW.peak_slip(6.0, RIG_VALUES))
-    assert ("shape" in verdict_on(blocks=two_sided(reach * peak)).weak) == weak
 
 
 def test_parameter_that_stays_as_wide_as_its_prior_is_weak():

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.stats import chi2
 
@@ -55,7 +56,7 @@ class Judged:
 
     data: RigData
     fit: PreparedFit
-    values: dict[str, np.ndarray]
+    draws: dict[str, np.ndarray]
     residuals: Residuals
     verdict: Verdict
 
@@ -107,6 +108,10 @@ def read(tmp_path, shared) -> Callable[[str, str], RigData]:
 
 def test_tyre_in_its_own_slip_is_predicted_run_by_run_and_weak_in_shape(read):
     data = read("realdata/tyre-bench/drivebrake_pure_slip.csv", TYRE)
+    assert (len(data.samples), data.samples.n_runs) == (9648, 14)  # between pauses
+    within_runs = np.diff(data.samples.run) == 0
+    assert np.median(np.diff(data.samples.time)[within_runs]) == pytest.approx(0.01)
+    assert (data.samples.normal_force > 300).all()
     found = judged(data, MagicFormula("constant"))
     assert found.fit.cross_validation is not None
     assert found.fit.cross_validation.scheme == "leave one run out, 14 runs"
@@ -122,7 +127,7 @@ def test_tyre_in_slip_of_the_loaded_radius_is_corrected_by_the_radius_that_the_f
     own = judged(
         read("realdata/tyre-bench/drivebrake_pure_slip.csv", TYRE), MagicFormula("constant")
     )
-    found_error, own_error = (fit.values["radius_error"].mean() for fit in (found, own))
+    found_error, own_error = (fit.draws["radius_error"].mean() for fit in (found, own))
     shift = np.median(data.samples.slip - own.data.samples.slip)
     assert found_error - own_error == pytest.approx(shift, abs=0.01)
     assert found.left_out_r_squared >= 0.98
@@ -130,6 +135,9 @@ def test_tyre_in_slip_of_the_loaded_radius_is_corrected_by_the_radius_that_the_f
 
 def test_driving_wheel_in_sand_fits(read):
     data = read("realdata/single-wheel-sand/smooth.csv", SAND)
+    assert len(data.samples) == data.samples.n_runs == 12  # trials of the drive side
+    assert data.samples.time is None
+    assert "177 of 189 rows left out; kept where beta == 0 and slip > 0.05" in data.notes
     found = judged(data, MagicFormula("constant"))
     assert found.residuals.rmse_over_load <= 0.02
     assert not any(
@@ -151,11 +159,19 @@ def test_driving_and_braking_wheel_in_sand_is_called_a_bad_fit(read):
     assert any(isinstance(step, TryLaws) and step.both_signs for step in found.verdict.next_steps())
 
 
+def test_simulated_rig_is_80_runs_and_its_slip_the_one_it_states(read, shared):
+    data = read("virtual-world/rig", SIMULATED_RIG)
+    assert (len(data.samples), data.samples.n_runs) == (320_000, 80)
+    files = sorted((Path(shared) / "virtual-world/rig").glob("*.csv.gz"))
+    stated = np.concatenate([pd.read_csv(file).kappa_inst for file in files])
+    np.testing.assert_allclose(data.samples.slip, stated, atol=2e-5)
+
+
 @pytest.mark.parametrize("curvature", [pytest.param(0.0, marks=pytest.mark.long), "constant"])
 def test_virtual_rig_gives_back_its_law_where_its_radii_and_rolling_are_known(read, curvature):
     known = RigErrors(1e-5, 1e-4, 1e-4)
     found = judged(read("virtual-world/rig", SIMULATED_RIG), MagicFormula(curvature), known)
-    K, C, mu = (found.values[name].mean() for name in ("slip_stiffness", "shape", "friction"))
+    K, C, mu = (found.draws[name].mean() for name in ("slip_stiffness", "shape", "friction"))
     assert pytest.approx(1.564, abs=0.02) == C
     assert pytest.approx(0.38, rel=0.02) == mu
     assert K / (C * mu) == pytest.approx(34.34, rel=0.15)

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import h5py
 import numpy as np
 
 from model.arrays import Array
@@ -12,7 +13,6 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
 
 if TYPE_CHECKING:
-    import h5py
     from xarray import DataTree
 
     from model.bayes.calibration import Calibration
@@ -50,8 +50,6 @@ def read_draws_of(
             integers or floats, not 1 to `MOST_DRAWS`, not as many as of another parameter, or
             stored in another file.
     """
-    import h5py
-
     with (
         open_file(path) as file,
         parsing(path, "cannot be read as posterior draws", advice=advice),
@@ -72,10 +70,8 @@ def _text(name: object) -> str:
     return name.decode("utf-8", "backslashreplace") if isinstance(name, bytes) else str(name)
 
 
-def _own(group: "h5py.Group", name: str, path: Path) -> object:
+def _own(group: h5py.Group, name: str, path: Path) -> object:
     """Return a member of a group; raise DataError if it is missing or a soft or external link."""
-    import h5py
-
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
         raise DataError(
             f"has no '{name}', or only a link to one elsewhere; calibrate again", file=path
@@ -83,9 +79,7 @@ def _own(group: "h5py.Group", name: str, path: Path) -> object:
     return group[name]
 
 
-def _draws(group: "h5py.Group", name: str, path: Path) -> Array:
-    import h5py
-
+def _draws(group: h5py.Group, name: str, path: Path) -> Array:
     found = _own(group, name, path)
     if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "fiu":
         raise DataError(f"'{name}' does not hold numbers; calibrate again", file=path)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read and write `slip.toml` of a calibration folder; write `summary.csv` and `posterior.nc`.
 
-Only this module depends on the format of the first two; the draws are read in `slip_draws`.
+Only this module depends on the format of the first two; the draws are read in `posterior_file`.
 """
 
 import csv
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import tomlkit
 
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
@@ -182,8 +183,6 @@ def _slip_toml(
     priors: Mapping[str, Any],
     lateral: Mapping[str, object],
 ) -> str:
-    import tomlkit
-
     from model.bayes.law_scores import LawScores
 
     scores, document = calibration.comparison, tomlkit.document()

@@ -8,6 +8,7 @@ from model.bayes.calibration import Calibration
 from model.bayes.law_scores import LawScores
 from model.bayes.likelihood import predict_blocks
 from model.bayes.verdict import State
+from zebro_lab import plots
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
 
@@ -30,8 +31,6 @@ def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat
         calibration: The finished fit.
         form: Format of the pictures.
     """
-    from zebro_lab import plots  # matplotlib takes most of a second to import
-
     law = calibration.posterior.law
     blocks = calibration.posterior.blocks
     residuals, simulated = calibration.residuals, is_simulated(calibration.source)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
@@ -182,8 +183,6 @@ def _run_folder_table(
     several sweeps were recorded; raw samples outside sweeps are dropped. Of a `columns.toml` only
     row conditions and load cell apply.
     """
-    import pandas as pd
-
     run, notes, rule = read_slip_rig_run(folder), (), RunRule()
     columns_read = {name: each for name, each in vars(run.table).items() if each is not None}
     if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # raw device samples: not segmented yet

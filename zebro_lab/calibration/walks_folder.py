@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
+import tomlkit
 
 from model.counted import counted
 from model.predict import ModelSpread
@@ -231,8 +232,6 @@ def _with_lateral(values: np.ndarray) -> np.ndarray:
 
 
 def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
-    import tomlkit
-
     posterior = fitted.posterior
     parameters = posterior.contractions()
     document = tomlkit.document()

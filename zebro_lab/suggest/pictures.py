@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from model.arrays import Array
 from model.design.targets import force_rows
+from zebro_lab import plots
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.plots.sheet import (
     BLUE,
@@ -38,8 +39,6 @@ def draw_suggested(file: Path, suggested: Suggested) -> None:
         file: File to write.
         suggested: The suggestion.
     """
-    from zebro_lab.plots import save
-
     loads = suggested.proposal.plan.points.loads
     shown = sorted({min(loads), max(loads)})
     figure = new_figure(
@@ -60,7 +59,7 @@ def draw_suggested(file: Path, suggested: Suggested) -> None:
     for axes in panels[-1]:
         axes.set_xlabel(slip_label(str(suggested.knowledge.posterior.blocks.definition)))
     legend_below(figure, columns=4)
-    save(figure, file)
+    plots.save(figure, file)
 
 
 def _targets(suggested: Suggested) -> str:

@@ -34,6 +34,7 @@ from zebro_lab.suggest.folder import (
     with_points,
     write_expected,
 )
+from zebro_lab.suggest.pictures import draw_suggested
 from zebro_lab.suggest.proposal import (
     DURATIONS,
     MOST_SLIPS,
@@ -239,8 +240,6 @@ def _write(
     watcher: Watcher,
 ) -> None:  # fmt: skip
     """Write plan, table and picture, once the plan has been checked as `rig plan` does."""
-    from zebro_lab.suggest.pictures import draw_suggested  # matplotlib takes most of a second
-
     require_plan_allowed(request.plan, suggested.proposal.plan, foreseen.profile)
     told = read_text(request.plan, most=MOST_PLAN)
     text = with_points(told, suggested.proposal.plan, file=request.plan)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+import pandas as pd
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import block_means
@@ -17,7 +18,9 @@ from model.slip.definition import SlipDefinition, convert_slip
 from model.slip.load_curves import LoadCurve, curves_by_load
 from model.slip.magic_formula import peak_slip
 from model.slip.read_off import ReadOff, read_off
+from zebro_lab import plots
 from zebro_lab.calibration.curve_argument import CurveTable, is_curve_table, read_curve_table
+from zebro_lab.calibration.read_off.pictures import read_curves
 from zebro_lab.calibration.read_off.request import ReadOffRequest
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
@@ -145,11 +148,6 @@ def _read_sides(curve: LoadCurve) -> Iterator[ReadCurve]:
 
 
 def _write(request: ReadOffRequest, result: ReadOffResult, files: tuple[Path, ...]) -> None:
-    import pandas as pd
-
-    from zebro_lab.calibration.read_off.pictures import read_curves
-    from zebro_lab.plots import save
-
     rows = [each.row() for each in result.curves]
     content = {
         "source": result.source,
@@ -165,4 +163,4 @@ def _write(request: ReadOffRequest, result: ReadOffResult, files: tuple[Path, ..
         figure = read_curves(
             shown, definition=str(result.definition), simulated=is_simulated(result.source)
         )
-        save(figure, draft / f"{PICTURE}.{request.form}")
+        plots.save(figure, draft / f"{PICTURE}.{request.form}")

@@ -57,24 +57,21 @@ class _Candidate:
     Attributes:
         separator: A key of `SEPARATORS`.
         rows: Cells of each line.
-        data: Rows with data; None if there are none.
+        data: Rows with data.
         header: The header; None if there is none that fits the data.
         problem: Why there is no header.
     """
 
     separator: str
     rows: list[list[str]]
-    data: DataRows | None
+    data: DataRows
     header: Header | None = None
     problem: str = ""
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
         """Whether it has a header; several columns; the share of values."""
-        data = self.data
-        if data is None:
-            return False, False, 0.0
-        return self.header is not None, data.width > 1, data.values
+        return self.header is not None, self.data.width > 1, self.data.values
 
 
 def find_layout(lines: Sequence[Line]) -> TextLayout:
@@ -91,12 +88,11 @@ def find_layout(lines: Sequence[Line]) -> TextLayout:
     body, comments = _without_comments(below)
     if not body:
         raise DataError("is empty or all comments (#); expected a header and rows")
-    tried = [_candidate(separator, body, comments) for separator in SEPARATORS]
-    with_data = [candidate for candidate in tried if candidate.data]
-    if not with_data:
+    tried = [each for s in SEPARATORS if (each := _candidate(s, body, comments)) is not None]
+    if not tried:
         return _without_numbers(body)
-    best = _only_best(with_data)
-    if best.header is None or best.data is None:
+    best = _only_best(tried)
+    if best.header is None:
         raise _no_header(best, body)
     above = [*lines[: len(lines) - len(below)], *body[: best.data.first]]
     settings = [split_line(line, best.separator) for _, line in above]
@@ -149,11 +145,12 @@ def _without_comments(lines: Sequence[Line]) -> tuple[list[Line], list[Line]]:
     return list(lines[first:]), [(i, line) for i, line in bare if line]
 
 
-def _candidate(separator: str, body: Sequence[Line], comments: Sequence[Line]) -> _Candidate:
+def _candidate(separator: str, body: Sequence[Line], comments: Sequence[Line]) -> _Candidate | None:
+    """Split lines at a separator and find data and header; None where no row has a number."""
     rows = [split_line(line, separator) for _, line in body]
     data = data_rows(rows)
     if data is None:
-        return _Candidate(separator, rows, None)
+        return None
     above = rows[: data.first]
     if not above:  # of EuRoC and TUM the header is a comment
         above = [_comment_cells(line, separator) for _, line in comments]
@@ -211,15 +208,15 @@ def _several(separators: Sequence[str]) -> DataError:
 
 def _no_header(best: _Candidate, body: Sequence[Line]) -> DataError:
     data = best.data
-    if data is not None and data.first == 0 and _is_transposed(best.rows):
+    if data.first == 0 and _is_transposed(best.rows):
         return DataError(
             f"has a name at the start of each line, '{best.rows[0][0][:40]}' first, and is "
             "transposed; expected a column of each quantity: exchange rows and columns (in a "
             "spreadsheet copy, then paste special, transposed)"
         )
-    if data is None or data.first == 0 or "two rows" in best.problem:
-        if "two rows" in best.problem:
-            return DataError(f"{best.problem}; delete one of them, or put # before it")
+    if "two rows" in best.problem:
+        return DataError(f"{best.problem}; delete one of them, or put # before it")
+    if data.first == 0:
         return DataError(
             f"has no header: the first line is '{body[0][1][:60]}'; add a line with column names"
         )

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A walk folder has every picture, in the format and of the time that were asked for."""
 
-import numpy as np
 import pytest
-from PIL import Image
 
 from model.gait.reference import SampledReference
 from support.drawn_figures import figures_saved
@@ -21,19 +19,13 @@ def finished(walked) -> Walked:
     return Walked(walked, angles, RobotFile(), None, "dynamics", 0.01, "a log", ())
 
 
-def test_folder_gets_every_picture(finished, tmp_path):
-    draw_walk(tmp_path, finished, PictureRequest())
-    assert {p.name for p in tmp_path.iterdir()} == {f"{name}.png" for name in PICTURES}
-    for path in tmp_path.iterdir():
-        with Image.open(path) as image:
-            assert np.asarray(image.convert("L")).std() > 5  # something is drawn
-
-
 def test_a_window_is_the_time_of_every_figure_over_time(finished, tmp_path, monkeypatch):
     figures = figures_saved(monkeypatch)
     request = PictureRequest(True, Instants((0.5, 1.5)), Window(1.0, 2.0), form="svg")
     draw_walk(tmp_path, finished, request)
     assert set(figures) == {f"{name}.svg" for name in PICTURES} < set(FILES)
+    for name, figure in figures.items():
+        assert all(axes.has_data() for axes in figure.axes), name
     for name in ("motion", "slip_ratio", "gantt"):
         shown = figures[f"{name}.svg"].axes[0].get_xlim()
         assert shown == pytest.approx((1.0, 2.0), abs=0.011), name

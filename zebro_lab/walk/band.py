@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Compute the band of a predicted path: draws of the slip law, of legs and of the floor."""
 
-from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import asdict
 
@@ -23,7 +22,6 @@ from zebro_lab.walk.walking import Walked
 
 SAMPLING = 0.1  # s between the poses kept of each draw
 ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand
-_STEPS_SHOWN = 50  # progress reports
 
 
 def band_settings(request: BandRequest, informed: InformedLegs | None) -> dict[str, object]:
@@ -86,21 +84,8 @@ def predict_band(
     t = np.linspace(0.0, duration, max(round(duration / SAMPLING), 1) + 1)
     return predict_paths(
         draws, t, state=state, error=ModelSpread(), rng=rng, executor=executor,
-        progress=_every(_STEPS_SHOWN, watcher),
+        progress=lambda done: watcher.step("predicting the band", done),
     )  # fmt: skip
-
-
-def _every(steps: int, watcher: Watcher) -> Callable[[float], None]:
-    """Return a function that passes the fraction done on to `watcher` at most `steps` times."""
-    shown = 0
-
-    def show(fraction: float) -> None:
-        nonlocal shown
-        if fraction * steps >= shown + 1:
-            shown += 1
-            watcher.step("predicting the band", fraction)
-
-    return show
 
 
 def _leg_state(

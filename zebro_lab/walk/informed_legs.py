@@ -13,6 +13,12 @@ from zebro_lab.calibration.walks_folder import StoredWalks, describe_legs
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile
 
+_OF_MIDDLE = {
+    "leg_arc_beyond": "arc", "grip": "grip", "slip_stiffness": "stiffness", "fall": "fall",
+    "lateral_grip": "lateral_grip", "lateral_stiffness": "lateral_stiffness",
+    "steering": "steering", "stride": "stride",
+}  # fmt: skip
+"""Names in a manifest of the values of a state of legs and floor."""
 _SEED = 1  # for another robot's legs, which are drawn from the prior
 
 
@@ -63,14 +69,7 @@ class InformedLegs:
             "walks": list(self.posterior.walks),
             "this_walk": None if self.index is None else self.posterior.walks[self.index],
             "leg_offset": legs.offset[0].tolist(),
-            "leg_arc_beyond": float(legs.arc[0]),
-            "grip": float(legs.grip[0]),
-            "slip_stiffness": float(legs.stiffness[0]),
-            "fall": float(legs.fall[0]),
-            "lateral_grip": float(legs.lateral_grip[0]),
-            "lateral_stiffness": float(legs.lateral_stiffness[0]),
-            "steering": float(legs.steering[0]),
-            "stride": float(legs.stride[0]),
+            **{name: float(getattr(legs, each)[0]) for name, each in _OF_MIDDLE.items()},
         }
 
 

@@ -102,8 +102,8 @@ def _draw(request: PictureRequest, walked: Walked, folder: Path, watcher: Watche
 
 def _shown(request: PictureRequest, walked: Walked) -> PictureRequest:
     """Return the pictures to draw; of a program the whole walk is shown if no window is asked."""
-    t = walked.path.t
-    if request.window is not None or not walked.segments:
+    t, drawn = walked.path.t, request.figures or request.contacts
+    if request.window is not None or not (drawn and walked.segments):
         return request
     return replace(request, window=Window(float(t[0]), float(t[-1])))
 

@@ -68,7 +68,7 @@ class BandRequest:
 
 @dataclass(frozen=True)
 class PictureRequest:
-    """Options of the pictures of a walk: which, in what format, at what times."""
+    """Options of what is drawn and listed of a walk: figures, film and contact states."""
 
     figures: Annotated[
         bool, Option("--figures", help="Draw figures of path, motion, forces and contacts.")
@@ -94,21 +94,6 @@ class PictureRequest:
         bool, Option("--animate", help="Write an animation: mp4, or gif without ffmpeg.")
     ] = False
 
-    def __post_init__(self) -> None:
-        """Raise `BadParameter` for times of snapshots without figures."""
-        if self.at is not None and not self.figures:
-            raise BadParameter("says what figures show; give --figures too", param_hint="'--at'")
-
-    @property
-    def snapshots(self) -> tuple[float, ...]:
-        """Times of `--at`, none if it was not given [s]."""
-        return () if self.at is None else self.at.t
-
-
-@dataclass(frozen=True)
-class ContactRequest:
-    """Options of the contact states of a walk."""
-
     contacts: Annotated[
         bool,
         Option(
@@ -117,6 +102,20 @@ class ContactRequest:
             "(touchdowns.csv), and print the sequence of a cycle.",
         ),
     ] = False
+
+    def __post_init__(self) -> None:
+        """Raise `BadParameter` for times of snapshots, or a window of time, without figures."""
+        if self.at is not None and not self.figures:
+            raise BadParameter("says what figures show; give --figures too", param_hint="'--at'")
+        if self.window is not None and not (self.figures or self.contacts):
+            raise BadParameter(
+                "says what figures show; give --figures or --contacts too", param_hint="'--window'"
+            )
+
+    @property
+    def snapshots(self) -> tuple[float, ...]:
+        """Times of `--at`, none if it was not given [s]."""
+        return () if self.at is None else self.at.t
 
 
 ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
@@ -175,7 +174,6 @@ class ModelRequest:
     ground: GroundOption = None
     band: BandRequest = field(default_factory=BandRequest)
     pictures: PictureRequest = field(default_factory=PictureRequest)
-    contact: ContactRequest = field(default_factory=ContactRequest)
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -189,13 +187,7 @@ class ModelRequest:
         Raises:
             SettingsError: A `coulomb:…` is no friction law, the step is too long, or a ground is
                 given for a model that walks on level ground only.
-            BadParameter: A window of time is given without figures to draw.
         """
-        pictures = self.pictures
-        if pictures.window is not None and not (pictures.figures or self.contact.contacts):
-            raise BadParameter(
-                "says what figures show; give --figures or --contacts too", param_hint="'--window'"
-            )
         if self.slip is not None:
             coulomb_numbers(self.slip)
         if self.ground is not None and self.model != "dynamics":

@@ -188,7 +188,7 @@ def _walked(
         walked = replace(walked, band=band)
     if start:
         walked = walked.delayed(start)
-    if request.contact.contacts:
+    if pictures.contacts:
         watcher.step("finding contacts", None)
         contacts = contacts_of(
             walked.path, walked.reference, by=walked.contact_by, stances=walked.stances

@@ -24,8 +24,7 @@ from zebro_lab.calibration.law_table import sentence, signed
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import unit_symbol
-from zebro_lab.terminal.messages import plain
-from zebro_lab.terminal.tables import plain_table
+from zebro_lab.terminal.tables import plain, plain_table
 
 
 def print_data(console: Console, data: RigData) -> None:

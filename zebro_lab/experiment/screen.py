@@ -28,7 +28,7 @@ from rig.experiment.steps import Point
 from rig.experiment.supervision import start_thread
 from rig.experiment.verdict import PointVerdict
 from zebro_lab.files.errors import shown
-from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain
 
 KEYS: Final = {"p": "pause", "r": "resume", "": "confirm", "s": "soft", "ss": "safe",
                "e": "emergency"}  # fmt: skip

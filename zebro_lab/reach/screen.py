@@ -10,9 +10,8 @@ from rich.table import Table
 
 from zebro_lab.reach.stage import ReachResult
 from zebro_lab.reach.way import Way, compared, missed, named
-from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.result import print_result
-from zebro_lab.terminal.tables import plain_table
+from zebro_lab.terminal.tables import plain, plain_table
 
 
 def print_reached(console: Console, reached: ReachResult, out: Path) -> None:

@@ -18,7 +18,7 @@ from rich.live import Live
 from rich.text import Text
 
 from zebro_lab.recording.drawing import LiveValues, draw_status, stream_in_words, time_left
-from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain
 from zebro_lab.terminal.timely_output import in_time
 
 if TYPE_CHECKING:

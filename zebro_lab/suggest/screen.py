@@ -10,8 +10,7 @@ from model.counted import counted
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.files.units import unit_symbol
 from zebro_lab.suggest.folder import PLAN, Expected, Suggested
-from zebro_lab.terminal.messages import plain
-from zebro_lab.terminal.tables import plain_table
+from zebro_lab.terminal.tables import plain, plain_table
 
 
 def print_suggested(console: Console, suggested: Suggested, out: Path) -> None:

@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain
 
 WARNING = "WARNING"
 """First word of a note that says why a result may be wrong."""

@@ -7,7 +7,12 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from zebro_lab.terminal.messages import plain
+from zebro_lab.files.errors import shown
+
+
+def plain(line: str) -> Text:
+    """Convert a line to Rich text without markup; newlines and control characters are escaped."""
+    return Text(shown(line))
 
 
 def plain_table(

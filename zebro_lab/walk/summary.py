@@ -11,8 +11,7 @@ from model.counted import counted
 from model.metrics.turning import fitted_radius
 from model.poses import Poses
 from model.walk.path import WalkPath
-from zebro_lab.terminal.messages import plain
-from zebro_lab.terminal.tables import plain_table
+from zebro_lab.terminal.tables import plain, plain_table
 from zebro_lab.walk.shown_time import leg_turns
 from zebro_lab.walk.walking import WalkedSegment
 

@@ -10,9 +10,8 @@ from model.counted import counted
 from model.walk_fit.posterior import Contraction, WalkPosterior
 from model.walk_fit.prior import FALL, UNITS
 from zebro_lab.files.units import shown_unit
-from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.result import print_result
-from zebro_lab.terminal.tables import plain_table
+from zebro_lab.terminal.tables import plain, plain_table
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.screen import radius_text, yaw_text
 from zebro_lab.walk_fit.stage import WalksCalibrated

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A line on the terminal is one line, and plain text to Rich."""
+"""A line on the terminal is one line."""
 
 import pytest
 
-from zebro_lab.terminal.messages import plain, say
+from zebro_lab.terminal.messages import say
 
 HOSTILE = "a\nb \x1b[31m[bold]c[/bold]"
 SHOWN = r"a\nb \x1b[31m[bold]c[/bold]"
@@ -15,8 +15,3 @@ def test_a_line_is_escaped_and_goes_where_it_should(err, capsys):
     captured = capsys.readouterr()
     expected = ("", SHOWN + "\n") if err else (SHOWN + "\n", "")
     assert captured == expected
-
-
-def test_markup_in_a_line_is_text_to_rich():
-    assert plain(HOSTILE).plain == SHOWN
-    assert plain(HOSTILE).spans == []

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 
 from zebro_lab.calibration.read_off.request import ReadOffRequest
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.terminal.messages import plain
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
@@ -31,18 +30,13 @@ standard errors. It is no fit with a posterior: that is calibrate-slip.
 def read_off(request: ReadOffRequest, output: Output = TEXT) -> None:
     """Read the Magic Formula's B, C, D and E off slip curves, one set at each load."""
     from zebro_lab.calibration.read_off import stage
+    from zebro_lab.terminal.result import print_result
 
     result = stage.read_off_curves(request)
-    console = output.console()
-    if is_simulated(result.source):
-        console.print(plain(f"SIMULATED data, source '{result.source}'"))
-    for note in result.notes:
-        console.print(plain(note))
-    console.print(_table(result))
-    for each in result.curves:
-        if each.found is None:
-            console.print(plain(f"{each.curve.load:.4g} N, {each.side}: {each.reason}"))
-    console.print(plain(f"written to {request.out}"))
+    reasons = [f"{each.curve.load:.4g} N, {each.side}: {each.reason}"
+               for each in result.curves if each.found is None]  # fmt: skip
+    parts = [*result.notes, _table(result), *reasons]
+    print_result(output.console(), parts, source=result.source, out=request.out)
     content = {
         "folder": request.out,
         "simulated": is_simulated(result.source),

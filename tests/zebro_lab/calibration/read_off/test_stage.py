@@ -14,7 +14,7 @@ pytestmark = pytest.mark.usefixtures("blank_pictures")
 def test_runs_of_a_rig_are_points_by_load_and_said_to_be_simulated(run_command, sweep, tmp_path):
     ended = run_command("read-off", sweep, "--out", tmp_path / "out")
     assert ended.code == 0, ended.err
-    assert "SIMULATED data, source 'sim:rig-sweep'" in ended.out
+    assert "SIMULATED: sim:rig-sweep" in ended.out
     assert "points are the means of 24 runs" in ended.out
     table = pd.read_csv(tmp_path / "out" / "read-off.csv")
     assert list(table["load_n"].round()) == [4, 12]

@@ -27,7 +27,7 @@ LIMITS = {
     "duration over `--dt`": "walk.walking:MOST_STEPS",
     "time between samples": "tables.columns:INTERVALS",
     "turn of a leg": "robot.leg_log:LONGEST_TURN",
-    "gap in a leg log": "robot.leg_gaps:LONGEST_BRIDGED",
+    "gap in a leg log": "robot.leg_log:LONGEST_BRIDGED",
     "roll and pitch": "robot.imu_log:LARGEST_TILT",
     "`--track-sd`": "exchange.import_request:LARGEST_SD",
     "mean speed of a path": "track.trajectory.table:FASTEST",

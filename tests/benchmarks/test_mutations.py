@@ -70,6 +70,7 @@ def test_a_function_that_moved_is_drawn_and_one_that_changed_is_not(tmp_path):
     assert read_modules(tmp_path / "before").keys() == {"model.before"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("sharp", "told"), [(True, "1 of 1"), (False, "0 of 1")])
 def test_tests_that_look_notice_and_tests_that_look_away_do_not(tmp_path, capsys, sharp, told):
     looks = LOOKS.replace(

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
 from importlib.util import find_spec
 
+import pytest
+
 from benchmarks.speed import calibration
 from rig.slip_rig.sweep import SweepPlan
 
 SMALL = SweepPlan(slips=(0.02, 0.05, 0.1, 0.2, 0.4, 0.8), duration=0.4)
 
 
+@pytest.mark.long
 def test_a_small_sweep_has_a_row_for_each_likelihood_engine_and_reader(monkeypatch, rows):
     few = {"KEPT_STEPS": 10, "IMPORTANCE_DRAWS": 500, "NAIVE_SECONDS": 0.05, "READS": 1}
     for name, value in few.items():

@@ -15,6 +15,7 @@ def threads():
     cv2.setNumThreads(before)
 
 
+@pytest.mark.long
 def test_both_detectors_find_every_marker_and_are_timed(monkeypatch, rows):
     for name, few in (("PHOTOS", 2), ("REPEATS", 1), ("STRETCHES", (2,))):
         monkeypatch.setattr(tracking, name, few)

@@ -70,23 +70,22 @@ def test_of_two_equal_tables_the_one_named_like_a_copy_is_the_copy(data, name):
     assert f"{name} equals sweep" in found.repeated[0]
 
 
-def test_a_file_imported_twice_counts_once(data, sweep, tmp_path):
-    imported(data, tmp_path / "runs", label="first")
-    imported(data, tmp_path / "runs", label="second")
-    later = START.replace(year=2027)
-    imported(data, tmp_path / "runs", label="third", start=later)
-    assert_once(read_rig_data([tmp_path / "runs"]), sweep, "second")
+LATER = START.replace(year=2027)
+
+
+@pytest.mark.parametrize("again", [{}, {"start": LATER}, None])
+def test_what_is_imported_or_copied_again_counts_once(data, sweep, tmp_path, again):
+    folder = imported(data, tmp_path / "runs", label="first")[0]
+    if again is None:
+        shutil.copytree(folder, tmp_path / "runs" / "again")
+    else:
+        imported(data, tmp_path / "runs", label="again", **again)
+    assert_once(read_rig_data([tmp_path / "runs"]), sweep, "again")
 
 
 def test_a_table_beside_the_runs_imported_from_it_counts_once(data, sweep):
     imported(data, data / "runs")
     assert_once(read_rig_data([data]), sweep, "sweep")
-
-
-def test_a_copied_run_folder_counts_once(data, sweep, tmp_path):
-    folder = imported(data, tmp_path / "runs")[0]
-    shutil.copytree(folder, tmp_path / "runs" / "backup")
-    assert_once(read_rig_data([tmp_path / "runs"]), sweep, "backup")
 
 
 def test_what_is_excluded_does_not_come_back_under_another_name(data, sweep):

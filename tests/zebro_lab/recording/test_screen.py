@@ -77,6 +77,18 @@ def test_a_pipe_that_takes_no_line_is_told_at_the_end(monkeypatch):
         assert screen.close()
 
 
+def test_a_pipe_that_nobody_reads_any_more_is_not_waited_for(monkeypatch):
+    def broken(_):
+        raise BrokenPipeError
+
+    place = Console(file=SimpleNamespace(write=broken, flush=lambda: None))
+    monkeypatch.setattr(module, "LINE_EVERY", 0.0)
+    with record_screen(place) as screen:
+        with pytest.raises((OSError, SystemExit)):
+            screen.show(RecordStatus(Path("run"), 1.0, None, STREAMS))
+        assert screen.close()
+
+
 @pytest.mark.parametrize("number", SIGNALS)
 def test_the_first_signal_is_the_reason_and_the_second_is_obeyed(number):
     with record_screen(console(terminal=False)) as screen:

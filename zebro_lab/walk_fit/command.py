@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`calibrate-slip DATA…`: fit a slip curve to rig data, and legs and floor to tracked walks."""
 
-from concurrent.futures import Executor
-
 import typer
 
 from zebro_lab.calibration.command import fit_and_report
@@ -65,14 +63,21 @@ def calibrate(
         )
     with open_executor(request.workers) as executor:  # a wrong address is told at once
         if request.data and tracked.walks:
-            _require_walks(tracked, request, output)
+            from zebro_lab.walk_fit.stage import require_walks
+
+            with output.progress() as watcher:  # before a fit, which takes long and replaces files
+                require_walks(tracked, request, watcher)
         converged = fit_and_report(request, output, executor=executor) if request.data else True
         if tracked.walks:
-            _fit_walks(tracked, request, output, executor)
+            from zebro_lab.walk_fit import screen, stage
+
+            with output.progress() as watcher:
+                done = stage.calibrate_walks(tracked, request, watcher, executor=executor)
+            screen.print_walks(output.console(), done)
     if output.as_json:
-        content = _document(request, with_walks=bool(tracked.walks))
         code = 0 if converged else NOT_CONVERGED
         typed = "calibrate-slip" if context.parent is None else "calibrate"
+        content = _document(request, with_walks=bool(tracked.walks))
         output.document(typed, content, exit_code=code)
     if not converged:
         raise typer.Exit(NOT_CONVERGED)
@@ -86,25 +91,3 @@ def _document(request: CalibrationRequest, *, with_walks: bool) -> dict[str, obj
     if with_walks:
         content["walks"] = read_json_document(request.out / "walks" / "manifest.json")
     return content
-
-
-def _require_walks(tracked: WalksRequest, calibration: CalibrationRequest, output: Output) -> None:
-    """Check the walks before a fit of rig data, which takes long and replaces files."""
-    from zebro_lab.walk_fit.stage import require_walks
-
-    with output.progress() as watcher:
-        require_walks(tracked, calibration, watcher)
-
-
-def _fit_walks(
-    tracked: WalksRequest,
-    calibration: CalibrationRequest,
-    output: Output,
-    executor: Executor | None,
-) -> None:
-    """Fit leg offsets and floor parameters to tracked walks, write `walks/`, print the results."""
-    from zebro_lab.walk_fit import screen, stage
-
-    with output.progress() as watcher:
-        done = stage.calibrate_walks(tracked, calibration, watcher, executor=executor)
-    screen.print_walks(output.console(), done)

@@ -25,7 +25,11 @@ from support.walk_posteriors import write_calibration
 from zebro_lab.workers import WorkersRequest, open_executor
 
 distributed = pytest.importorskip("distributed")
-pytestmark = [pytest.mark.long, pytest.mark.filterwarnings("ignore")]
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.timeout(3600),
+    pytest.mark.filterwarnings("ignore"),
+]
 
 PLAN = SweepPlan(slips=(-0.05, 0.01, 0.03, 0.3), loads=(4.0, 8.0), rate=40.0)
 UNEVEN = "slope_deg = [3.0, 0.0]\n"

@@ -11,13 +11,12 @@ from hypothesis.extra.numpy import arrays
 from model.bayes import cross_validation
 from model.bayes.averaging.blocks import block_means
 from model.bayes.cross_validation import (
-    CrossValidation,
     cross_validate,
     measured_force,
     r_squared,
 )
 from model.bayes.drawing.laplace import Laplace, find_mode
-from model.bayes.likelihood import NUISANCE, predict_blocks
+from model.bayes.likelihood import predict_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula, SlipDefinition
 from rig.slip_rig.imperfections import TYPICAL_RIG
@@ -85,29 +84,7 @@ def test_neither_unit_nor_zero_of_the_force_matters(measured, predicted, scale, 
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
-def test_worse_than_the_mean_is_below_zero():
-    measured = np.array([1.0, 2.0, 3.0])
-    assert r_squared(measured, measured[::-1]) < 0
-
-
 # --- predicting a measured force
-
-
-def test_a_perfect_load_cell_measures_the_law():
-    slip, load = np.linspace(-0.2, 0.5, 9), np.linspace(2.0, 9.0, 9)
-    values = np.array([*LAW_VALUES, *np.zeros(len(NUISANCE))])
-    np.testing.assert_allclose(
-        measured_force(LAW, values, slip, load, MATERIAL), LAW.force(slip, load, LAW_VALUES)
-    )
-
-
-def test_crosstalk_is_undone_before_the_law_is_used():
-    slip, load = np.linspace(-0.2, 0.5, 9), np.linspace(2.0, 9.0, 9)
-    traction = LAW.force(slip, load, LAW_VALUES)
-    crosstalk = 0.05
-    values = np.array([*LAW_VALUES, 0.0, 0.0, 0.0, crosstalk, *np.zeros(6)])
-    found = measured_force(LAW, values, slip, load - crosstalk * traction, MATERIAL)
-    np.testing.assert_allclose(found, traction, rtol=1e-3)
 
 
 def test_without_wander_the_prediction_is_the_likelihoods(posterior):
@@ -206,8 +183,3 @@ def test_folds_fitted_at_once_or_in_turn_are_the_same(posterior, laplace, valida
     in_turn = cross_validate(posterior, laplace, executor=ThreadPoolExecutor(2))
     np.testing.assert_array_equal(in_turn.values, validation.values)
     np.testing.assert_array_equal(in_turn.log_density, validation.log_density)
-
-
-def test_a_scheme_with_as_many_folds_as_runs_leaves_out_single_runs():
-    one = CrossValidation(np.arange(3), np.zeros((3, 11)), np.zeros(3))
-    assert one.scheme == "leave one run out, 3 runs"

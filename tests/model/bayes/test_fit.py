@@ -330,30 +330,12 @@ def test_where_no_run_can_be_left_out_the_first_law_is_kept(fit):
     assert compare("ab", unvalidated).chosen == 0
 
 
-def scaled(samples, *, normal=1.0, traction=1.0):
-    return replace(
-        samples,
-        normal_force=normal * samples.normal_force,
-        traction_force=traction * samples.traction_force,
-    )
-
-
 @pytest.mark.parametrize("traction", [0.0, 1.5])
 def test_traction_that_stands_still_is_refused(traction):
     samples = simulated()
     still = replace(samples, traction_force=np.full(len(samples), traction))
     with pytest.raises(InsufficientData, match=f"traction force is {traction:g} N in all"):
         prepared(still)
-
-
-def test_kilonewtons_taken_for_newtons_are_refused():
-    with pytest.raises(InsufficientData, match="kN"):
-        prepared(scaled(simulated(), normal=1e-3, traction=1e-3), load_cell=LoadCell())
-
-
-def test_forces_beyond_every_rig_are_refused():
-    with pytest.raises(DomainError, match="unit"):
-        prepared(scaled(simulated(), normal=1e200, traction=1e200))
 
 
 def test_a_wrong_sign_is_said_before_a_fit_is_wasted():

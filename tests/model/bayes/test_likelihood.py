@@ -141,19 +141,6 @@ def test_the_filter_is_the_dense_gaussian_of_the_definition(seed, rho, tau, gain
     np.testing.assert_allclose(found, dense_log_densities(data, values), rtol=1e-9, atol=1e-7)
 
 
-def test_slip_errors_enter_the_filter_and_not_only_the_mean():
-    values = parameters(offset_spread=0.1, noise_correlation=0.5)
-    sharp = blurred_blocks()
-    blurred = replace(
-        sharp, slip_error=sharp.slip_error + 1e-3, run_slip_error=sharp.run_slip_error + 1e-3
-    )
-    for data in (sharp, blurred):
-        expected = dense_log_densities(data, values)
-        np.testing.assert_allclose(run_log_likelihood(data, LAW, values)[0], expected, rtol=1e-9)
-    difference = log_likelihood(sharp, LAW, values) - log_likelihood(blurred, LAW, values)
-    assert abs(difference[0]) > 1.0
-
-
 @pytest.mark.parametrize("size", [{"slip_error_scale": 1.7}, {"slip_scatter": 0.01}])
 def test_the_size_of_slip_errors_is_a_parameter(size):
     data, values = blurred_blocks(), parameters(offset_spread=0.1, **size)
@@ -181,22 +168,6 @@ def test_runs_are_independent_and_their_log_densities_add():
         alone = data.select_runs(np.arange(data.n_runs) == run)
         np.testing.assert_allclose(log_likelihood(alone, LAW, values), whole[run], rtol=1e-12)
     np.testing.assert_allclose(log_likelihood(data, LAW, values), whole.sum(), rtol=1e-12)
-
-
-@given(order=st.permutations(range(len(SIZES))))
-def test_the_order_of_the_runs_changes_nothing(order):
-    values = parameters(noise_correlation=0.7, offset_spread=0.3, crosstalk=0.02)
-    data = blurred_blocks()
-    rows = np.concatenate([np.flatnonzero(data.run == run) for run in order])
-    columns = ("slip", "normal_force", "traction_force", "count", "slip_wander", "slip_error")
-    shuffled = replace(
-        data,
-        **{name: getattr(data, name)[rows] for name in columns},
-        run=np.repeat(np.arange(len(SIZES)), [SIZES[run] for run in order]),
-        run_slip_error=data.run_slip_error[list(order)],
-    )
-    before = run_log_likelihood(data, LAW, values)[0]
-    np.testing.assert_allclose(run_log_likelihood(shuffled, LAW, values)[0], before[list(order)])
 
 
 def test_a_likelihood_of_all_runs_is_one_gaussian_of_blocks_on_a_diagonal():

@@ -84,21 +84,6 @@ def test_the_density_is_the_prior_times_the_likelihood(law):
     np.testing.assert_allclose(target.log_prior(z)[inside], prior[inside])
 
 
-def test_each_runs_log_density_adds_to_the_likelihood():
-    target = posterior()
-    z = target.coordinates(truth())[None]
-    of_runs = target.run_log_likelihood(z)
-    assert of_runs.shape == (1, BLOCKS.n_runs)
-    np.testing.assert_allclose(target.log_density(z) - target.log_prior(z), of_runs.sum(axis=1))
-
-
-def test_the_truth_is_likelier_than_a_curve_half_as_steep():
-    target = posterior()
-    flat = {**truth(), "slip_stiffness": truth()["slip_stiffness"] / 2}
-    heights = target.log_density(np.stack([target.coordinates(v) for v in (truth(), flat)]))
-    assert heights[0] > heights[1] + 10
-
-
 # --- coordinates and values
 
 

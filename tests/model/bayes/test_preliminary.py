@@ -93,11 +93,6 @@ def test_correlation_time_of_an_ar1_is_the_known_one(rho):
     assert found == pytest.approx((1 + rho) / (1 - rho), rel=0.1)
 
 
-def test_white_residuals_forget_themselves_at_once():
-    slices = [slice(1000 * run, 1000 * (run + 1)) for run in range(20)]
-    assert time_of(ar1(0.0, (20, 1000)).ravel(), slices) == pytest.approx(1.0, abs=0.1)
-
-
 def test_run_offsets_are_no_memory():
     slices = [slice(1000 * run, 1000 * (run + 1)) for run in range(20)]
     paths = ar1(0.5, (20, 1000))

@@ -61,12 +61,6 @@ def test_below_one_is_one_minus_a_log_normal():
     np.testing.assert_allclose(gap, stats.lognorm(s=0.8, scale=0.4).isf(probability))
 
 
-@pytest.mark.parametrize("prior", [LogNormal(10.0, 1.5), Below(1.0, 0.2, 1.0), HalfNormal(0.15)])
-def test_coordinate_zero_is_the_median(prior):
-    below = prior.value(np.random.default_rng(0).standard_normal(100_000)) < prior.value(0.0)
-    assert below.mean() == pytest.approx(0.5, abs=0.005)
-
-
 def test_half_normal_keeps_its_digits_in_both_tails():
     prior = HalfNormal(0.15)
     # |N| near 0 has density sqrt(2/pi)/scale: its quantile there is p·scale·sqrt(pi/2).

@@ -37,15 +37,6 @@ def draw_posterior(folder: Path) -> object:
     return law_draws(slip, curve, 10, rng=np.random.default_rng(1))
 
 
-def test_a_parameter_whose_name_is_no_text_is_one_line(tmp_path):
-    (tmp_path / "slip.toml").write_text("")
-    with h5py.File(tmp_path / POSTERIOR, "w") as data:
-        data.create_group("posterior")[b"stiff\xff"] = np.arange(4.0)
-    with pytest.raises(DataError, match=r"holds draws of stiff\\xff, but") as raised:
-        draw_posterior(tmp_path)
-    assert "\n" not in str(raised.value)
-
-
 def test_an_assumed_law_has_one_draw(tmp_path):
     slip, curve = slip_of(tmp_path)
     assumed = dataclasses.replace(curve, covariance=np.zeros((2, 2)))

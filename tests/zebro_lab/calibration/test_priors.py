@@ -123,19 +123,6 @@ def test_what_was_stated_is_recorded_with_how_the_data_agree():
     assert "from" not in content
 
 
-def test_draws_law_and_block_length_are_those_of_the_calibration(tmp_path):
-    fitted = short_calibration()
-    write_tables(tmp_path, fitted, inputs={})
-    found = read_earlier(tmp_path)
-    assert found.curve.law == fitted.posterior.law
-    assert found.block_length == fitted.fit.block_choice.length
-    assert found.title == tmp_path.name
-    names = [p.name for p in fitted.posterior.parameters]
-    for name, draws in found.draws.items():
-        np.testing.assert_allclose(draws, fitted.draws.flat[:, names.index(name)])
-    assert len(found.draws) == len(names)
-
-
 def test_simulated_and_untrustworthy_priors_are_said(tmp_path):
     write_tables(tmp_path, short_calibration(), inputs={})
     warned, simulated = read_earlier(tmp_path).notes

@@ -58,12 +58,6 @@ def test_every_form_of_file_reads_the_same(tmp_path, plain, form):
     assert_same(read_rig_data([folder]), plain)
 
 
-def test_foreign_separator_is_noted(tmp_path):
-    columns(tmp_path, RADII)
-    data = read_rig_data([write(tmp_path, speeds(), sep=";")])
-    assert "rig.csv: cells are separated by semicolons" in data.notes
-
-
 def test_foreign_names_units_and_signs_are_converted(tmp_path, plain):
     table = speeds()
     foreign = pd.DataFrame({

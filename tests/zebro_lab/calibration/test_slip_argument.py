@@ -18,7 +18,7 @@ from model.walk.path import WalkPath
 from model.walk.traction import VelocityCoulomb
 from support.bounded_reading import refusal
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.errors import NotFound
 from zebro_lab.files.provenance import file_hash
 
 SLIP_TOML = """
@@ -120,25 +120,6 @@ def test_thesis_is_the_sources_curve():
     np.testing.assert_allclose([B, C, D], [34.34, 1.564, 3.798])
 
 
-@pytest.mark.parametrize(
-    "text", ["coulomb", "coulomb:", "coulomb:x", "coulomb:-0.2", "coulomb:0", "coulomb:0.2:0",
-             "coulomb:0.2:0.1:3", "coulomb:nan", "coulomb:inf"]
-)  # fmt: skip
-def test_friction_that_is_none_says_what_is_expected(text):
-    with pytest.raises(SettingsError, match=r"coulomb:MU\[:V\]"):
-        parse_slip(text)
-
-
-def test_nothing_by_that_name_lists_what_there_is(tmp_path):
-    with pytest.raises(NotFound, match="coulomb:MU"):
-        parse_slip(str(tmp_path / "none"))
-
-
-def test_folder_without_a_calibration_is_refused(tmp_path):
-    with pytest.raises(DataError, match="is no slip calibration"):
-        parse_slip(str(tmp_path))
-
-
 def test_other_definition_is_converted_or_refused(calibration):
     file = calibration / "slip.toml"
     file.write_text(file.read_text().replace('"material"', '"travel"'))
@@ -173,14 +154,3 @@ def test_a_verdict_that_is_no_table_is_refused(more, calibration):
     file = calibration / "slip.toml"
     file.write_text(re.sub(r"(?m)^verdict = .*$", more, file.read_text()))
     refusal(lambda folder: parse_slip(str(folder)), calibration)
-
-
-def test_slip_toml_is_read_once(calibration, monkeypatch):
-    import tomllib
-
-    parsed = []
-    loads = tomllib.loads
-    monkeypatch.setattr(tomllib, "loads", lambda text: parsed.append(text) or loads(text))
-    parse_slip(str(calibration))
-    if len(parsed) != 1:
-        pytest.fail(f"parsed {len(parsed)} times")

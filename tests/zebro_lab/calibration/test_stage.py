@@ -17,7 +17,7 @@ import xarray as xr
 
 from model.bayes.calibration import Calibration
 from model.bayes.drawing.sampler import Chains
-from model.errors import DefinitionMismatch, DomainError
+from model.errors import DomainError
 from support.quick_fits import fit_quickly
 from zebro_lab.calibration import stage
 from zebro_lab.calibration.folder import read_slip
@@ -227,25 +227,6 @@ def test_a_fit_by_another_seed_replaces_its_forerunner_and_leaves_foreign_files(
     assert read_slip(out).law.name == "coulomb-stribeck"
 
 
-def test_slip_toml_gives_back_the_posterior(uninterrupted):
-    curve = read_slip(uninterrupted)
-    np.testing.assert_array_equal(read_slip(uninterrupted / "slip.toml").values, curve.values)
-    stored = xr.open_datatree(uninterrupted / "posterior.nc")["posterior"]
-    draws = np.stack([np.ravel(stored[p.name]) for p in curve.law.parameters])
-    np.testing.assert_allclose(curve.values, draws.mean(axis=1), rtol=1e-12)
-    np.testing.assert_allclose(curve.covariance, np.cov(draws), rtol=1e-9)
-    assert curve.definition == "material"
-
-
-def test_slip_toml_refuses_other_slip_and_keeps_the_tested_loads(uninterrupted):
-    curve = read_slip(uninterrupted)
-    assert curve.force(0.05, 6.0, definition="material") > 0
-    with pytest.raises(DefinitionMismatch):
-        curve.force(0.05, 6.0, definition="travel")
-    low, high = curve.load_range
-    assert 0.5 < low < 6.0 < high < 40.0
-
-
 def test_posterior_nc_has_an_ensemble_as_a_chain(uninterrupted):
     stored = xr.open_datatree(uninterrupted / "posterior.nc")
     assert stored["posterior"].sizes["chain"] == 2
@@ -298,15 +279,6 @@ def test_file_in_the_place_of_the_folder_is_refused_before_the_data_is_read(requ
     with pytest.raises(AlreadyExists, match="is a file; give the name of a folder as --out"):
         calibrate(request_for(tmp_path / "out", data=(tmp_path / "absent",)), Watcher())
     assert (tmp_path / "out").read_text() == "a file"
-
-
-def test_another_commands_result_is_kept(already_fitted, request_for, tmp_path):
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "manifest.json").write_text('{"schema": 1, "kind": "track", "outputs": {}}')
-    with pytest.raises(AlreadyExists, match="another command"):
-        calibrate(request_for(out), Watcher())
-    assert [path.name for path in out.iterdir()] == ["manifest.json"]
 
 
 def test_a_slip_toml_that_a_person_wrote_is_kept(already_fitted, request_for, tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 from model.bayes.advice import CorrectData, TryDefinition, ZeroBeforeEach
 from model.bayes.checks.terms import LOAD, SIDES, TIME, ZERO, find
-from support.linearised_fits import linearised, sound_sweep, with_force
+from support.linearised_fits import linearised, with_force
 
 
 def elapsed(samples):
@@ -70,7 +70,3 @@ def test_an_error_that_the_fit_estimates_is_found_only_beyond_what_the_rig_may_h
     )
     assert all(each.term.p > 0.01 for each in find(usual, ZERO))
     assert find(far, ZERO)[0].name == "shift of slip"
-
-
-def test_the_sweep_behind_these_is_sound():
-    assert sound_sweep().samples.n_runs == 48

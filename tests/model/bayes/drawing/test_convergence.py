@@ -71,14 +71,6 @@ def test_a_short_chain_is_named_with_its_length_and_the_rule():
     assert 0.05 < found.fraction_done() < 0.5
 
 
-def test_few_effective_draws_are_named():
-    found = assess(chains(walks(steps=120, walkers=4, ensembles=2, rho=0.8)))
-    named = " ".join(found.failures())
-    assert "bulk effective sample size" in named
-    assert "tail effective sample size" in named
-    assert "Monte Carlo error" in named
-
-
 def test_every_rule_can_break_alone_and_is_then_the_only_one_named():
     good = assess(chains(walks()))
     breaking = {

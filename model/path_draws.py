@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Draws of a planar path: bend, anchor at a pose, interpolate, compute quantiles and mean."""
+"""Draws of a planar path: bend, anchor at a pose, interpolate, compute quantiles."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -110,8 +110,3 @@ def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
         Quantiles, shape (levels, n, 3) [m, m, rad].
     """
     return np.quantile(paths.states, np.asarray(levels), axis=0)
-
-
-def mean_path(paths: Poses) -> Poses:
-    """Return the mean over the draws of position and unwrapped heading at every time, as a path."""
-    return Poses(paths.t, paths.position.mean(axis=0), paths.yaw.mean(axis=0))

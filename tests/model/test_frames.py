@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,13 +18,6 @@ from model.leg import contact_angle, thesis_lowest_angle, thesis_tilt
 
 ANGLE = st.floats(-3.0, 3.0)
 TILT = st.floats(-0.4, 0.4)
-
-
-@given(ANGLE, ANGLE, ANGLE)
-def test_attitudes_are_rotations(roll, pitch, yaw):
-    for R in (attitude(roll, pitch, yaw), thesis_attitude(roll, pitch, yaw)):
-        np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-14)
-        assert np.linalg.det(R) == pytest.approx(1.0)
 
 
 @given(ANGLE, st.floats(-1.5, 1.5), ANGLE)
@@ -51,13 +43,6 @@ def test_roll_lifts_the_left_and_pitch_lowers_the_nose():
 def test_the_sources_roll_is_a_pitch_for_a_robot_that_heads_along_y(roll):
     ours = roll_pitch_yaw(thesis_attitude(roll, 0.0, np.pi / 2))
     np.testing.assert_allclose(ours, [0.0, -roll, np.pi / 2], atol=1e-12)
-
-
-def test_rotations_take_arrays():
-    angles = np.array([0.1, 0.2])
-    stacked = attitude(angles, 2 * angles, 3 * angles)
-    assert stacked.shape == (2, 3, 3)
-    np.testing.assert_allclose(stacked[1], attitude(0.2, 0.4, 0.6), atol=1e-15)
 
 
 @given(TILT, TILT, st.floats(0.6, 2.4))

@@ -89,13 +89,6 @@ def test_the_lowest_angle_is_the_circles_lowest_point_at_any_heading(theta, roll
     assert wrap_angle(phi - printed) == pytest.approx(0.0, abs=1e-12)
 
 
-@given(THETA, TILT, YAW)
-def test_without_roll_at_heading_zero_the_source_finds_the_same_point(theta, pitch, yaw):
-    ours = lowest_angle(theta, 0.0, pitch)
-    at_zero = thesis_lowest_angle(theta, thesis_tilt(0.0, pitch, 0.0))
-    assert wrap_angle(ours - at_zero) == pytest.approx(0.0, abs=1e-12)
-
-
 def test_the_sources_lowest_point_depends_on_the_heading():
     roll, theta = 0.05, np.pi / 2
     along_x = thesis_lowest_angle(theta, thesis_tilt(roll, 0.0, 0.0))
@@ -115,12 +108,6 @@ def test_no_point_of_the_arc_is_below_the_contact(theta, roll, pitch, toe_beyond
     assert lowest == pytest.approx(heights.min(), abs=2e-8)
     height = hip_height(phi, R, toe_beyond) * plane_cosine(roll, pitch)
     assert height == pytest.approx(-lowest, abs=1e-12)
-
-
-@given(PHI, BEYOND)
-def test_the_contact_is_where_the_state_says(phi, toe_beyond):
-    state, contact = leg_state(phi, toe_beyond), contact_angle(phi, toe_beyond)
-    assert contact == {ROLLING: phi, TOE: -toe_beyond, HIP: np.pi}[state]
 
 
 @pytest.mark.parametrize(
@@ -154,14 +141,6 @@ def test_the_sources_touchdown_and_liftoff_angles_have_equal_heights():
     touchdown, liftoff = np.radians(50.0), np.pi - np.arcsin((np.sin(np.radians(50.0)) + 1) / 2)
     heights = hip_height(np.pi / 2 - np.array([touchdown, liftoff]), R)
     assert heights[0] == pytest.approx(heights[1], abs=1e-15)
-
-
-@given(st.floats(-100, 100))
-def test_wrapping_moves_an_angle_by_whole_turns_into_one(angle):
-    wrapped = wrap_angle(angle)
-    assert -np.pi <= wrapped <= np.pi
-    assert np.sin(wrapped) == pytest.approx(np.sin(angle), abs=1e-12)
-    assert np.cos(wrapped) == pytest.approx(np.cos(angle), abs=1e-12)
 
 
 @compiled

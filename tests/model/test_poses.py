@@ -60,12 +60,6 @@ def test_a_motion_keeps_lengths_and_adds_to_headings():
     np.testing.assert_allclose(moved.position[0], [1.0, -2.0])
 
 
-def test_a_delay_moves_times_alone():
-    late = LINE.delayed(3.0)
-    np.testing.assert_array_equal(late.t, T + 3.0)
-    np.testing.assert_array_equal(late.states, LINE.states)
-
-
 @pytest.mark.parametrize(
     "wrong",
     [
@@ -110,12 +104,3 @@ def test_paths_are_moved_to_begin_at_a_pose():
     np.testing.assert_allclose(
         moved[0], [[0, 0, 0.5 + np.pi / 2], [0, 1, 0.6 + np.pi / 2]], atol=1e-12
     )
-
-
-def test_paths_moved_rigidly_keep_their_steps():
-    states = np.random.default_rng(1).normal(size=(3, 5, 3))
-    wanted = np.array([[1.0, 2.0, 0.5], [0.0, 1.0, -2.0], [3.0, 0.0, 4.0]])
-    moved = moved_onto(states, states[:, 2], wanted)
-    np.testing.assert_allclose(moved[:, 2], wanted)
-    steps = [np.linalg.norm(np.diff(a[..., :2], axis=1), axis=2) for a in (moved, states)]
-    np.testing.assert_allclose(*steps)

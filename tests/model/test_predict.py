@@ -9,7 +9,6 @@ from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.leg_state import LegState
-from model.path_draws import mean_path
 from model.predict import (
     STEPS,
     ModelSpread,
@@ -63,7 +62,7 @@ def test_without_unknowns_every_draw_walks_the_same_way():
 def test_counted_angles_lead_where_the_angles_do():
     paths = predicted(16, offset_sd=0.0)
     true = predicted(1, offset_sd=0.0, legs=GAIT)
-    away = mean_path(paths).position[-1] - true.position[0, -1]
+    away = paths.position[:, -1].mean(axis=0) - true.position[0, -1]
     assert np.linalg.norm(away) < 0.03 * 0.34
 
 

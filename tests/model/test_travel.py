@@ -93,24 +93,6 @@ def test_all_poses_of_a_sparse_circle_count(poses_a_turn, turns, noise):
     assert travel_turn(poses) == pytest.approx(angle[-1] - angle[1], rel=0.05)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_poses_of_a_walk_whose_speed_changes_from_pose_to_pose_count(seed):
-    """As of photographs whose interval is no whole number of steps of the gait."""
-    moved = np.random.default_rng(seed).choice([0.05, 0.1, 0.2], 19)
-    angle = np.concatenate([[0], np.cumsum(moved)]) / RADIUS
-    places = RADIUS * np.column_stack([np.sin(angle), 1 - np.cos(angle)])
-    poses = Poses(2.0 * np.arange(20), places, angle)
-    assert path_length(poses) == pytest.approx(moved.sum(), rel=0.003)
-
-
-def test_noise_along_the_way_alone_is_not_travelled():
-    t = np.arange(0, 20, 1 / 120)
-    along = 0.09 * t + np.random.default_rng(1).normal(0, 2e-3, len(t))
-    assert path_length(Poses(t, np.column_stack([along, 0 * t]), 0 * t)) == pytest.approx(
-        0.09 * 20, rel=0.01
-    )
-
-
 def test_one_chord_makes_lengths_of_two_paths_comparable():
     noisy, smooth = arc(120, 2e-3), arc(120, 0)
     chord = travel_chord(noisy)

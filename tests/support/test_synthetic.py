@@ -18,25 +18,20 @@ from support.synthetic import (
     Conditions,
     DrawnFloorMarker,
     DrawnPose,
-    DrawnRobotMarker,
     DrawnScene,
     Light,
-    RobotLook,
     RobotState,
     Sheet,
-    charuco_cells,
-    composite,
     develop,
     look_at,
     marker_cells,
-    marker_corners,
     paint_sheets,
     render_background,
     take_photo,
     with_time_stamp,
 )
 from support.synthetic.patterns import INK, PAPER
-from support.synthetic.surfaces import box_hit, half_circle_hit
+from support.synthetic.surfaces import half_circle_hit
 
 DISTORTION = (-0.2, 0.05, 0.001, -0.0015, 0.01)
 CAMERA = look_at((0.6, -0.9, 1.2), (0.3, 0.2, 0.0), width=480, height=360, distortion=DISTORTION)
@@ -132,27 +127,6 @@ def test_a_prints_area_and_centroid_are_those_of_its_projected_outline(x, y, z, 
     assert (np.abs(error) < 4 * ROUGH * lever / area).all()
 
 
-def test_the_robots_marker_is_the_same_print_as_a_sheet_would_be(background, photo):
-    marker = DrawnRobotMarker()
-    rotation = STATE.pose.rotation @ np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
-    centre = STATE.pose.position + STATE.pose.rotation @ (0, 0, marker.height)
-    sheet = Sheet(marker_cells(0), (0.16, 0.16), centre, rotation)
-    half = np.array([-1, 1, 1, -1]) * marker.side / 2
-    np.testing.assert_allclose(
-        sheet.at(half, [half[1], half[1], half[0], half[0]]), marker_corners(STATE, marker),
-        atol=1e-12,
-    )  # fmt: skip
-    picture = paint_sheets(background, [sheet], camera=CAMERA, light=SCENE.light)
-    pixels, _ = develop(picture, IDEAL, rng=np.random.default_rng(0))
-    inside = cv2.fillConvexPoly(
-        np.zeros(pixels.shape[:2], np.uint8),
-        np.rint(CAMERA.project(marker_corners(STATE, marker))).astype(np.int32), 1,
-    )  # fmt: skip
-    difference = np.abs(pixels.astype(int) - photo.pixels)[inside > 0]
-    # a leg that stands higher than the plate may hide a few pixels
-    assert np.mean(difference > 2) < 0.01
-
-
 # patterns
 
 
@@ -163,14 +137,6 @@ def test_marker_cells_are_those_of_the_dictionary():
     np.testing.assert_array_equal(cells[2:-2, 2:-2] > 0.5, bits > 127)
     assert (cells[:2] == np.float32(PAPER)).all()
     assert cells.min() == np.float32(INK)
-
-
-def test_charuco_cells_are_opencvs_board():
-    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
-    board = cv2.aruco.CharucoBoard((5, 4), 0.04, 0.03, dictionary)
-    expected = board.generateImage((5 * 32, 4 * 32), marginSize=0) > 127
-    drawn = np.kron(charuco_cells(5, 4), np.ones((4, 4))) > 0.5
-    assert np.mean(drawn != expected) < 0.01  # it rounds some of its edges by a pixel
 
 
 # the robot
@@ -194,21 +160,6 @@ def test_a_leg_is_hit_behind_its_hip_when_its_toe_points_down():
     assert ahead == pytest.approx(1 + 0.035)  # its inside, through the open half
     assert half_circle_hit((-1.0, 0.02, -0.035), (1.0, 0.0, 0.0), **leg) == np.inf
     assert half_circle_hit((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), **leg) == np.inf
-
-
-@settings(max_examples=50)
-@given(st.lists(st.floats(-1, 1), min_size=3, max_size=3),
-       st.lists(st.floats(-3, 3), min_size=3, max_size=3))  # fmt: skip
-def test_a_ray_towards_the_inside_of_a_box_meets_its_surface(target, start):
-    box = {"low": (-1.0, -1.0, -1.0), "high": (1.0, 1.0, 1.0)}
-    target, start = 0.9 * np.array(target), np.array(start)
-    if np.abs(start).max() < 1.01:
-        return
-    hit = box_hit(tuple(start), tuple(target - start), **box)
-    place = start + hit.distance * (target - start)
-    assert 0 < hit.distance < 1
-    assert np.abs(place).max() == pytest.approx(1.0)
-    assert abs(place[hit.axis]) == pytest.approx(1.0)
 
 
 def test_cover_is_the_robot_and_the_shadow_darkens_only_the_floor(background, photo):
@@ -236,19 +187,6 @@ def test_motion_smears_about_the_middle_of_the_exposure(background):
         assert means[0] == pytest.approx(means[1], abs=0.1)
 
 
-@pytest.mark.parametrize("marker", [DrawnRobotMarker(), None])
-def test_a_robot_at_rest_is_drawn_as_if_every_pixel_were_sampled_in_full(background, marker):
-    crawling = replace(STATE, velocity_xy=(1e-9, 0.0))  # sampled in full, since it moves
-    conditions = replace(IDEAL, exposure_time=1e-3)
-    at_rest, moving = (
-        take_photo(SCENE, state, look=RobotLook(marker), conditions=conditions,
-                   rng=np.random.default_rng(0), background=background)
-        for state in (STATE, crawling)
-    )  # fmt: skip
-    assert np.abs(at_rest.pixels.astype(int) - moving.pixels).max() <= 1
-    assert np.abs(at_rest.cover - moving.cover).max() < 1e-6
-
-
 # the photograph
 
 
@@ -260,37 +198,7 @@ def test_noise_has_the_promised_spread():
     assert pixels.mean() == pytest.approx(127.5, abs=0.1)
 
 
-def test_blur_keeps_light_and_place():
-    dot = np.zeros((41, 41, 3), np.float32)
-    dot[18:23, 20:25] = 0.8
-    kind = replace(IDEAL, exposure=1.0, defocus_sd_px=2.0)
-    pixels, _ = develop(dot, kind, rng=np.random.default_rng(0))
-    spread = pixels[..., 0].astype(float)
-    v, u = np.indices(spread.shape)
-    assert spread.sum() == pytest.approx(25 * 0.8 * 255, rel=0.01)
-    centre = [(axis * spread).sum() / spread.sum() for axis in (u, v)]
-    np.testing.assert_allclose(centre, (22, 20), atol=0.05)
-    assert spread.max() < 204
-
-
 # composites
-
-
-@pytest.fixture(scope="module")
-def series(background):
-    states = [replace(STATE, pose=DrawnPose(x, 0.15, 0.0)) for x in (0.05, 0.35, 0.65)]
-    return [
-        take_photo(SCENE, state, rng=np.random.default_rng(0), background=background)
-        for state in states
-    ]
-
-
-def test_a_pasted_composite_shows_every_exposure_as_it_was(series):
-    merged = composite(series)
-    for shot in series:
-        robot = cv2.erode((shot.cover > 0.99).astype(np.uint8), np.ones((3, 3))) > 0
-        difference = np.abs(merged[robot].astype(int) - shot.pixels[robot])
-        assert np.mean(difference > 3) < 0.02
 
 
 # time stamps

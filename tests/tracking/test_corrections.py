@@ -35,14 +35,6 @@ def test_plain_values_bring_corrections_back(corrections):
     assert again == corrections
 
 
-@given(st.lists(CORRECTIONS, max_size=6))
-def test_replaying_leaves_the_observations_as_they_were(corrections):
-    before = [(o.photo, o.t, o.planar.tolist()) for o in WALK]
-    first, second = replay(WALK, corrections, prior=PRIOR), replay(WALK, corrections, prior=PRIOR)
-    assert [(o.photo, o.t, o.planar.tolist()) for o in WALK] == before
-    assert [o.planar.tolist() for o in first] == [o.planar.tolist() for o in second]
-
-
 def test_flipping_twice_is_nothing():
     (again, *_) = replay(WALK, [Flip("p0.jpg"), Flip("p0.jpg")], prior=PRIOR)
     np.testing.assert_allclose(again.planar, WALK[0].planar, atol=1e-12)

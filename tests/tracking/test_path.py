@@ -82,13 +82,6 @@ def test_the_table_has_the_columns_of_a_track_and_one_row_a_photograph():
     assert track.columns["cov_xyaw"] == pytest.approx(track.covariance[:, 0, 2])
 
 
-def test_tum_lines_hold_unit_quaternions():
-    for line in assembled(walk([0, 2, 4])).tum:
-        numbers = [float(part) for part in line.split()]
-        assert len(numbers) == 8
-        assert np.linalg.norm(numbers[4:]) == pytest.approx(1, abs=1e-6)
-
-
 def test_nothing_seen_and_one_time_twice_are_refused():
     with pytest.raises(PathError, match="no photograph"):
         assembled([])

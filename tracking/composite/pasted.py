@@ -70,6 +70,7 @@ _TRIED = 5
 _FAR = 3.0  # in standard deviations: beyond it the colour differs from that a step away
 _STRIP_LEVER = 0.9  # lever arm for the heading of a strip, of the length
 _LEAST_SHARE = 0.05
+_TOGETHER = 100  # poses whose colours fit into a processor's cache
 
 
 class Pasted(NamedTuple):
@@ -332,10 +333,14 @@ class PastedReading(Reading):
             Log odds, mean over all points of the top with 0 at hidden ones, and share of points
             that are visible; shape (n,) each [-].
         """
-        place = body.on(poses)
-        seen, usual = sample(self.picture, place), sample(self.usual, place)
-        visible = sample(shown, place) > 0.9
-        same = robot_density(seen - robot) / np.maximum(usual, 1e-12)
-        log_odds = np.log(_SHOWS * same + 0.4 * (1 - _SHOWS))
-        gain = np.where(visible, log_odds, 0.0).mean(axis=(1, 2))
-        return gain, visible.mean(axis=(1, 2))
+        parts = []
+        for some in np.array_split(poses, 1 + len(poses) // _TOGETHER):
+            place = body.on(some)
+            seen, usual = sample(self.picture, place), sample(self.usual, place)
+            visible = sample(shown, place) > 0.9
+            same = robot_density(seen - robot) / np.maximum(usual, 1e-12)
+            log_odds = np.log(_SHOWS * same + 0.4 * (1 - _SHOWS))
+            gain = np.where(visible, log_odds, 0.0).mean(axis=(1, 2))
+            parts.append((gain, visible.mean(axis=(1, 2))))
+        gains, shares = (np.concatenate(each) for each in zip(*parts, strict=True))
+        return gains, shares

@@ -48,7 +48,3 @@ def test_depth_is_the_distance_to_the_nearest_side(point, depth):
 def test_three_points_on_a_line_hold_nothing():
     line = np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]])
     assert depth_in_triangle(np.array([0.5, 0.5]), line) == -np.inf
-
-
-def test_a_point_on_an_edge_is_inside():
-    assert contains(np.array([1.5, 0.0]), RIGHT_ANGLED)

@@ -54,13 +54,6 @@ def test_the_mirrored_robot_rests_mirrored(theta):
     assert right.roll == pytest.approx(-left.roll, abs=1e-9)
 
 
-def test_a_level_robot_stands_on_all_legs():
-    stance = resting_stance(ROBOT, np.full(6, np.pi / 2))
-    assert stance.standing.all()
-    assert stance.height == pytest.approx(2 * ROBOT.leg_radius)
-    assert (stance.roll, stance.pitch) == (0.0, 0.0)
-
-
 def test_two_pairs_of_legs_alike_stand_in_one_plane():
     theta = np.radians([100.0, 250.0, 70.0, 100.0, 250.0, 70.0])
     stance = resting_stance(ROBOT, theta)

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.gait.cyclic import CyclicReference
-from model.gait.stance import stance_intervals
 
 SHARE = st.floats(0.05, 0.95)
 
@@ -81,17 +80,6 @@ def test_leg_is_at_touchdown_and_liftoff_when_its_stance_begins_and_ends(legs):
         np.testing.assert_allclose(off, 0.0, atol=1e-8)
 
 
-@given(references())
-def test_stance_intervals_agree_with_those_read_off_sampled_angles(legs):
-    legs = replace(legs, offset=0.0, pause=0.0)
-    span = (0.3 * legs.period, 3.1 * legs.period)
-    t = np.linspace(*span, 2801)
-    sampled = stance_intervals(t, legs.angles(t), legs.touchdown, legs.liftoff)
-    for found, expected in zip(sampled, legs.stance_intervals(span), strict=True):
-        total = (found[:, 1] - found[:, 0]).sum() - (expected[:, 1] - expected[:, 0]).sum()
-        assert abs(total) < 6 * (t[1] - t[0])
-
-
 def test_speed_at_a_kink_is_that_from_the_right():
     legs = simple(pause=0.5)
     t = 3.0 * np.arange(1000)
@@ -103,13 +91,6 @@ def test_speed_at_a_kink_is_that_from_the_right():
 def test_start_is_exactly_at_touchdown_and_liftoff():
     legs = simple(liftoff=2.3, phase=np.array([0.0, 1 / 3, 0.0, 1 / 3, 0.0, 1 / 3]))
     assert legs.angles(0.0)[0].tolist() == [1.0, 2.3] * 3
-
-
-def test_pause_holds_the_leg_at_liftoff_and_keeps_the_period():
-    legs = simple(pause=0.5)
-    np.testing.assert_allclose(legs.angles([1.0, 1.2, 1.5])[:, 0], 2.0)
-    assert legs.angles(3.0)[0, 0] == pytest.approx(1.0 + 2 * np.pi)
-    assert legs.period == simple().period
 
 
 @given(references(), st.floats(-0.2, 0.2))
@@ -159,14 +140,3 @@ def test_legs_that_cannot_walk_are_refused(changes, fault):
     with pytest.raises(DomainError) as caught:
         simple(**changes)
     assert fault in str(caught.value)
-
-
-def test_touchdowns_are_where_a_stance_begins_at_the_touchdown_angle():
-    gait = CyclicReference(
-        touchdown=np.array([0.6, 0.7]), liftoff=np.array(2.2), ground_time=np.array([0.8, 0.9]),
-        flight_time=np.array([0.7, 0.6]), phase=np.array([0.25, 0.5]),
-    )  # fmt: skip
-    stances = gait.stance_intervals((0.0, 6.0))
-    for leg, (times, angles) in enumerate(gait.touchdowns((0.0, 6.0))):
-        np.testing.assert_allclose(times, stances[leg][stances[leg][:, 0] > 0, 0])
-        np.testing.assert_allclose(gait.angles(times)[:, leg], angles)

@@ -32,16 +32,6 @@ def turn(gait=TRIPOD, *, flight=0.8, ground=0.8, by=0.1, stance=0.05):
 
 
 @given(GAITS, TIME, TIME, TIME)
-def test_settled_reference_has_the_times_of_its_schedule(gait, f, g, p):
-    system = turn(gait, flight=f, ground=g, by=p)
-    legs = scheduled_reference(system, DOWN, liftoff=UP)
-    assert legs.period == pytest.approx(system.cycle_time)
-    outer_by = np.where(np.arange(6) % 2 == 0, 0.0, p)
-    np.testing.assert_allclose(legs.flight_time, f + outer_by)
-    assert np.all((legs.phase >= 0) & (legs.phase < 1))
-
-
-@given(GAITS, TIME, TIME, TIME)
 def test_settled_events_give_the_settled_reference(gait, f, g, p):
     system = turn(gait, flight=f, ground=g, by=p)
     n, period = 6, system.cycle_time
@@ -86,14 +76,6 @@ def test_transient_reference_stands_when_its_events_say(seed):
         cut = np.clip(found, *span)
         cut = cut[cut[:, 1] > cut[:, 0] + 1e-7]
         np.testing.assert_allclose(cut, expected[expected[:, 1] > expected[:, 0] + 1e-7], atol=1e-7)
-
-
-def test_transient_reference_grows_by_a_turn_between_touchdowns():
-    events = turn().events(4)
-    legs = events_reference(events, DOWN, liftoff=UP)
-    for leg in range(6):
-        at = legs.angles(events.touchdown[:, leg])[:, leg]
-        np.testing.assert_allclose(at, DOWN + 2 * np.pi * np.arange(5), atol=1e-7)
 
 
 def test_events_out_of_order_are_refused():

@@ -37,16 +37,6 @@ def test_usual_orders_are_found_and_are_among_the_repairs(order):
         assert order in found.orders
 
 
-def test_two_exchanged_legs_are_found():
-    theta = wave(0.75, 1 / 6)
-    found = fault(listed(theta, (3, 2, 1, 4, 5, 6)))
-    assert found is not None
-    assert (
-        fault(listed(listed(theta, (3, 2, 1, 4, 5, 6)), tuple(np.argsort(found.orders[0]) + 1)))
-        is None
-    )
-
-
 def test_a_turn_tells_orders_apart_that_a_straight_walk_does_not():
     straight, turn = (fault(listed(tripod(s).angles(T), (1, 2, 4, 6, 5, 3))) for s in (1.0, 1.4))
     assert straight is not None

@@ -35,14 +35,6 @@ def walked(samples, lines=None, rest=0.0):
     return knots(samples, earliest, latest, lines or middle(found), rest, HALF)
 
 
-def test_constant_speed_is_one_line_of_that_speed():
-    samples = counted(lambda t: 1.7 * t)
-    assert split(samples, HALF).tolist() == [0, len(samples.t)]
-    found = middle(lines_of(samples)[2])
-    assert found.speed[0] == pytest.approx(1.7, rel=1e-3)
-    assert found.angle[0] == pytest.approx(1.7 * found.x[0], abs=0.02 * STEP)
-
-
 def test_the_closest_line_of_exact_angles_is_exact():
     t = np.linspace(0.0, 1.0, 9)
     speed, away = closest(Samples(t, 0.3 - 2.5 * t), 0, len(t))
@@ -90,13 +82,6 @@ def test_evenly_distributed_places_choose_lines_that_differ_both_ways_from_the_m
         off = values.mean() - getattr(middle(found), name)[0]
         assert abs(off) < 4 * values.std() / np.sqrt(len(values))
         assert values.std() > 0
-
-
-def test_a_pause_is_a_plateau_between_two_lines():
-    samples = counted(lambda t: np.where(t < 1.5, t, np.maximum(1.5, t - 1.0)))
-    t, theta = walked(samples)
-    np.testing.assert_allclose(np.interp([1.8, 2.2], t, theta), 1.5, atol=STEP)
-    assert np.interp(1.8, t, theta) == np.interp(2.2, t, theta)
 
 
 def test_a_leg_that_stands_at_first_has_no_speed_until_it_walks():

@@ -70,8 +70,3 @@ def test_each_leg_knows_its_group():
 def test_errors_name_the_fault(text, fault):
     with pytest.raises(DomainError, match=fault.replace("{", r"\{")):
         parse_gait(text, 6)
-
-
-def test_gait_without_groups_is_refused():
-    with pytest.raises(DomainError, match="no groups"):
-        Gait(())

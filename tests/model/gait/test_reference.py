@@ -12,11 +12,6 @@ THETA = np.outer([0.0, 1.0, 1.5, 4.0], np.arange(1.0, 7.0))
 LOG = SampledReference(T, THETA)
 
 
-def test_a_log_goes_through_its_samples():
-    np.testing.assert_array_equal(LOG.angles(T), THETA)
-    assert LOG.period is None
-
-
 @given(st.lists(st.floats(0.0, 3.0), min_size=1))
 def test_angles_are_straight_lines_between_samples_in_any_order_of_times(t):
     lines = np.column_stack([np.interp(t, T, column) for column in THETA.T])
@@ -39,11 +34,6 @@ def test_at_a_sample_the_speed_is_that_of_the_line_ahead():
 def test_legs_stand_still_outside_the_samples(t):
     np.testing.assert_array_equal(LOG.speeds(t), np.zeros((1, 6)))
     np.testing.assert_array_equal(LOG.angles(t)[0], THETA[0 if t < 1 else -1])
-
-
-def test_angles_and_speeds_have_a_row_for_each_time():
-    assert LOG.angles(1.2).shape == LOG.speeds(1.2).shape == (1, 6)
-    assert LOG.angles([1.2, 1.3]).shape == LOG.speeds([1.2, 1.3]).shape == (2, 6)
 
 
 @pytest.mark.parametrize("bad", [1.0, 0.9, np.nan])

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.gait.maxplus import EPSILON, otimes, solve_implicit
-from model.gait.notation import TETRAPOD, TRIPOD, Gait, parse_gait
-from model.gait.scheduler import precedence, straight_system
+from model.gait.notation import TETRAPOD, TRIPOD, parse_gait
+from model.gait.scheduler import straight_system
 
 TIME = st.integers(1, 40).map(lambda n: n / 8)  # exact in binary
 GAITS = st.sampled_from(
@@ -43,14 +43,6 @@ def test_the_entry_that_eq_2_12_prints_too_many_changes_nothing(f, g, d):
         np.testing.assert_array_equal(y, [*x.touchdown[k], *x.liftoff[k]])
 
 
-def test_steering_precedence_is_that_of_its_groups():
-    P, Q = precedence(TRIPOD, 0.1)
-    first, second = [0, 3, 4], [1, 2, 5]
-    assert np.all(P[np.ix_(second, first)] == 0.1)
-    assert np.all(Q[np.ix_(first, second)] == 0.1)
-    assert np.count_nonzero(np.isfinite(P)) == np.count_nonzero(np.isfinite(Q)) == 9
-
-
 @given(GAITS, TIME, TIME, TIME)
 def test_cycle_time_is_that_of_the_leg_or_of_the_groups(gait, f, g, d):
     system = straight_system(gait, ground_time=g, flight_time=f, double_stance=d)
@@ -80,27 +72,6 @@ def test_constraints_hold_from_any_start(gait, f, g, d, seed):
         waits_for = group == (group[leg] - 1) % len(gait.groups)
         touched = (t[:-1] if cycle_before else t[1:])[:, waits_for].max(axis=1)
         assert np.all(lift[1:, leg] >= touched + d - 1e-12)
-
-
-@given(GAITS, TIME, TIME, TIME)
-def test_at_most_one_group_flies_once_settled(gait, f, g, d):
-    if len(gait.groups) == 1:
-        return
-    system = straight_system(gait, ground_time=g, flight_time=f, double_stance=d)
-    down, up = system.steady_state.touchdown[0], system.steady_state.liftoff[0]
-    period = system.cycle_time
-    for leg in range(gait.n_legs):
-        others = gait.group_of != gait.group_of[leg]
-        since_their_liftoff = (up[leg] + 1e-9 - up[others]) % period
-        assert np.all(since_their_liftoff >= (down - up)[others])
-
-
-@given(GAITS, TIME, TIME)
-def test_rotating_the_groups_keeps_the_cycle_time(gait, f, g):
-    rotated = Gait(gait.groups[1:] + gait.groups[:1])
-    times = {"ground_time": g, "flight_time": f, "double_stance": 0.25}
-    expected = straight_system(gait, **times).cycle_time
-    assert straight_system(rotated, **times).cycle_time == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(

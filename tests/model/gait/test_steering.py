@@ -78,13 +78,6 @@ def test_outer_side_has_the_steering_factor_and_equal_heights(inner, steering, a
     )
 
 
-@given(TOUCHDOWN, ARC)
-def test_steering_factor_one_makes_both_sides_alike(inner, arc):
-    angles = tripod_angles(inner, 1.0, leg_arc=arc)
-    assert angles.outer_touchdown == pytest.approx(inner, abs=1e-9)
-    assert angles.outer_liftoff == pytest.approx(angles.inner_liftoff, abs=1e-9)
-
-
 def test_largest_steering_factor_is_where_solutions_end():
     inner = np.radians(50.0)
     largest = largest_steering_factor(inner)
@@ -162,13 +155,6 @@ def test_speeds_are_those_of_eq_2_20_and_2_21(inner, steering, cycle):
     np.testing.assert_allclose(legs.ground_speed[:2], stance / (cycle / 2))
     np.testing.assert_allclose(legs.flight_speed[:2], (2 * np.pi - stance) / (cycle / 2))
     np.testing.assert_allclose(legs.ground_speed[1] / legs.ground_speed[0], steering)
-
-
-def test_one_tripod_lifts_off_as_the_other_touches_down():
-    legs = tripod_reference(tripod_angles(0.8, 1.2), 2.0)
-    stands = legs.stance_intervals((0.0, 4.0))
-    np.testing.assert_allclose(stands[0], [[0.0, 1.0], [2.0, 3.0]])
-    np.testing.assert_allclose(stands[1], [[1.0, 2.0], [3.0, 4.0]])
 
 
 def test_unknown_direction_is_refused():

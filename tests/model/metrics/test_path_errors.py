@@ -4,12 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model.errors import DomainError, InsufficientData
 from model.metrics.alignment import align
 from model.metrics.path_errors import path_errors, pose_errors, relative_error
-from model.metrics.turning import fitted_radius, mean_yaw_rate
-from model.poses import Poses, overlap
-from model.travel import travel_direction
+from model.poses import Poses
 
 angles = st.floats(-3.0, 3.0)
 shifts = st.tuples(st.floats(-5, 5), st.floats(-5, 5))
@@ -22,16 +19,6 @@ def circle(*, radius=1.7, rate=0.05, duration=30.0, n=31, crab=0.0, speed=1.0) -
     turned = rate * speed * t
     xy = radius * np.column_stack([np.sin(turned), 1 - np.cos(turned)])
     return Poses(t, xy, turned + crab)
-
-
-@given(rotation=angles, shift=shifts)
-def test_alignment_undoes_any_rigid_motion(rotation, shift):
-    track = circle()
-    moved = track.moved(rotation=rotation, translation=shift)
-    motion = align(moved, track)
-    back = moved.moved(rotation=motion.rotation, translation=motion.translation)
-    np.testing.assert_allclose(back.position, track.position, atol=1e-9)
-    np.testing.assert_allclose(np.cos(back.yaw), np.cos(track.yaw), atol=1e-9)
 
 
 @given(rotation=angles, shift=shifts)
@@ -86,49 +73,10 @@ def test_a_motion_over_a_distance_forgets_the_wrong_start():
     assert found.position < 1e-12
 
 
-def test_a_dense_prediction_is_compared_at_the_times_of_the_track():
-    sparse = circle(n=9)
-    t = np.linspace(0, 30, 30_001)
-    dense = Poses(t, 1.7 * np.column_stack([np.sin(0.05 * t), 1 - np.cos(0.05 * t)]), 0.05 * t)
-    assert path_errors(dense, sparse).ate < 1e-6
-
-
 def test_tracked_poses_outside_the_prediction_are_left_out():
     track = circle()
     errors = path_errors(track.part(track.t <= 20), track)
     assert errors.poses == int((track.t <= track.t[track.t <= 20][-1]).sum())
-
-
-def test_paths_that_share_no_time_are_refused():
-    later = Poses(circle().t + 100, circle().position, circle().yaw)
-    with pytest.raises(InsufficientData, match="same clock"):
-        overlap(circle(), later)
-    with pytest.raises(InsufficientData):
-        path_errors(later, circle())
-
-
-def test_time_that_runs_backwards_is_refused():
-    with pytest.raises(DomainError, match="increasing"):
-        Poses(np.array([0.0, 2.0, 1.0]), np.zeros((3, 2)), np.zeros(3))
-
-
-@given(radius=st.floats(0.3, 20), rate=st.floats(0.01, 0.5), crab=st.floats(-0.3, 0.3))
-def test_the_radius_of_a_circle_is_found_for_any_turn(radius, rate, crab):
-    poses = circle(radius=radius, rate=rate, crab=crab)
-    assert fitted_radius(poses) == pytest.approx(radius, rel=1e-6)
-    assert mean_yaw_rate(poses) == pytest.approx(rate)
-
-
-def test_a_turn_to_the_right_has_a_negative_radius():
-    left = circle()
-    right = Poses(left.t, left.position * [1, -1], -left.yaw)
-    assert fitted_radius(right) == pytest.approx(-1.7)
-
-
-def test_a_straight_walk_has_no_radius():
-    t = np.linspace(0, 10, 6)
-    straight = Poses(t, np.column_stack([t, 0 * t]), 0.001 * t)
-    assert fitted_radius(straight) == np.inf
 
 
 def test_a_track_without_headings_has_errors_of_position_only():
@@ -137,15 +85,6 @@ def test_a_track_without_headings_has_errors_of_position_only():
     errors = path_errors(circle(radius=1.8), blind)
     assert np.isfinite([errors.ate, errors.along, errors.cross, errors.ate_aligned]).all()
     assert np.isnan([errors.yaw, errors.yaw_rate[1], errors.radius[1]]).all()
-
-
-def test_a_standing_robot_keeps_its_direction_of_travel():
-    t = np.arange(6.0)
-    xy = np.column_stack([[0, 0, 0, 0, 1, 2], np.zeros(6)])
-    stood = Poses(t, xy, np.zeros(6))
-    np.testing.assert_array_equal(travel_direction(stood), 0)
-    turned = stood.moved(rotation=1.0, translation=(0, 0))
-    np.testing.assert_allclose(travel_direction(turned), 1.0)
 
 
 def test_alignment_has_no_better_neighbour():

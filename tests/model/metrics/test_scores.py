@@ -4,9 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model.errors import DomainError, InsufficientData
-from model.metrics.bootstrap import bootstrap_mean
-from model.metrics.consistency import consistency, nees
+from model.errors import DomainError
+from model.metrics.consistency import consistency
 from model.metrics.scores import (
     LEVELS,
     coverage_range,
@@ -46,13 +45,6 @@ def rejected(truths, *, spread=1.0):
     ]
 
 
-def test_a_perfect_ensemble_is_rejected_at_the_stated_rate():
-    caught = rejected(paths(200, np.random.default_rng(5)))
-    for name in ("nees", "along", "cross", "yaw"):
-        false_alarms = sum(name in names for names in caught)
-        assert 1 <= false_alarms <= 20  # 5 % of 200, within four standard deviations
-
-
 def test_a_perfect_ensemble_covers_at_its_levels():
     rng = np.random.default_rng(6)
     draws = tracked(paths(1000, rng), rng)
@@ -75,11 +67,6 @@ def test_a_wrong_speed_is_caught_along_the_track():
     assert sum("along" in names for names in caught) >= 18
 
 
-def test_a_wrong_heading_is_caught_by_yaw_and_across_the_track():
-    caught = rejected(paths(20, np.random.default_rng(7), heading=np.radians(11)))
-    assert all({"yaw", "cross"} <= names for names in caught)
-
-
 def test_a_tenfold_overconfident_ensemble_is_caught_by_nees_and_coverage():
     caught = rejected(paths(20, np.random.default_rng(7)), spread=0.1)
     assert sum("nees" in names for names in caught) >= 16
@@ -88,24 +75,6 @@ def test_a_tenfold_overconfident_ensemble_is_caught_by_nees_and_coverage():
     truths = tracked(paths(20, rng), rng)
     coverage = np.mean([ensemble_scores(sharp, one).coverage[1] for one in truths], axis=0)
     assert np.all(coverage < 0.75)
-
-
-def test_a_tenfold_timid_ensemble_falls_below_the_band_of_nees():
-    caught = rejected(paths(20, np.random.default_rng(7), spread=0.1), spread=10.0)
-    assert sum("nees" in names for names in caught) >= 18
-
-
-def test_one_walk_of_a_perfect_model_may_have_a_nees_far_from_one():
-    rng = np.random.default_rng(9)
-    draws = paths(500, rng)
-    own = nees(paths(500, rng), draws).mean(axis=1)
-    assert np.quantile(own, 0.025) < 0.5
-    assert np.quantile(own, 0.975) > 1.8
-
-
-def test_nees_is_one_on_average():
-    rng = np.random.default_rng(9)
-    assert nees(paths(3000, rng), paths(3000, rng)).mean() == pytest.approx(1, abs=0.1)
 
 
 @pytest.mark.parametrize(("bias", "scale"), [(0.5, 1.0), (0.0, 0.4), (0.0, 2.5), (-0.3, 1.4)])
@@ -165,18 +134,3 @@ def test_unknown_headings_leave_scores_of_position():
 def test_shapes_that_do_not_match_are_refused():
     with pytest.raises(DomainError, match="shape"):
         ensemble_scores(np.zeros((5, 4, 3)), np.zeros((3, 3)))
-
-
-def test_too_few_draws_have_no_band():
-    with pytest.raises(InsufficientData, match="too few for an interval"):
-        consistency(np.zeros((5, 4, 3)), np.zeros((4, 3)))
-
-
-def test_bootstrap_over_runs_is_as_wide_as_the_runs_differ():
-    rng = np.random.default_rng(1)
-    runs = rng.normal(1.0, 0.2, size=40)
-    mean, low, high = bootstrap_mean(runs, rng=rng)
-    assert low < mean < high
-    assert high - low == pytest.approx(2 * 1.645 * 0.2 / np.sqrt(40), rel=0.3)
-    with pytest.raises(InsufficientData):
-        bootstrap_mean(runs[:1], rng=rng)

@@ -19,10 +19,6 @@ def test_a_circle_s_radius_comes_back_with_its_side(radius, crab):
     assert fitted_radius(circle(radius, crab=crab)) == pytest.approx(radius)
 
 
-def test_beyond_a_full_turn_the_radius_stays():
-    assert fitted_radius(circle(0.4, turn=9.0)) == pytest.approx(0.4)
-
-
 def test_what_hardly_turns_is_straight():
     assert fitted_radius(circle(20.0, turn=0.05)) == np.inf
 

@@ -40,19 +40,7 @@ def test_stribeck_slip_is_where_all_but_one_over_e_of_the_excess_is_lost():
     assert left == pytest.approx(0.7 + 0.3 / math.e)
 
 
-def test_plain_coulomb_has_no_peak():
-    assert CoulombStribeck(False).peak_slip(3.0, VALUES[:2]) == math.inf
-
-
 def test_locked_leg_with_infinite_slip_has_kinetic_friction_and_no_slope():
     law = CoulombStribeck()
     assert law.force(-math.inf, 2.0, VALUES) == pytest.approx(-2.0 * 0.28)
     assert law.slip_derivative(-math.inf, 2.0, VALUES) == 0.0
-
-
-def test_slope_is_continuous_at_breakaway():
-    edge = breakaway_slip(VALUES[0], VALUES[1])
-    around = edge * np.array([1 - 1e-9, 1 + 1e-9])
-    np.testing.assert_allclose(
-        CoulombStribeck().slip_derivative(around, 1.0, VALUES), 0.0, atol=1e-6
-    )

@@ -31,8 +31,3 @@ def test_slip_of_another_definition_is_refused(definition):
     with pytest.raises(DefinitionMismatch) as caught:
         CURVE.force(0.1, 5.0, definition=definition)
     assert (caught.value.found, caught.value.expected) == (str(definition), "material")
-
-
-def test_slip_of_no_definition_is_refused():
-    with pytest.raises(ValueError, match="materiel"):
-        CURVE.force(0.1, 5.0, definition="materiel")

@@ -19,15 +19,6 @@ def test_the_share_of_new_curves_inside_everywhere_is_the_band_s():
     assert np.mean(inside) == pytest.approx(0.9, abs=0.02)
 
 
-def test_a_band_of_quantiles_at_each_point_would_hold_fewer_whole_curves():
-    draws = drawn(4000)
-    low, high = np.quantile(draws, [0.05, 0.95], axis=0)
-    inside = np.all((drawn(2000, seed=1) >= low) & (drawn(2000, seed=1) <= high), axis=(1, 2))
-    assert inside.mean() < 0.8
-    band = simultaneous_band(draws)
-    assert np.all(band.high - band.low > high - low)
-
-
 def test_the_farthest_point_is_named_with_its_side_and_unknown_points_do_not_count():
     band = CurveBand(np.zeros((2, 3)), np.ones((2, 3)), 2.0)
     force = np.array([[0.0, 1.0, np.nan], [-3.0, 0.5, 1.9]])

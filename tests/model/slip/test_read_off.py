@@ -23,20 +23,6 @@ def test_samples_of_a_formula_give_its_coefficients_back(B, C, D, E):
     np.testing.assert_allclose((read.B, read.C, read.D, read.E), (B, C, D, E), 1e-4, 1e-4)
 
 
-def test_coefficients_scale_with_the_force_only_in_the_peak():
-    force = magic_formula(GRID, 30.0, 1.5, 2.0, 0.3) + 0.01 * np.sin(40 * GRID)
-    one, other = read_off(GRID, force), read_off(GRID, 1000 * force)
-    expected = (one.B, one.C, 1000 * one.D, one.E, 1000 * one.misfit)
-    assert (other.B, other.C, other.D, other.E, other.misfit) == pytest.approx(expected, rel=1e-5)
-
-
-def test_rig_range_to_slip_one_is_far_enough_for_the_source_curve():
-    slip = np.linspace(0, 1, 501)
-    read = read_off(slip, magic_formula(slip, 34.34, 1.564, 2.518, -0.1344))
-    np.testing.assert_allclose((read.B, read.C, read.D), (34.34, 1.564, 2.518), rtol=1e-3)
-    np.testing.assert_allclose(read.E, -0.1344, atol=0.01)
-
-
 @given(st.floats(1.0, 1.999))
 def test_eq_4_25_inverts_the_asymptote(C):
     assert shape_factor(np.sin(np.pi * C / 2), 1.0) == pytest.approx(C, abs=1e-7)
@@ -55,13 +41,6 @@ def test_initial_slope_needs_no_peak():
     slip = np.linspace(0, 0.03, 40)
     found = initial_slope(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
     assert found == pytest.approx(34.34 * 1.564 * 2.5, rel=1e-3)
-
-
-def test_noise_of_a_filtered_curve_moves_the_coefficients_little():
-    slip = np.linspace(0, 1, 1001)
-    noise = 0.002 * np.random.default_rng(4).standard_normal(len(slip))
-    read = read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0) + noise)
-    np.testing.assert_allclose((read.B, read.C, read.D), (34.34, 1.564, 2.5), rtol=0.02)
 
 
 @pytest.mark.parametrize("reach", [0.01, 0.04])

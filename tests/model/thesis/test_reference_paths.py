@@ -72,17 +72,6 @@ def test_the_path_is_the_references(shared, name):
     assert np.degrees(np.abs(states.yaw - reference["yaw"])).max() < degrees
 
 
-@pytest.mark.parametrize("name", TOLERANCES)
-def test_by_the_clock_it_is_the_references_too(shared, name):
-    reference, _, _ = walked(shared, name)
-    duration = float(reference["t"].iloc[-1]) + DT
-    states = walk_thesis(Robot(), gait_of(name), duration=duration).part(slice(1, None, KEPT))
-    metres, degrees = TOLERANCES[name]
-    off = np.linalg.norm(states.position[:, :2] - reference[["x", "y"]], axis=1)
-    assert off.max() < metres
-    assert np.degrees(np.abs(states.yaw - reference["yaw"])).max() < degrees
-
-
 @pytest.mark.parametrize("name", ["f_TD50_LO118", "f_TD35_LO130", "g"])
 def test_where_no_start_is_tied_it_is_the_reference_digit_by_digit(shared, name):
     reference, states, steps = walked(shared, name)

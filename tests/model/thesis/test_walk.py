@@ -8,7 +8,6 @@ from model.errors import DomainError, WalkError
 from model.gait.direction import Direction
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
-from model.gait.suriana import suriana_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import CoulombStribeck
@@ -66,10 +65,6 @@ def test_traction_of_one_direction_stays_within_the_peak():
     assert share.max() <= THESIS_TRACTION.friction + 1e-9
 
 
-def test_walks_are_deterministic():
-    np.testing.assert_array_equal(walk().position, walk().position)
-
-
 def test_the_converged_end_is_the_references():
     """The limit of short steps for Table 5-1, four seconds."""
     path = walk(dt=0.00005)
@@ -100,11 +95,6 @@ def test_its_speed_depends_on_the_compass():
     np.testing.assert_allclose(lengths, [0.783, 0.791, 0.777, 0.769], atol=0.001)
 
 
-def test_a_straight_walk_without_roll_knows_no_compass():
-    lengths = [walk(1.0, heading=np.radians(h)).length for h in (0.0, 90.0)]
-    assert lengths[1] == pytest.approx(lengths[0], rel=1e-4)
-
-
 def test_without_reset_it_sinks_and_shorter_steps_do_not_mend_all_of_it():
     def sunk(dt):
         path = walk(1.25, duration=15.0, rule="text", dt=dt)
@@ -130,11 +120,6 @@ def test_with_the_slip_as_printed_a_standing_robot_runs_off_and_mended_it_stands
     assert moved(mend=True) < 0.001
 
 
-def test_mending_the_slip_hardly_touches_a_walk_that_goes_forward():
-    printed, mended = walk(), walk(mend_slip=True)
-    np.testing.assert_allclose(mended.position[-1, :2], printed.position[-1, :2], atol=0.005)
-
-
 def test_the_automata_agree_where_hip_heights_match():
     listing, text = walk(), walk(rule="text")
     np.testing.assert_allclose(text.position[-1, :2], listing.position[-1, :2], atol=0.001)
@@ -154,22 +139,6 @@ def test_turns_to_both_sides_lean_to_the_left(direction):
 # --- other legs, laws and arcs
 
 
-def test_a_gait_by_the_clock_walks_as_one_by_angle():
-    legs = gait(1.2)
-    by_clock = walk_thesis(ROBOT, legs, duration=4.0)
-    np.testing.assert_allclose(by_clock.position[-1], walk().position[-1], atol=0.01)
-
-
-def test_turning_by_time_walks_too_and_turns_left():
-    legs = SwitchedLegs.of(
-        suriana_reference(
-            np.radians(35.0), np.radians(130.0), ground_time=0.8, flight_time=0.8, turn_time=0.1
-        )
-    )
-    path = walk_thesis(ROBOT, legs, duration=4.8)
-    assert path.yaw[-1] > np.radians(5.0)
-
-
 def test_other_laws_walk_nearly_the_same():
     coulomb = law_traction(CoulombStribeck(), np.array([20.0, 0.4, 0.7, 0.1]), weight=WEIGHT)
     by_velocity = table_traction(VelocityCoulomb(0.38).table(weight=WEIGHT))
@@ -183,12 +152,6 @@ def test_legs_longer_than_a_half_circle_walk():
     angles = tripod_angles(np.radians(50.0), 1.1, leg_arc=robot.leg_arc)
     path = walk_thesis(robot, tripod_reference(angles, 2.0), duration=6.0)
     assert radius(path) == pytest.approx(2.68, rel=0.03)
-
-
-def test_leg_offsets_are_added():
-    offset = np.radians([0.0, 0.0, -5.0, 0.0, 0.0, 0.0])
-    path = walk_thesis(Robot(leg_offset=offset), gait(1.0), duration=2.0)
-    assert abs(path.yaw[-1] - walk(1.0, duration=2.0).yaw[-1]) > 1e-3
 
 
 # --- what it refuses
@@ -249,9 +212,3 @@ def test_rates_of_phi_and_of_the_state_are_derivatives():
     state = np.column_stack([path.position, path.angles])[steady]
     moved = path.rates[steady][:-1] + 0.0001 * path.acceleration[steady][:-1]
     np.testing.assert_allclose(np.diff(state, axis=0) / 0.0001, moved, atol=1e-9)
-
-
-def test_a_part_of_a_path_keeps_the_model_s_quantities():
-    path = walk(duration=0.2)
-    part = path.part(path.t > 0.1)
-    np.testing.assert_array_equal(part.phi, path.phi[path.t > 0.1])

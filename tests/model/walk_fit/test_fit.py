@@ -17,11 +17,8 @@ from model.walk_fit.prior import (
     ACROSS,
     FLOOR,
     NAMES,
-    WRONG,
     WalkPrior,
     WrongLeg,
-    all_cases,
-    legs_of,
 )
 from model.walk_fit.tracked_walk import TrackedWalk
 
@@ -85,13 +82,6 @@ def test_a_leg_five_degrees_off_is_found_as_closely_as_the_answer_says(bent_leg)
     assert np.degrees(likeliest.sd) < 2.0
 
 
-def test_walks_say_more_of_offsets_than_of_grip(straight_legs):
-    by_name = {each.name: each for each in straight_legs.contractions()}
-    assert set(by_name) == set(NAMES)
-    assert by_name["leg_offset1"].contraction > by_name["grip"].contraction
-    assert not by_name["grip"].informed or by_name["grip"].contraction < 0.6
-
-
 def test_draws_scatter_as_the_posterior_says(straight_legs):
     state = straight_legs.draw(4000, rng=np.random.default_rng(3))
     assert state.offset.shape == (4000, 6)
@@ -125,22 +115,6 @@ def test_another_robot_on_the_floor_shares_what_belongs_to_the_floor(straight_le
         else:
             assert abs(two.contraction) < 0.6 or name.startswith("leg_offset")
     assert np.all(other.most_likely().offset == 0)
-
-
-def test_a_leg_knocked_off_in_one_walk_is_off_in_that_walk_alone():
-    values = np.zeros((1, WRONG + 1))
-    values[0, -1] = 0.1
-    case = WrongLeg(2, walk=1)
-    assert legs_of(values, case, walk=1).offset[0, 2] == 0.1
-    assert not legs_of(values, case, walk=0).offset.any()
-    assert not legs_of(values, case).offset.any()
-    assert legs_of(values, WrongLeg(2)).offset[0, 2] == 0.1
-
-
-def test_probabilities_of_cases_are_one_in_all():
-    for walks in (1, 2, 4):
-        logs = [PRIOR.log_probability(case, walks=walks) for case in all_cases(walks)]
-        assert np.exp(logs).sum() == pytest.approx(1.0)
 
 
 def test_no_walk_and_a_track_of_two_poses_are_refused():

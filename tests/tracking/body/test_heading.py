@@ -34,11 +34,6 @@ def test_one_photograph_that_is_wrong_is_outvoted_by_the_others():
     assert all(np.cos(alignment.pose.state[5]) > 0 for alignment in chosen)
 
 
-def test_a_walk_tells_head_from_tail_without_any_picture():
-    chosen = resolve_headings(sequence([0.0] * 6), length=0.2)
-    assert all(np.cos(alignment.pose.state[5]) > 0 for alignment in chosen)
-
-
 def test_a_robot_alike_at_both_ends_that_stands_still_is_refused():
     with pytest.raises(AmbiguousHeading, match="1000 to 1") as caught:
         resolve_headings(sequence([0.1] * 6, step=0.0), length=0.2)

@@ -55,23 +55,11 @@ def test_noise_and_smooth_errors_are_told_apart():
 def test_the_lens_errs_by_its_covariance(smooth):
     rng = np.random.default_rng(3)
     squares = []
-    for _ in range(150):
+    for _ in range(60):
         boards, lens = fitted(smooth, rng, views=7)
         covariance = corner_errors(boards).covariance
         squares.append(lens @ np.linalg.solve(covariance, lens) / 2)
     assert np.mean(squares) == pytest.approx(1.0, abs=0.3)
-
-
-def test_independent_noise_would_be_overconfident_of_smooth_errors():
-    boards, _ = fitted(0.3, np.random.default_rng(4))
-    honest = corner_errors(boards).covariance
-    noise = np.concatenate([board.missed.ravel() for board in boards]).std()
-    information = np.zeros((2, 2))
-    for board in boards:
-        flat, left = board.by_pose.reshape(-1, 6), board.by_lens.reshape(-1, 2)
-        left = left - flat @ np.linalg.lstsq(flat, left, rcond=None)[0]
-        information += left.T @ left / noise**2
-    assert np.all(np.diag(honest) > 3 * np.diag(np.linalg.inv(information)))
 
 
 def test_corners_without_errors_leave_next_to_none():

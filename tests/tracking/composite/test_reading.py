@@ -33,12 +33,6 @@ def test_the_raster_is_as_fine_as_asked_and_lies_at_the_height_of_the_robots_top
     assert Reading.of(known).plane.cell == pytest.approx(SIZE[0] / CELLS)
 
 
-def test_the_raster_reaches_half_a_robot_beyond_the_area_of_the_search(known):
-    plane, half = Reading.of(known).plane, 0.5 * np.hypot(*SIZE)
-    np.testing.assert_allclose(plane.low, known.area[0] - half)
-    np.testing.assert_allclose(plane.high, known.area[1] + half)
-
-
 def test_points_are_used_that_show_floor_or_robot_in_the_picture(known):
     reading = Reading.of(known)
     column, row = np.moveaxis(reading.plane.seen_px, -1, 0)
@@ -55,13 +49,6 @@ def test_points_are_used_that_show_floor_or_robot_in_the_picture(known):
     np.testing.assert_array_equal(used[~around], ~outside[~around])
 
 
-def test_the_picture_on_the_raster_shows_the_robot_where_it_is(known):
-    reading = Reading.of(known)
-    blue = reading.picture[..., 0] - reading.picture[..., 2]
-    row, column = np.argwhere(blue > 40).mean(axis=0)
-    np.testing.assert_allclose(reading.plane.xy_at(row, column), AT[:2], atol=0.03)
-
-
 def test_a_layer_is_read_at_the_points_of_the_robot():
     plane = level_plane()
     body = BodyRaster.over(plane, SIZE)
@@ -74,10 +61,3 @@ def test_a_layer_is_read_at_the_points_of_the_robot():
     np.testing.assert_allclose(seen[..., 0], x + c * body.x - s * body.y, atol=1e-4)
     np.testing.assert_allclose(seen[..., 1], y + s * body.x + c * body.y, atol=1e-4)
     assert body.thinned().x.shape == tuple(side // 2 for side in body.x.shape)
-
-
-def test_the_template_is_as_large_as_the_body():
-    body = BodyRaster.over(level_plane(), SIZE)
-    template = body.template(np.zeros((*body.x.shape, 3), np.float32), 0.03)
-    assert (template.plate.length, template.plate.width) == pytest.approx(SIZE, abs=body.cell)
-    assert template.points_body[..., 2] == pytest.approx(0.03)

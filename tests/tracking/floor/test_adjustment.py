@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from support.drawn_floor import FLOOR, LENS, camera_pose, see
-from tracking.camera import Camera
 from tracking.floor import FloorMap, FloorView
 from tracking.floor.adjustment import Adjustment
 from tracking.floor.edge_spread import EDGE_SPREADS, EdgeSpread
@@ -42,13 +41,13 @@ def adjusted(rng, *, camera=LENS, floor=FLOOR, by=0.0, scatter=0.0, edge_sd=0.05
 
 
 def test_edges_that_all_markers_share_are_found_and_shrunk_by_the_prior():
-    found = [adjusted(np.random.default_rng(k), by=0.2, edge_sd=0.2)[1].edges[0] for k in range(20)]
+    found = [adjusted(np.random.default_rng(k), by=0.2, edge_sd=0.2)[1].edges[0] for k in range(8)]
     assert np.mean(found) == pytest.approx(0.2 * 4 / 5, abs=0.03)  # four markers and one prior
 
 
 def test_all_unknowns_err_by_their_joint_covariance():
     rng, squares = np.random.default_rng(1), []
-    for _ in range(60):
+    for _ in range(30):
         off = LENS_SD * rng.normal(size=9)
         told = replace(LENS.changed(off), covariance=np.diag(LENS_SD**2))
         problem, found, shared = adjusted(rng, camera=told, floor=taped(rng), edge_sd=1e-4)
@@ -69,21 +68,7 @@ def test_all_unknowns_err_by_their_joint_covariance():
         ))  # fmt: skip
         covariance = shared.covariance[np.ix_(kept, kept)]
         squares.append(error @ np.linalg.solve(covariance, error) / len(kept))
-    assert np.mean(squares) == pytest.approx(1.0, abs=0.12)  # 27 x 60 degrees of freedom
-
-
-def test_a_lens_that_is_taken_as_exact_stays():
-    problem, found, shared = adjusted(np.random.default_rng(2))
-    np.testing.assert_array_equal(problem.lens(found).matrix, LENS.matrix)
-    slot = shared.slots[LENS_ERROR]
-    assert not shared.covariance[slot, slot].any()
-
-
-def test_markers_show_that_a_lens_is_off():
-    wrong = Camera(LENS.size, LENS.matrix * [[1.01, 1, 1], [1, 1, 1], [1, 1, 1]], np.zeros(5),
-                   np.diag([28.0**2, 0, 0, 0, 0, 0, 0, 0, 0]))  # fmt: skip
-    problem, found, _ = adjusted(np.random.default_rng(3), camera=wrong, floor=FLOOR)
-    assert abs(problem.lens(found).matrix[0, 0] - 1400) < 0.5 * 14
+    assert np.mean(squares) == pytest.approx(1.0, abs=0.15)  # 27 x 30 degrees of freedom
 
 
 def test_the_spread_of_edges_is_that_by_which_sizes_scatter():

@@ -25,8 +25,8 @@ def taped(rng: np.random.Generator) -> FloorMap:
 
 
 def test_sound_floors_raise_no_suspicion():
-    said = [suspects_of(floor=taped(np.random.default_rng(k)), seed=k) for k in range(20)]
-    assert sum(map(bool, said)) <= 2
+    said = [suspects_of(floor=taped(np.random.default_rng(k)), seed=k) for k in range(8)]
+    assert sum(map(bool, said)) <= 1
 
 
 def test_a_mark_that_is_far_off_is_named_with_its_shift():
@@ -64,9 +64,3 @@ def test_a_rival_is_named_up_to_four_less_likely():
         ]
         (text,) = suspicion(pair, remarkable=2.0)
         assert ("tape" in text) == named
-
-
-def test_suspects_that_explain_as_much_cannot_be_told_apart():
-    alike = [SuspectValue("the lens", "+1 % off", 6.0), SuspectValue("the tape", "2 mm off", 5.0)]
-    (text,) = suspicion(alike, remarkable=2.0)
-    assert "cannot be told apart from the tape (2 mm off)" in text

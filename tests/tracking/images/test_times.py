@@ -43,10 +43,6 @@ def test_no_times_at_all_says_what_to_give(tmp_path):
         times_from_exif(paths)
 
 
-def test_no_photographs_have_no_times():
-    assert len(times_from_exif([]).t) == 0
-
-
 def test_an_interval_gives_its_beat():
     times = times_from_interval(4, 2.0, jitter=0.01)
     np.testing.assert_allclose(times.t, [0, 2, 4, 6])

@@ -26,14 +26,14 @@ def test_dark_blurred_coded_markers_are_found_where_plain_detection_fails():
     rng = np.random.default_rng(2)
     harsh = {"blur": 2.2, "noise": 4.0, "contrast": 0.2, "quality": 75}
     plain, errors = 0, []
-    for _ in range(20):
+    for _ in range(10):
         quad = random_quad(rng, 38)
         picture = photograph(quad, rng, **harsh)
         ids = cv2.aruco.ArucoDetector(dictionary_named("4x4_50")).detectMarkers(picture)[1]
         plain += ids is not None
         errors += [s.corners_px - quad for s in find_markers(picture, "4x4_50", wanted=[0])]
-    assert plain <= 10
-    assert len(errors) >= 19
+    assert plain <= 5
+    assert len(errors) >= 9
     assert np.sqrt(np.mean(np.square(errors))) < 0.25
 
 
@@ -87,12 +87,12 @@ def test_a_region_too_small_for_a_marker_is_empty():
 
 
 def test_a_marker_whose_paper_lies_on_a_plate_is_found_in_a_tight_window():
-    # OpenCV kept one of these nested outlines, the wrong one in 5 of these 10 photographs.
+    # OpenCV kept one of these nested outlines, the wrong one in half of such photographs.
     whole = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0))
     centre = (whole.centre[0] - 208, whole.centre[1] - 560)
     scene = DrawnScene(replace(whole, width=208, height=208, centre=centre), ())
     background, robot = render_background(scene), RobotState(DrawnPose(0.28046, 0.12703, -2.35923))
-    for seed in range(10):
+    for seed in range(5):
         photo = take_photo(
             scene, robot, conditions=Conditions(defocus_sd_px=0.6), background=background,
             rng=np.random.default_rng(seed), look=RobotLook(DrawnRobotMarker(side=0.12)),

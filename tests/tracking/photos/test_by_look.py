@@ -44,12 +44,6 @@ def test_the_marked_top_must_be_known_and_its_photograph_usable(scene, photos, t
     assert marked_tops(replace(scene, tops=(top,)), seen, photos) == (top,)
 
 
-def test_clicks_on_the_top_give_the_robots_pose(scene, photos, walk, top):
-    seen = see_floor(scene, photos[:1], robot=None, workers=1, progress=NoProgress())
-    pose = pose_of_top(top, scene, seen.fit.pose_of("p0.png")).pose
-    np.testing.assert_allclose(pose.planar, walk[0], atol=2e-3)
-
-
 def test_edges_of_the_top_refine_its_heading_and_a_contradiction_is_said(
     scene, plain_photos, walk, top
 ):
@@ -66,14 +60,6 @@ def test_edges_of_the_top_refine_its_heading_and_a_contradiction_is_said(
         off, plain_photos, times=TIMES, gap=None, workers=1, progress=NoProgress()
     )
     assert any("clicked corners of the robot's top in p0.png do not fit" in n for n in found.notes)
-
-
-def test_edges_may_be_left_out(scene, plain_photos, top):
-    seen = see_floor(scene, plain_photos, robot=None, workers=1, progress=NoProgress())
-    view, pixels = seen.fit.pose_of("p0.png"), read_pixels(plain_photos[0].path)
-    annotated, corners = refined_pose(replace(top, edges=False), scene, view, pixels)
-    assert corners.sides == 0
-    np.testing.assert_array_equal(annotated.covariance, pose_of_top(top, scene, view).covariance)
 
 
 def test_clicks_that_no_pose_of_the_top_explains_are_told(scene, photos, top):

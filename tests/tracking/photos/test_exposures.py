@@ -11,7 +11,6 @@ from tracking import Photo
 from tracking.body import Alignment
 from tracking.composite import Exposure
 from tracking.composite.body_box import BodyBox
-from tracking.errors import CompositeError
 from tracking.images import PhotoTimes
 from tracking.photos import exposures
 from tracking.photos.exposures import track_exposures
@@ -57,8 +56,3 @@ def test_exposures_that_could_not_be_aligned_are_told_of(scene, photos, monkeypa
     assert any("only roughly" in note for note in track.notes) == told
     np.testing.assert_allclose([seen.planar[0] for seen in track.track.observations],
                                [0.5, 0.6, 0.7])  # fmt: skip
-
-
-def test_the_size_of_the_body_must_be_known(scene, photos):
-    with pytest.raises(CompositeError, match="body has no size"):
-        tracked(scene, photos[0])

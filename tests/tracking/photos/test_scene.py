@@ -26,8 +26,3 @@ def test_with_markers_a_click_holds_for_its_own_photograph_alone(scene):
     assert keys(marked, "p1.png") == set()
     seen = marked.with_clicks(FloorView.of("p0.png"))
     np.testing.assert_array_equal(seen.pixels["door"], [[10.0, 20.0]])
-
-
-def test_without_clicks_a_view_stays_as_it_is(scene):
-    view = FloorView.of("p0.png")
-    assert scene.with_clicks(view) is view

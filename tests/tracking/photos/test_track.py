@@ -23,14 +23,6 @@ def test_a_marked_walk_is_tracked(scene, photos, walk):
     assert {seen.source for seen in tracked.track.observations} == {"marker"}
 
 
-def test_without_a_marker_the_marked_top_is_tracked(scene, photos, walk, top):
-    tracked = track_photos(
-        replace(scene, robot=None, tops=(top,)), photos, times_of=every_two_seconds
-    )
-    np.testing.assert_allclose(tracked.track.poses[:, :2], walk[:, :2], atol=4e-3)
-    assert {seen.source for seen in tracked.track.observations} == {"body"}
-
-
 def test_one_picture_that_is_merged_is_no_photograph(scene, photos):
     with pytest.raises(CompositeError, match="body has no size"):
         track_photos(replace(scene, is_composite=True), photos, times_of=every_two_seconds)

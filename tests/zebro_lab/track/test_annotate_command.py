@@ -46,22 +46,6 @@ def test_what_cannot_be_understood_is_one_line(options, message, run_command, tm
     assert not file.exists()
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (("--flip", "simulated_2.jpg"), "there are simulated_00.jpg to simulated_"),
-        (("--from", "nothing.toml"), "nothing.toml: no such file"),
-    ],
-)
-def test_what_does_not_exist_is_one_line_and_exit_1(options, message, run_command, tmp_path):
-    file = tmp_path / "said.toml"
-    code, _, err = run_command("annotate", PHOTOS, "--out", file, *options)
-    assert code == 1
-    assert message in err
-    assert err.count("\n") == 1
-    assert not file.exists()
-
-
 def test_pixels_can_be_read_in_a_picture(run_command, tmp_path):
     file = tmp_path / "grid.png"
     code, _, _ = run_command(

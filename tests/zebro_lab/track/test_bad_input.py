@@ -163,29 +163,6 @@ def edit(file: str, pattern: str, replacement) -> None:
     path.write_text(re.sub(pattern, replacement, path.read_text()))
 
 
-def test_a_floor_of_another_dictionary_is_told_which_is_seen(lab, track):
-    edit("floor.toml", "4x4_50", "5x5_50")
-    assert_refused(
-        track("photos"), "the picture has markers of '4x4_50': correct dictionary in floor.toml"
-    )
-
-
-def test_a_mirrored_floor_is_called_so(lab, track):
-    edit("floor.toml", r"y = (-?)([\d.]+)", lambda y: f"y = {'' if y[1] else '-'}{y[2]}")
-    assert_refused(track("photos"), "the map of the floor is mirrored")
-
-
-@pytest.mark.parametrize(("old", "new"), [("4x4_50", "5x5_50"), ("id = 0", "id = 3")])
-def test_another_marker_than_the_robots_is_told_which_is_seen(old, new, lab, track):
-    edit("robot.toml", old, new)
-    ended = track("photos")
-    assert_refused(ended, "photographs; simulated_00.jpg shows 0 of '4x4_50': correct [marker]")
-
-
 def test_a_marker_that_is_the_robots_and_the_floors_is_refused(lab, track):
     edit("robot.toml", "id = 0", "id = 12")
     assert_refused(track("photos"), "marker 12 is listed both for the robot and")
-
-
-def test_a_picture_that_is_none_is_no_composite(lab, track):
-    assert_refused(track("robot.toml", "--interval", "2"), "robot.toml: not a readable picture")

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tracking.camera import Camera, CameraCalibration
 from tracking.camera.corner_errors import CornerErrors
-from zebro_lab.files.errors import NotFound, SettingsError
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.track.camera_file import read_camera_file, render_camera_file
 
 _ROOT = np.random.default_rng(1).normal(size=(9, 9)) * np.repeat([3.0, 1e-2], [4, 5])[:, None]
@@ -51,16 +51,6 @@ def test_standard_deviations_alone_are_those_of_independent_errors(tmp_path):
     assert not (covariance - np.diag(np.diag(covariance))).any()
 
 
-def test_a_lens_without_standard_deviations_is_exact(tmp_path):
-    (tmp_path / "camera.toml").write_text(GOOD)
-    assert not read_camera_file(tmp_path / "camera.toml").covariance.any()
-
-
-def test_a_lens_without_distortion_needs_none_stated(tmp_path):
-    (tmp_path / "camera.toml").write_text(GOOD)
-    assert not read_camera_file(tmp_path / "camera.toml").distortion.any()
-
-
 FAULTS = {
     "unknown key": (GOOD + "focall = 1", "did you mean 'focal'"),
     "no focal length": ("size = [1280, 960]\ncentre = [640, 480]", "focal: is missing"),
@@ -84,11 +74,6 @@ def test_a_fault_is_named_with_file_and_key(tmp_path, text, message):
     with pytest.raises(SettingsError, match=message) as caught:
         read_camera_file(file)
     assert str(file) in str(caught.value)
-
-
-def test_a_missing_file_says_who_writes_it(tmp_path):
-    with pytest.raises(NotFound, match="camera calibrate"):
-        read_camera_file(tmp_path / "camera.toml")
 
 
 def test_the_file_of_the_other_option_is_told_apart(tmp_path):

@@ -2,9 +2,8 @@
 import numpy as np
 import pytest
 
-from model.poses import Poses
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.track.file import read_track, tum_lines
+from zebro_lab.track.file import read_track
 
 COVARIANCE = "cov_xx,cov_xy,cov_xyaw,cov_yy,cov_yyaw,cov_yawyaw"
 
@@ -44,11 +43,6 @@ def test_units_that_the_table_states_are_used(tmp_path):
         read_track(file)
 
 
-def test_headings_are_unwrapped(tmp_path):
-    track = read_track(write(tmp_path, "t,x,y,yaw\n0,0,0,3.1\n1,1,0,-3.1\n2,2,0,-3.0\n"))
-    assert track.poses.yaw[1] > 3.1
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -74,9 +68,3 @@ def test_an_impossible_covariance_is_refused(tmp_path):
 def test_a_missing_track_is_named(tmp_path):
     with pytest.raises(NotFound, match=r"track\.csv"):
         read_track(tmp_path)
-
-
-def test_tum_lines_hold_a_unit_quaternion_about_the_vertical():
-    poses = Poses(np.array([0.0, 1.5]), np.array([[0.0, 0], [1, 2]]), np.array([0, np.pi]))
-    numbers = np.array([line.split() for line in tum_lines(poses).splitlines()], dtype=float)
-    np.testing.assert_allclose(numbers[1], [1.5, 1, 2, 0, 0, 0, 1, 0], atol=1e-6)

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tracking.floor import FloorMap, FloorMarker, FloorPoint
-from zebro_lab.files.errors import NotFound, SettingsError
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.track.floor_file import read_floor_file, render_floor_file
 
 METRES = st.floats(-5, 5).map(lambda x: round(x, 6))
@@ -65,11 +65,6 @@ def test_a_fault_is_named_with_file_and_key(tmp_path, text, message):
     with pytest.raises(SettingsError, match=message) as caught:
         read_floor_file(file)
     assert str(file) in str(caught.value)
-
-
-def test_a_missing_file_says_who_starts_it(tmp_path):
-    with pytest.raises(NotFound, match="camera kit"):
-        read_floor_file(tmp_path / "floor.toml")
 
 
 def test_the_file_of_the_other_option_is_told_apart(tmp_path):

@@ -16,7 +16,6 @@ from zebro_lab.track.foreign import read_foreign_track
 from zebro_lab.track.trajectory.request import Axis, TrajectoryRequest
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
-NAMES = ("t_s", "x_m", "y_m", "yaw_rad", "z_m")
 COVARIANCE = {
     "cov_xx": 4e-6, "cov_xy": 1e-6, "cov_xyaw": 0.0, "cov_yy": 9e-6, "cov_yyaw": 0.0,
     "cov_yawyaw": 1e-4,
@@ -68,11 +67,6 @@ def test_a_covariance_comes_back_where_all_of_it_is_there(tmp_path):
     assert not part.with_covariance
 
 
-def test_a_missing_place_is_named(tmp_path):
-    with pytest.raises(DataError, match="x_m of the trajectory"):
-        track_of(table(tmp_path, t_s=[0, 1, 2], y_m=[0, 0, 0]))
-
-
 @pytest.mark.parametrize("option", [{"forward": Axis.Z}, {"times": Path("times.txt")}])
 def test_an_option_without_effect_on_a_plane_table_is_refused(option, tmp_path):
     file = tmp_path / "path.csv"
@@ -92,22 +86,6 @@ def test_a_tum_file_comes_back_as_it_was_written(tmp_path):
     np.testing.assert_allclose(again.track.poses.position, poses.position)
     np.testing.assert_allclose(np.diff(again.track.poses.yaw), [0.3, 0.3], atol=1e-8)
     assert len(again.tum) == 3
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "has no pose"),
-        ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.*found '1 1 0'"),
-        ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.*length 2"),
-        ("0 0 0 0 0 0 zero 1\n", "line of words; expected lines of 8"),
-    ],
-)
-def test_a_faulty_tum_file_is_named_by_its_line(tmp_path, text, message):
-    file = tmp_path / "path.tum"
-    file.write_text(text)
-    with pytest.raises(DataError, match=message):
-        read(file)
 
 
 def mocap(tmp_path, **columns) -> Path:

@@ -58,24 +58,12 @@ def test_a_print_without_yaw_has_its_top_ahead():
     np.testing.assert_allclose(bottom_left, [-0.05, 0.06, 0.04], atol=1e-12)
 
 
-def test_a_print_turned_to_the_left_has_its_top_to_the_left():
-    turned = Marker((0, 0, 0.04), (0, 0, np.pi / 2))
-    robot = tracked_robot(RobotFile(marker=turned), prior=PRIOR)
-    np.testing.assert_allclose(robot.marker.points_body[:2].mean(axis=0), [0, 0.06, 0.04])
-
-
 def test_the_body_is_as_high_as_its_marker_less_its_place_on_it():
     described = RobotFile(marker=Marker((0, 0, 0.04), height=0.105))
     standing = body_prior(described, height=None, mean_height_sd=0.005, height_sd=0.005)
     assert standing.height == pytest.approx(0.065)
     prior = body_prior(described, height=0.07, mean_height_sd=0.001, height_sd=0.006)
     assert (prior.height, prior.height_sd, prior.mean_height_sd) == (0.07, 0.006, 0.001)
-
-
-def test_the_files_own_marker_is_sought():
-    own = RobotFile(marker=Marker((0, 0, 0.04), printed=MarkerPrint("apriltag_36h11", 7, 0.1)))
-    marker = tracked_robot(own, prior=PRIOR).marker
-    assert (marker.dictionary, marker.marker_id, marker.side) == ("apriltag_36h11", 7, 0.1)
 
 
 def test_a_number_beyond_its_dictionary_says_how_far_it_goes():

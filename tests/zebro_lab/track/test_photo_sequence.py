@@ -12,7 +12,7 @@ import pytest
 from support.synthetic.stamp import with_time_stamp
 from tracking.camera import Camera
 from tracking.images import clock_picture
-from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.photo_sequence import calibrated_for, exposure_times, open_photos
 from zebro_lab.track.request import TimeRequest
 
@@ -38,14 +38,6 @@ def test_photographs_are_ordered_by_their_own_clock(tmp_path):
         assert names_of(sequence) == ("b.jpg", "c.jpg", "a.jpg")
         assert sequence.source == "sim:photographs"
         np.testing.assert_allclose(sequence.times.t - STARTED, [0.5, 2.0, 4.25], atol=1e-3)
-
-
-def test_a_file_that_is_no_picture_does_not_keep_the_others_from_their_times(tmp_path):
-    for number in range(3):
-        photo(tmp_path / f"p{number}.jpg", 2.0 * number + 0.25)
-    (tmp_path / "p1a.jpg").write_bytes(b"")
-    with open_photos(tmp_path, TimeRequest()) as sequence:
-        assert len(sequence.photos) == 4
 
 
 def test_a_copy_of_a_photograph_counts_once_and_is_named(tmp_path):
@@ -155,8 +147,3 @@ def test_a_lens_fits_photographs_of_its_shape_alone(tmp_path):
         pytest.raises(DataError, match="80x45"),
     ):
         calibrated_for(camera, sequence)
-
-
-def test_nothing_of_the_name_is_said_so(tmp_path):
-    with pytest.raises(NotFound, match="nowhere"), open_photos(tmp_path / "nowhere", TimeRequest()):
-        pass

@@ -41,10 +41,6 @@ def test_from_above_the_robot_s_marker_lies_where_the_robot_was(track, name):
     assert abs(np.angle(np.exp(1j * turned))) < np.radians(2)
 
 
-def test_simulated_photographs_are_called_so(track):
-    assert photos_of_track(track).simulated
-
-
 def test_a_photograph_that_moved_away_is_missed_by_name(track):
     (track.parent / SHOWN[1]).unlink()
     with pytest.raises(NotFound, match=SHOWN[1]):

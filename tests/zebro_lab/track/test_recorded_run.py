@@ -139,11 +139,3 @@ def test_times_that_cannot_be_are_one_line_and_write_nothing(arguments, message,
     assert message in err
     assert err.count("\n") == 1
     assert not Path("run/track").exists()
-
-
-def test_a_moment_of_photographs_at_intervals_is_wrong_usage(lab, run_command):
-    given = ("--interval", "2", "--start", "2020-06-01")
-    code, out, err = run_command("track", "photos", *BENCH, "--run", "run", *given)
-    assert (code, out) == (2, "")
-    assert "--start: the photographs' times are not those of a camera's clock" in err
-    assert not Path("run/track").exists()

@@ -5,7 +5,6 @@ import json
 import re
 import shutil
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -21,10 +20,8 @@ from tracking.photos import search
 from tracking.pose import BodyPose
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.track.annotate_request import AnnotateRequest
-from zebro_lab.track.annotate_stage import annotate
 from zebro_lab.track.folder import TRACKED
-from zebro_lab.track.request import TimeRequest, TrackRequest
+from zebro_lab.track.request import TimeRequest
 from zebro_lab.track.stage import preview, track
 
 
@@ -89,21 +86,6 @@ def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, 
     assert np.abs(difference).max() < 1e-4
 
 
-def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
-    file = tmp_path / "said.toml"
-    said = AnnotateRequest(
-        request_.photos, file, moves=("simulated_03.jpg:1.0,1.0,45",), deletes=("simulated_05.jpg",)
-    )
-    annotate(said)
-    result = track(replace(request_, annotations=file), Nobody())
-    by_photo = {seen.photo: seen for seen in result.tracked.track.observations}
-    moved = by_photo["simulated_03.jpg"]
-    assert moved.source == "hand"
-    np.testing.assert_allclose(moved.planar, [1.0, 1.0, np.pi / 4])
-    assert result.tracked.lost == {"simulated_05.jpg": "deleted by a correction"}
-    assert 'kind = "move"' in (result.folder / "annotations.toml").read_text()
-
-
 def walk_of_the_composite() -> pd.DataFrame:
     return truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
 
@@ -144,18 +126,6 @@ def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, expos
     planar = [seen.planar for seen in observations]
     np.testing.assert_allclose(planar, exposures[["x", "y", "yaw"]], atol=1e-9)
     np.testing.assert_allclose(np.diff([seen.t for seen in observations]), 4.0)
-
-
-def test_a_marker_of_another_side_is_noticed(request_, undrawn, tmp_path):
-    other = edited(request_, tmp_path, "robot.toml", "side = 0.12", "side = 0.15")
-    result = track(other, Nobody())
-    assert any("the side of the robot's marker" in note for note in result.tracked.notes)
-
-
-def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str) -> TrackRequest:
-    file = tmp_path / name
-    file.write_text(getattr(request, file.stem).read_text().replace(old, new))
-    return replace(request, **{file.stem: file})
 
 
 def test_a_stop_leaves_nothing(request_):

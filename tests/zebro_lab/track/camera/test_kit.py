@@ -20,7 +20,6 @@ from zebro_lab.track.camera.kit import (
     PAPERS,
     kit_pages,
     squares_of,
-    starter_floor,
 )
 from zebro_lab.track.camera.pictures import draw_page, save_pages
 from zebro_lab.track.camera.stage import parse_board
@@ -74,16 +73,6 @@ def test_markers_and_bars_have_their_size_in_the_file_itself(pdf):
         assert np.abs(widths - side).min() < 1e-3
 
 
-@pytest.mark.parametrize("paper", PAPERS)
-def test_everything_lies_on_the_paper_with_a_margin_to_print(paper):
-    for page in kit_pages(paper):
-        for black in page.rectangles:
-            assert black.x > 4
-            assert black.x + black.width < page.width - 4
-            assert black.y > 4
-            assert black.y + black.height < page.height - 4
-
-
 def picture(page, dpi: int) -> np.ndarray:
     figure = draw_page(page)
     figure.set_dpi(dpi)
@@ -129,13 +118,3 @@ def test_a_checkerboard_is_printed_with_the_corners_that_it_is_named_by(paper):
 def test_a_board_that_does_not_fit_on_the_paper_is_refused():
     with pytest.raises(SettingsError, match=r"10 x 7 squares are 400 x 280 mm; .* 281 x 179 mm"):
         kit_pages("a4", parse_board("checkerboard:9x6:40mm"))
-
-
-def test_the_starting_floor_has_the_markers_that_are_printed():
-    assert starter_floor().marker_ids == FLOOR_MARKERS
-    assert {marker.side for marker in starter_floor().markers} == {FLOOR_SIDE / 1e3}
-
-
-def test_unknown_paper_is_refused():
-    with pytest.raises(SettingsError, match="a4 or letter"):
-        kit_pages("a3")

@@ -31,6 +31,24 @@ LEVER = 0.7
 RASTER_SD = 0.02
 """Standard deviation of x and of y of a pose found on the raster, in lengths of the robot [-]."""
 
+PASTED_SD = 1 / 300
+"""Standard deviation of position, in lengths of the robot, of a fully visible exposure where other
+things are as strong as the robot [-].
+
+It is proportional to the root of their power, (1 - score²) / score², over that of the visible
+share. It was calibrated on simulated walks that no test uses."""
+
+STRIP_SD = 1.25e-4
+"""Standard deviation of position, in lengths of the robot, of an exposure of which half is visible,
+since a strip alone hardly says where along the robot's top it lies [-].
+
+It is proportional to the square of the hidden over the visible share. Of 26 exposures with less
+than a quarter visible, on 14 simulated walks that no test uses, 90 % intervals held 62 % of x and
+81 % of y without it (errors of one walk are alike, up to 2.5 mm), and hold 77 and 88 % with it; of
+all 96 exposures half a body apart they hold 92 and 93 %."""
+
+_LEAST_SHARE = 0.05  # visible: less is taken as this
+
 _DIVERGED = 0.06  # of the length: an alignment that moves farther has diverged
 _DIVERGED_TURN = 0.15  # rad: the same
 
@@ -178,21 +196,7 @@ class KnownExposure:
         covariance[np.ix_(HELD, HELD)] = self.prior.covariance
         level = BodyPose(self.level(pose), covariance)
         slip = RASTER_SD * self.size[0]
-        return _widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
-
-    def widened(self, alignment: Alignment, slip: float, *, lever: float) -> Alignment:
-        """Add to the covariance the error that other exposures and the floor cause.
-
-        Args:
-            alignment: The alignment, of a score above 0.
-            slip: Standard deviation of x and of y where other things are as strong as the robot,
-                in lengths of the robot [-]; the variance is proportional to the ratio of their
-                power to the robot's, (1 - score²) / score².
-            lever: Lever arm that converts it to heading, in lengths of the robot [-].
-        """
-        length = self.size[0]
-        power = max(1 - alignment.score**2, 0.0) / alignment.score**2
-        return _widened(alignment, slip * length * float(np.sqrt(power)), lever=lever * length)
+        return widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
 
     def on_photo(
         self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
@@ -239,7 +243,19 @@ class KnownExposure:
         return (slice(low[1], high[1]), slice(low[0], high[0])), xy
 
 
-def _widened(alignment: Alignment, slip: float, *, lever: float) -> Alignment:
+def position_sd(score: float, share: float) -> float:
+    """Compute the error of x and of y that other exposures and the floor cause, in robot lengths.
+
+    Args:
+        score: Correlation of the exposure's visible part with the template [-].
+        share: Visible share of the top [-].
+    """
+    part = max(share, _LEAST_SHARE)
+    power = max(1 - score**2, 0.0) / score**2
+    return float(np.hypot(PASTED_SD * np.sqrt(power / part), STRIP_SD * (1 / part - 1) ** 2))
+
+
+def widened(alignment: Alignment, slip: float, *, lever: float) -> Alignment:
     """Add independent errors of standard deviation `slip` to x, y, and `slip / lever` to yaw."""
     turn = slip / lever
     added = np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2

@@ -24,7 +24,7 @@ from model.arrays import Array
 from tracking.body.search import match_whole
 from tracking.body.template import sample
 from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
-from tracking.composite.known import LEAST_SCORE, Exposure
+from tracking.composite.known import LEAST_SCORE, Exposure, position_sd, widened
 from tracking.composite.reading import BodyRaster, Reading
 from tracking.composite.steps import (
     CLIMB,
@@ -56,20 +56,12 @@ where points of the floor's colour may be hidden [-]."""
 OUTLIER_SD = 2.5
 """Standard deviations beyond which a point of a pasted exposure is an outlier [-]."""
 
-PASTED_SD = 1 / 300
-"""Standard deviation of position, in lengths of the robot, of a fully visible exposure where other
-things are as strong as the robot [-].
-
-It is proportional to the root of their power, (1 - score²) / score². It was calibrated on simulated
-walks that no test uses."""
-
 _LEAST_OF_STEP = 0.6  # least distance as a share of the usual step; intervals are regular
 _LEAST_MATCH = 0.5
 _SHOWS = 0.5  # share of visible points that are not occluded
 _TRIED = 5
 _FAR = 3.0  # in standard deviations: beyond it the colour differs from that a step away
 _STRIP_LEVER = 0.9  # lever arm for the heading of a strip, of the length
-_LEAST_SHARE = 0.05
 _TOGETHER = 100  # poses whose colours fit into a processor's cache
 
 
@@ -140,8 +132,8 @@ class PastedReading(Reading):
             if alignment is None:
                 alignment = known.rough(pose)
             else:
-                part = float(np.sqrt(max(share, _LEAST_SHARE)))
-                alignment = known.widened(alignment, PASTED_SD / part, lever=_STRIP_LEVER * part)
+                slip = position_sd(alignment.score, share) * self.length
+                alignment = widened(alignment, slip, lever=_STRIP_LEVER * self.length)
             found.append(Exposure(alignment, share))
             visible = visible & ~self.likelier[0].hidden_pixels(alignment.pose)
         return tuple(found)

@@ -7,6 +7,7 @@ import numpy as np
 
 from support.drawn_board import LENS, PRIOR, SIZE, TOP, VIEW, composite, likeness
 from tracking.camera import project
+from tracking.composite.known import position_sd
 
 
 def test_something_that_lies_on_a_robot_does_not_draw_it_where_odd_points_are_left_out():
@@ -37,3 +38,11 @@ def test_the_pixels_around_an_exposure_show_its_plane():
     np.testing.assert_allclose(xy[row, column], planar[:2], atol=3e-3)
     reach = 0.75 * np.hypot(*SIZE)
     assert np.abs(xy - planar[:2]).max() > reach - 5e-3
+
+
+def test_an_exposure_is_less_sure_the_less_of_it_is_seen_and_the_less_it_is_alike():
+    sd = [position_sd(0.99, share) for share in (1.0, 0.5, 0.25, 0.1, 0.05, 0.0)]
+    assert sd == sorted(sd)
+    assert sd[-2] == sd[-1] < 0.06
+    assert position_sd(1.0, 1.0) == 0.0
+    assert position_sd(0.8, 1.0) > 3 * position_sd(0.98, 1.0)

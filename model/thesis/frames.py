@@ -26,8 +26,7 @@ def hip_frames(robot: Robot, path: ThesisPath) -> Array:
         Homogeneous transforms, shape (n, 6, 4, 4); positions in m.
     """
     body = attitude(*path.orientation.T)[:, None]
-    origin = path.position[:, None] + np.squeeze(body @ robot.hips[..., None], -1)
-    return _transforms(body @ rotation_y(path.theta), origin)
+    return _transforms(body @ rotation_y(path.theta), _on_body(path, robot.hips))
 
 
 def contact_frames(robot: Robot, path: ThesisPath) -> Array:
@@ -46,13 +45,10 @@ def contact_frames(robot: Robot, path: ThesisPath) -> Array:
     Returns:
         Homogeneous transforms, shape (n, 6, 4, 4); positions in m.
     """
-    body = attitude(*path.orientation.T)[:, None]
     lowest = contact_angle(path.phi, robot.toe_beyond)
     x, z = contact_in_body(path.theta, lowest, robot.leg_radius)
     leg = robot.hips + np.stack([np.asarray(x), np.zeros_like(path.phi), np.asarray(z)], axis=-1)
-    origin = path.position[:, None] + np.squeeze(body @ leg[..., None], -1)
-    lean = path.theta + path.phi - np.pi / 2
-    return _transforms(rotation_z(path.angles[:, 2])[:, None] @ rotation_y(lean), origin)
+    return _transforms(_contact_axes(path), _on_body(path, leg))
 
 
 def contact_forces(path: ThesisPath) -> Array:
@@ -61,10 +57,20 @@ def contact_forces(path: ThesisPath) -> Array:
     Args:
         path: The walk, of n samples.
     """
+    along_axes = np.concatenate([path.traction_force, path.normal_force[..., None]], axis=-1)
+    return np.squeeze(_contact_axes(path) @ along_axes[..., None], -1)
+
+
+def _on_body(path: ThesisPath, points: Array) -> Array:
+    """Transform points of the body, shape (..., 6, 3), to the inertial frame, (n, 6, 3) [m]."""
+    body = attitude(*path.orientation.T)[:, None]
+    return path.position[:, None] + np.squeeze(body @ points[..., None], -1)
+
+
+def _contact_axes(path: ThesisPath) -> Array:
+    """Compute the rotations from contact to inertial frame, shape (n, 6, 3, 3)."""
     lean = path.theta + path.phi - np.pi / 2
-    axes = rotation_z(path.angles[:, 2])[:, None] @ rotation_y(lean)
-    own = np.concatenate([path.traction_force, path.normal_force[..., None]], axis=-1)
-    return np.squeeze(axes @ own[..., None], -1)
+    return rotation_z(path.angles[:, 2])[:, None] @ rotation_y(lean)
 
 
 def _transforms(rotation: Array, origin: Array) -> Array:

@@ -18,7 +18,7 @@ def test_texts_differ_exactly_where_numbers_do(values):
 
 
 @given(NUMBERS)
-def test_a_neighbour_is_told_apart(value):
+def test_a_neighbour_is_distinguished(value):
     one, other = format_distinct(value, math.nextafter(value, math.inf))
     assert one != other
 

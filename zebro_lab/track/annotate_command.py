@@ -48,25 +48,15 @@ def annotate(
     """Annotate photographs for the tracker: annotations.toml, used by track --annotations."""
     from zebro_lab.track import annotate_stage
 
-    if grid is None:
-        if around is not None:
-            raise typer.BadParameter("applies only with --grid", param_hint="'--around'")
-        _annotate(request, output)
+    if grid is not None:
+        if request.photo is None:
+            raise typer.BadParameter("missing: name the photograph to draw", param_hint="'--photo'")
+        annotate_stage.draw_grid(request.photos, request.photo, grid, around=around, reach=reach)
+        output.say(f"wrote {grid}")
+        output.document("annotate", {"written": [grid]})
         return
-    if request.photo is None:
-        raise typer.BadParameter("missing: name the photograph to draw", param_hint="'--photo'")
-    annotate_stage.draw_grid(request.photos, request.photo, grid, around=around, reach=reach)
-    output.say(f"wrote {grid}")
-    output.document("annotate", {"written": [grid]})
-
-
-def _annotate(request: AnnotateRequest, output: Output) -> None:
-    """Add the request's annotations to its file and print how many the file then holds.
-
-    Raises `BadParameter` if the request has none.
-    """
-    from zebro_lab.track import annotate_stage
-
+    if around is not None:
+        raise typer.BadParameter("applies only with --grid", param_hint="'--around'")
     if request.is_empty:
         raise typer.BadParameter(
             "no annotation is given; use --corners, --click, --move, --flip, --delete, "

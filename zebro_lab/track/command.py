@@ -43,18 +43,19 @@ PreviewPng = Annotated[
 @request_command()
 def track(request: TrackRequest, preview: PreviewPng = None, output: Output = TEXT) -> None:
     """Track the robot in photographs; write track.csv with covariance, track.tum, pictures."""
-    if preview is not None:
-        _preview(request, preview, output)
-        return
-    if request.out is None and request.run is None:
-        raise typer.BadParameter("missing: give --run RUN or --out FOLDER", param_hint="'--run'")
-    _track(request, output)
-
-
-def _track(request: TrackRequest, output: Output) -> None:
     from tracking.errors import TrackStopped
     from zebro_lab.track import screen, stage
 
+    if preview is not None:
+        seen = stage.preview(request, preview)
+        for line in (*screen.preview_lines(seen), f"wrote {preview}"):
+            output.say(line)
+        output.document("track", {"written": [preview]})
+        if any(check.is_off for check in seen.tape):
+            sys.stderr.write("distances marked off differ by over 4 mm; measure the floor again\n")
+        return
+    if request.out is None and request.run is None:
+        raise typer.BadParameter("missing: give --run RUN or --out FOLDER", param_hint="'--run'")
     with output.progress(TrackStopped) as watcher:
         result = stage.track(request, watcher)
     for line in screen.track_lines(result):
@@ -73,14 +74,3 @@ def _print_document(result: "TrackResult", output: Output) -> None:
     }
     notes = {"left_out": dict(result.tracked.lost), "notes": list(result.tracked.notes)}
     output.document("track", {**content, **numbers, **notes})
-
-
-def _preview(request: TrackRequest, file: Path, output: Output) -> None:
-    from zebro_lab.track import screen, stage
-
-    seen = stage.preview(request, file)
-    for line in (*screen.preview_lines(seen), f"wrote {file}"):
-        output.say(line)
-    output.document("track", {"written": [file]})
-    if any(check.is_off for check in seen.tape):
-        sys.stderr.write("distances marked off differ by over 4 mm; measure the floor again\n")

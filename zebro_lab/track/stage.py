@@ -22,6 +22,7 @@ from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.files.single_file import picture, require_overwritable
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.robot.marker_print import MarkerPrint
+from zebro_lab.track import pictures
 from zebro_lab.track.annotations import ANNOTATIONS_FILE, render_annotations
 from zebro_lab.track.clock import CountedTimes
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
@@ -54,8 +55,6 @@ def preview(request: TrackRequest, file: Path) -> PhotoPreview:
             unreadable, shows fewer than 4 points of the floor or the robot's marker twice, or the
             floor's map does not fit its marks or has the robot's marker.
     """
-    from zebro_lab.track import pictures  # matplotlib takes most of a second
-
     target = require_overwritable(file, PREVIEW, inputs=request.inputs)
     inputs = read_inputs(request)
     with ExitStack() as stack:
@@ -181,8 +180,6 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
 
 
 def _draw(draft: Path, result: TrackResult, sequence: PhotoSequence, form: PictureFormat) -> None:
-    from zebro_lab.track import pictures  # matplotlib takes most of a second
-
     track, seen = result.tracked.track, result.tracked.floor
     # In the last photograph the robot no longer hides the floor where the path begins.
     last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None

@@ -78,7 +78,7 @@ def refined(pixels: np.ndarray, clicks: np.ndarray, sd: float = 0.5, plate: TopP
 
 def test_edges_bring_corners_and_heading_nearer_to_the_truth_than_clicks():
     rng, errors, squared, yaw = np.random.default_rng(1), [], [], []
-    for _ in range(16):
+    for _ in range(40):
         clicks = corners() + rng.normal(0, 0.5, (4, 2))
         found = refined(PICTURE, clicks)
         assert found.sides == 4

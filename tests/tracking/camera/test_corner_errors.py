@@ -41,7 +41,7 @@ def fitted(smooth: float, rng: np.random.Generator, *, views=14, noise=0.1):
     return found, lens
 
 
-def test_noise_and_smooth_errors_are_told_apart():
+def test_noise_and_smooth_errors_are_distinguished():
     boards, _ = fitted(0.2, np.random.default_rng(1))
     errors = corner_errors(boards)
     assert errors.noise == pytest.approx(0.1, rel=0.1)

@@ -67,7 +67,7 @@ def test_a_fault_is_named_with_file_and_key(tmp_path, text, message):
     assert str(file) in str(caught.value)
 
 
-def test_the_file_of_the_other_option_is_told_apart(tmp_path):
+def test_the_file_of_the_other_option_is_distinguished(tmp_path):
     file = tmp_path / "x.toml"
     file.write_text("focal = [1, 1]\n")
     with pytest.raises(SettingsError, match=r"are --camera and --floor exchanged\?"):

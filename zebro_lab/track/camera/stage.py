@@ -28,6 +28,7 @@ from zebro_lab.files.provenance import file_hash
 from zebro_lab.files.single_file import SingleFile, require_overwritable
 from zebro_lab.files.units import option_to_si
 from zebro_lab.track.camera.kit import BOARD, kit_pages, starter_floor
+from zebro_lab.track.camera.pictures import save_pages
 from zebro_lab.track.camera.request import CameraRequest
 from zebro_lab.track.camera_file import HEADING, render_camera_file
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
@@ -211,8 +212,6 @@ def write_kit(out: Path, *, paper: str = "a4", board: str = "kit") -> tuple[Path
         AlreadyExists: `out` is a file, has any `floor.toml`, or a `kit.pdf` with other content.
         SettingsError: The paper is unknown, or the board is invalid or does not fit on it.
     """
-    from zebro_lab.track.camera.pictures import save_pages  # matplotlib takes most of a second
-
     pages = kit_pages(paper, parse_board(board))
     if (out / FLOOR_FILE).exists():
         raise AlreadyExists(

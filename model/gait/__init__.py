@@ -4,7 +4,7 @@
 from model.gait.buehler import buehler_clock, buehler_reference
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction, inner_legs
-from model.gait.events import EventSystem, EventTimes, events_reference, scheduled_reference
+from model.gait.events import EventSystem, EventTimes, scheduled_reference
 from model.gait.notation import TETRAPOD, TRIPOD, Gait, parse_gait
 from model.gait.reference import LegReference, SampledReference
 from model.gait.scheduler import straight_system
@@ -27,7 +27,6 @@ __all__ = [
     "TripodAngles",
     "buehler_clock",
     "buehler_reference",
-    "events_reference",
     "ideal_liftoff",
     "inner_legs",
     "parse_gait",

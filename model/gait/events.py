@@ -12,8 +12,7 @@ from model.errors import DomainError
 from model.gait.cyclic import CyclicReference
 from model.gait.maxplus import coupling_time, eigenvalue, eigenvector, otimes, solve_implicit
 from model.gait.notation import Gait
-from model.gait.reference import SampledReference
-from model.gait.stance import Intervals, event_intervals, require_stance_angles
+from model.gait.stance import Intervals, event_intervals
 
 _SAME_TIME = 1e-9  # s: events nearer than this are one knot of a leg reference
 
@@ -164,50 +163,3 @@ def scheduled_reference(
         phase=np.maximum(phase, 0.0),
         inner=inner,
     )
-
-
-def events_reference(
-    events: EventTimes, touchdown: ArrayLike, *, liftoff: ArrayLike
-) -> SampledReference:
-    """Interpolate leg angles linearly between given events, periodic or not.
-
-    Each leg rests at its touchdown angle, plus whole turns, before its first touchdown and after
-    its last. Angles grow by 2 pi from one touchdown to the next.
-
-    Args:
-        events: Touchdowns and lift-offs of six legs, in order; the first row's lift-offs, which
-            precede the first touchdowns, are not used.
-        touchdown: Touchdown angles, a number or shape (6,) [rad].
-        liftoff: Lift-off angles, a number or shape (6,) [rad].
-
-    Returns:
-        Leg angles from the first touchdown of any leg to the last.
-
-    Raises:
-        DomainError: A lift-off angle does not exceed touchdown by less than a turn, a leg's events
-            are out of order, all events are at one time, or the legs are not six.
-    """
-    cycles, n_legs = events.touchdown.shape
-    down, up = (np.broadcast_to(np.asarray(a, dtype=float), n_legs) for a in (touchdown, liftoff))
-    require_stance_angles(down, up)
-    times = np.empty((2 * cycles - 1, n_legs))
-    times[::2], times[1::2] = events.touchdown, events.liftoff[1:]
-    turns = 2 * np.pi * np.arange(cycles)[:, None]
-    angles = np.empty_like(times)
-    angles[::2], angles[1::2] = down + turns, up + turns[:-1]
-    _require_order(times)
-    knots = np.unique(times)
-    knots = knots[np.concatenate([[True], np.diff(knots) > _SAME_TIME])]
-    theta = [np.interp(knots, *leg) for leg in zip(times.T, angles.T, strict=True)]
-    return SampledReference(knots, np.column_stack(theta))
-
-
-def _require_order(times: Array) -> None:
-    """Raise `DomainError` unless the times of each leg (column) increase strictly."""
-    late = np.argwhere(np.diff(times, axis=0) <= 0)
-    if len(late):
-        event, leg = late[0]
-        raise DomainError(
-            f"leg {leg + 1} has an event at {times[event, leg]:g} s and the next at "
-            f"{times[event + 1, leg]:g} s; expected touchdown and lift-off in turn, each later"
-        )

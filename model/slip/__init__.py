@@ -4,7 +4,6 @@
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition, convert_slip, require_definition, slip_ratio
-from model.slip.lateral import lateral_slip, slip_angle
 from model.slip.law import Parameter, SlipLaw
 from model.slip.laws import LAWS, law_options, slip_law
 from model.slip.magic_formula import MagicFormula, magic_formula
@@ -22,12 +21,10 @@ __all__ = [
     "SlipDefinition",
     "SlipLaw",
     "convert_slip",
-    "lateral_slip",
     "law_options",
     "magic_formula",
     "read_off",
     "require_definition",
-    "slip_angle",
     "slip_law",
     "slip_ratio",
 ]

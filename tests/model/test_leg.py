@@ -89,14 +89,6 @@ def test_the_lowest_angle_is_the_circles_lowest_point_at_any_heading(theta, roll
     assert wrap_angle(phi - printed) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_the_sources_lowest_point_depends_on_the_heading():
-    roll, theta = 0.05, np.pi / 2
-    along_x = thesis_lowest_angle(theta, thesis_tilt(roll, 0.0, 0.0))
-    along_y = thesis_lowest_angle(theta, thesis_tilt(roll, 0.0, np.pi / 2))
-    assert along_x == pytest.approx(0.0, abs=1e-12)
-    assert along_y == pytest.approx(roll, rel=1e-3)
-
-
 @given(THETA, TILT, TILT, BEYOND)
 def test_no_point_of_the_arc_is_below_the_contact(theta, roll, pitch, toe_beyond):
     phi = lowest_angle(theta, roll, pitch)
@@ -135,12 +127,6 @@ def test_height_rates_are_derivatives(phi, rate, toe_beyond):
     turned -= hip_height_rate(behind, rate, R, toe_beyond)
     acceleration = hip_height_acceleration(phi, rate, R, toe_beyond)
     assert acceleration == pytest.approx(turned / (2 * h), abs=1e-5)
-
-
-def test_the_sources_touchdown_and_liftoff_angles_have_equal_heights():
-    touchdown, liftoff = np.radians(50.0), np.pi - np.arcsin((np.sin(np.radians(50.0)) + 1) / 2)
-    heights = hip_height(np.pi / 2 - np.array([touchdown, liftoff]), R)
-    assert heights[0] == pytest.approx(heights[1], abs=1e-15)
 
 
 @compiled

@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: MIT
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -93,15 +92,6 @@ def test_start_is_exactly_at_touchdown_and_liftoff():
     assert legs.angles(0.0)[0].tolist() == [1.0, 2.3] * 3
 
 
-@given(references(), st.floats(-0.2, 0.2))
-def test_offset_shifts_its_leg_alone(legs, offset):
-    by = np.array([0.0, 0.0, offset, 0.0, 0.0, 0.0])
-    t = np.linspace(0.0, 2.0, 50)
-    shifted = replace(legs, offset=legs.offset + by)
-    np.testing.assert_allclose(shifted.angles(t), legs.angles(t) + by, atol=1e-12)
-    np.testing.assert_array_equal(shifted.speeds(t), legs.speeds(t))
-
-
 @given(references(), st.floats(-5.0, 5.0))
 def test_mirror_image_exchanges_left_and_right_and_undoes_itself(legs, t):
     image = legs.mirrored()
@@ -113,14 +103,6 @@ def test_mirror_image_exchanges_left_and_right_and_undoes_itself(legs, t):
 def test_two_legs_have_no_mirror_image():
     with pytest.raises(DomainError, match="2 legs"):
         simple(phase=np.zeros(2)).mirrored()
-
-
-def test_numbers_stand_for_all_legs():
-    legs = simple(offset=0.1)
-    for name in ("touchdown", "liftoff", "ground_time", "flight_time", "pause", "offset"):
-        assert getattr(legs, name).shape == (6,)
-    assert legs.ground_speed.shape == legs.flight_speed.shape == (6,)
-    assert legs.angles(np.zeros(4)).shape == legs.speeds(np.zeros(4)).shape == (4, 6)
 
 
 @pytest.mark.parametrize(

@@ -1,23 +1,18 @@
 # SPDX-License-Identifier: MIT
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.gait.direction import inner_legs
-from model.gait.events import EventTimes, events_reference, scheduled_reference
+from model.gait.events import scheduled_reference
 from model.gait.maxplus import cyclicity
-from model.gait.notation import TETRAPOD, TRIPOD, Gait
+from model.gait.notation import TRIPOD, Gait
 from model.gait.scheduler import straight_system
-from model.gait.stance import stance_intervals
 from model.gait.steering import TripodAngles, tripod_reference
 from model.gait.turning import turning_system
 from model.robot import LEFT
 
 DOWN, UP = 0.8, 2.2
-TIME = st.integers(1, 40).map(lambda n: n / 8)
-GAITS = st.sampled_from([TRIPOD, TETRAPOD])
 
 
 def turn(gait=TRIPOD, *, flight=0.8, ground=0.8, by=0.1, stance=0.05):
@@ -29,21 +24,6 @@ def turn(gait=TRIPOD, *, flight=0.8, ground=0.8, by=0.1, stance=0.05):
         turn_time=by,
         double_stance=stance,
     )
-
-
-@given(GAITS, TIME, TIME, TIME)
-def test_settled_events_give_the_settled_reference(gait, f, g, p):
-    system = turn(gait, flight=f, ground=g, by=p)
-    n, period = 6, system.cycle_time
-    one = system.steady_state
-    cycles = np.arange(5)[:, None] * period
-    zero = one.touchdown[0, system.gait.group_of == 0].min()
-    events = EventTimes(one.touchdown + cycles - zero, one.liftoff + cycles - zero)
-    sampled = events_reference(events, DOWN, liftoff=UP)
-    legs = scheduled_reference(system, DOWN, liftoff=UP)
-    t = np.linspace(events.touchdown[0].max(), events.touchdown[-1].min(), 200)
-    turns = (sampled.angles(t) - legs.angles(t)) / (2 * np.pi)
-    np.testing.assert_allclose(turns, np.broadcast_to(np.round(turns[0]), (200, n)), atol=1e-7)
 
 
 def test_straight_tripod_schedule_is_the_straight_tripod():
@@ -62,26 +42,6 @@ def test_double_stance_lasts_as_long_as_asked():
     lift = lift[(lift > legs.period) & (lift < 11 * legs.period)]
     gaps = [t - stands[1][stands[1][:, 0] <= t, 0].max() for t in lift]
     np.testing.assert_allclose(gaps, 0.2)
-
-
-@given(st.integers(0, 2**32 - 1))
-def test_transient_reference_stands_when_its_events_say(seed):
-    system = turn(TETRAPOD)
-    start = np.random.default_rng(seed).uniform(0.0, 2.0, 12)
-    events = system.events(5, start=start)
-    legs = events_reference(events, DOWN, liftoff=UP)
-    sampled = stance_intervals(legs.t, legs.theta, DOWN, UP)
-    span = (float(events.touchdown[0].max()), float(events.touchdown[-1].min()))
-    for found, expected in zip(sampled, events.stance_intervals(span), strict=True):
-        cut = np.clip(found, *span)
-        cut = cut[cut[:, 1] > cut[:, 0] + 1e-7]
-        np.testing.assert_allclose(cut, expected[expected[:, 1] > expected[:, 0] + 1e-7], atol=1e-7)
-
-
-def test_events_out_of_order_are_refused():
-    times = np.zeros((3, 6)) + np.arange(3)[:, None]
-    with pytest.raises(DomainError, match="leg 1 has an event at 0 s and the next at -1 s"):
-        events_reference(EventTimes(times, times - 2.0), DOWN, liftoff=UP)
 
 
 def test_liftoff_before_touchdown_is_refused():

@@ -53,18 +53,6 @@ def test_no_angle_between_samples_is_a_count_off(cycle, ground, touchdown, lifto
     assert errors(drawn, fine[::10], truth[::10]).max() < 1
 
 
-@pytest.mark.parametrize(("cycle", "began"), [(2.0, 0.3), (1.83, 0.1), (2.71, 0.7)])
-def test_corners_between_samples_are_kept(cycle, began):
-    gait = buehler_reference(-0.6, 0.7, ground_time=0.51 * cycle, cycle_time=cycle)
-    log, fine, truth = within(gait, began)
-    assert errors(log.smooth(), fine, truth).max() < 0.07
-    rng = np.random.default_rng(4)
-    fine, truth = fine[::10], truth[::10]
-    draws = np.stack([log.smooth(rng).angles(fine) for _ in range(60)])
-    assert np.abs(draws - truth).max() < 0.2 * STEP
-    assert np.mean((draws.min(axis=0) <= truth) & (truth <= draws.max(axis=0))) > 0.85
-
-
 @given(seed=st.integers(0, 1000))
 def test_legs_that_change_speed_all_the_time_never_jump(seed):
     rng = np.random.default_rng(seed)

@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Wrong signs, zeros and orders are suspected of every gait, and of none that is right."""
 
-import sys
-from dataclasses import replace
-from itertools import permutations
-
 import numpy as np
 import pytest
 
 from model.gait.leg_faults import DirectionFault, SignFault, ZeroFault, leg_faults
-from model.gait.leg_motion import LegMotion, leg_motion
-from model.gait.leg_order import ORDERS, OrderFault
+from model.gait.leg_motion import leg_motion
+from model.gait.leg_order import OrderFault
 from support.leg_motions import T, gaits, tripod, virtual_world
 
 
@@ -88,40 +84,3 @@ def test_a_mirrored_side_is_found_beside_a_wrong_order():
 def test_a_leg_that_turns_evenly_against_its_side_is_found():
     theta = 5 * T[:, None] * np.array([1, 1, -1, 1, 1, 1])
     assert faults(theta) == [DirectionFault((3,))]
-
-
-@pytest.mark.long
-@pytest.mark.reference
-def test_hits_over_planted_faults(shared, capsys):
-    """Print the share of planted faults that are suspected, by walk and kind."""
-    walks = {**RIGHT, **dict(virtual_world(shared))}
-    rows = [f"{'walk':42}{'sign':>9}{'zero':>9}{'order':>11}{'usual order':>13}"]
-    for name, theta in walks.items():
-        if leg_motion(theta) is None:
-            continue
-        rows.append(f"{name:42}" + "".join(_hits(theta)))
-    rows.append(
-        f"false alarms: {sum(bool(faults(theta)) for theta in walks.values())} of {len(walks)}"
-    )
-    with capsys.disabled():
-        sys.stdout.write("\n" + "\n".join(rows) + "\n")
-    assert rows[-1].startswith("false alarms: 0 ")
-
-
-def listed(motion: LegMotion, order: tuple[int, ...]) -> LegMotion:
-    """Return the motion that a log shows which lists the legs in this order."""
-    parts = ("turns", "direction", "centre", "weight", "phase")
-    return replace(motion, **{name: getattr(motion, name)[np.array(order) - 1] for name in parts})
-
-
-def _hits(theta: np.ndarray) -> list[str]:
-    signs = [faults(np.where(np.arange(6) == leg, -1, 1) * theta) for leg in range(6)]
-    zeros = [faults(theta + np.radians(zero)) for zero in (-90, -45, 45, 90, 180)]
-    motion = leg_motion(theta)
-    assert motion is not None
-    some = list(permutations(range(1, 7)))[3::7]
-    orders, usual = ([leg_faults(listed(motion, p)) for p in which] for which in (some, ORDERS))
-    return [
-        f"{sum(map(bool, found)):>{width}}/{len(found)}"
-        for found, width in ((signs, 7), (zeros, 7), (orders, 7), (usual, 11))
-    ]

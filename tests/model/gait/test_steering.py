@@ -114,12 +114,6 @@ def test_measured_angles_stand_where_they_are_given(name):
     assert angles == TripodAngles(**given_deg)
 
 
-def test_outer_liftoff_keeps_the_steering_factor_of_a_given_inner_one():
-    angles = tripod_angles(np.radians(50.0), 1.3, inner_liftoff=np.radians(130.0))
-    assert angles.steering_factor == pytest.approx(1.3)
-    assert np.degrees(angles.outer_touchdown) == pytest.approx(37.8366, abs=5e-5)
-
-
 def test_liftoff_before_touchdown_is_refused_with_its_side():
     with pytest.raises(DomainError, match="outer legs touch down at 60 and lift off at 40 degrees"):
         tripod_angles(

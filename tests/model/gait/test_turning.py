@@ -8,7 +8,6 @@ from model.errors import DomainError
 from model.gait.maxplus import EPSILON
 from model.gait.notation import TETRAPOD, TRIPOD, parse_gait
 from model.gait.scheduler import straight_system
-from model.gait.suriana import suriana_reference
 from model.gait.turning import turning_system
 from model.robot import LEFT, RIGHT
 
@@ -73,24 +72,6 @@ def test_a_whole_tripod_stands_at_every_instant(inner, f, g, p, d):
         stands = [bool(np.any((leg[:, 0] <= t + 1e-9) & (t <= leg[:, 1] + 1e-9)))
                   for leg in intervals]  # fmt: skip
         assert all(stands[leg] for leg in (0, 3, 4)) or all(stands[leg] for leg in (1, 2, 5))
-
-
-def test_the_emulation_has_every_outer_leg_in_flight_for_the_turn_time():
-    legs = suriana_reference(0.6, 2.3, ground_time=0.8, flight_time=0.8, turn_time=0.1)
-    period = legs.period
-    stands = legs.stance_intervals((0.0, period))
-    t = np.linspace(0.0, period, 17001)[:-1]
-    outer = [np.any([(a <= t) & (t < b) for a, b in stands[leg]], axis=0) for leg in RIGHT]
-    assert np.mean(~np.any(outer, axis=0)) * period == pytest.approx(0.1, abs=1e-3)
-
-
-def test_turn_that_the_double_stance_does_not_bind_has_the_emulations_times():
-    f, g, p = 0.6, 1.0, 0.1  # the groups need 2 (f + p), less than a leg's own cycle
-    system = build(TRIPOD, LEFT, f, g, p, 0.0)
-    legs = suriana_reference(0.6, 2.3, ground_time=g, flight_time=f, turn_time=p)
-    flight = (system.steady_state.touchdown - system.steady_state.liftoff)[0]
-    assert system.cycle_time == pytest.approx(legs.period)
-    np.testing.assert_allclose(flight, legs.flight_time)
 
 
 def test_inner_legs_that_the_gait_has_not_are_refused():

@@ -15,8 +15,6 @@ from model.walk.traction import VelocityCoulomb
 from model.walk_fit.fit import fit_walks
 from model.walk_fit.prior import (
     ACROSS,
-    FLOOR,
-    NAMES,
     WalkPrior,
     WrongLeg,
 )
@@ -82,14 +80,6 @@ def test_a_leg_five_degrees_off_is_found_as_closely_as_the_answer_says(bent_leg)
     assert np.degrees(likeliest.sd) < 2.0
 
 
-def test_draws_scatter_as_the_posterior_says(straight_legs):
-    state = straight_legs.draw(4000, rng=np.random.default_rng(3))
-    assert state.offset.shape == (4000, 6)
-    grip = straight_legs.contractions()[NAMES.index("grip")]
-    assert np.log(state.grip).std() == pytest.approx(grip.sd, rel=0.1)
-    assert np.all(state.grip > 0)
-
-
 def test_enough_draws_carry_the_answer(straight_legs):
     assert straight_legs.reliable
     assert straight_legs.weight.sum() == pytest.approx(1.0)
@@ -103,18 +93,6 @@ def test_the_single_path_has_lateral_traction_as_longitudinal_and_draws_have_the
     drawn = straight_legs.draw(500, rng=np.random.default_rng(5))
     assert np.std(np.log(drawn.lateral_grip)) > 0.05
     assert np.std(np.log(drawn.lateral_stiffness)) > 0.05
-
-
-def test_another_robot_on_the_floor_shares_what_belongs_to_the_floor(straight_legs):
-    rng = np.random.default_rng(4)
-    other = straight_legs.of_floor_alone(rng=rng)
-    before, after = straight_legs.contractions(), other.contractions()
-    for name, one, two in zip(NAMES, before, after, strict=True):
-        if name in FLOOR:
-            assert (two.mean, two.sd) == (one.mean, one.sd)
-        else:
-            assert abs(two.contraction) < 0.6 or name.startswith("leg_offset")
-    assert np.all(other.most_likely().offset == 0)
 
 
 def test_no_walk_and_a_track_of_two_poses_are_refused():

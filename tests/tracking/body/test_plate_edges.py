@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from support.synthetic import look_at
-from tracking.body import AnnotatedPose, TopPlate, plate_edges, refine_corners
-from tracking.body.plate_edges import OFFSET_SD, OUTLINE_SD
+from tracking.body import AnnotatedPose, TopPlate, refine_corners
 from tracking.camera import Camera, CameraPose, project, to_floor
 from tracking.pose import BodyPrior, fit_pose, rotation_with_derivatives
 
@@ -158,50 +157,3 @@ def test_a_top_of_a_few_pixels_keeps_its_clicks():
     picture = drawn(plate=tiny)
     assert np.ptp(corners(tiny), axis=0).max() < 15
     assert refined(picture, corners(tiny), plate=tiny).sides == 0
-
-
-def expected_covariance(corners_px: np.ndarray, *, sd_px: float) -> np.ndarray:
-    """Compute the covariance of refined corners where all four edges are clear, shape (8, 8) [px²].
-
-    Args:
-        corners_px: Corners u, v in order around the top, shape (4, 2) [px].
-        sd_px: Standard deviation of u and of v of a click [px].
-    """
-    corners = np.asarray(corners_px, dtype=float)
-    outline = [np.array([corners[k], corners[(k + 1) % 4]]) for k in range(4)]
-    edges = {
-        k: plate_edges._Edge(np.zeros(2), plate_edges._side_errors(plate_edges._length(side)))
-        for k, side in enumerate(outline)
-    }
-    by_corner, noise = plate_edges._measurement(outline, corners.mean(axis=0), edges)
-    information = np.eye(8) / sd_px**2 + by_corner.T @ np.linalg.solve(noise, by_corner)
-    return np.linalg.inv(information)
-
-
-def test_what_is_expected_of_edges_is_what_is_found():
-    found = refined(PICTURE, corners())
-    expected = expected_covariance(corners(), sd_px=0.5)
-    ratio = np.sqrt(np.diag(found.covariance) / np.diag(expected))
-    assert np.all((ratio > 0.95) & (ratio < 1.2))
-
-
-def test_the_outline_may_be_larger_but_not_shifted():
-    # Of a top 200 px long and 50 px wide, clicked so badly that only edges count.
-    long, wide = 200.0, 50.0
-    box = np.array([[long, 0.0], [long, wide], [0.0, wide], [0.0, 0.0]])
-    covariance = expected_covariance(box, sd_px=100.0)
-
-    def variance(weights: list[float]) -> float:
-        """Compute the variance of a weighted sum of u0, v0, u1, v1 and so on."""
-        return float(np.array(weights) @ covariance @ weights)
-
-    length = variance([0.5, 0, 0.5, 0, -0.5, 0, -0.5, 0])
-    width = variance([0, -0.5, 0, 0.5, 0, 0.5, 0, -0.5])
-    ends, flanks = (np.hypot(OFFSET_SD[0], OFFSET_SD[1] * side) for side in (wide, long))
-    for found, apart, own in ((length, long, ends), (width, wide, flanks)):
-        common = 2 * np.hypot(OUTLINE_SD[0], OUTLINE_SD[1] * apart)
-        assert found == pytest.approx(common**2 + 2 * own**2, rel=0.02)
-    both = np.array([0.5, -0.5, 0.5, 0.5, -0.5, 0.5, -0.5, -0.5])
-    assert variance(both.tolist()) == pytest.approx(length + width, rel=0.02)
-    middle = variance([0.25, 0] * 4), variance([0, 0.25] * 4)
-    assert middle == pytest.approx((ends**2 / 2, flanks**2 / 2), rel=0.02)

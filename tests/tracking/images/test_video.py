@@ -111,12 +111,6 @@ def test_frames_of_a_variable_rate_have_the_times_of_the_file(tmp_path):
     np.testing.assert_allclose(levels, 20 + 15 * np.arange(len(STEPS)), atol=4)
 
 
-def test_thinning_goes_by_time_and_not_by_number(tmp_path):
-    frames = list(video_frames(phone_video(tmp_path / "walk.mp4", steps=STEPS), every=0.5))
-    np.testing.assert_allclose([frame.t for frame in frames], [0, 0.9, 1.4, 2.2], atol=2e-3)
-    assert [frame.name for frame in frames] == [f"walk.mp4#{number}" for number in (0, 4, 7, 8)]
-
-
 @pytest.mark.parametrize("damaged", [{3}, set(range(len(STEPS)))])
 def test_a_frame_that_is_decoded_to_nothing_is_left_out(damaged, tmp_path, monkeypatch):
     file = phone_video(tmp_path / "a.mp4")

@@ -61,13 +61,6 @@ def test_a_tag_that_opencv_lets_go_of_is_found_where_it_is(monkeypatch):
     assert find_markers(grey, "apriltag_36h11", wanted=[7], effort=1) == ()
 
 
-def test_others_than_those_wanted_and_unknown_families_are_not_sought():
-    grey, _ = picture("apriltag_36h11", 7)
-    assert apriltag_quads(grey, "apriltag_36h11", [8]) == []
-    assert apriltag_quads(grey, "apriltag_36h10", [7]) == []
-    assert apriltag_quads(grey, "4x4_50", [7]) == []
-
-
 @pytest.fixture
 def without_package(monkeypatch):
     """Make pupil-apriltags seem not installed."""

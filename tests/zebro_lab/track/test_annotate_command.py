@@ -30,11 +30,6 @@ def test_annotations_are_added_to_those_before(run_command, tmp_path):
     ("options", "message"),
     [
         (("--photo", "simulated_01.jpg", "--corners", "1,2 3,4"), "2 corners; expected four"),
-        (("--corners", "1,2 3,4 5,6 7,8"), "--photo: missing"),
-        (("--click", "simulated_01.jpg:door=1"), "is not a pixel U,V"),
-        (("--click", "door=1,2"), "is not PHOTO:NAME=U,V"),
-        (("--move", "simulated_01.jpg:1,2"), "is not PHOTO:X,Y,YAW"),
-        (("--move", "simulated_01.jpg:a,b,c"), "not a list of numbers"),
     ],
 )
 def test_what_cannot_be_understood_is_one_line(options, message, run_command, tmp_path):

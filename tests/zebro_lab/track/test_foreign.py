@@ -123,31 +123,3 @@ def test_a_pose_that_is_partly_empty_is_refused_and_left_out_as_the_message_says
     stated = read_mapped_columns("track", file, None, MAPPED_UNITS)[0]
     path = read_foreign_track(file, stated, TrajectoryRequest())
     np.testing.assert_allclose(path.track.poses.t, [0, 0.1, 0.5, 0.7, 0.8])
-
-
-def test_rows_of_a_track_are_kept_by_a_condition_on_any_column(tmp_path):
-    file = mocap(tmp_path)
-    (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["Frame < 5"]\n')
-    stated = read_mapped_columns("track", file, None, MAPPED_UNITS)[0]
-    path = read_foreign_track(file, stated, TrajectoryRequest())
-    np.testing.assert_allclose(path.track.poses.t, [0, 0.1, 0.4])
-    (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["Frame < -5"]\n')
-    stated = read_mapped_columns("track", file, None, MAPPED_UNITS)[0]
-    with pytest.raises(
-        DataError, match=r"none of the 9 rows meets \[track.rows\] keep: Frame < -5"
-    ):
-        read_foreign_track(file, stated, TrajectoryRequest())
-
-
-def test_a_trajectory_in_space_has_gaps_too(tmp_path):
-    n = np.arange(8.0)
-    frame = pd.DataFrame({"t": n, "x": n, "y": 0 * n, "z": 0 * n, "qx": 0 * n, "qy": 0 * n})
-    frame = frame.assign(qz=0 * n, qw=1 + 0 * n)
-    frame.loc[2:3, frame.columns[1:]] = np.nan
-    frame.loc[6, "qw"] = 3.0
-    frame.to_csv(tmp_path / "space.csv", index=False)
-    with pytest.raises(DataError, match=r"row 7 \(line 8\): quaternion length 3"):
-        read(tmp_path / "space.csv")
-    frame.loc[6, "qw"] = 1.0
-    frame.to_csv(tmp_path / "space.csv", index=False)
-    np.testing.assert_array_equal(read(tmp_path / "space.csv").track.poses.t, [0, 1, 4, 5, 6, 7])

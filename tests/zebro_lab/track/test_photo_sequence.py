@@ -71,15 +71,6 @@ def test_an_interval_counts_in_the_order_a_person_counts(tmp_path):
         np.testing.assert_allclose(sequence.times.t, [0, 2, 4])
 
 
-def test_a_table_may_reorder(tmp_path):
-    for name in ("a.jpg", "b.jpg"):
-        photo(tmp_path / name, None)
-    table = tmp_path / "times.csv"
-    table.write_text("photo,t_s,t_sigma\na.jpg,7,0.1\nb.jpg,3,0.1\n")
-    with open_photos(tmp_path, TimeRequest(table=table)) as sequence:
-        assert names_of(sequence) == ("b.jpg", "a.jpg")
-
-
 def test_a_photographed_code_ties_the_cameras_clock_to_the_computers(tmp_path):
     shown = STARTED - 3600.0 + 1.0
     photo(tmp_path / "clock.jpg", 1.0, clock_picture(shown, module_px=8))
